@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <chrono>
+#include <string_view>
+
+namespace cairn {
+
+/// Reports each stage's result to exec.observe: stage("match", match(...)) hands the value through. A stage's time runs
+/// from the end of the one before. Without an observer it does nothing.
+class Observed {
+ public:
+  explicit Observed(const Exec& exec) : observe_(exec.observe) { restart(); }
+
+  template <class T>
+  T operator()(std::string_view stage, T value) {
+    if (observe_) {
+      const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start_;
+      observe_(stage, Artifact(static_cast<const T*>(&value)), elapsed.count());
+      restart();  // the observer's own time is no stage's
+    }
+    return value;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void restart() {
+    if (observe_) start_ = Clock::now();
+  }
+  const Observer& observe_;
+  Clock::time_point start_;
+};
+
+}  // namespace cairn

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/parallel.hpp>
+#include <thread>
+
+#if CAIRN_WITH_TBB
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#endif
+
+namespace cairn {
+
+class Workers {
+ public:
+  explicit Workers(int threads)
+      : threads_(threads)
+#if CAIRN_WITH_TBB
+        ,
+        arena_(threads)
+#endif
+  {
+  }
+  [[nodiscard]] int threads() const { return threads_; }
+
+  void run(int count, int grain, const std::function<void(int, int)>& body) {
+#if CAIRN_WITH_TBB
+    // As many equal parts as threads × 4: enough to even out the load, few enough that per-range set-up stays cheap.
+    const int part = std::max(grain, (count + threads_ * 4 - 1) / (threads_ * 4));
+    const int parts = (count + part - 1) / part;
+    arena_.execute([&] {
+      oneapi::tbb::parallel_for(
+          0, parts, [&](int i) { body(i * part, std::min(count, (i + 1) * part)); },
+          oneapi::tbb::simple_partitioner{});
+    });
+#else
+    body(0, count);
+    (void)grain;
+#endif
+  }
+
+ private:
+  int threads_;
+#if CAIRN_WITH_TBB
+  oneapi::tbb::task_arena arena_;
+#endif
+};
+
+Exec Exec::with_threads(int threads, Target target) {
+  Exec exec;
+  exec.target = target;
+  if (threads <= 0) threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (threads > 1) exec.workers = std::make_shared<Workers>(threads);
+  return exec;
+}
+
+int Exec::threads() const { return workers ? workers->threads() : 1; }
+
+void parallel_for(const Exec& exec, int count, int grain, const std::function<void(int, int)>& body) {
+  if (count <= 0) return;
+  if (!exec.workers || count <= grain) {
+    body(0, count);
+  } else {
+    exec.workers->run(count, grain, body);
+  }
+}
+
+}  // namespace cairn

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/image.hpp>
+#include <optional>
+
+namespace cairn {
+
+/// A rectified pair: a point of the left image at (x, y) stands in the right image at (x - d, y). Borrows its images.
+class StereoPair {
+ public:
+  /// Throws Error where the sizes differ or an image is empty. `left_rgb` (optional) is the colour of the left image.
+  static StereoPair from(View<const Gray> left, View<const Gray> right, View<const Rgb> left_rgb = {});
+
+  [[nodiscard]] View<const Gray> left() const { return left_; }
+  [[nodiscard]] View<const Gray> right() const { return right_; }
+  /// Empty where the input had no colour.
+  [[nodiscard]] View<const Rgb> left_rgb() const { return left_rgb_; }
+  [[nodiscard]] Size size() const { return left_.size(); }
+
+ private:
+  StereoPair(View<const Gray> left, View<const Gray> right, View<const Rgb> left_rgb)
+      : left_(left), right_(right), left_rgb_(left_rgb) {}
+  View<const Gray> left_;
+  View<const Gray> right_;
+  View<const Rgb> left_rgb_;
+};
+
+/// The calibration of a rectified pair. Depth: Z = focal_px · baseline_m / (d + doffs_px).
+struct StereoRig {
+  float focal_px = 0;
+  float cx_px = 0;
+  float cy_px = 0;
+  float baseline_m = 0;
+  float doffs_px = 0;
+
+  /// Throws Error (naming `source`) unless every number is finite and focal length and baseline are positive.
+  void validate(const char* source = "rig") const;
+  /// The point that pixel (x, y) with this disparity shows, in the left camera's frame (x right, y down, z forward);
+  /// nullopt where d + doffs ≤ 0: at or beyond infinity.
+  [[nodiscard]] std::optional<Vec3> point_in_camera_m(float x, float y, float disparity_px) const;
+};
+
+}  // namespace cairn

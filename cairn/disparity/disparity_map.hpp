@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/image.hpp>
+#include <cairn/disparity/reject.hpp>
+#include <initializer_list>
+
+namespace cairn {
+
+/// Disparity per left pixel, and for every pixel without one the reason. Hole ⇔ reject ≠ none ⇔ disparity is NaN.
+struct DisparityMap {
+  Image<float> disparity_px;
+  Image<Reject> reject;
+};
+
+/// Disparities beyond ±this bound are refused at the door: regions count in 1/16 px of 16 bits.
+inline constexpr float kMaxDisparity = 2047.0F;
+
+/// Unites the checks' verdicts: a pixel keeps every bit that it got, NaN adds Reject::border. (METHOD §2)
+/// All views have the size of `refined_px`.
+DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts, const Exec& exec);
+
+/// A map from outside (depth camera, learned matcher): NaN and ±inf become holes with Reject::no_data.
+/// Throws Error where the map is empty, has no value at all, or one beyond ±kMaxDisparity.
+DisparityMap external_disparity(View<const float> disparity_px, const Exec& exec);
+
+}  // namespace cairn

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/disparity/reject.hpp>
+#include <cairn/matching/match.hpp>
+
+namespace cairn {
+
+struct FlatnessConfig {
+  float threshold = 0.1F;  // share; −1 = off
+};
+template <class V>
+void fields(FlatnessConfig& c, V&& v) {
+  v("threshold", c.threshold, "share", "least depth of the best cost below the mean cost", off_or(0.0F, 1.0F));
+}
+
+/// Marks pixels with "a constant correlation function": (mean − best) / mean < threshold → Reject::flat; a mean of 0
+/// is flat. Pixels without match are left to Reject::border. (METHOD §2; paper)
+Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config, const Exec& exec);
+
+}  // namespace cairn

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/fields.hpp>
+#include <cairn/disparity/reject.hpp>
+
+namespace cairn {
+
+struct TextureConfig {
+  int window_size = 9;      // px
+  float threshold = 4.0F;   // grey levels²; −1 = off
+};
+template <class V>
+void fields(TextureConfig& c, V&& v) {
+  v("window_size", c.window_size, "px", "side of the Moravec operator's window, odd", odd_range(3, 31));
+  v("threshold", c.threshold, "grey levels²", "least mean squared difference to the most similar shift",
+    off_or(0.0F, 65025.0F));
+}
+
+/// Marks pixels without enough texture: the Moravec operator, the least over the shifts s = (1,0), (0,1), (1,1), (1,−1)
+/// of the mean over the window of (I(q) − I(q+s))², below the threshold → Reject::no_texture. Pairs of which either
+/// pixel lies outside the image do not count; no pair at all → no texture. (METHOD §2; paper, "Moravec operator")
+Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config, const Exec& exec);
+
+}  // namespace cairn

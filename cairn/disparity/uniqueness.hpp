@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/disparity/reject.hpp>
+#include <cairn/matching/match.hpp>
+
+namespace cairn {
+
+struct UniquenessConfig {
+  float ratio = 10.0F;  // percent; −1 = off
+};
+template <class V>
+void fields(UniquenessConfig& c, V&& v) {
+  v("ratio", c.ratio, "%", "by how much the best cost must beat the runner-up (OpenCV's uniquenessRatio)",
+    off_or(0.0F, 100.0F));
+}
+
+/// Marks pixels with "more than one suitable minimum": runner_up·(100 − ratio) < cost·100 → Reject::not_unique.
+/// No runner-up (kNoCost): unique. (METHOD §2; paper; OpenCV's rule)
+Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& config, const Exec& exec);
+
+}  // namespace cairn

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/fields.hpp>
+#include <cairn/core/stereo_pair.hpp>
+#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/objects/fuse.hpp>
+#include <optional>
+#include <vector>
+
+namespace cairn {
+
+struct ObjectsConfig {
+  float min_area = 0.1F;
+  float max_area = 30.0F;
+};
+template <class V>
+void fields(ObjectsConfig& c, V&& v) {
+  v("min_area", c.min_area, "% of the image", "smaller regions are no objects", range(0.0F, 100.0F));
+  v("max_area", c.max_area, "% of the image", "larger regions are background", range(0.0F, 100.0F));
+}
+
+/// Something that stands or hangs in front of the background.
+struct Object {
+  ObjectId id = ObjectId::none;
+  Rect box_px;
+  int pixel_count = 0;
+  float disparity_px = 0;                      // median of its valid pixels
+  float valid_share = 0;                       // 0 … 1: pixels of the mask that have a disparity
+  Rgb mean_colour;                             // of the mask; grey where the input had no colour
+  std::optional<Vec3> position_in_camera_m;    // mean of its visible valid points; needs a rig
+  std::optional<Vec3> extent_in_camera_m;      // size of the box around its points, 2nd to 98th percentile per axis
+  float confidence = 0;                        // 0 … 1
+};
+
+/// The objects of a frame. labels: ObjectId per pixel, none = no object. list[i].id = i + 1, nearest first
+/// (ties of disparity: raster order of the first pixel).
+struct Objects {
+  Image<ObjectId> labels;
+  std::vector<Object> list;
+};
+
+/// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image or touches
+/// three of its borders (background); what is smaller than min_area; what has no valid pixel. (METHOD §7)
+Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
+                View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
+                const ObjectsConfig& config, const Exec& exec);
+
+}  // namespace cairn

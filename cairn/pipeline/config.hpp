@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/disparity/flatness.hpp>
+#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/disparity/left_right.hpp>
+#include <cairn/disparity/speckle.hpp>
+#include <cairn/disparity/texture.hpp>
+#include <cairn/disparity/uniqueness.hpp>
+#include <cairn/matching/match.hpp>
+#include <cairn/matching/subpixel.hpp>
+#include <cairn/objects/measure.hpp>
+#include <cairn/regions/segment_disparity.hpp>
+#include <cairn/regions/segment_intensity.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cairn {
+
+/// What is computed: one section per stage. A default-constructed Config is the preset `default`.
+struct Config {
+  MatchConfig match;
+  SubpixelConfig subpixel;
+  LeftRightConfig left_right;
+  UniquenessConfig uniqueness;
+  FlatnessConfig flatness;
+  TextureConfig texture;
+  GroundConfig ground;
+  SpeckleConfig speckle;
+  IntensityConfig intensity;
+  DisparityConfig disparity;
+  ObjectsConfig objects;
+
+  /// Only what the paper describes. (METHOD, "Two presets")
+  static Config paper();
+  /// The presets by name: "default", "paper". Throws Error naming the known ones.
+  static Config preset(std::string_view name);
+};
+
+/// Calls visit("match", c.match), … for every section, in data-flow order.
+template <class C, class F>
+void for_each_section(C& c, F&& visit) {
+  visit("match", c.match);
+  visit("subpixel", c.subpixel);
+  visit("left_right", c.left_right);
+  visit("uniqueness", c.uniqueness);
+  visit("flatness", c.flatness);
+  visit("texture", c.texture);
+  visit("ground", c.ground);
+  visit("speckle", c.speckle);
+  visit("intensity", c.intensity);
+  visit("disparity", c.disparity);
+  visit("objects", c.objects);
+}
+
+/// One option as the reference page, the command line and bindings present it.
+struct OptionInfo {
+  std::string name;    // "match.window_size"
+  std::string type;    // "int", "float", "bool", "choice", "points"
+  std::string value;   // as set() would read it
+  std::string unit;    // may be empty
+  std::string domain;  // "3 … 31, odd", "−1 = off, 0 … 64", "sad|ssd|…"
+  std::string help;
+};
+
+/// Every option of `config`, in order.
+std::vector<OptionInfo> options(const Config& config);
+/// Sets one option from its text. Throws Error: unknown name (names the nearest known one), not of its type, out of range
+/// (names the range).
+void set(Config& config, std::string_view name, std::string_view value);
+/// The names of the presets.
+std::vector<std::string> preset_names();
+/// Throws Error where a value lies outside its range or options contradict each other (a check that needs evidence which
+/// match.evidence=winner does not keep; a ground from fewer than four points or from points on a line).
+void validate(const Config& config);
+/// The same, and against an image: the window must fit, a disparity must be possible, a pose needs a rig.
+void validate(const Config& config, Size image, bool has_rig);
+
+}  // namespace cairn

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <cairn/core/observed.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <utility>
+
+namespace cairn {
+namespace {
+
+SceneDisparity check_against_scene(DisparityMap disparity, const std::optional<StereoRig>& rig, const Config& config,
+                                   const Exec& exec, Observed& stage) {
+  Ground ground = stage("fit_ground", fit_ground(disparity, rig, config.ground, exec));
+  disparity = stage("reject_below_ground", reject_below_ground(std::move(disparity), ground, rig, config.ground, exec));
+  disparity = stage("reject_speckles", reject_speckles(std::move(disparity), config.speckle, exec));
+  auto floor = stage("label_floor", label_floor(disparity, ground, rig, config.ground, exec));
+  return {std::move(disparity), ground, std::move(floor)};
+}
+
+DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec, Observed& stage) {
+  const Matches matches = stage("match", match(pair, config.match, exec));
+  auto refined = stage("refine_subpixel", refine_subpixel(matches, config.subpixel, exec));
+
+  const auto inconsistent = stage("reject_inconsistent", reject_inconsistent(matches, config.left_right, exec));
+  const auto ambiguous = stage("reject_ambiguous", reject_ambiguous(matches, config.uniqueness, exec));
+  const auto flat = stage("reject_flat", reject_flat(matches, config.flatness, exec));
+  const auto textureless = stage("reject_textureless", reject_textureless(pair.left(), config.texture, exec));
+  return stage("combine", combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec));
+}
+
+Frame find_objects(View<const Gray> left, View<const Rgb> left_rgb, SceneDisparity scene,
+                   const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage) {
+  auto by_intensity = stage("segment_intensity", segment_intensity(left, config.intensity, exec));
+  auto by_disparity =
+      stage("segment_disparity", segment_disparity(scene.disparity, scene.floor, config.disparity, exec));
+  auto fusion = stage("fuse", fuse(by_intensity, by_disparity, exec));
+  auto objects =
+      stage("measure", measure(fusion, by_disparity, scene.disparity, left, left_rgb, rig, config.objects, exec));
+  return {std::move(scene.disparity), scene.ground,      std::move(scene.floor), std::move(by_intensity),
+          std::move(by_disparity),    std::move(fusion), std::move(objects)};
+}
+
+}  // namespace
+
+SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
+                                  const Exec& exec) {
+  validate(config, pair.size(), rig.has_value());
+  Observed stage(exec);
+  return check_against_scene(match_and_check(pair, config, exec, stage), rig, config, exec, stage);
+}
+
+Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config, const Exec& exec) {
+  validate(config, pair.size(), rig.has_value());
+  Observed stage(exec);
+  auto scene = check_against_scene(match_and_check(pair, config, exec, stage), rig, config, exec, stage);
+  return find_objects(pair.left(), pair.left_rgb(), std::move(scene), rig, config, exec, stage);
+}
+
+Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
+              const std::optional<StereoRig>& rig, const Config& config, const Exec& exec) {
+  if (left.size() != disparity.disparity_px.size()) {
+    throw Error("external disparity: the map is " + text(disparity.disparity_px.size()) + ", the left image " +
+                text(left.size()));
+  }
+  validate(config);
+  Observed stage(exec);
+  auto scene = check_against_scene(std::move(disparity), rig, config, exec, stage);
+  return find_objects(left, left_rgb, std::move(scene), rig, config, exec, stage);
+}
+
+}  // namespace cairn

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/pipeline/config.hpp>
+
+namespace cairn {
+
+/// Disparity with everything that speaks against it: matching and every check, ground and speckle included.
+struct SceneDisparity {
+  DisparityMap disparity;
+  Ground ground;
+  Image<std::uint8_t> floor;  // 255 = floor; empty where there is none
+};
+
+/// All that is known of one pair.
+struct Frame {
+  DisparityMap disparity;
+  Ground ground;
+  Image<std::uint8_t> floor;
+  Segmentation by_intensity;
+  Segmentation by_disparity;
+  Fusion fusion;
+  Objects objects;
+};
+
+/// The method's first half: a pair in, checked disparities out. Throws Error where validate() does.
+SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
+                                  const Exec& exec);
+
+/// The whole method. Throws Error where validate() does; past that it cannot fail.
+Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config, const Exec& exec);
+
+/// The method on a disparity map from elsewhere (depth camera, learned matcher): see external_disparity().
+/// Throws Error where sizes differ.
+Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
+              const std::optional<StereoRig>& rig, const Config& config, const Exec& exec);
+
+}  // namespace cairn

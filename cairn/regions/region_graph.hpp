@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/geometry.hpp>
+#include <cairn/core/ids.hpp>
+#include <cairn/core/image.hpp>
+#include <cstdint>
+#include <vector>
+
+namespace cairn {
+
+/// A set of connected pixels. Mean and variance over its valid pixels (holes never count in a statistic).
+struct Region {
+  int pixel_count = 0;
+  int valid_count = 0;  // pixels that carry a value; mean and variance are 0 where there is none
+  Rect box;
+  double mean = 0;
+  double variance = 0;   // of the population
+  bool is_floor = false;  // the one floor region of a disparity segmentation
+};
+
+/// The result of a segmentation: every pixel's region, 0 … regions.size()−1 in raster order of their first pixel.
+struct Segmentation {
+  Image<RegionId> labels;
+  std::vector<Region> regions;
+};
+
+/// Regions and which of them touch (4-neighbourhood), while they grow together.
+/// Sums are integers, so the statistics do not depend on the order in which pixels and regions were added.
+struct RegionGraph {
+  struct Node {
+    std::int64_t pixel_count = 0;
+    std::int64_t valid_count = 0;
+    std::int64_t sum = 0;
+    std::int64_t sum_of_squares = 0;
+    int first_pixel = 0;  // y·width + x of its first pixel in raster order
+    Rect box;
+    bool is_floor = false;
+    [[nodiscard]] double mean() const;
+    [[nodiscard]] double variance() const;
+    void absorb(const Node& other);
+  };
+  std::vector<Node> nodes;
+  std::vector<std::int32_t> first_arc;   // arcs of node i: arcs[first_arc[i]] … arcs[first_arc[i+1] − 1], ascending
+  std::vector<std::int32_t> arcs;
+};
+
+/// Counts and links the regions of `labels` (ids 0 … count−1). `values`: what the statistics are of; kHole16 = no value.
+/// `floor` (may be empty): non-zero pixels are floor; a region is floor when it has a floor pixel (the caller splits
+/// basins along the floor first).
+RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
+                        View<const std::uint8_t> floor, const Exec& exec);
+
+/// Which region every old one ended in. merged_into[i] = the surviving id, itself where it survived.
+using Merges = std::vector<std::int32_t>;
+
+/// Renumbers the survivors in raster order of their first pixel and writes labels and statistics.
+Segmentation apply_merges(View<const RegionId> labels, const RegionGraph& graph, const Merges& merged_into,
+                          double value_scale, const Exec& exec);
+
+}  // namespace cairn
