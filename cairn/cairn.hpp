@@ -26,3 +26,4 @@
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above
+#include <cairn/pipeline/segmenter.hpp>          // Segmenter: the same for video
