@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/stereo_pair.hpp>
+#include <filesystem>
+#include <optional>
+
+namespace cairn::io {
+
+/// What a calibration file says of a rectified pair. Files may leave things out.
+struct Calibration {
+  std::optional<StereoRig> rig;  // nothing where the file has no focal length or no baseline: no metres then
+  std::optional<Size> image_size;      // of the pictures that it was made for
+  std::optional<int> num_disparities;  // `ndisp`: the default of match.num_disparities
+};
+
+/// Reads a calibration, its form recognised by content (docs/formats.md shows each): our own YAML, Middlebury
+/// calib.txt, KITTI calib_cam_to_cam.txt and calib.txt, OpenCV FileStorage YAML/XML/JSON with P1 and P2 or Q,
+/// ROS camera_info YAML (either file of the pair, one file with both, or their folder), key=value lines.
+/// Throws Error (one line: file, what was found, what was expected): missing, no known form, a number that is
+/// none, a focal length or baseline that is not positive, fx ≠ fy.
+Calibration load_calibration(const std::filesystem::path& path);
+
+/// Throws Error where the calibration was made for pictures of another size.
+void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);
+
+}  // namespace cairn::io

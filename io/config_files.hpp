@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/pipeline/config.hpp>
+#include <filesystem>
+#include <string>
+
+namespace cairn::io {
+
+/// Reads options from a YAML file (JSON is YAML too) into `config`; options that the file leaves out stay as
+/// they are.
+///
+///   preset: paper            # optional, first: start from this preset instead of from `config`
+///   match:
+///     window_size: 9
+///   left_right.max_diff: -1  # or flat
+///
+/// Throws Error with one line that names file, line, key and the nearest known one, or the range; `config` is
+/// then as it was.
+void load_config(const std::filesystem::path& path, Config& config);
+
+/// Every option with its value, in the form that load_config() reads, one comment per option.
+std::string config_yaml(const Config& config);
+
+}  // namespace cairn::io
