@@ -1,2 +1,288 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <io/overlay.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+namespace cairn::io {
+namespace {
+
+constexpr int kLegibleWidth = 640;  // px; narrower pictures are enlarged to about this
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+
+int enlargement(Size size) {
+  return std::clamp((kLegibleWidth + size.width / 2) / size.width, 1, 4);
+}
+
+/// The pixels of an image as OpenCV sees them: channels in the order R, G, B.
+cv::Mat matrix(Image<Rgb>& image) {
+  return {image.height(), image.width(), CV_8UC3, image.row(0),
+          static_cast<std::size_t>(image.view().stride()) * sizeof(Rgb)};
+}
+
+cv::Scalar scalar(Rgb c) {
+  return {double(c.r), double(c.g), double(c.b)};
+}
+
+std::uint8_t mixed(std::uint8_t a, std::uint8_t b, float share_of_b) {
+  const float value = static_cast<float>(a) * (1 - share_of_b) + static_cast<float>(b) * share_of_b;
+  return static_cast<std::uint8_t>(std::lround(value));
+}
+Rgb mixed(Rgb a, Rgb b, float share_of_b) {
+  return {mixed(a.r, b.r, share_of_b), mixed(a.g, b.g, share_of_b), mixed(a.b, b.b, share_of_b)};
+}
+
+Rgb from_hsv(float hue, float saturation, float value) {  // all 0 … 1
+  const auto channel = [&](float shift) {
+    const float k = std::fmod(shift + hue * 6, 6.0F);
+    const float v = value - value * saturation * std::clamp(std::min(k, 4 - k), 0.0F, 1.0F);
+    return static_cast<std::uint8_t>(std::lround(v * 255));
+  };
+  return {channel(5), channel(3), channel(1)};
+}
+
+std::string number_text(const char* format, float value) {
+  std::array<char, 48> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, static_cast<double>(value));
+  return buffer.data();
+}
+
+void write(const cv::Mat& canvas, const std::string& text, cv::Point at, double scale, Rgb colour) {
+  cv::putText(canvas, text, at, kFont, scale, scalar({0, 0, 0}), 3, cv::LINE_AA);
+  cv::putText(canvas, text, at, kFont, scale, scalar(colour), 1, cv::LINE_AA);
+}
+
+/// Centred on `middle`, and inside the picture as far as it fits.
+void write_centred(const cv::Mat& canvas, const std::string& text, cv::Point middle, double scale) {
+  int below = 0;
+  const cv::Size extent = cv::getTextSize(text, kFont, scale, 1, &below);
+  const int x = std::clamp(middle.x - extent.width / 2, 0, std::max(0, canvas.cols - extent.width));
+  const int y =
+      std::clamp(middle.y + extent.height / 2, extent.height, std::max(extent.height, canvas.rows - below));
+  write(canvas, text, {x, y}, scale, {255, 255, 255});
+}
+
+/// The pixel of the object that lies farthest from its outline: a place for a label.
+cv::Point innermost(View<const ObjectId> labels, const Object& object) {
+  const Rect box = object.box_px;
+  cv::Mat mask(box.height + 2, box.width + 2, CV_8UC1, cv::Scalar(0));
+  for (int y = 0; y < box.height; ++y) {
+    for (int x = 0; x < box.width; ++x) {
+      if (labels(box.x + x, box.y + y) == object.id) mask.at<std::uint8_t>(y + 1, x + 1) = 255;
+    }
+  }
+  cv::Mat distance;
+  cv::distanceTransform(mask, distance, cv::DIST_L2, 3);
+  cv::Point best;
+  cv::minMaxLoc(distance, nullptr, nullptr, nullptr, &best);
+  return {box.x + best.x - 1, box.y + best.y - 1};
+}
+
+/// The picture enlarged, its background faded towards grey.
+Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor) {
+  Image<Rgb> colour(left.size());
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x) {
+      const Gray grey = left(x, y);
+      colour(x, y) = left_rgb.empty() ? Rgb{grey, grey, grey} : left_rgb(x, y);
+    }
+  }
+  Image<Rgb> large({left.width() * factor, left.height() * factor});
+  cv::Mat target = matrix(large);
+  cv::resize(matrix(colour), target, target.size(), 0, 0, cv::INTER_CUBIC);
+  return large;
+}
+
+void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> floor, int factor) {
+  constexpr Rgb kFloor{90, 150, 190};
+  const View<const ObjectId> labels = objects.labels;
+  const auto label_at = [&](int x, int y) {
+    return labels.contains(x / factor, y / factor) && x >= 0 && y >= 0 ? labels(x / factor, y / factor)
+                                                                       : ObjectId::none;
+  };
+  for (int y = 0; y < canvas.height(); ++y) {
+    for (int x = 0; x < canvas.width(); ++x) {
+      Rgb& pixel = canvas(x, y);
+      const ObjectId id = label_at(x, y);
+      if (id == ObjectId::none) {
+        const auto grey = static_cast<std::uint8_t>((77 * pixel.r + 150 * pixel.g + 29 * pixel.b + 128) >> 8);
+        pixel = mixed(mixed(pixel, {grey, grey, grey}, 0.6F), {0, 0, 0}, 0.25F);
+        if (!floor.empty() && floor(x / factor, y / factor) != 0) pixel = mixed(pixel, kFloor, 0.25F);
+        continue;
+      }
+      const bool outline = label_at(x - 1, y) != id || label_at(x + 1, y) != id || label_at(x, y - 1) != id ||
+                           label_at(x, y + 1) != id;
+      pixel =
+          outline ? mixed(object_colour(id), {255, 255, 255}, 0.35F) : mixed(pixel, object_colour(id), 0.45F);
+    }
+  }
+}
+
+// ---- disparity ----
+
+struct Reason {
+  Reject bit;
+  const char* name;
+  Rgb colour;
+};
+/// Where several bits are set, the first of these is shown: what cannot be helped before what the matcher
+/// decided.
+constexpr std::array kReasons{
+    Reason{Reject::no_data, "no data", {25, 25, 25}},
+    Reason{Reject::border, "border", {60, 60, 60}},
+    Reason{Reject::below_ground, "below ground", {205, 185, 255}},
+    Reason{Reject::speckle, "speckle", {255, 240, 200}},
+    Reason{Reject::no_texture, "no texture", {95, 95, 110}},
+    Reason{Reject::not_unique, "not unique", {150, 135, 135}},
+    Reason{Reject::flat, "flat", {125, 150, 140}},
+    Reason{Reject::left_right, "left-right", {205, 205, 205}},
+};
+
+const Reason& shown_reason(Reject reject) {
+  const auto found =
+      std::find_if(kReasons.begin(), kReasons.end(), [&](const Reason& r) { return has(reject, r.bit); });
+  return found == kReasons.end() ? kReasons.front() : *found;
+}
+
+struct Span {
+  float low = 0;
+  float high = 1;
+};
+
+/// From the 1st to the 99th percentile, so that a few wrong matches do not take the colours from the rest.
+Span shown_span(const DisparityMap& map) {
+  std::vector<float> values;
+  for (int y = 0; y < map.reject.height(); ++y) {
+    for (int x = 0; x < map.reject.width(); ++x) {
+      if (map.reject(x, y) == Reject::none) values.push_back(map.disparity_px(x, y));
+    }
+  }
+  if (values.empty()) return {};
+  const auto at = [&](std::size_t percent) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+  };
+  const Span span{at(1), at(99)};
+  return span.high > span.low ? span : Span{span.low - 0.5F, span.low + 0.5F};
+}
+
+std::array<Rgb, 256> turbo() {
+  cv::Mat ramp(1, 256, CV_8UC1);
+  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
+  cv::Mat bgr;
+  cv::applyColorMap(ramp, bgr, cv::COLORMAP_TURBO);
+  std::array<Rgb, 256> colours{};
+  for (int i = 0; i < 256; ++i) {
+    const auto c = bgr.at<cv::Vec3b>(0, i);
+    // The darkest ends would be hard to tell from holes.
+    colours[static_cast<std::size_t>(i)] = mixed(Rgb{c[2], c[1], c[0]}, {255, 255, 255}, 0.08F);
+  }
+  return colours;
+}
+
+Rgb colour_of(float disparity, Span span, const std::array<Rgb, 256>& colours) {
+  const float share = std::clamp((disparity - span.low) / (span.high - span.low), 0.0F, 1.0F);
+  return colours[static_cast<std::size_t>(std::lround(share * 255))];
+}
+
+std::string scale_text(float disparity, const std::optional<StereoRig>& rig) {
+  const std::string px = number_text("%.1f px", disparity);
+  if (!rig) return px;
+  const auto point = rig->point_in_camera_m(0, 0, disparity);
+  return px + (point ? number_text("  %.2f m", point->z) : "");
+}
+
+constexpr int kLegendWidth = 190;
+constexpr int kLegendRow = 20;
+constexpr int kLegendHeight = kLegendRow * (int(kReasons.size()) + 6) + 10;
+
+void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Span span,
+                 const std::array<Rgb, 256>& colours, const std::optional<StereoRig>& rig) {
+  constexpr double kScale = 0.42;
+  constexpr int kBarRows = 4;
+  const Rgb white{235, 235, 235};
+  const int bar_top = 10;
+  const int bar_height = kBarRows * kLegendRow;
+  for (int y = 0; y < bar_height; ++y) {
+    const auto c = colours[static_cast<std::size_t>(255 - y * 255 / (bar_height - 1))];
+    cv::line(canvas, {left + 10, bar_top + y}, {left + 24, bar_top + y}, scalar(c));
+  }
+  for (int i = 0; i <= 2; ++i) {
+    const float d = span.high + (span.low - span.high) * static_cast<float>(i) / 2;
+    write(canvas, scale_text(d, rig), {left + 32, bar_top + 10 + i * (bar_height - 14) / 2}, kScale, white);
+  }
+  std::array<std::int64_t, kReasons.size()> counts{};
+  std::int64_t valid = 0;
+  for (int y = 0; y < map.reject.height(); ++y) {
+    for (int x = 0; x < map.reject.width(); ++x) {
+      const Reject reject = map.reject(x, y);
+      if (reject == Reject::none) {
+        ++valid;
+      } else {
+        ++counts[static_cast<std::size_t>(&shown_reason(reject) - kReasons.data())];
+      }
+    }
+  }
+  const auto percent = [&](std::int64_t count) {
+    return number_text("  %.1f %%",
+                       100 * static_cast<float>(count) / static_cast<float>(map.reject.size().area()));
+  };
+  int y = bar_top + bar_height + kLegendRow;
+  write(canvas, "valid" + percent(valid), {left + 10, y}, kScale, white);
+  for (std::size_t i = 0; i < kReasons.size(); ++i) {
+    y += kLegendRow;
+    cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kReasons[i].colour), cv::FILLED);
+    write(canvas, kReasons[i].name + percent(counts[i]), {left + 32, y}, kScale, white);
+  }
+}
+
+}  // namespace
+
+Rgb object_colour(ObjectId id) {
+  // Steps of the golden ratio keep any few consecutive hues far apart.
+  const float hue = std::fmod(0.61803399F * static_cast<float>(number(id) % 1000), 1.0F);
+  return from_hsv(hue, 0.78F, 0.98F);
+}
+
+Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const Objects& objects,
+                        View<const std::uint8_t> floor) {
+  const int factor = enlargement(left.size());
+  Image<Rgb> canvas = enlarged(left, left_rgb, factor);
+  tint(canvas, objects, floor, factor);
+  const cv::Mat target = matrix(canvas);
+  for (const Object& object : objects.list) {
+    const std::string distance = object.position_in_camera_m
+                                     ? number_text("%.2f m", object.position_in_camera_m->z)
+                                     : number_text("%.1f px", object.disparity_px);
+    const cv::Point place = innermost(objects.labels, object) * factor;
+    write_centred(target, std::to_string(number(object.id)) + ": " + distance, place, 0.45);
+  }
+  return canvas;
+}
+
+Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig) {
+  const int factor = enlargement(map.reject.size());
+  const Span span = shown_span(map);
+  const std::array<Rgb, 256> colours = turbo();
+  const int width = map.reject.width() * factor;
+  const int height = map.reject.height() * factor;
+  Image<Rgb> canvas({width + kLegendWidth, std::max(height, kLegendHeight)}, Rgb{15, 15, 15}, {});
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Reject reject = map.reject(x / factor, y / factor);
+      canvas(x, y) = reject == Reject::none
+                         ? colour_of(map.disparity_px(x / factor, y / factor), span, colours)
+                         : shown_reason(reject).colour;
+    }
+  }
+  draw_legend(matrix(canvas), width, map, span, colours, rig);
+  return canvas;
+}
+
+}  // namespace cairn::io

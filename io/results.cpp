@@ -1,2 +1,278 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <array>
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <io/atomic_file.hpp>
+#include <io/disparity_files.hpp>
+#include <io/image_files.hpp>
+#include <io/overlay.hpp>
+#include <io/read_file.hpp>
+#include <io/results.hpp>
+#include <io/rle.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <system_error>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// ---- objects.json ----
+
+/// The double that a reader of the float's shortest text would see: 0.7, not 0.699999988. JSON has no NaN:
+/// null.
+Json json(float value) {
+  if (!std::isfinite(value)) return nullptr;
+  std::array<char, 48> text{};
+  const char* end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  double shortest = 0;
+  std::from_chars(text.data(), end, shortest);
+  return shortest;
+}
+
+Json json(const std::optional<Vec3>& v) {
+  if (!v) return nullptr;
+  return Json::array({json(v->x), json(v->y), json(v->z)});
+}
+
+Json json(const std::optional<StereoRig>& rig) {
+  if (!rig) return nullptr;
+  return {{"focal_px", json(rig->focal_px)},
+          {"cx_px", json(rig->cx_px)},
+          {"cy_px", json(rig->cy_px)},
+          {"baseline_m", json(rig->baseline_m)},
+          {"doffs_px", json(rig->doffs_px)}};
+}
+
+Json json(const Ground& ground) {
+  Json j;
+  j["plane"] = nullptr;
+  if (ground.plane)
+    j["plane"] = {{"a", json(ground.plane->a)}, {"b", json(ground.plane->b)}, {"c", json(ground.plane->c)}};
+  j["support"] = json(ground.support);
+  j["residual_px"] = json(ground.residual_px);
+  for (const auto& refusal : kRefusals) {
+    if (refusal.value == ground.refusal) j["refusal"] = std::string(refusal.name);
+  }
+  return j;
+}
+
+Json json(const std::vector<PointPair>& points) {
+  Json all = Json::array();
+  for (const PointPair& p : points) {
+    all.push_back(Json::array({json(p.x_left), json(p.y_left), json(p.x_right), json(p.y_right)}));
+  }
+  return all;
+}
+
+Json option_value(const OptionInfo& option, const Config& config) {
+  if (option.type == "bool") return option.value == "true";
+  if (option.type == "points") return json(config.ground.points);
+  if (option.type == "int" || option.type == "float") {
+    const char* end = option.value.data() + option.value.size();
+    if (std::int64_t whole = 0;
+        option.type == "int" && std::from_chars(option.value.data(), end, whole).ptr == end) {
+      return whole;
+    }
+    if (double number = 0; std::from_chars(option.value.data(), end, number).ptr == end) return number;
+  }
+  return option.value;
+}
+
+Json json(const Config& config) {
+  Json all = Json::object();
+  for (const OptionInfo& option : options(config)) {
+    const std::size_t dot = option.name.find('.');
+    all[option.name.substr(0, dot)][option.name.substr(dot + 1)] = option_value(option, config);
+  }
+  return all;
+}
+
+Json json(const Object& object, View<const ObjectId> labels) {
+  const Rect box = object.box_px;
+  const Rle rle = encode_rle(labels, object.id, box);
+  Json j;
+  j["id"] = number(object.id);
+  j["bbox"] = {box.x, box.y, box.width, box.height};
+  j["area"] = object.pixel_count;
+  j["segmentation"] = {{"size", {rle.size.height, rle.size.width}}, {"counts", rle.counts}};
+  j["disparity_px"] = json(object.disparity_px);
+  j["position_m"] = json(object.position_in_camera_m);
+  j["extent_m"] = json(object.extent_in_camera_m);
+  j["mean_colour"] = {object.mean_colour.r, object.mean_colour.g, object.mean_colour.b};
+  j["valid_share"] = json(object.valid_share);
+  j["confidence"] = json(object.confidence);
+  return j;
+}
+
+// ---- the folder ----
+
+constexpr std::array kResultFiles{"disparity.png", "disparity.pfm", "reject.png",         "objects.png",
+                                  "floor.png",     "overlay.png",   "disparity_view.png", "objects.json"};
+
+/// A folder that is gone with all that it holds unless it is kept.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const fs::path& parent) {
+    std::random_device random;
+    std::error_code error;
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      path_ = parent / (".cairn-" + std::to_string(random()));
+      if (fs::create_directory(path_, error)) return;
+      if (error) break;
+    }
+    throw Error(parent.string() + ": cannot write into this folder (" + error.message() + ")");
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Makes the missing ancestors of a folder; takes them away again unless they are kept.
+class Ancestors {
+ public:
+  explicit Ancestors(const fs::path& folder) {
+    std::error_code ignored;
+    for (fs::path p = folder; !p.empty() && !fs::exists(p, ignored); p = p.parent_path()) {
+      made_.push_back(p);
+      if (p == p.parent_path()) break;
+    }
+    make_folder(folder);
+  }
+  Ancestors(const Ancestors&) = delete;
+  Ancestors& operator=(const Ancestors&) = delete;
+  ~Ancestors() {
+    if (kept_) return;
+    std::error_code ignored;
+    for (const fs::path& p : made_) fs::remove(p, ignored);  // innermost first; one that is not empty stays
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  std::vector<fs::path> made_;
+  bool kept_ = false;
+};
+
+Image<std::uint16_t> ids_of_16_bits(View<const ObjectId> labels, const fs::path& folder) {
+  Image<std::uint16_t> ids(labels.size());
+  for (int y = 0; y < labels.height(); ++y) {
+    for (int x = 0; x < labels.width(); ++x) {
+      const std::int32_t id = number(labels(x, y));
+      if (id > std::numeric_limits<std::uint16_t>::max()) {
+        throw Error(folder.string() +
+                    ": more than 65535 objects do not fit into objects.png; raise objects.min_area");
+      }
+      ids(x, y) = static_cast<std::uint16_t>(id);
+    }
+  }
+  return ids;
+}
+
+void write_files(const fs::path& folder, View<const Gray> left, View<const Rgb> left_rgb, const Frame& frame,
+                 const Provenance& provenance) {
+  save_disparity(folder / disparity_file_name(frame, provenance), frame.disparity.disparity_px);
+  save_png(folder / "reject.png", View<const Reject>(frame.disparity.reject));
+  const Image<std::uint16_t> ids = ids_of_16_bits(frame.objects.labels, folder);
+  save_png(folder / "objects.png", View<const std::uint16_t>(ids));
+  if (!frame.floor.empty()) save_png(folder / "floor.png", View<const std::uint8_t>(frame.floor));
+  const Image<Rgb> overlay = draw_objects(left, left_rgb, frame.objects, frame.floor);
+  save_png(folder / "overlay.png", View<const Rgb>(overlay));
+  const Image<Rgb> view = draw_disparity(frame.disparity, provenance.rig);
+  save_png(folder / "disparity_view.png", View<const Rgb>(view));
+  write_file(folder / "objects.json", objects_json(frame, provenance));
+}
+
+/// Moves a complete result over an older one: file by file, objects.json last, so that it never speaks of
+/// other files.
+void replace(const fs::path& made, const fs::path& folder) {
+  for (const char* name : kResultFiles) {
+    if (fs::exists(made / name)) {
+      fs::rename(made / name, folder / name);
+    } else {
+      fs::remove(folder / name);
+    }
+  }
+}
+
+}  // namespace
+
+std::string objects_json(const Frame& frame, const Provenance& provenance) {
+  const Size size = frame.disparity.disparity_px.size();
+  Json j;
+  j["cairn"] = CAIRN_VERSION;
+  j["image"] = {{"width", size.width}, {"height", size.height}};
+  j["rig"] = json(provenance.rig);
+  j["preset"] = provenance.preset;
+  j["config"] = json(provenance.config);
+  j["external_disparity"] = provenance.external_disparity;
+  j["timings_ms"] = Json::object();
+  for (const StageTime& time : provenance.timings) {
+    j["timings_ms"][time.stage] = std::round(time.milliseconds * 1000) / 1000;
+  }
+  j["ground"] = json(frame.ground);
+  j["objects"] = Json::array();
+  for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));
+  return j.dump(1) + "\n";
+}
+
+std::string disparity_file_name(const Frame& frame, const Provenance& provenance) {
+  const bool png =
+      provenance.external_disparity
+          ? png_can_hold(View<const float>(frame.disparity.disparity_px))
+          : png_can_hold(provenance.config.match.min_disparity, provenance.config.match.num_disparities);
+  return png ? "disparity.png" : "disparity.pfm";
+}
+
+void write_result(const fs::path& given_folder, View<const Gray> left, View<const Rgb> left_rgb,
+                  const Frame& frame, const Provenance& provenance) {
+  std::error_code failed;
+  // Absolute and without a last slash, so that every folder has a parent.
+  fs::path folder = fs::absolute(given_folder, failed).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  try {
+    if (fs::exists(folder)) {
+      if (!fs::is_directory(folder)) throw Error(given_folder.string() + ": is a file, expected a folder");
+      const TemporaryFolder made(folder);  // inside: a folder beside might lie on another disk
+      write_files(made.path(), left, left_rgb, frame, provenance);
+      replace(made.path(), folder);
+      return;
+    }
+    Ancestors ancestors(folder.parent_path());
+    const TemporaryFolder made(folder.parent_path());
+    write_files(made.path(), left, left_rgb, frame, provenance);
+    fs::rename(made.path(), folder);
+    ancestors.keep();
+  } catch (const fs::filesystem_error& error) {
+    throw Error(given_folder.string() + ": cannot write the result (" + error.code().message() + ")");
+  }
+}
+
+std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
+  constexpr std::size_t kMost = std::size_t{256} << 20;
+  const std::string text = read_file(path, kMost);
+  try {
+    std::vector<ObjectConfidence> all;
+    for (const auto& object : nlohmann::json::parse(text).at("objects")) {
+      all.push_back({ObjectId{object.at("id").get<std::int32_t>()}, object.at("confidence").get<double>()});
+    }
+    return all;
+  } catch (const nlohmann::json::exception&) {
+    throw Error(path.string() +
+                ": no objects.json of cairn, expected a list `objects` with `id` and `confidence`");
+  }
+}
+
+}  // namespace cairn::io

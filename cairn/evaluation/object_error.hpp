@@ -1,3 +1,119 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
+
+#include <cairn/core/geometry.hpp>
+#include <cairn/core/ids.hpp>
+#include <cairn/core/view.hpp>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace cairn {
+
+/// An object of a truth file: any number above none, as the file has it; ids need not be contiguous.
+/// dont_care = pixels of which the truth says nothing: they count in no area.
+enum class TruthId : std::int32_t { none = 0, dont_care = -1 };
+constexpr std::int32_t number(TruthId id) {
+  return static_cast<std::int32_t>(id);
+}
+
+struct ObjectErrorConfig {
+  int min_area = 200;  // px; smaller true objects are not scored, smaller ones of ours are no phantoms
+  float boundary_tolerance = 0.75F;  // % of the image's diagonal; rounded to px, at least 1
+};
+
+/// In means and medians no object's E counts for more (200 %).
+inline constexpr double kErrorCap = 2.0;
+
+/// How well one true object was found. Areas count pixels outside don't-care only.
+struct TrueObjectScore {
+  TruthId id = TruthId::none;
+  int pixel_count = 0;
+  ObjectId found =
+      ObjectId::none;  // our object of greatest IoU (ties: the lower id); none where nothing overlaps
+  double iou = 0;
+  double boundary_f = 0;  // 0 … 1: harmonic mean of boundary precision and recall; 0 where nothing overlaps
+  bool over_segmented =
+      false;  // two or more of ours lie mostly (> half of each) on it and cover more than half of it
+  bool under_segmented =
+      false;  // more than half of it lies in one of ours that holds more than half of another, too
+
+  /// Equation (5): (A(M) + A(R) − 2·A(M∩R)) / A(M∩R) = 1/IoU − 1; infinite where nothing overlaps.
+  [[nodiscard]] double error() const {
+    return iou > 0 ? 1 / iou - 1 : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double capped_error() const { return error() < kErrorCap ? error() : kErrorCap; }
+};
+
+/// What became of one object of ours.
+struct FoundObjectScore {
+  ObjectId id = ObjectId::none;
+  int pixel_count = 0;           // outside don't-care
+  TruthId best = TruthId::none;  // the true object of greatest IoU, scored or not (ties: the lower id)
+  double iou = 0;
+  double share_on_objects = 0;    // 0 … 1: of its pixels, those on any true object
+  bool mostly_dont_care = false;  // more than half of it lies on don't-care: neither right nor wrong
+  bool phantom = false;           // at least min_area px, less than a quarter of them on any true object
+};
+
+struct ObjectErrors {
+  std::vector<TrueObjectScore> truth;  // true objects of at least min_area px, ascending by id
+  std::vector<FoundObjectScore> ours;  // ascending by id
+  int boundary_tolerance_px = 0;
+};
+
+/// Compares a label image with the truth of the same size. (METHOD §8; paper, Eq. (5))
+ObjectErrors object_errors(View<const ObjectId> ours, View<const TruthId> truth,
+                           const ObjectErrorConfig& config);
+
+/// The paper's E for two areas and that of their intersection, all in px; infinite where they do not meet.
+double segmentation_error(std::int64_t area_truth, std::int64_t area_ours, std::int64_t area_both);
+
+/// Boundary F of two masks (non-zero = inside, `ignored` non-zero = neither; may be empty): of each boundary,
+/// the share that lies within `tolerance_px` (Euclidean) of the other; their harmonic mean. The image's
+/// border is no boundary. Two masks without any boundary agree (1); one without against one with: 0.
+double boundary_f(View<const std::uint8_t> a, View<const std::uint8_t> b, View<const std::uint8_t> ignored,
+                  int tolerance_px);
+
+/// Many frames as one: counts, and means over all their objects. Shares are NaN where there is nothing to
+/// share.
+struct ObjectSummary {
+  int frames = 0;
+  int true_objects = 0;  // scored ones
+  int found_50 = 0;      // of these, with IoU ≥ 0.5
+  int found_75 = 0;
+  int missed = 0;  // of these, with E at its cap or beyond
+  int over_segmented = 0;
+  int under_segmented = 0;
+  double mean_error = 0;  // of the capped E
+  double median_error = 0;
+  double mean_iou = 0;
+  double mean_boundary_f = 0;        // over all scored objects
+  double mean_boundary_f_found = 0;  // over those with IoU ≥ 0.5
+  // Only from frames whose truth names every object:
+  int complete_frames = 0;
+  int our_objects = 0;  // all of ours but those mostly on don't-care
+  int right_50 = 0;     // of these, with IoU ≥ 0.5 with a true object
+  int right_75 = 0;
+  int phantoms = 0;
+
+  [[nodiscard]] double recall_50() const;
+  [[nodiscard]] double recall_75() const;
+  [[nodiscard]] double precision_50() const;
+  [[nodiscard]] double precision_75() const;
+  [[nodiscard]] double phantoms_per_frame() const;
+};
+
+/// One frame as summarise() takes it. partial: the truth does not name every object, so that ours cannot be
+/// wrong.
+struct FrameObjects {
+  ObjectErrors errors;
+  bool partial = false;
+};
+ObjectSummary summarise(const std::vector<FrameObjects>& frames);
+
+/// The middle value, or the mean of the two middle ones; NaN of none.
+double median(std::vector<double> values);
+
+}  // namespace cairn

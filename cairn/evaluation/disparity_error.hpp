@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/core/view.hpp>
+#include <cstddef>
+#include <cstdint>
+
+namespace cairn {
+
+/// A matched pixel is bad-t when its disparity is off by more than t px.
+inline constexpr std::array kBadThresholdsPx{0.5F, 1.0F, 2.0F, 4.0F};
+
+/// Counts and sums over a set of pixels whose true disparity is known. Sets of pixels add up.
+struct DisparityErrors {
+  std::int64_t known = 0;                                   // pixels with truth
+  std::int64_t matched = 0;                                 // of these, pixels with a disparity of ours
+  std::array<std::int64_t, kBadThresholdsPx.size()> bad{};  // of the matched, by kBadThresholdsPx
+  double absolute_sum_px = 0;                               // of |ours − truth| over the matched
+  double square_sum_px2 = 0;
+
+  DisparityErrors& operator+=(const DisparityErrors& other);
+  /// Shares of 0 … 1 and px; NaN where there is nothing to divide by. `t` indexes kBadThresholdsPx.
+  [[nodiscard]] double density() const;
+  [[nodiscard]] double bad_of_matched(std::size_t t) const;
+  [[nodiscard]] double bad_of_known(std::size_t t) const;  // a hole counts as bad
+  [[nodiscard]] double mean_absolute_px() const;
+  [[nodiscard]] double root_mean_square_px() const;
+};
+
+/// Compares two disparity maps of one size; NaN = a hole of ours, a pixel without truth. `excluded` (may be
+/// empty): pixels where it is not 0 are left out, e.g. those that the right camera does not see. `skip_left`:
+/// columns x < skip_left are left out (matchers that cannot fill them are compared without). (METHOD §8)
+DisparityErrors disparity_errors(View<const float> ours_px, View<const float> truth_px,
+                                 View<const std::uint8_t> excluded, int skip_left);
+
+}  // namespace cairn

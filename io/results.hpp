@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/pipeline/segment.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cairn::io {
+
+struct StageTime {
+  std::string stage;  // as the observer names it
+  double milliseconds = 0;
+};
+
+/// How a frame came about: what its result says beside what was found.
+struct Provenance {
+  std::string preset;
+  Config config;
+  std::optional<StereoRig> rig;
+  std::vector<StageTime> timings;
+  bool external_disparity = false;  // the disparity was given, not matched
+};
+
+/// The content of objects.json (docs/formats.md). Ends with a newline.
+std::string objects_json(const Frame& frame, const Provenance& provenance);
+
+/// A result's disparity file: "disparity.png", or "disparity.pfm" where 16 bits cannot hold the search range
+/// (of a given disparity: its values).
+std::string disparity_file_name(const Frame& frame, const Provenance& provenance);
+
+/// Writes disparity.png (or .pfm), reject.png, objects.png, floor.png (where a floor was labelled),
+/// overlay.png, disparity_view.png and objects.json, whole or not at all: everything is written under a
+/// temporary name first. An older result in `folder` is replaced, files of it that the new one has not are
+/// removed, foreign files stay. `left_rgb` may be empty. Throws Error (names the folder).
+void write_result(const std::filesystem::path& folder, View<const Gray> left, View<const Rgb> left_rgb,
+                  const Frame& frame, const Provenance& provenance);
+
+/// What `cairn evaluate` needs of an objects.json. Throws Error where the file is none.
+struct ObjectConfidence {
+  ObjectId id = ObjectId::none;
+  double confidence = 0;
+};
+std::vector<ObjectConfidence> load_confidences(const std::filesystem::path& objects_json);
+
+}  // namespace cairn::io
