@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/cairn.hpp>
+
+/// Segments a pair of grey noise, so that every stage is linked and run.
+int main() {
+  cairn::Image<cairn::Gray> left({64, 48});
+  cairn::Image<cairn::Gray> right({64, 48});
+  unsigned state = 1;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      state = state * 1664525U + 1013904223U;
+      left(x, y) = static_cast<cairn::Gray>(state >> 24U);
+      right(x, y) = left(x, y);
+    }
+  }
+  cairn::Config config;
+  config.match.num_disparities = 16;
+  const cairn::Frame frame =
+      cairn::segment(cairn::StereoPair::from(left, right), {}, config, cairn::Exec::with_threads(2));
+  return frame.disparity.disparity_px.size() == left.size() ? 0 : 1;
+}

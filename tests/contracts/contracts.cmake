@@ -1,0 +1,41 @@
+# What the project promises to those who build on it. Included by tests/CMakeLists.txt.
+
+# Each public header compiles alone, and twice over: one generated source per header.
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
+  ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp)
+set(alone_sources)
+foreach(header IN LISTS headers)
+  string(REPLACE "/" "_" alone ${header})
+  set(alone ${CMAKE_CURRENT_BINARY_DIR}/alone/${alone}.cpp)
+  file(CONFIGURE OUTPUT ${alone} CONTENT "#include <${header}>\n#include <${header}>\n" @ONLY)
+  list(APPEND alone_sources ${alone})
+endforeach()
+add_library(cairn_headers_alone OBJECT ${alone_sources})
+target_link_libraries(cairn_headers_alone PRIVATE cairn_options cairn::cairn)
+
+function(cairn_contract name)
+  add_test(NAME contracts/${name} COMMAND ${ARGN})
+  set_tests_properties(contracts/${name} PROPERTIES LABELS contracts)
+endfunction()
+
+set(here ${CMAKE_CURRENT_SOURCE_DIR}/contracts)
+cairn_contract(mistakes_do_not_compile ${here}/must_not_compile.sh ${CMAKE_CXX_COMPILER} ${PROJECT_SOURCE_DIR})
+cairn_contract(headers_define_no_foreign_macro ${here}/no_foreign_macros.sh ${CMAKE_CXX_COMPILER} ${PROJECT_SOURCE_DIR})
+cairn_contract(links_of_the_pages_exist ${here}/links_exist.sh ${PROJECT_SOURCE_DIR})
+cairn_contract(installed_library_is_found_and_used ${here}/install_and_use.sh
+  ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
+set_tests_properties(contracts/installed_library_is_found_and_used PROPERTIES
+  LABELS "contracts;slow"
+  ENVIRONMENT "CAIRN_CONSUMER_FLAGS=$<$<BOOL:${CAIRN_SANITIZE}>:-fsanitize=${CAIRN_SANITIZE}>")
+
+if(CAIRN_IO)
+  cairn_test(contracts/exec_law_test.cpp LIBRARIES cairn::io)
+  cairn_test(contracts/segmenter_test.cpp LIBRARIES cairn::io)
+  cairn_contract(commands_answer_help ${here}/commands_answer_help.sh $<TARGET_FILE:cairn_cli>)
+  cairn_contract(docs_are_as_generated ${PROJECT_SOURCE_DIR}/docs/update.sh --check ${PROJECT_BINARY_DIR})
+endif()
+if(TARGET 01_objects_from_a_pair)
+  cairn_contract(example_01_runs 01_objects_from_a_pair ${PROJECT_SOURCE_DIR}/samples/four_in_a_row)
+  cairn_contract(example_02_runs 02_stage_by_stage ${PROJECT_SOURCE_DIR}/samples/glossy_floor)
+  cairn_contract(example_03_runs 03_your_own_check ${PROJECT_SOURCE_DIR}/samples/dim_light)
+endif()

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cairn/cairn.hpp>
+#include <cstdint>
+#include <string>
+#include <support/samples.hpp>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+/// How many pixels of two images differ in any bit. Sizes that differ count as one whole image.
+template <class T>
+std::int64_t differing(const Image<T>& a, const Image<T>& b) {
+  if (a.size() != b.size()) return std::max(a.size().area(), b.size().area());
+  std::int64_t count = 0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      // By bits: a NaN equals itself, and 0 is not −0.
+      if constexpr (std::is_same_v<T, float>) {
+        count += std::bit_cast<std::uint32_t>(a(x, y)) != std::bit_cast<std::uint32_t>(b(x, y)) ? 1 : 0;
+      } else {
+        count += a(x, y) != b(x, y) ? 1 : 0;
+      }
+    }
+  }
+  return count;
+}
+
+void expect_same_regions(const Segmentation& a, const Segmentation& b) {
+  EXPECT_EQ(differing(a.labels, b.labels), 0);
+  ASSERT_EQ(a.regions.size(), b.regions.size());
+  for (std::size_t i = 0; i < a.regions.size(); ++i) {
+    EXPECT_EQ(a.regions[i].pixel_count, b.regions[i].pixel_count);
+    EXPECT_EQ(a.regions[i].valid_count, b.regions[i].valid_count);
+    EXPECT_EQ(a.regions[i].box, b.regions[i].box);
+    EXPECT_EQ(a.regions[i].mean, b.regions[i].mean);
+    EXPECT_EQ(a.regions[i].variance, b.regions[i].variance);
+    EXPECT_EQ(a.regions[i].is_floor, b.regions[i].is_floor);
+  }
+}
+
+void expect_same_ground(const Ground& a, const Ground& b) {
+  EXPECT_EQ(a.refusal, b.refusal);
+  EXPECT_EQ(a.support, b.support);
+  EXPECT_EQ(a.residual_px, b.residual_px);
+  ASSERT_EQ(a.plane.has_value(), b.plane.has_value());
+  if (!a.plane) return;
+  EXPECT_EQ(a.plane->a, b.plane->a);
+  EXPECT_EQ(a.plane->b, b.plane->b);
+  EXPECT_EQ(a.plane->c, b.plane->c);
+}
+
+void expect_same_objects(const Objects& a, const Objects& b) {
+  EXPECT_EQ(differing(a.labels, b.labels), 0);
+  ASSERT_EQ(a.list.size(), b.list.size());
+  for (std::size_t i = 0; i < a.list.size(); ++i) {
+    EXPECT_EQ(a.list[i].id, b.list[i].id);
+    EXPECT_EQ(a.list[i].box_px, b.list[i].box_px);
+    EXPECT_EQ(a.list[i].pixel_count, b.list[i].pixel_count);
+    EXPECT_EQ(a.list[i].disparity_px, b.list[i].disparity_px);
+    EXPECT_EQ(a.list[i].valid_share, b.list[i].valid_share);
+    EXPECT_EQ(a.list[i].mean_colour, b.list[i].mean_colour);
+    EXPECT_EQ(a.list[i].position_in_camera_m, b.list[i].position_in_camera_m);
+    EXPECT_EQ(a.list[i].extent_in_camera_m, b.list[i].extent_in_camera_m);
+    EXPECT_EQ(a.list[i].confidence, b.list[i].confidence);
+  }
+}
+
+void expect_same(const Frame& a, const Frame& b) {
+  EXPECT_EQ(differing(a.disparity.disparity_px, b.disparity.disparity_px), 0);
+  EXPECT_EQ(differing(a.disparity.reject, b.disparity.reject), 0);
+  expect_same_ground(a.ground, b.ground);
+  EXPECT_EQ(differing(a.floor, b.floor), 0);
+  expect_same_regions(a.by_intensity, b.by_intensity);
+  expect_same_regions(a.by_disparity, b.by_disparity);
+  EXPECT_EQ(differing(a.fusion.labels, b.fusion.labels), 0);
+  EXPECT_EQ(a.fusion.parts, b.fusion.parts);
+  EXPECT_EQ(a.fusion.disparity_region, b.fusion.disparity_region);
+  expect_same_objects(a.objects, b.objects);
+}
+
+const char* name_of(Target target) {
+  switch (target) {
+    case Target::scalar:
+      return "scalar";
+    case Target::sse4:
+      return "sse4";
+    case Target::avx2:
+      return "avx2";
+    case Target::avx512:
+      return "avx512";
+    case Target::neon:
+      return "neon";
+    case Target::best:
+      break;
+  }
+  return "best";
+}
+
+/// Segments a sample with every thread count and target and compares all that comes out with one scalar
+/// thread's. A target that this machine has not falls back to one that it has.
+void expect_exec_changes_nothing(const std::string& name, const Config& preset) {
+  const samples::Sample sample = samples::load(name);
+  const Config config = sample.suited(preset);
+  const auto run = [&](int threads, Target target) {
+    return segment(sample.pair(), sample.calibration.rig, config, Exec::with_threads(threads, target));
+  };
+  const Frame expected = run(1, Target::scalar);
+  for (const Target target :
+       {Target::best, Target::scalar, Target::sse4, Target::avx2, Target::avx512, Target::neon}) {
+    for (const int threads : {1, 2, 3}) {
+      SCOPED_TRACE(name + ", " + std::to_string(threads) + " threads, target " + name_of(target));
+      expect_same(run(threads, target), expected);
+    }
+  }
+}
+
+TEST(ExecLaw, ThreadsAndTargetsChangeNoBitOfTheDefaultPreset) {
+  expect_exec_changes_nothing("overlap", Config());
+}
+
+TEST(ExecLaw, ThreadsAndTargetsChangeNoBitOfThePaperPreset) {
+  expect_exec_changes_nothing("glossy_floor", Config::paper());
+}
+
+TEST(ExecLaw, APoolAndAnObserverChangeNoBit) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const Config config = sample.suited();
+  const Frame expected = segment(sample.pair(), sample.calibration.rig, config, {});
+  int stages = 0;
+  Exec exec = Exec::with_threads(2);
+  exec.pool = Pool::make();
+  exec.observe = [&stages](std::string_view, const Artifact&, double) { ++stages; };
+  for (int i = 0; i < 2; ++i)
+    expect_same(segment(sample.pair(), sample.calibration.rig, config, exec), expected);
+  EXPECT_GT(stages, 0);
+}
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# links_exist.sh SOURCE_DIR: every relative link of every page leads to a file that is there, and a #fragment to a heading.
+set -euo pipefail
+cd "$1"
+
+# Anchors as GitHub makes them: lower case, punctuation dropped, blanks to hyphens.
+anchors() {
+  awk '/^```/ { code = !code } !code && /^#+ / { sub(/^#+ +/, ""); print tolower($0) }' "$1" |
+    sed -E 's/[^[:alnum:] _-]//g; s/ /-/g'
+}
+
+bad=0 links=0
+while read -r page; do
+  while read -r target; do
+    [[ $target =~ ^(https?:|mailto:) ]] && continue
+    links=$((links + 1))
+    file=${target%%#*}
+    path=${file:+$(dirname "$page")/$file}
+    path=${path:-$page}
+    if [[ ! -e $path ]]; then
+      echo "$page: $target: no such file"
+      bad=1
+    elif [[ $target == *#* && $path == *.md ]] && ! anchors "$path" | grep -qxF -- "${target#*#}"; then
+      echo "$page: $target: no such heading"
+      bad=1
+    fi
+  done < <(awk '/^```/ { code = !code } !code' "$page" | sed -E 's/`[^`]*`//g' | grep -oE '\]\([^) ]+\)' | sed -E 's/^\]\(//; s/\)$//')
+done < <(find . -name '*.md' -not -path './build/*' -not -path './.git/*' | sort)
+echo "$links links"
+[[ $links -gt 0 && $bad == 0 ]]

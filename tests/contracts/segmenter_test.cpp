@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/cairn.hpp>
+#include <cstdint>
+#include <support/samples.hpp>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+/// Heap allocations of the segmenter's pool after each of `frames` calls, each frame dead before the next
+/// one.
+std::vector<std::int64_t> allocations_by_frame(const Segmenter& segmenter, const StereoPair& pair,
+                                               int frames) {
+  std::vector<std::int64_t> counts;
+  for (int i = 0; i < frames; ++i) {
+    static_cast<void>(segmenter.segment(pair));
+    counts.push_back(segmenter.exec().pool.heap_allocations());
+  }
+  return counts;
+}
+
+TEST(Segmenter, AllocatesNoImageFromTheSecondFrameOn) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const Segmenter segmenter(sample.suited(), sample.calibration.rig);
+  const auto counts = allocations_by_frame(segmenter, sample.pair(), 3);
+  EXPECT_GT(counts[0], 0) << "the first frame did not use the pool at all";
+  EXPECT_EQ(counts[1], counts[0]);
+  EXPECT_EQ(counts[2], counts[0]);
+}
+
+TEST(Segmenter, AllocatesNoImageFromTheSecondFrameOnWithTheWholePaper) {
+  const samples::Sample sample = samples::load("glossy_floor");
+  const Segmenter segmenter(sample.suited(Config::paper()), sample.calibration.rig);
+  const auto counts = allocations_by_frame(segmenter, sample.pair(), 3);
+  EXPECT_GT(counts[0], 0) << "the first frame did not use the pool at all";
+  EXPECT_EQ(counts[2], counts[0]);
+}
+
+TEST(Segmenter, FindsWhatSegmentFinds) {
+  const samples::Sample sample = samples::load("overlap");
+  const Segmenter segmenter(sample.suited(), sample.calibration.rig);
+  const Frame expected = segment(sample.pair(), sample.calibration.rig, sample.suited(), {});
+  for (int i = 0; i < 2; ++i) {
+    const Frame frame = segmenter.segment(sample.pair());
+    ASSERT_EQ(frame.objects.list.size(), expected.objects.list.size());
+    for (std::size_t k = 0; k < expected.objects.list.size(); ++k) {
+      EXPECT_EQ(frame.objects.list[k].box_px, expected.objects.list[k].box_px);
+      EXPECT_EQ(frame.objects.list[k].position_in_camera_m, expected.objects.list[k].position_in_camera_m);
+    }
+  }
+}
+
+TEST(Segmenter, RefusesABadConfigurationWhenItIsMade) {
+  Config config;
+  config.match.window_size = 4;
+  EXPECT_THROW(Segmenter{config}, Error);
+}
+
+TEST(Segmenter, RefusesABadCalibrationWhenItIsMade) {
+  EXPECT_THROW(Segmenter(Config(), StereoRig{.focal_px = 0, .baseline_m = 0.1F}), Error);
+}
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/cairn.hpp>
+#include <filesystem>
+#include <io/calibration_files.hpp>
+#include <io/image_files.hpp>
+#include <string>
+
+namespace cairn::samples {
+
+inline constexpr std::array kNames{"dim_light", "four_in_a_row", "glossy_floor", "overlap"};
+
+inline std::filesystem::path folder(const std::string& name) {
+  return std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / name;
+}
+
+/// One of the pairs in samples/, with what its calibration says.
+struct Sample {
+  io::PicturePair pictures;
+  io::Calibration calibration;
+
+  [[nodiscard]] StereoPair pair() const& {
+    return StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  }
+  StereoPair pair() && = delete;  // borrows the pictures
+  /// `config` with the calibration's search range, as the command runs it.
+  [[nodiscard]] Config suited(Config config = {}) const {
+    config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
+    return config;
+  }
+};
+
+inline Sample load(const std::string& name) {
+  return {io::load_pair(folder(name) / "left.png", folder(name) / "right.png"),
+          io::load_calibration(folder(name) / "calib.txt")};
+}
+
+}  // namespace cairn::samples
