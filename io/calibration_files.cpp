@@ -1,2 +1,345 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <io/calibration_files.hpp>
+#include <io/calibration_forms.hpp>
+#include <io/raster.hpp>
+#include <io/read_file.hpp>
+#include <map>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rectified means fx = fy; a relative difference below this is rounding in the file.
+constexpr double kSameFocal = 1e-3;
+
+std::string written(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+void check_same_focal(double a, const char* name_a, double b, const char* name_b) {
+  if (std::abs(a - b) <= kSameFocal * std::abs(a)) return;
+  throw Error(std::string(name_a) + " is " + written(a) + ", " + name_b + " is " + written(b) +
+              "; a rectified pair has one focal length");
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(trimmed(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+/// key → value of every line `key<mark>value`; comments and empty lines are passed over.
+std::map<std::string, std::string_view, std::less<>> pairs_of(std::string_view text, char mark) {
+  std::map<std::string, std::string_view, std::less<>> pairs;
+  int number = 0;
+  for (std::string_view line : lines_of(text)) {
+    ++number;
+    line = trimmed(line.substr(0, line.find('#')));
+    if (line.empty()) continue;
+    const std::size_t at = line.find(mark);
+    if (at == std::string_view::npos) {
+      throw Error("line " + std::to_string(number) + " is " + excerpt(line) + ", expected key" + mark +
+                  "value");
+    }
+    const std::string key(trimmed(line.substr(0, at)));
+    if (!pairs.emplace(key, trimmed(line.substr(at + 1))).second)
+      throw Error("has " + excerpt(key) + " twice");
+  }
+  return pairs;
+}
+
+using Pairs = std::map<std::string, std::string_view, std::less<>>;
+
+std::optional<double> number_in(const Pairs& pairs, std::string_view key) {
+  const auto found = pairs.find(key);
+  if (found == pairs.end()) return std::nullopt;
+  return finite_number(found->second, key);
+}
+
+void read_size(const Pairs& pairs, Statement& says) {
+  says.width = number_in(pairs, "width");
+  says.height = number_in(pairs, "height");
+  says.ndisp = number_in(pairs, "ndisp");
+}
+
+/// [f 0 cx; 0 f cy; 0 0 1]
+std::array<double, 9> camera_matrix(const Pairs& pairs, std::string_view key) {
+  const std::string_view text = pairs.find(key)->second;
+  if (text.size() < 2 || text.front() != '[' || text.back() != ']') {
+    throw Error(std::string(key) + " is " + excerpt(text) + ", expected [f 0 cx; 0 f cy; 0 0 1]");
+  }
+  const std::vector<double> numbers = finite_numbers(text.substr(1, text.size() - 2), key);
+  std::array<double, 9> matrix{};
+  if (numbers.size() != matrix.size()) {
+    throw Error(std::string(key) + " has " + std::to_string(numbers.size()) + " numbers, expected 9");
+  }
+  std::copy(numbers.begin(), numbers.end(), matrix.begin());
+  return matrix;
+}
+
+/// Whether a line begins with one of KITTI's projections: "P2: 7.2e+02 …" or "P_rect_02: …".
+bool has_kitti_projection(std::string_view text) {
+  const auto lines = lines_of(text);
+  return std::any_of(lines.begin(), lines.end(), [](std::string_view line) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos) return false;
+    const std::string_view key = line.substr(0, colon);
+    const bool named = (key.starts_with("P_rect_0") && key.size() == 9) || (key.size() == 2 && key[0] == 'P');
+    const std::string_view value = trimmed(line.substr(colon + 1));
+    return named && key.back() >= '0' && key.back() <= '3' && !value.empty() &&
+           (std::isdigit(static_cast<unsigned char>(value[0])) != 0 || value[0] == '-' || value[0] == '.');
+  });
+}
+
+bool has_line(std::string_view text, const std::function<bool(std::string_view)>& is) {
+  const auto lines = lines_of(text);
+  return std::any_of(lines.begin(), lines.end(), is);
+}
+
+bool is_camera_zero(std::string_view line) {
+  return line.starts_with("cam0") && trimmed(line.substr(4)).starts_with('=');
+}
+
+bool is_assignment(std::string_view line) {
+  return !line.starts_with('#') && line.find('=') != std::string_view::npos;
+}
+
+Statement read_statement(std::string_view text, const fs::path& path) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // what some editors put before UTF-8
+  if (trimmed(text).empty()) throw Error("is empty, expected a calibration");
+  if (text.find('\0') != std::string_view::npos) throw Error("is no text, expected a calibration");
+  if (trimmed(text).starts_with('<')) return read_opencv_xml(text);
+  if (has_line(text, is_camera_zero)) return read_middlebury(text);
+  if (has_kitti_projection(text)) return read_kitti(text);
+  if (has_line(text, is_assignment)) return read_key_value_lines(text);
+  if (std::optional<Statement> says = read_yaml(text, path)) return *says;
+  throw Error("is no calibration in a form that is known here (docs/formats.md lists them); it begins with " +
+              excerpt(lines_of(trimmed(text)).front()));
+}
+
+/// A whole number in 1 … most.
+int counted(double value, const char* key, int most) {
+  if (!(value >= 1 && value <= most) || value != std::floor(value)) {
+    throw Error(std::string(key) + " is " + written(value) + ", expected a whole number in 1 ... " +
+                std::to_string(most));
+  }
+  return static_cast<int>(value);
+}
+
+void check_positive(const std::optional<double>& value, const char* name) {
+  if (value && !(*value > 0))
+    throw Error(std::string(name) + " is " + written(*value) + ", expected a positive number");
+}
+
+float center(const std::optional<double>& value, const char* name) {
+  if (value) return static_cast<float>(*value);
+  throw Error(std::string("has a focal length and a baseline but no ") + name +
+              ", expected all of them or no metres");
+}
+
+Calibration judged(const Statement& says) {
+  check_positive(says.fx, "the focal length (fx)");
+  check_positive(says.fy, "the focal length (fy)");
+  check_positive(says.baseline_m, "the baseline in metres");
+  if (says.fx && says.fy) check_same_focal(*says.fx, "fx", *says.fy, "fy");
+  Calibration calibration;
+  const std::optional<double> focal = says.fx ? says.fx : says.fy;
+  if (focal && says.baseline_m) {
+    calibration.rig =
+        StereoRig{static_cast<float>(*focal), center(says.cx, "cx"), center(says.cy, "cy"),
+                  static_cast<float>(*says.baseline_m), static_cast<float>(says.doffs.value_or(0.0))};
+  }
+  if (says.width && says.height) {
+    calibration.image_size = Size{counted(*says.width, "width", kMostPixelsPerSide),
+                                  counted(*says.height, "height", kMostPixelsPerSide)};
+  }
+  if (says.ndisp) calibration.num_disparities = counted(*says.ndisp, "ndisp", kMostPixelsPerSide);
+  return calibration;
+}
+
+/// The one file of a folder that --calib may mean.
+fs::path file_in(const fs::path& folder) {
+  std::vector<fs::path> pairs;
+  std::error_code reason;
+  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    const fs::path& path = it->path();
+    const bool yaml = path.extension() == ".yaml" || path.extension() == ".yml";
+    const std::optional<fs::path> other = other_camera(path);
+    if (yaml && path.filename().string().find("left") != std::string::npos && other &&
+        fs::is_regular_file(*other)) {
+      pairs.push_back(path);
+    }
+  }
+  if (pairs.size() == 1) return pairs.front();
+  for (const char* name : {"calib.txt", "calib.yaml", "calib.yml", "calib_cam_to_cam.txt"}) {
+    if (fs::is_regular_file(folder / name, reason)) return folder / name;
+  }
+  throw Error(folder.string() + ": is a folder with " + std::to_string(pairs.size()) +
+              " pairs of left/right YAML files and no calib.txt, expected one calibration");
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n\v\f";
+  const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
+  text.remove_prefix(begin);
+  return text.substr(0, text.find_last_not_of(kBlank) + 1);
+}
+
+std::string excerpt(std::string_view text) {
+  std::string line(text.substr(0, 60));
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return "'" + line + (text.size() > 60 ? "...'" : "'");
+}
+
+double finite_number(std::string_view text, std::string_view key) {
+  const std::string_view word = trimmed(text);
+  const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value)) {
+    throw Error(std::string(key) + " is " + excerpt(word) + ", expected a finite number");
+  }
+  return value;
+}
+
+std::vector<double> finite_numbers(std::string_view text, std::string_view key) {
+  constexpr std::string_view kBetween = " \t\r\n,;";
+  std::vector<double> numbers;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBetween), text.size()));
+    if (text.empty()) return numbers;
+    const std::size_t end = std::min(text.find_first_of(kBetween), text.size());
+    numbers.push_back(finite_number(text.substr(0, end), key));
+    text.remove_prefix(end);
+  }
+}
+
+Projection projection_of(const std::vector<double>& numbers, std::string_view key) {
+  Projection matrix{};
+  if (numbers.size() != matrix.size()) {
+    throw Error(std::string(key) + " has " + std::to_string(numbers.size()) + " numbers, expected 12 (3x4)");
+  }
+  std::copy(numbers.begin(), numbers.end(), matrix.begin());
+  return matrix;
+}
+
+Statement from_projections(const Projection& left, const Projection& right) {
+  Statement says{left[0], left[5], left[2], left[6], {}, right[2] - left[2], {}, {}, {}};
+  check_positive(says.fx, "the focal length (fx)");
+  check_same_focal(left[0], "the left focal length", right[0], "the right one");
+  // x_left = (f X + l3) / Z + cx and x_right = (f X + r3) / Z + cx', so B = (l3 − r3) / f and doffs = cx' −
+  // cx.
+  says.baseline_m = (left[3] - right[3]) / left[0];
+  if (*says.baseline_m == 0 && left[7] != right[7]) {
+    throw Error("is of two cameras one above the other, expected one beside the other");
+  }
+  return says;
+}
+
+Statement read_key_value_lines(std::string_view text) {
+  const Pairs pairs = pairs_of(text, '=');
+  Statement says;
+  says.fx = number_in(pairs, "fx");
+  says.fy = number_in(pairs, "fy");
+  says.cx = number_in(pairs, "cx");
+  says.cy = number_in(pairs, "cy");
+  says.baseline_m = number_in(pairs, "baseline");
+  says.doffs = number_in(pairs, "doffs");
+  read_size(pairs, says);
+  constexpr std::array kKeys = {"fx", "fy", "cx", "cy", "baseline", "doffs", "width", "height", "ndisp"};
+  if (std::none_of(kKeys.begin(), kKeys.end(), [&](const char* key) { return pairs.contains(key); })) {
+    throw Error("has none of the keys fx fy cx cy baseline doffs width height ndisp, expected a calibration");
+  }
+  return says;
+}
+
+Statement read_middlebury(std::string_view text) {
+  const Pairs pairs = pairs_of(text, '=');
+  const std::array<double, 9> left = camera_matrix(pairs, "cam0");
+  Statement says;
+  says.fx = left[0];
+  says.fy = left[4];
+  says.cx = left[2];
+  says.cy = left[5];
+  if (const std::optional<double> millimetres = number_in(pairs, "baseline"))
+    says.baseline_m = *millimetres / 1000;
+  says.doffs = number_in(pairs, "doffs");
+  if (pairs.contains("cam1")) {
+    const std::array<double, 9> right = camera_matrix(pairs, "cam1");
+    check_same_focal(left[0], "the focal length of cam0", right[0], "that of cam1");
+    if (!says.doffs) says.doffs = right[2] - left[2];
+  }
+  read_size(pairs, says);
+  return says;
+}
+
+Statement read_kitti(std::string_view text) {
+  Pairs pairs;
+  for (const std::string_view line : lines_of(text)) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos) continue;  // other lines are other matters: dates, corner distances
+    const auto [at, fresh] = pairs.emplace(line.substr(0, colon), trimmed(line.substr(colon + 1)));
+    if (!fresh && line.starts_with('P')) throw Error("has " + excerpt(at->first) + " twice");
+  }
+  // The colour cameras first: 2 is the left one, 3 the right; 0 and 1 are the grey pair.
+  for (const auto& [left, right] : {std::pair{'2', '3'}, std::pair{'0', '1'}}) {
+    for (const std::string prefix : {"P_rect_0", "P"}) {
+      const auto first = pairs.find(prefix + left);
+      const auto second = pairs.find(prefix + right);
+      if (first == pairs.end() || second == pairs.end()) continue;
+      Statement says =
+          from_projections(projection_of(finite_numbers(first->second, first->first), first->first),
+                           projection_of(finite_numbers(second->second, second->first), second->first));
+      if (const auto size = pairs.find(std::string("S_rect_0") + left); size != pairs.end()) {
+        const std::vector<double> sides = finite_numbers(size->second, size->first);
+        if (sides.size() != 2)
+          throw Error(size->first + " is " + excerpt(size->second) + ", expected width and height");
+        says.width = sides[0];
+        says.height = sides[1];
+      }
+      return says;
+    }
+  }
+  throw Error(
+      "has no projections of a whole pair, expected P_rect_02 and P_rect_03, or 00 and 01 (or P2 and P3, "
+      "...)");
+}
+
+Calibration load_calibration(const fs::path& path) {
+  std::error_code unknown;
+  const fs::path file = fs::is_directory(path, unknown) ? file_in(path) : path;
+  const std::string text = read_file(file, kMostTextBytes);
+  try {
+    Calibration calibration = judged(read_statement(text, file));
+    // Numbers that are fine as double may be none as float.
+    if (calibration.rig) calibration.rig->validate("calibration");
+    return calibration;
+  } catch (const Error& error) {
+    throw Error(file.string() + ": " + error.what());
+  }
+}
+
+void check_size(const Calibration& calibration, Size image, const fs::path& path) {
+  if (!calibration.image_size || *calibration.image_size == image) return;
+  throw Error(path.string() + ": the calibration is for " + text(*calibration.image_size) +
+              ", the images are " + text(image));
+}
+
+}  // namespace cairn::io

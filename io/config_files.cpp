@@ -1,2 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <yaml-cpp/yaml.h>
+
+#include <cairn/core/error.hpp>
+#include <io/config_files.hpp>
+#include <io/read_file.hpp>
+#include <string_view>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lists are points ([[x, y, x, y], …]) and short; aliases in YAML could make them endless.
+constexpr std::size_t kMostItems = 4096;
+
+std::string at_line(const YAML::Mark& mark) {
+  return mark.is_null() ? "" : "line " + std::to_string(mark.line + 1) + ": ";
+}
+
+std::string joined(const YAML::Node& list, char between, int levels);
+
+std::string text_of(const YAML::Node& node, int levels) {
+  if (node.IsScalar()) return node.Scalar();
+  if (node.IsSequence() && levels > 0) return joined(node, levels == 2 ? ';' : ',', levels - 1);
+  throw Error(at_line(node.Mark()) + "found a " +
+              (node.IsMap()    ? "section"
+               : node.IsNull() ? "nothing"
+                               : "list") +
+              " where a value was expected");
+}
+
+std::string joined(const YAML::Node& list, char between, int levels) {
+  if (list.size() > kMostItems) throw Error(at_line(list.Mark()) + "found a list of more than 4096 items");
+  std::string text;
+  for (const YAML::Node& item : list) {
+    if (!text.empty()) text += between;
+    text += text_of(item, levels);
+    if (text.size() > kMostTextBytes) throw Error(at_line(list.Mark()) + "found a list without end");
+  }
+  return text;
+}
+
+std::string key_of(const YAML::Node& key) {
+  if (!key.IsScalar())
+    throw Error(at_line(key.Mark()) + "found a key that is no word, expected the name of an option");
+  return key.Scalar();
+}
+
+/// One list is one point; a list of lists is many.
+std::string value_of(const YAML::Node& node) {
+  const bool nested = node.IsSequence() && node.size() > 0 && node[0].IsSequence();
+  return text_of(node, nested ? 2 : 1);
+}
+
+void set_at(Config& config, const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+  try {
+    set(config, name, value_of(value));
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    throw Error(what.starts_with("line ") ? what : at_line(key.Mark()) + what);
+  }
+}
+
+void read_section(Config& config, const std::string& section, const YAML::Node& map) {
+  for (const auto& entry : map) {
+    set_at(config, section + "." + key_of(entry.first), entry.first, entry.second);
+  }
+}
+
+void read_preset(Config& config, const YAML::Node& value) {
+  if (!value.IsScalar()) throw Error(at_line(value.Mark()) + "preset is no word, expected default or paper");
+  try {
+    config = Config::preset(value.Scalar());
+  } catch (const Error& error) {
+    throw Error(at_line(value.Mark()) + error.what());
+  }
+}
+
+void read_root(Config& config, const YAML::Node& root) {
+  if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments alone: nothing is set
+  if (!root.IsMap()) throw Error("is no map of options, expected lines such as 'match.window_size: 9'");
+  bool first = true;
+  for (const auto& entry : root) {
+    const std::string key = key_of(entry.first);
+    if (key == "preset" && !first) {
+      throw Error(at_line(entry.first.Mark()) +
+                  "preset stands after options, which it would undo; expected it first");
+    }
+    first = false;
+    if (key == "preset") {
+      read_preset(config, entry.second);
+    } else if (entry.second.IsMap()) {
+      read_section(config, key, entry.second);
+    } else if (entry.second.IsNull() && key.find('.') == std::string::npos) {
+      continue;  // a section whose every line is commented out
+    } else {
+      set_at(config, key, entry.first, entry.second);
+    }
+  }
+}
+
+/// Words that YAML would read as something else than text are quoted.
+std::string written(const OptionInfo& option) {
+  return option.type == "points" ? "\"" + option.value + "\"" : option.value;
+}
+
+}  // namespace
+
+void load_config(const fs::path& path, Config& config) {
+  const std::string text = read_file(path, kMostTextBytes);
+  Config read = config;
+  try {
+    read_root(read, YAML::Load(text));
+  } catch (const YAML::Exception& exception) {
+    throw Error(path.string() + ": " + at_line(exception.mark) + "is no YAML: " + exception.msg);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+  config = std::move(read);
+}
+
+std::string config_yaml(const Config& config) {
+  std::string text;
+  std::string section;
+  for (const OptionInfo& option : options(config)) {
+    const std::size_t dot = option.name.find('.');
+    if (option.name.substr(0, dot) != section) {
+      section = option.name.substr(0, dot);
+      text += section + ":\n";
+    }
+    text += "  " + option.name.substr(dot + 1) + ": " + written(option) + "  # ";
+    if (!option.unit.empty()) text += option.unit + "; ";
+    text += option.domain + "; " + option.help + "\n";
+  }
+  return text;
+}
+
+}  // namespace cairn::io

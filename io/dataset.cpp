@@ -1,2 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <io/dataset.hpp>
+#include <system_error>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kPictureExtensions = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff",
+                                           ".PNG", ".JPG", ".JPEG", ".PGM", ".PPM", ".PNM", ".TIF", ".TIFF"};
+constexpr std::array kCalibrations = {"calib.txt", "calib.yaml", "calib.yml",           "calib.json",
+                                      "calib.xml", "left.yaml",  "calib_cam_to_cam.txt"};
+
+bool is_file(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_regular_file(path, unknown);
+}
+
+std::optional<fs::path> file(const fs::path& path) {
+  if (is_file(path)) return path;
+  return std::nullopt;
+}
+
+std::optional<fs::path> picture(const fs::path& folder, const std::string& stem) {
+  for (const char* extension : kPictureExtensions) {
+    if (std::optional<fs::path> found = file(folder / (stem + extension))) return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<fs::path> calibration(const fs::path& folder) {
+  for (const char* name : kCalibrations) {
+    if (std::optional<fs::path> found = file(folder / name)) return found;
+  }
+  return std::nullopt;
+}
+
+/// Without a slash at its end, "." written out: so that it has a name and a parent.
+fs::path clean(const fs::path& folder) {
+  fs::path path = fs::absolute(folder).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+fs::path truth_beside(const fs::path& folder) {
+  return clean(folder).parent_path() / "gt";
+}
+
+std::optional<FrameFiles> frame_in(const fs::path& folder) {
+  const std::optional<fs::path> left = picture(folder, "left");
+  if (!left) return std::nullopt;
+  std::optional<fs::path> right = file(folder / ("right" + left->extension().string()));
+  if (!right) right = picture(folder, "right");
+  std::optional<fs::path> calib = calibration(folder);
+  if (!calib) calib = calibration(truth_beside(folder));
+  return FrameFiles{clean(folder).filename().string(), folder, *left, right, calib};
+}
+
+std::optional<TruthFiles> truth_in(const fs::path& folder) {
+  TruthFiles truth;
+  truth.folder = folder;
+  truth.objects = file(folder / "objects.png");
+  truth.disparity = file(folder / "disp_left.png");
+  if (!truth.disparity) truth.disparity = file(folder / "disp_left.pfm");
+  if (!truth.objects && !truth.disparity) return std::nullopt;
+  truth.occlusion = file(folder / "occlusion.png");
+  truth.ground = file(folder / "ground.png");
+  truth.ground_plane = file(folder / "ground.txt");
+  truth.calib = calibration(folder);
+  std::error_code unknown;
+  truth.partial = fs::exists(folder / "partial", unknown);
+  return truth;
+}
+
+void check_folder(const fs::path& folder) {
+  std::error_code reason;
+  if (fs::is_directory(folder, reason)) return;
+  throw Error(
+      folder.string() + ": " +
+      (fs::exists(folder, reason) ? "is no folder, expected one" : "is not there, expected a folder"));
+}
+
+}  // namespace
+
+std::vector<FrameFiles> find_frames(const fs::path& folder) {
+  check_folder(folder);
+  if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
+  std::vector<FrameFiles> frames;
+  std::error_code reason;
+  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    std::error_code unknown;
+    if (!it->is_directory(unknown)) continue;
+    if (std::optional<FrameFiles> frame = frame_in(it->path())) frames.push_back(std::move(*frame));
+  }
+  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
+  if (frames.empty()) {
+    throw Error(folder.string() + ": holds no left.png (.jpg .pgm .ppm .tif), nor does a folder in it");
+  }
+  std::sort(frames.begin(), frames.end(),
+            [](const FrameFiles& a, const FrameFiles& b) { return a.name < b.name; });
+  return frames;
+}
+
+TruthFiles find_truth(const fs::path& folder) {
+  check_folder(folder);
+  if (std::optional<TruthFiles> truth = truth_in(folder)) return *truth;
+  if (std::optional<TruthFiles> truth = truth_in(truth_beside(folder))) return *truth;
+  throw Error(folder.string() + ": holds no truth (objects.png or disp_left.png), nor does " +
+              truth_beside(folder).string());
+}
+
+}  // namespace cairn::io

@@ -1,2 +1,152 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <bit>
+#include <cairn/core/error.hpp>
+#include <io/atomic_file.hpp>
+#include <io/image_files.hpp>
+#include <io/raster.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How many bits the samples need; 8 for every 8-bit file.
+int depth_of(const Raster& raster) {
+  if (raster.bytes_each == 1) return 8;
+  unsigned most = static_cast<unsigned>(raster.max_value);
+  if (!raster.declared) {
+    most = 0;
+    for (int y = 0; y < raster.size.height; ++y) {
+      const auto* row = raster.row<std::uint16_t>(y);
+      most = std::max<unsigned>(most, *std::max_element(row, row + raster.row_length()));
+    }
+  }
+  return std::max(8, static_cast<int>(std::bit_width(most)));
+}
+
+/// Samples to 8 bits: the low bits of deep ones dropped, the full scale of shallow ones (a PGM up to 15)
+/// brought to 255.
+class Reduction {
+ public:
+  Reduction(const Raster& raster, int depth)
+      : shift_(depth - 8), full_(raster.bytes_each == 1 ? raster.max_value : 255) {}
+  [[nodiscard]] std::uint8_t operator()(int sample) const {
+    return static_cast<std::uint8_t>(full_ == 255 ? sample >> shift_
+                                                  : std::min(255, (sample * 255 + full_ / 2) / full_));
+  }
+
+ private:
+  int shift_;
+  int full_;
+};
+
+Gray grey_of(Rgb c) {
+  return static_cast<Gray>((77 * c.r + 150 * c.g + 29 * c.b + 128) >> 8);
+}
+
+template <class Sample>
+Picture to_picture(const Raster& raster, int depth, const Pool& pool) {
+  const Reduction reduced(raster, depth);
+  Picture picture{Image<Gray>(raster.size, pool), {}};
+  if (raster.channels == 3) picture.rgb = Image<Rgb>(raster.size, pool);
+  for (int y = 0; y < raster.size.height; ++y) {
+    const auto* from = raster.row<Sample>(y);
+    Gray* grey = picture.gray.row(y);
+    if (raster.channels == 1) {
+      std::transform(from, from + raster.size.width, grey, reduced);
+      continue;
+    }
+    Rgb* rgb = picture.rgb.row(y);
+    for (int x = 0; x < raster.size.width; ++x, from += 3) {
+      rgb[x] = {reduced(from[0]), reduced(from[1]), reduced(from[2])};
+      grey[x] = grey_of(rgb[x]);
+    }
+  }
+  return picture;
+}
+
+Picture picture_of(const Raster& raster, int depth, const Pool& pool) {
+  return raster.bytes_each == 1 ? to_picture<std::uint8_t>(raster, depth, pool)
+                                : to_picture<std::uint16_t>(raster, depth, pool);
+}
+
+void encode(const fs::path& path, const cv::Mat& image) {
+  if (image.empty()) throw Error(path.string() + ": cannot be written: the image is empty");
+  std::vector<unsigned char> png;
+  try {
+    cv::imencode(".png", image, png);
+  } catch (const cv::Exception& exception) {
+    throw Error(path.string() + ": cannot be encoded as PNG: " + exception.err);
+  }
+  write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+/// OpenCV's header on the same pixels; it has no form for constant ones.
+template <class T>
+cv::Mat header_on(View<const T> image, int type) {
+  return {image.height(), image.width(), type, const_cast<T*>(image.data()),
+          static_cast<std::size_t>(image.stride()) * sizeof(T)};
+}
+
+}  // namespace
+
+Picture load_picture(const fs::path& path, const Pool& pool) {
+  const Raster raster = read_raster(path, Palette::colours);
+  return picture_of(raster, depth_of(raster), pool);
+}
+
+PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& pool) {
+  const Raster first = read_raster(left, Palette::colours);
+  const Raster second = read_raster(right, Palette::colours);
+  if (first.size != second.size) {
+    throw Error(right.string() + ": is " + text(second.size) + ", expected " + text(first.size) + " as " +
+                left.string() + " is: a rectified pair has equal sizes");
+  }
+  if (first.bytes_each != second.bytes_each) {
+    throw Error(right.string() + ": has " + std::to_string(8 * second.bytes_each) + " bits, expected " +
+                std::to_string(8 * first.bytes_each) + " as " + left.string() + " has: a pair has one scale");
+  }
+  const int depth = std::max(depth_of(first), depth_of(second));
+  return {picture_of(first, depth, pool), picture_of(second, depth, pool)};
+}
+
+Labels load_labels(const fs::path& path, const Pool& pool) {
+  const Raster raster = read_raster(path, Palette::indices);
+  if (raster.channels != 1) throw Error(path.string() + ": is in colour, expected one channel of numbers");
+  Labels labels{Image<std::uint16_t>(raster.size, pool), 8 * raster.bytes_each};
+  for (int y = 0; y < raster.size.height; ++y) {
+    std::uint16_t* row = labels.ids.row(y);
+    if (raster.bytes_each == 1) {
+      std::copy_n(raster.row<std::uint8_t>(y), raster.size.width, row);
+    } else {
+      std::copy_n(raster.row<std::uint16_t>(y), raster.size.width, row);
+    }
+  }
+  return labels;
+}
+
+void save_png(const fs::path& path, View<const std::uint8_t> image) {
+  encode(path, header_on(image, CV_8UC1));
+}
+
+void save_png(const fs::path& path, View<const std::uint16_t> image) {
+  encode(path, header_on(image, CV_16UC1));
+}
+
+void save_png(const fs::path& path, View<const Rgb> image) {
+  cv::Mat bgr;
+  if (!image.empty()) cv::cvtColor(header_on(image, CV_8UC3), bgr, cv::COLOR_RGB2BGR);
+  encode(path, bgr);
+}
+
+void save_png(const fs::path& path, View<const Reject> image) {
+  encode(path, header_on(image, CV_8UC1));
+}
+
+}  // namespace cairn::io

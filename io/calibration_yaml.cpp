@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/core/nearest.hpp>
+#include <io/calibration_forms.hpp>
+#include <io/read_file.hpp>
+#include <utility>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A matrix as OpenCV and ROS write it.
+struct Matrix {
+  double rows = 0;
+  double cols = 0;
+  std::vector<double> data;
+};
+
+// ---- YAML ----
+
+/// OpenCV begins its YAML with a directive that is none ("%YAML:1.0").
+std::string_view without_directive(std::string_view text) {
+  const std::string_view begin = trimmed(text);
+  if (!begin.starts_with("%YAML")) return text;
+  return begin.substr(std::min(begin.find('\n'), begin.size()));
+}
+
+std::vector<YAML::Node> documents_of(std::string_view text) {
+  try {
+    return YAML::LoadAll(std::string(without_directive(text)));
+  } catch (const YAML::Exception& exception) {
+    const std::string line =
+        exception.mark.is_null() ? "" : "line " + std::to_string(exception.mark.line + 1) + ": ";
+    throw Error(line + "is no YAML (" + exception.msg + "), expected a calibration");
+  }
+}
+
+std::optional<double> number_at(const YAML::Node& map, const char* key) {
+  const YAML::Node node = map[key];
+  if (!node) return std::nullopt;
+  if (!node.IsScalar()) throw Error(std::string(key) + " is no number");
+  return finite_number(node.Scalar(), key);
+}
+
+std::vector<double> numbers_of(const YAML::Node& sequence, const char* key) {
+  // The longest list that any form needs is 4x4.
+  if (!sequence.IsSequence() || sequence.size() > 16) {
+    throw Error(std::string(key) + " is no list of at most 16 numbers");
+  }
+  std::vector<double> numbers;
+  for (const YAML::Node& item : sequence) {
+    if (!item.IsScalar()) throw Error(std::string(key) + " holds something that is no number");
+    numbers.push_back(finite_number(item.Scalar(), key));
+  }
+  return numbers;
+}
+
+std::optional<Matrix> matrix_at(const YAML::Node& map, const char* key) {
+  const YAML::Node node = map[key];
+  if (!node || !node.IsMap() || !node["data"]) return std::nullopt;
+  return Matrix{number_at(node, "rows").value_or(0), number_at(node, "cols").value_or(0),
+                numbers_of(node["data"], key)};
+}
+
+// ---- XML ----
+
+std::string without_comments(std::string_view text) {
+  std::string rest;
+  for (std::size_t begin = 0; (begin = text.find("<!--")) != std::string_view::npos;) {
+    rest += text.substr(0, begin);
+    const std::size_t end = text.find("-->", begin);
+    if (end == std::string_view::npos) throw Error("is a damaged XML: a comment does not end");
+    text.remove_prefix(end + 3);
+  }
+  return rest += text;
+}
+
+/// What stands between <name …> and </name>; nothing where there is no such element.
+std::optional<std::string_view> element(std::string_view xml, std::string_view name) {
+  const std::string open = "<" + std::string(name);
+  for (std::size_t at = 0; (at = xml.find(open, at)) != std::string_view::npos; at += open.size()) {
+    const std::size_t after = at + open.size();
+    if (after < xml.size() && std::string_view("> \t\r\n").find(xml[after]) == std::string_view::npos)
+      continue;
+    const std::size_t begin = xml.find('>', after);
+    const std::size_t end = xml.find("</" + std::string(name) + ">", after);
+    if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) {
+      throw Error("is a damaged XML: <" + std::string(name) + "> does not end");
+    }
+    return xml.substr(begin + 1, end - begin - 1);
+  }
+  return std::nullopt;
+}
+
+std::optional<double> number_at(std::string_view xml, const char* key) {
+  const std::optional<std::string_view> text = element(xml, key);
+  if (!text) return std::nullopt;
+  return finite_number(*text, key);
+}
+
+std::optional<Matrix> matrix_at(std::string_view xml, const char* key) {
+  const std::optional<std::string_view> node = element(xml, key);
+  if (!node) return std::nullopt;
+  const std::optional<std::string_view> data = element(*node, "data");
+  if (!data) return std::nullopt;
+  return Matrix{number_at(*node, "rows").value_or(0), number_at(*node, "cols").value_or(0),
+                finite_numbers(*data, key)};
+}
+
+std::optional<std::vector<double>> list_at(std::string_view xml, const char* key) {
+  const std::optional<std::string_view> node = element(xml, key);
+  if (!node) return std::nullopt;
+  return finite_numbers(*node, key);
+}
+std::optional<std::vector<double>> list_at(const YAML::Node& map, const char* key) {
+  const YAML::Node node = map[key];
+  if (!node) return std::nullopt;
+  return numbers_of(node, key);
+}
+
+// ---- OpenCV, from either ----
+
+void check_shape(const Matrix& matrix, const char* key, int rows, int cols) {
+  const auto count = static_cast<std::size_t>(rows * cols);
+  if (matrix.rows == rows && matrix.cols == cols && matrix.data.size() == count) return;
+  throw Error(std::string(key) + " is not a " + std::to_string(rows) + "x" + std::to_string(cols) +
+              " matrix");
+}
+
+/// Q = [1 0 0 −cx; 0 1 0 −cy; 0 0 0 f; 0 0 1/B (cx'−cx)/B], as cv::stereoRectify makes it.
+Statement from_reprojection(const Matrix& matrix) {
+  check_shape(matrix, "Q", 4, 4);
+  const std::vector<double>& q = matrix.data;
+  if (q[14] == 0) throw Error("Q has no baseline (its row 4, column 3 is 0)");
+  return {q[11], q[11], -q[3], -q[7], 1 / q[14], q[15] / q[14], {}, {}, {}};
+}
+
+template <class Document>
+void read_size(const Document& document, Statement& says) {
+  for (const auto& [width, height] :
+       {std::pair{"image_width", "image_height"}, std::pair{"width", "height"}}) {
+    if (!says.width) says.width = number_at(document, width);
+    if (!says.height) says.height = number_at(document, height);
+  }
+  for (const char* key : {"image_size", "imageSize", "size"}) {
+    if (says.width && says.height) return;
+    const std::optional<std::vector<double>> sides = list_at(document, key);
+    if (!sides) continue;
+    if (sides->size() != 2) throw Error(std::string(key) + " is not two numbers, expected width and height");
+    says.width = (*sides)[0];
+    says.height = (*sides)[1];
+  }
+}
+
+/// Nothing where none of OpenCV's matrices is there.
+template <class Document>
+std::optional<Statement> read_opencv(const Document& document) {
+  const std::optional<Matrix> left = matrix_at(document, "P1");
+  const std::optional<Matrix> right = matrix_at(document, "P2");
+  const std::optional<Matrix> reprojection = matrix_at(document, "Q");
+  Statement says;
+  if (left && right) {
+    check_shape(*left, "P1", 3, 4);
+    check_shape(*right, "P2", 3, 4);
+    says = from_projections(projection_of(left->data, "P1"), projection_of(right->data, "P2"));
+  } else if (reprojection) {
+    says = from_reprojection(*reprojection);
+  } else {
+    for (const char* key :
+         {"M1", "K1", "cameraMatrix1", "camera_matrix", "Camera_Matrix", "P1", "P2", "R", "T"}) {
+      if (!matrix_at(document, key)) continue;
+      throw Error(std::string("has ") + key +
+                  " but neither P1 and P2 nor Q, expected the calibration of rectified pictures");
+    }
+    return std::nullopt;
+  }
+  read_size(document, says);
+  if (!says.ndisp) says.ndisp = number_at(document, "ndisp");
+  return says;
+}
+
+// ---- ROS camera_info ----
+
+/// One camera's projection: camera_calibration's file has `projection_matrix`, a printed message `P` or `p`.
+std::optional<Projection> ros_projection(const YAML::Node& camera) {
+  if (!camera.IsMap()) return std::nullopt;
+  if (const std::optional<Matrix> matrix = matrix_at(camera, "projection_matrix")) {
+    return projection_of(matrix->data, "projection_matrix");
+  }
+  for (const char* key : {"P", "p"}) {
+    if (camera[key] && camera[key].IsSequence()) return projection_of(numbers_of(camera[key], key), key);
+  }
+  return std::nullopt;
+}
+
+/// The camera whose fourth column is greater is the left one: P[0][3] = −fx·B for the right.
+Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
+  const std::optional<Projection> first = ros_projection(one);
+  const std::optional<Projection> second = ros_projection(other);
+  if (!first || !second) throw Error("the other camera has no projection_matrix");
+  const bool in_order = (*first)[3] >= (*second)[3];
+  Statement says = in_order ? from_projections(*first, *second) : from_projections(*second, *first);
+  read_size(one, says);
+  return says;
+}
+
+Statement read_ros_file(const YAML::Node& camera, const fs::path& path) {
+  const std::optional<fs::path> partner = other_camera(path);
+  std::error_code unknown;
+  if (!partner || !fs::is_regular_file(*partner, unknown)) {
+    throw Error("is of one camera, expected the other's file beside it" +
+                (partner ? ": " + partner->filename().string()
+                         : std::string(", named alike with left and right (left.yaml, right.yaml)")));
+  }
+  const std::vector<YAML::Node> documents = documents_of(read_file(*partner, kMostTextBytes));
+  if (documents.empty()) throw Error("the other camera's file " + partner->filename().string() + " is empty");
+  return from_ros_pair(camera, documents.front());
+}
+
+// ---- our own ----
+
+Statement read_own(const YAML::Node& map) {
+  Statement says;
+  const std::pair<const char*, std::optional<double> Statement::*> keys[] = {
+      {"focal_px", &Statement::fx},           {"cx_px", &Statement::cx},       {"cy_px", &Statement::cy},
+      {"baseline_m", &Statement::baseline_m}, {"doffs_px", &Statement::doffs}, {"width", &Statement::width},
+      {"height", &Statement::height},         {"ndisp", &Statement::ndisp}};
+  std::vector<std::string> names;
+  for (const auto& [name, member] : keys) {
+    says.*member = number_at(map, name);
+    names.emplace_back(name);
+  }
+  for (const auto& entry : map) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    if (std::find(names.begin(), names.end(), key) != names.end()) continue;
+    const std::string close = nearest(key, names);
+    throw Error("has the unknown key " + excerpt(key) +
+                (close.empty() ? ", expected focal_px cx_px cy_px baseline_m doffs_px width height ndisp"
+                               : ", did you mean '" + close + "'?"));
+  }
+  return says;
+}
+
+}  // namespace
+
+std::optional<fs::path> other_camera(const fs::path& path) {
+  std::string name = path.filename().string();
+  for (const auto& [word, other] : {std::pair{"left", "right"}, std::pair{"right", "left"}}) {
+    const std::size_t at = name.rfind(word);
+    if (at == std::string::npos) continue;
+    return path.parent_path() / name.replace(at, std::string_view(word).size(), other);
+  }
+  return std::nullopt;
+}
+
+std::optional<Statement> read_yaml(std::string_view text, const fs::path& path) try {
+  const std::vector<YAML::Node> documents = documents_of(text);
+  if (documents.empty() || !documents.front().IsMap()) return std::nullopt;
+  const YAML::Node& map = documents.front();
+  if (documents.size() == 2 && ros_projection(map)) return from_ros_pair(map, documents.back());
+  if (map["left"] && map["right"]) return from_ros_pair(map["left"], map["right"]);
+  if (ros_projection(map)) return read_ros_file(map, path);
+  if (const std::optional<Statement> says = read_opencv(map)) return says;
+  return read_own(map);
+} catch (const YAML::Exception& exception) {
+  throw Error("is no calibration: " + exception.msg);
+}
+
+Statement read_opencv_xml(std::string_view text) {
+  const std::string xml = without_comments(text);
+  if (const std::optional<Statement> says = read_opencv(std::string_view(xml))) return *says;
+  throw Error("is an XML without P1 and P2 or Q, expected OpenCV's calibration of rectified pictures");
+}
+
+}  // namespace cairn::io

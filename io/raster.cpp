@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <io/raster.hpp>
+#include <io/read_file.hpp>
+#include <new>
+#include <string>
+
+namespace cairn::io {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::size_t kMostPictureBytes = std::size_t{1} << 31;
+
+Raster decode(std::string_view file, Palette palette) {
+  if (file.empty()) throw Error("is empty, expected a picture (PNG, JPEG, PGM, PPM, TIFF)");
+  if (file.starts_with("\x89PNG\r\n\x1a\n"sv)) return decode_png(file, palette);
+  if (file.starts_with("\xff\xd8\xff"sv)) return decode_jpeg(file);
+  if (file.starts_with("II*\0"sv) || file.starts_with("MM\0*"sv)) return decode_tiff(file, palette);
+  if (file.size() > 1 && file[0] == 'P' && file[1] >= '1' && file[1] <= '7') return decode_pnm(file);
+  throw Error("is no picture that can be read here, expected PNG, JPEG, PGM, PPM or TIFF");
+}
+
+}  // namespace
+
+void check_sides(std::int64_t width, std::int64_t height) {
+  const auto fits = [](std::int64_t side) { return side >= 1 && side <= kMostPixelsPerSide; };
+  if (fits(width) && fits(height) && width * height <= kMostPixels) return;
+  throw Error("claims " + std::to_string(width) + "x" + std::to_string(height) + " pixels, expected 1 ... " +
+              std::to_string(kMostPixelsPerSide) + " per side and at most " + std::to_string(kMostPixels));
+}
+
+Raster read_raster(const std::filesystem::path& path, Palette palette) {
+  const std::string file = read_file(path, kMostPictureBytes);
+  try {
+    return decode(file, palette);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string() + ": there is not enough memory for this picture");
+  }
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+// jpeglib.h needs these two before it
+#include <cstddef>
+#include <cstdio>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include <cairn/core/error.hpp>
+#include <csetjmp>
+#include <io/raster.hpp>
+#include <string>
+
+// libjpeg itself rather than OpenCV's use of it: a truncated file is a mere warning there, printed, and grey
+// pixels.
+namespace cairn::io {
+namespace {
+
+struct Complaints {
+  jpeg_error_mgr manager{};  // first, so that libjpeg's pointer to it is a pointer to this
+  std::jmp_buf way_out{};
+  char text[JMSG_LENGTH_MAX] = {};
+};
+
+void complain(j_common_ptr jpeg) {
+  auto* complaints = reinterpret_cast<Complaints*>(jpeg->err);
+  complaints->manager.format_message(jpeg, complaints->text);
+  std::longjmp(complaints->way_out, 1);
+}
+/// A warning (level −1) means invented pixels, except the one about an odd Adobe mark.
+void judge(j_common_ptr jpeg, int level) {
+  if (level < 0 && jpeg->err->msg_code != JWRN_ADOBE_XFORM) complain(jpeg);
+}
+void keep_quiet(j_common_ptr) {}
+
+struct Reader {
+  Reader() {
+    jpeg.err = jpeg_std_error(&complaints.manager);
+    complaints.manager.error_exit = complain;
+    complaints.manager.emit_message = judge;
+    complaints.manager.output_message = keep_quiet;
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() { jpeg_destroy_decompress(&jpeg); }
+  jpeg_decompress_struct jpeg{};
+  Complaints complaints;
+};
+
+/// Runs `steps`, which must own nothing: libjpeg leaves them by longjmp. Everything that lives on is the
+/// caller's.
+template <class Steps>
+bool succeeds(Reader& reader, const Steps& steps) {
+  if (setjmp(reader.complaints.way_out) != 0) return false;  // NOLINT(cert-err52-cpp): libjpeg's only way out
+  steps();
+  return true;
+}
+
+void run(Reader& reader, const auto& steps) {
+  if (!succeeds(reader, steps)) {
+    throw Error(std::string("is a truncated or damaged JPEG: ") + reader.complaints.text);
+  }
+}
+
+}  // namespace
+
+Raster decode_jpeg(std::string_view file) {
+  Reader reader;
+  jpeg_decompress_struct& jpeg = reader.jpeg;
+  run(reader, [&] {
+    jpeg_create_decompress(&jpeg);
+    jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(file.data()), file.size());
+    jpeg_read_header(&jpeg, TRUE);
+  });
+  check_sides(jpeg.image_width, jpeg.image_height);
+  if (jpeg.num_components != 1 && jpeg.num_components != 3) {
+    throw Error("is a JPEG with " + std::to_string(jpeg.num_components) +
+                " channels, expected 1 (grey) or 3 (colour)");
+  }
+  Raster raster;
+  raster.size = {static_cast<int>(jpeg.image_width), static_cast<int>(jpeg.image_height)};
+  raster.channels = jpeg.num_components;
+  const auto step = static_cast<std::size_t>(raster.row_length());
+  raster.bytes.resize(step * jpeg.image_height);
+  run(reader, [&] {
+    jpeg.out_color_space = raster.channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_start_decompress(&jpeg);
+    while (jpeg.output_scanline < jpeg.output_height) {
+      JSAMPROW row = raster.bytes.data() + jpeg.output_scanline * step;
+      jpeg_read_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(&jpeg);
+  });
+  return raster;
+}
+
+}  // namespace cairn::io

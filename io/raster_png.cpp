@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <png.h>
+
+#include <bit>
+#include <cairn/core/error.hpp>
+#include <csetjmp>
+#include <cstring>
+#include <io/raster.hpp>
+#include <string>
+
+// libpng itself rather than OpenCV's use of it: here its complaints can be caught instead of printed.
+namespace cairn::io {
+namespace {
+
+struct Source {
+  std::string_view rest;
+  std::string complaint;
+};
+
+void complain(png_structp png, png_const_charp message) {
+  static_cast<Source*>(png_get_error_ptr(png))->complaint = message;
+  png_longjmp(png, 1);
+}
+void keep_quiet(png_structp, png_const_charp) {}
+
+void read_bytes(png_structp png, png_bytep out, std::size_t count) {
+  std::string_view& rest = static_cast<Source*>(png_get_io_ptr(png))->rest;
+  if (count > rest.size()) png_error(png, "the file ends too early");
+  std::memcpy(out, rest.data(), count);
+  rest.remove_prefix(count);
+}
+
+struct Reader {
+  explicit Reader(Source& source)
+      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, complain, keep_quiet)),
+        info(png != nullptr ? png_create_info_struct(png) : nullptr) {
+    if (info == nullptr) throw Error("cannot be read: libpng does not start");
+    png_set_read_fn(png, &source, read_bytes);
+    png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+  png_structp png;
+  png_infop info;
+};
+
+/// Runs `steps`, which must own nothing: libpng leaves them by longjmp. Everything that lives on is the
+/// caller's.
+template <class Steps>
+bool succeeds(png_structp png, const Steps& steps) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's only way out
+  steps();
+  return true;
+}
+
+void run(const Reader& reader, const Source& source, const auto& steps) {
+  if (!succeeds(reader.png, steps)) throw Error("is a truncated or damaged PNG: " + source.complaint);
+}
+
+/// Deflate packs at most 1032:1, so a short file with a great claim is refused before it costs memory.
+void check_plausible(Size size, std::size_t raster_bytes, std::size_t file_bytes) {
+  // Samples of less than 8 bits are packed eight to the byte before.
+  if (raster_bytes / 8 / 1032 <= file_bytes) return;
+  throw Error("is a truncated or damaged PNG: " + std::to_string(file_bytes) + " bytes cannot hold " +
+              text(size) + " pixels");
+}
+
+}  // namespace
+
+Raster decode_png(std::string_view file, Palette palette) {
+  Source source{file, {}};
+  Reader reader(source);
+  Raster raster;
+  png_uint_32 width = 0;
+  png_uint_32 height = 0;
+  int depth = 0;
+  int colour = 0;
+  run(reader, source, [&] {
+    png_read_info(reader.png, reader.info);
+    png_get_IHDR(reader.png, reader.info, &width, &height, &depth, &colour, nullptr, nullptr, nullptr);
+  });
+  check_sides(width, height);
+  raster.size = {static_cast<int>(width), static_cast<int>(height)};
+  const bool indexed = colour == PNG_COLOR_TYPE_PALETTE;
+  raster.channels = (colour & PNG_COLOR_MASK_COLOR) != 0 && !(indexed && palette == Palette::indices) ? 3 : 1;
+  raster.bytes_each = depth == 16 ? 2 : 1;
+  raster.max_value = indexed ? 255 : (1 << depth) - 1;
+  raster.declared = depth != 16;
+
+  std::size_t row_bytes = 0;
+  run(reader, source, [&] {
+    if (indexed && palette == Palette::colours) png_set_palette_to_rgb(reader.png);
+    png_set_packing(reader.png);  // less than 8 bits: one byte each, values as they are
+    png_set_strip_alpha(reader.png);
+    if (std::endian::native == std::endian::little) png_set_swap(reader.png);
+    png_set_interlace_handling(reader.png);
+    png_read_update_info(reader.png, reader.info);
+    row_bytes = png_get_rowbytes(reader.png, reader.info);
+  });
+  if (row_bytes != static_cast<std::size_t>(raster.row_length() * raster.bytes_each)) {
+    throw Error("is a PNG of a form that is not known here (colour type " + std::to_string(colour) + ", " +
+                std::to_string(depth) + " bits)");
+  }
+  std::vector<png_bytep> rows(height);
+  const std::size_t bytes = row_bytes * height;
+  check_plausible(raster.size, bytes, file.size());
+  raster.bytes.resize(bytes);
+  for (std::size_t y = 0; y < height; ++y) rows[y] = raster.bytes.data() + y * row_bytes;
+  run(reader, source, [&] {
+    png_read_image(reader.png, rows.data());
+    png_read_end(reader.png, nullptr);
+  });
+  return raster;
+}
+
+}  // namespace cairn::io
