@@ -1,2 +1,242 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include "common.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <cairn/core/nearest.hpp>
+#include <cairn/core/target.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <io/calibration_files.hpp>
+#include <io/config_files.hpp>
+#include <io/disparity_files.hpp>
+
+namespace cairn::cli {
+namespace fs = std::filesystem;
+
+// ---- options ----
+
+void add_config_options(CLI::App& app, ConfigOptions& options) {
+  app.add_option("--preset", options.preset, "start from this preset: default or paper")
+      ->capture_default_str();
+  app.add_option("--config", options.file, "YAML file with options (as `cairn config` prints them)");
+  app.add_option("--set", options.sets, "one option, e.g. match.window_size=9; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+namespace {
+
+void set_from_text(Config& config, const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw Error("--set " + assignment + ": expected NAME=VALUE, e.g. match.window_size=9");
+  }
+  set(config, std::string_view(assignment).substr(0, equals),
+      std::string_view(assignment).substr(equals + 1));
+}
+
+}  // namespace
+
+Config resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities) {
+  Config config = Config::preset(options.preset);
+  if (calibrated_disparities) set(config, "match.num_disparities", std::to_string(*calibrated_disparities));
+  if (!options.file.empty()) io::load_config(options.file, config);
+  for (const std::string& assignment : options.sets) set_from_text(config, assignment);
+  return config;
+}
+
+void add_exec_options(CLI::App& app, ExecOptions& options) {
+  constexpr int kMostThreads = 1024;
+  app.add_option("--threads", options.threads, "number of threads; 0 = one for each processor")
+      ->check(CLI::Range(0, kMostThreads))
+      ->capture_default_str();
+  app.add_option("--target", options.target,
+                 "instruction set of the kernels (scalar, sse4, avx2, avx512, neon); default: $CAIRN_TARGET, "
+                 "else the best");
+}
+
+Target wanted_target(const std::string& option) {
+  const char* variable = std::getenv("CAIRN_TARGET");
+  const bool from_environment = option.empty() && variable != nullptr && *variable != '\0';
+  if (option.empty() && !from_environment) return Target::best;
+  const std::string wanted = from_environment ? variable : option;
+  const std::string source = from_environment ? "CAIRN_TARGET" : "--target";
+
+  const std::vector<Target> supported = supported_targets();
+  std::string names = "best";
+  for (const Target target : supported) names += ", " + std::string(name(target));
+  const std::optional<Target> target = target_named(wanted);
+  if (!target) {
+    const std::string close = nearest(wanted, {"best", "scalar", "sse4", "avx2", "avx512", "neon"});
+    throw Error(source + ": unknown instruction set '" + wanted + "', expected one of " + names +
+                (close.empty() ? "" : "; did you mean '" + close + "'?"));
+  }
+  if (*target != Target::best && std::find(supported.begin(), supported.end(), *target) == supported.end()) {
+    throw Error(source + ": instruction set " + wanted +
+                " is not there in this build or on this processor, expected one of " + names);
+  }
+  return *target;
+}
+
+Exec make_exec(const ExecOptions& options) {
+  Exec exec = Exec::with_threads(options.threads, wanted_target(options.target));
+  exec.pool = Pool::make();
+  return exec;
+}
+
+// ---- frames ----
+
+namespace {
+
+std::optional<fs::path> calibration_beside(const fs::path& left) {
+  const fs::path folder = fs::absolute(left).parent_path();
+  for (const fs::path& candidate :
+       {left.parent_path() / "calib.txt", folder.parent_path() / "gt" / "calib.txt"}) {
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  }
+  return std::nullopt;
+}
+
+io::FrameFiles frame_of_files(const InputOptions& options) {
+  const fs::path left = options.paths[0];
+  io::FrameFiles files;
+  files.name = left.stem().string();
+  files.folder = left.parent_path();
+  files.left = left;
+  if (options.paths.size() == 2) files.right = options.paths[1];
+  files.calib = calibration_beside(left);
+  return files;
+}
+
+}  // namespace
+
+std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
+  std::error_code ignored;
+  if (options.paths.size() == 1 && fs::is_directory(options.paths[0], ignored)) {
+    auto frames = io::find_frames(options.paths[0]);
+    if (!options.disparity.empty() && frames.size() > 1) {
+      throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
+                  " frames of " + options.paths[0] + "; give one frame");
+    }
+    return frames;
+  }
+  if (options.paths.size() == 1 && options.disparity.empty() && fs::exists(options.paths[0], ignored)) {
+    throw Error(options.paths[0] + ": a left picture alone; give the right one as well, or --disparity FILE");
+  }
+  return {frame_of_files(options)};
+}
+
+LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Pool& pool) {
+  LoadedFrame frame;
+  if (!options.disparity.empty()) {
+    frame.left = io::load_picture(files.left, pool);
+    frame.given_disparity = io::load_disparity(options.disparity, pool);
+    if (frame.given_disparity.size() != frame.left.gray.size()) {
+      throw Error(options.disparity + ": the disparity map is " + text(frame.given_disparity.size()) + ", " +
+                  files.left.string() + " is " + text(frame.left.gray.size()));
+    }
+  } else {
+    if (!files.right) throw Error(files.folder.string() + ": no right picture beside " + files.left.string());
+    io::PicturePair pair = io::load_pair(files.left, *files.right, pool);
+    frame.left = std::move(pair.left);
+    frame.right = std::move(pair.right.gray);
+  }
+
+  std::optional<fs::path> calib = files.calib;
+  if (!options.calib.empty()) calib = options.calib;
+  io::Calibration calibration;
+  if (calib) {
+    calibration = io::load_calibration(*calib);
+    io::check_size(calibration, frame.left.gray.size(), *calib);
+  }
+  frame.rig = calibration.rig;
+  frame.config = resolve(options.config, calibration.num_disparities);
+  return frame;
+}
+
+Stopwatch::Stopwatch(Exec& exec) : exec_(exec) {
+  exec_.observe = [this](std::string_view stage, const Artifact&, double milliseconds) {
+    times_.push_back({std::string(stage), milliseconds});
+  };
+}
+
+Stopwatch::~Stopwatch() {
+  exec_.observe = nullptr;
+}
+
+double Stopwatch::total_ms() const {
+  double sum = 0;
+  for (const io::StageTime& time : times_) sum += time.milliseconds;
+  return sum;
+}
+
+// ---- text ----
+
+std::string text_of(const char* format, double value) {
+  if (std::isnan(value)) return "-";
+  std::array<char, 64> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
+std::string percent(double share) {
+  return std::isnan(share) ? "-" : text_of("%.1f %%", 100 * share);
+}
+
+namespace {
+
+/// Characters, not bytes: a frame's name may be UTF-8.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string Table::text() const {
+  std::vector<std::size_t> widths(rows_.front().size(), 0);
+  std::vector<bool> used(rows_.front().size(), false);
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    for (std::size_t c = 0; c < rows_[r].size(); ++c) {
+      widths[c] = std::max(widths[c], width_of(rows_[r][c]));
+      if (r > 0 && !rows_[r][c].empty()) used[c] = true;
+    }
+  }
+  std::string all;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0 && !used[c]) continue;
+      const std::string padding(widths[c] - width_of(row[c]), ' ');
+      line += c == 0 ? row[c] + padding : "  " + padding + row[c];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    all += line + '\n';
+  }
+  return all;
+}
+
+Progress::Progress(std::size_t count) : count_(count), shown_(count > 1 && isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::at(std::size_t index, const std::string& name) const {
+  if (!shown_) return;
+  constexpr std::size_t kWidth = 30;
+  const std::size_t done = index * kWidth / count_;
+  std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu %s", std::string(done, '#').c_str(),
+               std::string(kWidth - done, '.').c_str(), index + 1, count_, name.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace cairn::cli

@@ -1,2 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <io/config_files.hpp>
+#include <iostream>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+struct ShowOptions {
+  ConfigOptions config;
+  bool markdown = false;
+};
+
+std::string escaped(std::string_view cell) {
+  std::string text;
+  for (const char c : cell) text += c == '|' ? std::string("\\|") : std::string(1, c);
+  return text;
+}
+
+std::string markdown(const Config& config) {
+  std::string all = "| option | default | unit | values | meaning |\n|---|---|---|---|---|\n";
+  for (const OptionInfo& o : options(config)) {
+    all += "| `" + o.name + "` | " + (o.value.empty() ? "" : "`" + escaped(o.value) + "`") + " | " +
+           escaped(o.unit) + " | " + escaped(o.domain) + " | " + escaped(o.help) + " |\n";
+  }
+  return all;
+}
+
+}  // namespace
+
+Work declare_config(CLI::App& app) {
+  auto show = std::make_shared<ShowOptions>();
+  add_config_options(app, show->config);
+  app.add_flag("--markdown", show->markdown,
+               "a table for the reference page instead of YAML that --config reads");
+  return [show] {
+    const Config config = resolve(show->config);
+    validate(config);
+    std::cout << (show->markdown ? markdown(config) : io::config_yaml(config));
+    return 0;
+  };
+}
+
+}  // namespace cairn::cli

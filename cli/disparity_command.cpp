@@ -1,2 +1,107 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <array>
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <filesystem>
+#include <io/disparity_files.hpp>
+#include <iostream>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+struct DisparityOptions {
+  InputOptions input;
+  ExecOptions exec;
+  std::string output;
+};
+
+/// Before any work: a name that cannot be written to should not cost the matching's time.
+void check_output(const std::string& output, const MatchConfig& config) {
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (extension != ".png" && extension != ".pfm") {
+    throw Error(output + ": a disparity map is written as .png or .pfm");
+  }
+  if (extension == ".png" && !io::png_can_hold(config.min_disparity, config.num_disparities)) {
+    throw Error(output + ": 16-bit PNG holds disparities from 0 to below 256, the search range is " +
+                std::to_string(config.min_disparity) + " to " +
+                std::to_string(config.min_disparity + config.num_disparities - 1) + "; write a .pfm");
+  }
+}
+
+std::string describe(const SceneDisparity& scene, double milliseconds) {
+  std::int64_t valid = 0;
+  std::array<std::int64_t, kRejects.size()> counts{};
+  const Image<Reject>& reject = scene.disparity.reject;
+  for (int y = 0; y < reject.height(); ++y) {
+    for (int x = 0; x < reject.width(); ++x) {
+      valid += reject(x, y) == Reject::none ? 1 : 0;
+      for (std::size_t i = 0; i < kRejects.size(); ++i)
+        counts[i] += has(reject(x, y), kRejects[i].value) ? 1 : 0;
+    }
+  }
+  const auto share = [&](std::int64_t count) {
+    return percent(static_cast<double>(count) / static_cast<double>(reject.size().area()));
+  };
+  std::string all =
+      "disparity on " + share(valid) + " of the pixels, " + text_of("%.1f ms", milliseconds) + "\n";
+  Table table({"refused (a pixel may have several reasons)", "share"});
+  for (std::size_t i = 0; i < kRejects.size(); ++i) {
+    if (kRejects[i].value != Reject::no_data) table.add({std::string(kRejects[i].name), share(counts[i])});
+  }
+  all += table.text();
+  if (scene.ground.plane) {
+    const GroundPlane p = *scene.ground.plane;
+    all += "ground: d = " + text_of("%.6f", double(p.a)) + " x " + text_of("%+.6f", double(p.b)) + " y " +
+           text_of("%+.4f", double(p.c)) + ", support " + percent(double(scene.ground.support)) + "\n";
+  } else {
+    for (const auto& refusal : kRefusals) {
+      if (refusal.value == scene.ground.refusal) all += "ground: none, " + std::string(refusal.name) + "\n";
+    }
+  }
+  return all;
+}
+
+int estimate(const DisparityOptions& options) {
+  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+  if (frames.size() != 1) {
+    throw Error(options.input.paths.front() + ": holds " + std::to_string(frames.size()) +
+                " frames; cairn disparity takes one, cairn segment a folder of them");
+  }
+  (void)resolve(options.input.config);
+  Exec exec = make_exec(options.exec);
+  const LoadedFrame loaded = load_frame(frames.front(), options.input, exec.pool);
+  if (!options.output.empty()) check_output(options.output, loaded.config.match);
+  const Stopwatch watch(exec);
+  const SceneDisparity scene = estimate_disparity(
+      StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
+  if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
+  std::cout << describe(scene, watch.total_ms());
+  return 0;
+}
+
+}  // namespace
+
+Work declare_disparity(CLI::App& app) {
+  auto options = std::make_shared<DisparityOptions>();
+  app.add_option(
+         "LEFT RIGHT | FOLDER", options->input.paths,
+         "the left and the right picture of a rectified pair; or a folder with left.png and right.png")
+      ->required()
+      ->expected(1, 2)
+      ->type_name("");
+  app.add_option(
+      "--calib", options->input.calib,
+      "calibration file; default: calib.txt beside the left picture, else ../gt/calib.txt, else none");
+  add_config_options(app, options->input.config);
+  add_exec_options(app, options->exec);
+  app.add_option("-o,--output", options->output,
+                 "file.png: 16 bits, disparity x 256, 0 = hole; file.pfm: float, inf = hole")
+      ->type_name("FILE");
+  return [options] { return estimate(*options); };
+}
+
+}  // namespace cairn::cli

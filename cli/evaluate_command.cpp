@@ -1,2 +1,397 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/evaluation/disparity_error.hpp>
+#include <cairn/evaluation/object_error.hpp>
+#include <filesystem>
+#include <io/dataset.hpp>
+#include <io/disparity_files.hpp>
+#include <io/image_files.hpp>
+#include <io/results.hpp>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateOptions {
+  std::string result;
+  std::string truth;
+  ObjectErrorConfig objects;
+  int skip_left = 0;
+};
+
+// ---- reading ----
+
+struct ResultFiles {
+  std::string name;
+  std::optional<fs::path> objects;
+  std::optional<fs::path> disparity;
+  std::optional<fs::path> json;
+};
+
+std::optional<fs::path> file_in(const fs::path& folder, const char* name) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / name, ignored) ? std::optional(folder / name) : std::nullopt;
+}
+
+/// nullopt where the folder holds no result.
+std::optional<ResultFiles> result_in(const fs::path& folder) {
+  ResultFiles files;
+  files.name = folder.filename().string();
+  files.objects = file_in(folder, "objects.png");
+  files.disparity = file_in(folder, "disparity.png");
+  if (!files.disparity) files.disparity = file_in(folder, "disparity.pfm");
+  files.json = file_in(folder, "objects.json");
+  if (!files.objects && !files.disparity) return std::nullopt;
+  return files;
+}
+
+Image<ObjectId> ours_of(const io::Labels& labels) {
+  Image<ObjectId> ids(labels.ids.size());
+  for (int y = 0; y < ids.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y),
+                   [](std::uint16_t id) { return ObjectId{id}; });
+  }
+  return ids;
+}
+
+/// 255 means "don't care" in a truth of 8 bits; with 16 bits it is an id like others.
+Image<TruthId> truth_of(const io::Labels& labels) {
+  Image<TruthId> ids(labels.ids.size());
+  const bool has_dont_care = labels.bits == 8;
+  for (int y = 0; y < ids.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y), [&](std::uint16_t id) {
+      return has_dont_care && id == 255 ? TruthId::dont_care : TruthId{id};
+    });
+  }
+  return ids;
+}
+
+void require_equal_size(const fs::path& ours, Size our_size, const fs::path& theirs, Size their_size) {
+  if (our_size == their_size) return;
+  throw Error(ours.string() + ": is " + text(our_size) + ", the truth " + theirs.string() + " is " +
+              text(their_size));
+}
+
+// ---- one frame ----
+
+struct FrameScore {
+  std::string name;
+  std::optional<FrameObjects> objects;
+  std::map<ObjectId, double> confidence;   // empty where there is no objects.json
+  std::optional<DisparityErrors> visible;  // non-occluded; all pixels with truth where nothing tells
+  std::optional<DisparityErrors> all;
+  bool knows_occlusion = false;
+};
+
+void score_disparity(const fs::path& ours, const io::TruthFiles& truth, int skip_left, FrameScore& score) {
+  const Image<float> disparity = io::load_disparity(ours);
+  const Image<float> true_disparity = io::load_disparity(*truth.disparity);
+  require_equal_size(ours, disparity.size(), *truth.disparity, true_disparity.size());
+  score.all = disparity_errors(disparity, true_disparity, {}, skip_left);
+  score.visible = score.all;
+  if (!truth.occlusion) return;
+  const io::Labels occlusion = io::load_labels(*truth.occlusion);
+  require_equal_size(*truth.occlusion, occlusion.ids.size(), *truth.disparity, true_disparity.size());
+  Image<std::uint8_t> hidden(occlusion.ids.size());
+  for (int y = 0; y < hidden.height(); ++y) {
+    for (int x = 0; x < hidden.width(); ++x) hidden(x, y) = occlusion.ids(x, y) == 255 ? 1 : 0;
+  }
+  score.visible = disparity_errors(disparity, true_disparity, hidden, skip_left);
+  score.knows_occlusion = true;
+}
+
+FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
+                       const EvaluateOptions& options) {
+  FrameScore score;
+  score.name = result.name;
+  if (result.objects && truth.objects) {
+    const Image<ObjectId> ours = ours_of(io::load_labels(*result.objects));
+    const Image<TruthId> theirs = truth_of(io::load_labels(*truth.objects));
+    require_equal_size(*result.objects, ours.size(), *truth.objects, theirs.size());
+    score.objects = FrameObjects{object_errors(ours, theirs, options.objects), truth.partial};
+    if (result.json) {
+      for (const auto& object : io::load_confidences(*result.json))
+        score.confidence[object.id] = object.confidence;
+    }
+  }
+  if (result.disparity && truth.disparity)
+    score_disparity(*result.disparity, truth, options.skip_left, score);
+  if (!score.objects && !score.all) {
+    throw Error(truth.folder.string() + ": has the truth of nothing that the result " + result.name +
+                " holds");
+  }
+  return score;
+}
+
+// ---- all frames ----
+
+struct Scores {
+  std::vector<FrameScore> frames;
+  std::vector<std::string> without_result;  // frames with a truth, which are not in the results
+};
+
+bool has_truth(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) return false;
+  try {
+    (void)io::find_truth(folder);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+Scores score_all(const EvaluateOptions& options) {
+  std::error_code ignored;
+  for (const std::string& folder : {options.result, options.truth}) {
+    if (!fs::exists(folder, ignored)) throw Error(folder + ": no such folder");
+    if (!fs::is_directory(folder, ignored)) throw Error(folder + ": is a file, expected a folder");
+  }
+  Scores scores;
+  const fs::path whole = fs::absolute(options.result).lexically_normal();
+  if (auto single = result_in(whole.has_filename() ? whole : whole.parent_path())) {
+    scores.frames.push_back(score_frame(*single, io::find_truth(options.truth), options));
+    return scores;
+  }
+  std::set<std::string> seen;
+  std::vector<ResultFiles> results;
+  for (const auto& entry : fs::directory_iterator(options.result)) {
+    if (!entry.is_directory(ignored)) continue;
+    if (auto result = result_in(entry.path())) results.push_back(std::move(*result));
+  }
+  if (results.empty()) {
+    throw Error(options.result +
+                ": no result in this folder or its sub-folders, expected objects.png, disparity.png or "
+                "disparity.pfm");
+  }
+  std::sort(results.begin(), results.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  for (const ResultFiles& result : results) {
+    const fs::path truth = fs::path(options.truth) / result.name;
+    if (!fs::is_directory(truth, ignored))
+      throw Error(truth.string() + ": no such folder, but there is a result " + result.name);
+    scores.frames.push_back(score_frame(result, io::find_truth(truth), options));
+    seen.insert(result.name);
+  }
+  for (const auto& entry : fs::directory_iterator(options.truth)) {
+    const std::string name = entry.path().filename().string();
+    if (!seen.contains(name) && name != "gt" && has_truth(entry.path()))
+      scores.without_result.push_back(name);
+  }
+  std::sort(scores.without_result.begin(), scores.without_result.end());
+  return scores;
+}
+
+// ---- the table ----
+
+std::string error_text(const TrueObjectScore& score) {
+  constexpr double kLargestShown = 10;
+  if (score.iou == 0) return "miss";
+  return score.error() < kLargestShown ? text_of("%.1f", 100 * score.error()) : ">999";
+}
+
+std::string frame_table(const std::vector<FrameScore>& frames) {
+  std::set<TruthId> ids;
+  for (const FrameScore& frame : frames) {
+    if (!frame.objects) continue;
+    for (const TrueObjectScore& score : frame.objects->errors.truth) ids.insert(score.id);
+  }
+  std::vector<std::string> header{"frame"};
+  for (const TruthId id : ids) header.push_back("E" + std::to_string(number(id)) + " %");
+  header.insert(header.end(), {"found", "ours", "right", "phantoms", "bad-1 %", "density %"});
+  Table table(header);
+  for (const FrameScore& frame : frames) {
+    std::vector<std::string> row{frame.name};
+    row.resize(1 + ids.size());
+    if (frame.objects) {
+      for (const TrueObjectScore& score : frame.objects->errors.truth) {
+        row[1 + static_cast<std::size_t>(std::distance(ids.begin(), ids.find(score.id)))] = error_text(score);
+      }
+      const ObjectSummary sum = summarise({*frame.objects});
+      row.push_back(std::to_string(sum.found_50) + "/" + std::to_string(sum.true_objects));
+      row.push_back(std::to_string(frame.objects->errors.ours.size()));
+      row.push_back(frame.objects->partial ? "" : std::to_string(sum.right_50));
+      row.push_back(frame.objects->partial ? "" : std::to_string(sum.phantoms));
+    } else {
+      row.insert(row.end(), 4, "");
+    }
+    row.push_back(frame.visible ? text_of("%.1f", 100 * frame.visible->bad_of_matched(1)) : "");
+    row.push_back(frame.visible ? text_of("%.1f", 100 * frame.visible->density()) : "");
+    table.add(row);
+  }
+  return table.text();
+}
+
+// ---- the summary ----
+
+constexpr double kConfident = 0.8;
+
+struct Confidence {
+  int objects = 0;
+  int right = 0;
+  bool known = false;
+};
+
+Confidence judge_confidence(const std::vector<FrameScore>& frames) {
+  Confidence sum;
+  for (const FrameScore& frame : frames) {
+    if (!frame.objects || frame.objects->partial || frame.confidence.empty()) continue;
+    sum.known = true;
+    for (const FoundObjectScore& score : frame.objects->errors.ours) {
+      const auto found = frame.confidence.find(score.id);
+      if (score.mostly_dont_care || found == frame.confidence.end() || found->second < kConfident) continue;
+      ++sum.objects;
+      sum.right += score.iou >= 0.5 ? 1 : 0;
+    }
+  }
+  return sum;
+}
+
+std::string frames_text(int count) {
+  return std::to_string(count) + (count == 1 ? " frame" : " frames");
+}
+
+std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOptions& options) {
+  std::vector<FrameObjects> objects;
+  std::set<int> tolerances;
+  for (const FrameScore& frame : frames) {
+    if (!frame.objects) continue;
+    objects.push_back(*frame.objects);
+    tolerances.insert(frame.objects->errors.boundary_tolerance_px);
+  }
+  if (objects.empty()) return "objects             no truth or no result\n";
+  const ObjectSummary s = summarise(objects);
+  std::string tolerance = std::to_string(*tolerances.begin());
+  if (tolerances.size() > 1) tolerance += " to " + std::to_string(*tolerances.rbegin());
+
+  std::string all = "objects             " + std::to_string(s.true_objects) + " true ones of at least " +
+                    std::to_string(options.objects.min_area) + " px in " + frames_text(s.frames) + "\n";
+  all += "found               IoU >= 0.5: " + percent(s.recall_50()) +
+         "   IoU >= 0.75: " + percent(s.recall_75()) + "\n";
+  if (s.complete_frames > 0) {
+    const std::string partial =
+        s.complete_frames < s.frames
+            ? "; " + frames_text(s.frames - s.complete_frames) + " with partial truth left out"
+            : "";
+    all += "precision           IoU >= 0.5: " + percent(s.precision_50()) +
+           "   IoU >= 0.75: " + percent(s.precision_75()) + "   of " + std::to_string(s.our_objects) +
+           " objects of ours" + partial + "\n";
+    all += "phantoms            " + text_of("%.2f", s.phantoms_per_frame()) + " per frame\n";
+  } else {
+    all += "precision           not known: the truth is partial\n";
+  }
+  all += "E                   mean " + percent(s.mean_error) + "   median " + percent(s.median_error) +
+         "   (counted as 200 % at most; " + std::to_string(s.missed) + " reach that)\n";
+  all += "IoU                 mean " + text_of("%.3f", s.mean_iou) + "\n";
+  all += "boundary F          mean " + text_of("%.3f", s.mean_boundary_f) + "   of those found " +
+         text_of("%.3f", s.mean_boundary_f_found) + "   (within " + tolerance + " px)\n";
+  all += "segmented           over: " + std::to_string(s.over_segmented) +
+         "   under: " + std::to_string(s.under_segmented) + "\n";
+  if (const Confidence c = judge_confidence(frames); c.known) {
+    all += "confidence >= 0.8   " + std::to_string(c.objects) + " objects of ours";
+    if (c.objects > 0)
+      all += ", " + percent(c.right / static_cast<double>(c.objects)) + " of them with IoU >= 0.5";
+    all += "\n";
+  }
+  return all;
+}
+
+std::string disparity_block(const char* title, const DisparityErrors& e, const std::string& remark) {
+  std::string all = title + remark + "\n";
+  const auto bad = [&](const char* head, auto share) {
+    all += head;
+    for (std::size_t t = 0; t < kBadThresholdsPx.size(); ++t) {
+      all += (t == 0 ? "" : "   ") + text_of("bad-%g ", double(kBadThresholdsPx[t])) + percent(share(t));
+    }
+    all += "\n";
+  };
+  all += "  density           " + percent(e.density()) + " of " + std::to_string(e.known) + " pixels\n";
+  bad("  of the matched    ", [&](std::size_t t) { return e.bad_of_matched(t); });
+  bad("  holes count, too  ", [&](std::size_t t) { return e.bad_of_known(t); });
+  all += "  off by            mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
+         text_of("%.3f px", e.root_mean_square_px()) + "\n";
+  return all;
+}
+
+std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left) {
+  DisparityErrors visible;
+  DisparityErrors everything;
+  int count = 0;
+  int with_occlusion = 0;
+  for (const FrameScore& frame : frames) {
+    if (!frame.all) continue;
+    ++count;
+    with_occlusion += frame.knows_occlusion ? 1 : 0;
+    visible += *frame.visible;
+    everything += *frame.all;
+  }
+  if (count == 0) return "disparity           no truth or no result\n";
+  const std::string skipped = skip_left > 0 ? ", columns from " + std::to_string(skip_left) + " on" : "";
+  const std::string title = "disparity           " + frames_text(count) + ", ";
+  std::string all;
+  if (with_occlusion > 0) {
+    const std::string others =
+        with_occlusion < count
+            ? " (no occlusion.png for " + std::to_string(count - with_occlusion) + ": all of theirs)"
+            : "";
+    all += disparity_block(title.c_str(), visible, "pixels that both cameras see" + others + skipped);
+    all += disparity_block(title.c_str(), everything, "all pixels with truth" + skipped);
+  } else {
+    all += disparity_block(title.c_str(), everything, "all pixels with truth (no occlusion.png)" + skipped);
+  }
+  return all;
+}
+
+int evaluate(const EvaluateOptions& options) {
+  const Scores scores = score_all(options);
+  std::cout << frame_table(scores.frames) << "\n"
+            << object_lines(scores.frames, options) << disparity_lines(scores.frames, options.skip_left);
+  if (!scores.without_result.empty()) {
+    std::cout << "no result           " << frames_text(static_cast<int>(scores.without_result.size()))
+              << " of the truth:";
+    for (const std::string& name : scores.without_result) std::cout << " " << name;
+    std::cout << "\n";
+  }
+  return 0;
+}
+
+}  // namespace
+
+Work declare_evaluate(CLI::App& app) {
+  auto options = std::make_shared<EvaluateOptions>();
+  app.add_option("RESULT", options->result,
+                 "what cairn segment -o wrote: one frame's folder, or a folder of them")
+      ->required()
+      ->type_name("");
+  app.add_option(
+         "TRUTH", options->truth,
+         "folder with objects.png and/or disp_left.png (or ../gt beside it), or a folder of such folders")
+      ->required()
+      ->type_name("");
+  app.add_option("--min-area", options->objects.min_area, "px; smaller true objects are not scored")
+      ->check(CLI::Range(1, 1 << 30))
+      ->capture_default_str();
+  app.add_option("--boundary-tolerance", options->objects.boundary_tolerance,
+                 "% of the image's diagonal that boundaries may lie apart; at least 1 px")
+      ->check(CLI::Range(0.0F, 10.0F))
+      ->capture_default_str();
+  app.add_option("--skip-left", options->skip_left, "leave out the left N columns of disparities")
+      ->check(CLI::Range(0, 1 << 20))
+      ->capture_default_str();
+  app.footer(
+      "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true objects found "
+      "with IoU >= "
+      "0.5, objects of ours, those of them with IoU >= 0.5, phantoms, and disparity where both cameras see "
+      "the scene.");
+  return [options] { return evaluate(*options); };
+}
+
+}  // namespace cairn::cli

@@ -1,3 +1,120 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-int main() {}
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/core/nearest.hpp>
+#include <iostream>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+
+namespace cairn::cli {
+namespace {
+
+enum ExitCode { kDone = 0, kFailed = 1, kBadUsage = 2 };
+
+int complain(std::string message, ExitCode code) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  message.erase(message.find_last_not_of(" .") + 1);
+  std::cout.flush();
+  std::cerr << "cairn: " << message << '\n';
+  return code;
+}
+
+std::string suggestion(const std::string& name, const std::vector<std::string>& known) {
+  const std::string close = nearest(name, known);
+  return close.empty() ? "" : ", did you mean '" + close + "'?";
+}
+
+/// The sentence for a command that does not exist; empty where the first word is one, or an option.
+std::string unknown_command(const std::vector<std::string>& words) {
+  if (words.empty() || words.front().starts_with('-')) return {};
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) names.emplace_back(command.name);
+  if (std::find(names.begin(), names.end(), words.front()) != names.end()) return {};
+  const std::string close = suggestion(words.front(), names);
+  return "unknown command '" + words.front() + "'" + (close.empty() ? "; cairn --help lists them" : close);
+}
+
+/// The sentence for the first option that `app` does not have; empty where all are known.
+std::string unknown_option(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) known.push_back("-" + name);
+  }
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    const std::string name = word.substr(0, word.find('='));
+    if (name.size() < 2 || name[0] != '-' || std::isdigit(static_cast<unsigned char>(name[1])) != 0) continue;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (name[1] != '-' && std::find(known.begin(), known.end(), name.substr(0, 2)) != known.end()) continue;
+    const std::string close = suggestion(name, known);
+    return "unknown option '" + name + "'" +
+           (close.empty()
+                ? "; " + (app.get_name().empty() ? "cairn" : "cairn " + app.get_name()) + " --help lists them"
+                : close);
+  }
+  return {};
+}
+
+int run(int argc, const char* const* argv) {
+  CLI::App app{"cairn: objects from a rectified stereo pair, with a reason for every pixel that was refused",
+               "cairn"};
+  app.set_version_flag("--version", std::string("cairn ") + CAIRN_VERSION);
+  app.require_subcommand(0, 1);
+  app.footer(
+      "cairn COMMAND --help tells more of each.\n"
+      "Exit codes: 0 done, 1 the work failed, 2 bad usage, file or option (one line on stderr).");
+  std::vector<std::pair<CLI::App*, Work>> commands;
+  for (const Command& command : kCommands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.help);
+    commands.emplace_back(sub, command.declare(*sub));
+  }
+
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (const std::string sentence = unknown_command(words); !sentence.empty())
+    return complain(sentence, kBadUsage);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    const CLI::App* meant = &app;
+    for (const auto& [sub, work] : commands)
+      meant = !words.empty() && sub->get_name() == words.front() ? sub : meant;
+    const std::string sentence = unknown_option(*meant, words);
+    return complain(sentence.empty() ? error.what() : sentence, kBadUsage);
+  }
+  for (const auto& [sub, work] : commands) {
+    if (*sub) return work();
+  }
+  std::cout << app.help();
+  return kDone;
+}
+
+int guarded(int argc, const char* const* argv) {
+  try {
+    const int code = run(argc, argv);
+    std::cout.flush();
+    if (!std::cout) return complain("standard output: cannot be written to", kFailed);
+    return code;
+  } catch (const Error& error) {
+    return complain(error.what(), kBadUsage);
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory", kFailed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailed);
+  }
+}
+
+}  // namespace
+}  // namespace cairn::cli
+
+int main(int argc, char** argv) {
+  return cairn::cli::guarded(argc, argv);
+}

@@ -1,2 +1,144 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+struct SegmentOptions {
+  InputOptions input;
+  ExecOptions exec;
+  std::string output;
+  bool json = false;
+};
+
+Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
+  if (!loaded.given_disparity.empty()) {
+    return segment(loaded.left.gray, loaded.left.rgb, external_disparity(loaded.given_disparity, exec),
+                   loaded.rig, loaded.config, exec);
+  }
+  return segment(StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config,
+                 exec);
+}
+
+double valid_share(const DisparityMap& map) {
+  std::int64_t valid = 0;
+  for (int y = 0; y < map.reject.height(); ++y) {
+    valid += std::count(map.reject.row(y), map.reject.row(y) + map.reject.width(), Reject::none);
+  }
+  return static_cast<double>(valid) / static_cast<double>(map.reject.size().area());
+}
+
+std::string point_text(const std::optional<Vec3>& v) {
+  if (!v) return {};
+  return text_of("%.2f", double(v->x)) + ", " + text_of("%.2f", double(v->y)) + ", " +
+         text_of("%.2f", double(v->z));
+}
+
+std::string object_table(const std::vector<Object>& objects) {
+  Table table({"id", "distance_m", "disparity_px", "position_m (x, y, z)", "extent_m (x, y, z)", "area_px",
+               "box (x, y, w, h)", "confidence"});
+  for (const Object& o : objects) {
+    const Rect b = o.box_px;
+    table.add({std::to_string(number(o.id)),
+               o.position_in_camera_m ? text_of("%.2f", double(o.position_in_camera_m->z)) : "",
+               text_of("%.1f", double(o.disparity_px)), point_text(o.position_in_camera_m),
+               point_text(o.extent_in_camera_m), std::to_string(o.pixel_count),
+               std::to_string(b.x) + ", " + std::to_string(b.y) + ", " + std::to_string(b.width) + ", " +
+                   std::to_string(b.height),
+               text_of("%.2f", double(o.confidence))});
+  }
+  return table.text();
+}
+
+std::string summary(const Frame& frame, double milliseconds) {
+  const std::size_t count = frame.objects.list.size();
+  return std::to_string(count) + (count == 1 ? " object" : " objects") + ", disparity on " +
+         percent(valid_share(frame.disparity)) + " of the pixels, " +
+         (frame.ground.plane ? "ground found, " : "no ground, ") + text_of("%.1f ms", milliseconds);
+}
+
+/// One frame from files to results; what goes to stdout is returned.
+std::string work_on(const io::FrameFiles& files, const SegmentOptions& options,
+                    const std::filesystem::path& folder, bool one_of_many, Exec& exec) {
+  LoadedFrame loaded = load_frame(files, options.input, exec.pool);
+  const Stopwatch watch(exec);
+  const Frame frame = segment_frame(loaded, exec);
+  const io::Provenance provenance{options.input.config.preset, loaded.config, loaded.rig, watch.times(),
+                                  !loaded.given_disparity.empty()};
+  if (!folder.empty()) {
+    io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance);
+    if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
+      std::cerr << "cairn: " << (folder / "disparity.pfm").string()
+                << ": written instead of disparity.png, since 16 bits cannot hold disparities below 0 or "
+                   "from 256 on\n";
+    }
+  }
+  if (options.json) return io::objects_json(frame, provenance);
+  const std::string line = files.name + ": " + summary(frame, watch.total_ms()) + "\n";
+  if (one_of_many && !folder.empty()) return line;
+  return line + (frame.objects.list.empty() ? "" : object_table(frame.objects.list)) +
+         (one_of_many ? "\n" : "");
+}
+
+int segment_all(const SegmentOptions& options) {
+  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+  (void)resolve(options.input.config);  // a bad option is one whatever the frames hold
+  Exec exec = make_exec(options.exec);
+  // A folder with a left picture is itself the frame; a folder of such folders has one result for each of
+  // them.
+  std::error_code ignored;
+  const bool many = !std::filesystem::equivalent(frames.front().folder.empty() ? "." : frames.front().folder,
+                                                 options.input.paths.front(), ignored) &&
+                    std::filesystem::is_directory(options.input.paths.front(), ignored);
+  const Progress progress(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    progress.at(i, frames[i].name);
+    std::filesystem::path folder = options.output;
+    if (many && !options.output.empty()) folder /= frames[i].name;
+    try {
+      std::cout << work_on(frames[i], options, folder, many, exec) << std::flush;
+    } catch (const Error& error) {
+      if (!many) throw;
+      throw Error("frame " + frames[i].name + ": " + error.what());
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+Work declare_segment(CLI::App& app) {
+  auto options = std::make_shared<SegmentOptions>();
+  app.add_option("LEFT RIGHT | FOLDER", options->input.paths,
+                 "the left and the right picture of a rectified pair; or a folder with left.png and "
+                 "right.png; or a folder "
+                 "of such folders")
+      ->required()
+      ->expected(1, 2)
+      ->type_name("");
+  app.add_option("--calib", options->input.calib,
+                 "calibration file; default: calib.txt beside the left picture, else ../gt/calib.txt, else "
+                 "none: no metres");
+  app.add_option("--disparity", options->input.disparity,
+                 "take this disparity map (.png, .pfm) instead of matching; RIGHT may be left out");
+  add_config_options(app, options->input.config);
+  add_exec_options(app, options->exec);
+  app.add_option(
+         "-o,--output", options->output,
+         "folder for disparity.png, reject.png, objects.png, floor.png, overlay.png, disparity_view.png and "
+         "objects.json; of several frames, each has its own inside")
+      ->type_name("DIR");
+  app.add_flag("--json", options->json, "print the content of objects.json instead of a table");
+  app.footer("Of several frames the run ends at the first bad one; results before it stay.");
+  return [options] { return segment_all(*options); };
+}
+
+}  // namespace cairn::cli

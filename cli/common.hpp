@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cairn/core/exec.hpp>
+#include <cairn/core/stereo_pair.hpp>
+#include <cairn/pipeline/config.hpp>
+#include <filesystem>
+#include <io/dataset.hpp>
+#include <io/image_files.hpp>
+#include <io/results.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cairn::cli {
+
+// ---- options that several commands share ----
+
+struct ConfigOptions {
+  std::string preset = "default";
+  std::string file;
+  std::vector<std::string> sets;  // "match.window_size=9"
+};
+void add_config_options(CLI::App& app, ConfigOptions& options);
+/// Preset, then a calibration's number of disparities, then the config file, then --set; later ones win.
+Config resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities = std::nullopt);
+
+struct ExecOptions {
+  int threads = 0;  // 0 = one for each processor
+  std::string target;
+};
+void add_exec_options(CLI::App& app, ExecOptions& options);
+/// With a pool, so that the frames of a folder share their buffers.
+Exec make_exec(const ExecOptions& options);
+/// The instruction set that --target, else the environment variable CAIRN_TARGET, asks for.
+Target wanted_target(const std::string& option);
+
+struct InputOptions {
+  std::vector<std::string> paths;  // LEFT [RIGHT] or FOLDER
+  std::string calib;
+  std::string disparity;
+  ConfigOptions config;
+};
+
+// ---- frames ----
+
+/// The frames that the paths name: one pair, one folder, or a folder of folders.
+std::vector<io::FrameFiles> frames_of(const InputOptions& options);
+
+/// A frame with all that is needed to work on it.
+struct LoadedFrame {
+  io::Picture left;
+  Image<Gray> right;             // empty where the disparity is given
+  Image<float> given_disparity;  // empty where it is to be matched
+  std::optional<StereoRig> rig;
+  Config config;
+};
+/// Reads and checks everything before any work is done. Throws Error.
+LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Pool& pool);
+
+/// Collects the time of every stage while it lives.
+class Stopwatch {
+ public:
+  explicit Stopwatch(Exec& exec);
+  ~Stopwatch();
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  [[nodiscard]] const std::vector<io::StageTime>& times() const { return times_; }
+  [[nodiscard]] double total_ms() const;
+
+ private:
+  Exec& exec_;
+  std::vector<io::StageTime> times_;
+};
+
+// ---- text ----
+
+/// printf's format for one number; "-" for NaN.
+std::string text_of(const char* format, double value);
+/// "62.1 %" of 0.621; "-" for NaN.
+std::string percent(double share);
+
+/// Columns of text for the terminal: the first to the left, the others to the right; columns without any text
+/// are left out.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> header) : rows_{std::move(header)} {}
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// How far a folder run has come, on stderr where that is a terminal; nothing elsewhere.
+class Progress {
+ public:
+  explicit Progress(std::size_t count);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void at(std::size_t index, const std::string& name) const;
+
+ private:
+  std::size_t count_;
+  bool shown_;
+};
+
+}  // namespace cairn::cli
