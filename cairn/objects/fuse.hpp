@@ -11,13 +11,14 @@ namespace cairn {
 struct Fusion {
   Image<RegionId> labels;                    // fused region per pixel, 0 … parts.size()−1
   std::vector<std::vector<RegionId>> parts;  // per fused region: its intensity regions, ascending
-  std::vector<RegionId> disparity_region;    // per fused region: the disparity region that it follows, ascending
+  std::vector<RegionId>
+      disparity_region;  // per fused region: the disparity region that it follows, ascending
 };
 
-/// Equation (4): each intensity region goes to the disparity region with the greatest overlap (ties: the one of higher
-/// mean disparity, then the lower id); all intensity regions of one disparity region form one fused region.
-/// Fused regions are numbered by their disparity region; disparity regions that no intensity region chose are left out.
-/// (METHOD §6; paper, "Region fusion")
+/// Equation (4): each intensity region goes to the disparity region with the greatest overlap (ties: the one
+/// of higher mean disparity, then the lower id); all intensity regions of one disparity region form one fused
+/// region. Fused regions are numbered by their disparity region; disparity regions that no intensity region
+/// chose are left out. (METHOD §6; paper, "Region fusion")
 Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity, const Exec& exec);
 
 }  // namespace cairn

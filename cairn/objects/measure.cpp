@@ -1,2 +1,190 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/parallel.hpp>
+#include <cairn/objects/measure.hpp>
+#include <numeric>
+
+namespace cairn {
+namespace {
+
+constexpr int kGrain = 64;  // rows
+
+/// What one look at every pixel tells of a fused region.
+struct Outline {
+  std::int64_t pixel_count = 0;
+  std::int64_t valid_count = 0;
+  std::array<std::int64_t, 3> colour_sum{};
+  int first_pixel = 0;
+  Rect box;
+};
+
+struct Inputs {
+  const Fusion& fusion;
+  const Image<float>& disparity_px;
+  View<const Gray> left;
+  View<const Rgb> left_rgb;
+  const std::optional<StereoRig>& rig;
+};
+
+std::vector<Outline> outlines(const Inputs& in) {
+  const Size size = in.fusion.labels.size();
+  std::vector<Outline> result(in.fusion.parts.size());
+  for (int y = 0; y < size.height; ++y) {
+    const RegionId* const label = in.fusion.labels.row(y);
+    const float* const disparity = in.disparity_px.row(y);
+    const Gray* const grey = in.left.row(y);
+    const Rgb* const rgb = in.left_rgb.empty() ? nullptr : in.left_rgb.row(y);
+    for (int x = 0; x < size.width;) {
+      // A run of one region at a time: the outline is fetched once for all of it.
+      const int start = x;
+      std::int64_t valid = 0;
+      std::array<std::int64_t, 3> colour{};
+      do {
+        valid += disparity[x] == disparity[x] ? 1 : 0;  // a hole is NaN
+        colour[0] += rgb != nullptr ? rgb[x].r : grey[x];
+        colour[1] += rgb != nullptr ? rgb[x].g : grey[x];
+        colour[2] += rgb != nullptr ? rgb[x].b : grey[x];
+        ++x;
+      } while (x < size.width && label[x] == label[start]);
+      Outline& outline = result[index(label[start])];
+      if (outline.pixel_count == 0) outline.first_pixel = y * size.width + start;
+      outline.pixel_count += x - start;
+      outline.valid_count += valid;
+      for (std::size_t c = 0; c < 3; ++c) outline.colour_sum[c] += colour[c];
+      outline.box = united(outline.box, {start, y, x - start, 1});
+    }
+  }
+  return result;
+}
+
+int borders_touched(Rect box, Size image) {
+  return (box.x == 0 ? 1 : 0) + (box.y == 0 ? 1 : 0) + (box.x + box.width == image.width ? 1 : 0) +
+         (box.y + box.height == image.height ? 1 : 0);
+}
+
+bool is_object(const Outline& outline, const Region& disparity_region, Size image,
+               const ObjectsConfig& config) {
+  const double percent = 100.0 * static_cast<double>(outline.pixel_count) / static_cast<double>(image.area());
+  return !disparity_region.is_floor && outline.valid_count > 0 && percent >= config.min_area &&
+         percent <= config.max_area && borders_touched(outline.box, image) < 3;
+}
+
+/// The value of rank ⌊(percent·(n−1) + 50)/100⌋ in ascending order. Reorders `values`, which are not empty.
+float percentile(std::vector<float>& values, int percent) {
+  const auto rank = (static_cast<std::size_t>(percent) * (values.size() - 1) + 50) / 100;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.
+float median(std::vector<float>& values) {
+  const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), upper, values.end());
+  if (values.size() % 2 == 1) return *upper;
+  return (*upper + *std::max_element(values.begin(), upper)) / 2;
+}
+
+Rgb mean_colour(const Outline& outline) {
+  const auto mean = [&](std::size_t c) {
+    return static_cast<std::uint8_t>((outline.colour_sum[c] + outline.pixel_count / 2) / outline.pixel_count);
+  };
+  return {mean(0), mean(1), mean(2)};
+}
+
+/// Position and extent from the coordinates of an object's points, one list per axis.
+void place(Object& object, std::array<std::vector<float>, 3>& points) {
+  if (points[0].empty()) return;
+  std::array<float, 3> mean{};
+  std::array<float, 3> span{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<float>& values = points[axis];
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    mean[axis] = static_cast<float>(sum / static_cast<double>(values.size()));
+    const float low = percentile(values, 2);
+    span[axis] = percentile(values, 98) - low;
+  }
+  object.position_in_camera_m = Vec3{mean[0], mean[1], mean[2]};
+  object.extent_in_camera_m = Vec3{span[0], span[1], span[2]};
+}
+
+Object measured(const Inputs& in, RegionId region, const Outline& outline) {
+  std::vector<float> disparities;
+  disparities.reserve(static_cast<std::size_t>(outline.valid_count));
+  std::array<std::vector<float>, 3> points;
+  const Rect box = outline.box;
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    const RegionId* const label = in.fusion.labels.row(y);
+    const float* const disparity = in.disparity_px.row(y);
+    for (int x = box.x; x < box.x + box.width; ++x) {
+      if (label[x] != region || disparity[x] != disparity[x]) continue;
+      disparities.push_back(disparity[x]);
+      if (!in.rig) continue;
+      const auto point =
+          in.rig->point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity[x]);
+      if (!point) continue;
+      points[0].push_back(point->x);
+      points[1].push_back(point->y);
+      points[2].push_back(point->z);
+    }
+  }
+  Object object;
+  object.box_px = box;
+  object.pixel_count = static_cast<int>(outline.pixel_count);
+  object.disparity_px = median(disparities);
+  object.valid_share = static_cast<float>(outline.valid_count) / static_cast<float>(outline.pixel_count);
+  object.mean_colour = mean_colour(outline);
+  place(object, points);
+  object.confidence = object.valid_share;
+  return object;
+}
+
+}  // namespace
+
+Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
+                View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
+                const ObjectsConfig& config, const Exec& exec) {
+  const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig};
+  const Size size = fusion.labels.size();
+  const std::vector<Outline> outline = outlines(in);
+
+  struct Found {
+    std::size_t region;
+    Object object;
+  };
+  std::vector<Found> found;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Region& followed = by_disparity.regions[index(fusion.disparity_region[i])];
+    if (is_object(outline[i], followed, size, config)) found.push_back({i, {}});
+  }
+  parallel_for(exec, static_cast<int>(found.size()), 1, [&](int first, int last) {
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
+      const std::size_t region = found[i].region;
+      found[i].object = measured(in, RegionId{static_cast<std::int32_t>(region)}, outline[region]);
+    }
+  });
+  std::sort(found.begin(), found.end(), [&](const Found& a, const Found& b) {
+    if (a.object.disparity_px != b.object.disparity_px) return a.object.disparity_px > b.object.disparity_px;
+    return outline[a.region].first_pixel < outline[b.region].first_pixel;
+  });
+
+  Objects objects{Image<ObjectId>(size, exec.pool), {}};
+  std::vector<ObjectId> id_of(fusion.parts.size(), ObjectId::none);
+  for (Found& f : found) {
+    f.object.id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
+    id_of[f.region] = f.object.id;
+    objects.list.push_back(f.object);
+  }
+  parallel_for(exec, size.height, kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const RegionId* const in_row = fusion.labels.row(y);
+      ObjectId* const out = objects.labels.row(y);
+      for (int x = 0; x < size.width; ++x) out[x] = id_of[index(in_row[x])];
+    }
+  });
+  return objects;
+}
+
+}  // namespace cairn

@@ -26,12 +26,14 @@ struct Object {
   ObjectId id = ObjectId::none;
   Rect box_px;
   int pixel_count = 0;
-  float disparity_px = 0;                      // median of its valid pixels
-  float valid_share = 0;                       // 0 … 1: pixels of the mask that have a disparity
-  Rgb mean_colour;                             // of the mask; grey where the input had no colour
-  std::optional<Vec3> position_in_camera_m;    // mean of its visible valid points; needs a rig
-  std::optional<Vec3> extent_in_camera_m;      // size of the box around its points, 2nd to 98th percentile per axis
-  float confidence = 0;                        // 0 … 1
+  float disparity_px = 0;  // median of its valid pixels (even number: mean of the middle two)
+  float valid_share = 0;   // 0 … 1: pixels of the mask that have a disparity
+  Rgb mean_colour;         // of the mask, rounded; grey where the input had no colour
+  std::optional<Vec3>
+      position_in_camera_m;  // mean of its valid points; needs a rig and a point before infinity
+  std::optional<Vec3>
+      extent_in_camera_m;  // size of the box around its points, 2nd to 98th percentile per axis
+  float confidence = 0;    // 0 … 1; for now valid_share: the share of the mask that has a disparity
 };
 
 /// The objects of a frame. labels: ObjectId per pixel, none = no object. list[i].id = i + 1, nearest first
@@ -41,8 +43,9 @@ struct Objects {
   std::vector<Object> list;
 };
 
-/// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image or touches
-/// three of its borders (background); what is smaller than min_area; what has no valid pixel. (METHOD §7)
+/// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image
+/// or touches three of its borders (background); what is smaller than min_area; what has no valid pixel.
+/// (METHOD §7)
 Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
                 View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
                 const ObjectsConfig& config, const Exec& exec);

@@ -12,17 +12,23 @@ namespace cairn {
 inline constexpr std::int16_t kHole16 = INT16_MIN;
 /// The gradient that holes get: higher than any other, so that the watershed floods them last.
 inline constexpr std::uint16_t kHoleGradient = UINT16_MAX;
+/// The steepest disparity gradient that is told apart, in 1/16 px: just under 256 px from one side of a pixel
+/// to the other.
+inline constexpr int kSteepest16 = 4095;
 
-/// Gradient magnitude of the Gaussian-smoothed grey image, 0 … 255: smoothing in fixed point (radius ⌈3σ⌉ at most 15,
-/// border replicated, σ = 0: none), central differences, sqrt(gx² + gy²) rounded and capped. (METHOD §4)
+/// Gradient magnitude of the Gaussian-smoothed grey image, 0 … 255, in grey levels from one side of a pixel
+/// to the other: gx = s(x+1, y) − s(x−1, y), gy likewise, sqrt(gx² + gy²) rounded and capped. (METHOD §4)
+/// Smoothing is in fixed point: weights round(256·g(i)) for |i| ≤ ⌈3σ⌉ (15 at most), g normalised to 1, the
+/// centre takes what is missing to 256; border replicated; s is rounded to 1/16 grey level. σ = 0: none.
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma, const Exec& exec);
 
-/// d·16 rounded to the nearest integer, kHole16 in holes.
+/// d·16 rounded to the nearest integer (halves up), kHole16 in holes.
 Image<std::int16_t> quantised(const DisparityMap& disparity, const Exec& exec);
 
-/// Gradient magnitude of a quantised disparity map in 1/16 px: one-sided or central differences over valid neighbours
-/// only (a missing neighbour counts as equal), kHoleGradient in holes. `smoothing_sigma`: as above, over the valid
-/// pixels of the window, normalised by their weight. (METHOD §5 a)
+/// Gradient magnitude of a quantised disparity map in 1/16 px from one side of a pixel to the other: gx, gy
+/// as above, but a neighbour that is missing (a hole, or outside) counts as equal to the pixel itself; capped
+/// at kSteepest16. kHoleGradient in holes. (METHOD §5 a) Smoothing: the same weights over the valid pixels of
+/// the window, divided by the sum of their weights and rounded to 1/16 px (halves up); holes stay holes.
 Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smoothing_sigma, const Exec& exec);
 
 }  // namespace cairn

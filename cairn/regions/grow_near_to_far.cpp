@@ -1,2 +1,129 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/regions/grow_near_to_far.hpp>
+#include <cairn/regions/growing_regions.hpp>
+
+namespace cairn {
+namespace {
+
+struct Arc {
+  double mean;  // of the neighbour
+  std::int32_t place;
+  std::int32_t neighbour;
+};
+
+/// The untried arcs of the visited node, cheapest first. Its mean moves with every fusion and takes all arc
+/// values along; but the cheapest arc is always the first one below the mean or the first one above it. So
+/// two heaps, one for each side, and only arcs that the mean passes change sides.
+class UntriedArcs {
+ public:
+  void reset(double mean) {
+    below_.clear();
+    above_.clear();
+    mean_ = mean;
+  }
+  void add(const Arc& arc) { arc.mean <= mean_ ? push(below_, arc, lower) : push(above_, arc, higher); }
+  void move_mean(double mean) {
+    mean_ = mean;
+    while (!above_.empty() && above_.front().mean <= mean_) push(below_, pop(above_, higher), lower);
+    while (!below_.empty() && below_.front().mean > mean_) push(above_, pop(below_, lower), higher);
+  }
+  [[nodiscard]] bool empty() const { return below_.empty() && above_.empty(); }
+  Arc take_cheapest() {
+    if (below_.empty()) return pop(above_, higher);
+    if (above_.empty()) return pop(below_, lower);
+    const double to_below = mean_ - below_.front().mean;
+    const double to_above = above_.front().mean - mean_;
+    const bool tie_goes_below = to_below == to_above && below_.front().place < above_.front().place;
+    return to_below < to_above || tie_goes_below ? pop(below_, lower) : pop(above_, higher);
+  }
+
+ private:
+  // Heap orders: the arc that compares greatest is in front.
+  static bool lower(const Arc& a, const Arc& b) {
+    return a.mean < b.mean || (a.mean == b.mean && a.place > b.place);
+  }
+  static bool higher(const Arc& a, const Arc& b) {
+    return a.mean > b.mean || (a.mean == b.mean && a.place > b.place);
+  }
+  using Order = bool (*)(const Arc&, const Arc&);
+  static void push(std::vector<Arc>& heap, const Arc& arc, Order order) {
+    heap.push_back(arc);
+    std::push_heap(heap.begin(), heap.end(), order);
+  }
+  static Arc pop(std::vector<Arc>& heap, Order order) {
+    std::pop_heap(heap.begin(), heap.end(), order);
+    const Arc arc = heap.back();
+    heap.pop_back();
+    return arc;
+  }
+
+  std::vector<Arc> below_;
+  std::vector<Arc> above_;
+  double mean_ = 0;
+};
+
+/// From the highest mean to the lowest, ties in raster order.
+std::vector<std::int32_t> near_to_far(const GrowingRegions& regions) {
+  std::vector<Arc> order;
+  for (int i = 0; i < regions.count(); ++i) {
+    if (regions.node(i).valid_count > 0) order.push_back({regions.mean(i), regions.place(i), i});
+  }
+  std::sort(order.begin(), order.end(), [](const Arc& a, const Arc& b) {
+    return a.mean > b.mean || (a.mean == b.mean && a.place < b.place);
+  });
+  std::vector<std::int32_t> result;
+  result.reserve(order.size());
+  for (const Arc& entry : order) result.push_back(entry.neighbour);
+  return result;
+}
+
+/// The buffers of a visit; they keep their memory from one visit to the next.
+struct Visit {
+  UntriedArcs untried;
+  std::vector<std::int32_t> neighbours;  // every one that the visit saw
+};
+
+void visit_node(GrowingRegions& regions, int node, const GrowCriteria& criteria, Visit& visit) {
+  Absorption absorption(regions.node(node), criteria);
+  if (!absorption.may_absorb()) return;
+  visit.untried.reset(absorption.mean());
+  visit.neighbours.clear();
+  const auto add = [&](int neighbour) {
+    visit.neighbours.push_back(neighbour);
+    if (regions.node(neighbour).valid_count == 0 || regions.node(neighbour).is_floor) return;  // never fuse
+    visit.untried.add({regions.mean(neighbour), regions.place(neighbour), neighbour});
+  };
+  regions.start_visit(node);
+  regions.for_each_new_neighbour(node, add);
+  bool grew = false;
+  while (!visit.untried.empty()) {
+    const Arc arc = visit.untried.take_cheapest();
+    // Once the cheapest arc is beyond Eq. (1), so are all, and as nothing fuses nothing moves the mean.
+    if (!absorption.is_near(arc.mean)) break;
+    if (!absorption.admits(regions.node(arc.neighbour), arc.mean)) continue;
+    regions.for_each_new_neighbour(arc.neighbour, add);
+    regions.absorb(node, arc.neighbour);
+    absorption.update(regions.node(node));
+    visit.untried.move_mean(absorption.mean());
+    grew = true;
+  }
+  if (!grew) return;
+  std::erase_if(visit.neighbours, [&](int neighbour) { return !regions.is_alive(neighbour); });
+  regions.set_neighbours(node, visit.neighbours);
+}
+
+}  // namespace
+
+Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria) {
+  GrowingRegions regions(graph);
+  Visit visit;
+  for (const std::int32_t node : near_to_far(regions)) {
+    if (regions.is_alive(node)) visit_node(regions, node, criteria, visit);
+  }
+  fuse_small_regions(regions, criteria.min_region_area);
+  return regions.merges();
+}
+
+}  // namespace cairn

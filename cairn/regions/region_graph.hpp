@@ -17,11 +17,12 @@ struct Region {
   int valid_count = 0;  // pixels that carry a value; mean and variance are 0 where there is none
   Rect box;
   double mean = 0;
-  double variance = 0;   // of the population
+  double variance = 0;    // of the population
   bool is_floor = false;  // the one floor region of a disparity segmentation
 };
 
-/// The result of a segmentation: every pixel's region, 0 … regions.size()−1 in raster order of their first pixel.
+/// The result of a segmentation: every pixel's region, 0 … regions.size()−1 in raster order of their first
+/// pixel.
 struct Segmentation {
   Image<RegionId> labels;
   std::vector<Region> regions;
@@ -43,13 +44,14 @@ struct RegionGraph {
     void absorb(const Node& other);
   };
   std::vector<Node> nodes;
-  std::vector<std::int32_t> first_arc;   // arcs of node i: arcs[first_arc[i]] … arcs[first_arc[i+1] − 1], ascending
+  std::vector<std::int32_t>
+      first_arc;  // arcs of node i: arcs[first_arc[i]] … arcs[first_arc[i+1] − 1], ascending
   std::vector<std::int32_t> arcs;
 };
 
-/// Counts and links the regions of `labels` (ids 0 … count−1). `values`: what the statistics are of; kHole16 = no value.
-/// `floor` (may be empty): non-zero pixels are floor; a region is floor when it has a floor pixel (the caller splits
-/// basins along the floor first).
+/// Counts and links the regions of `labels` (ids 0 … count−1). `values`: what the statistics are of; kHole16
+/// = no value. `floor` (may be empty): non-zero pixels are floor; a region is floor when it has a floor pixel
+/// (the caller splits basins along the floor first).
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
                         View<const std::uint8_t> floor, const Exec& exec);
 

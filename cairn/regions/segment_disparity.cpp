@@ -1,2 +1,112 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/regions/gradient.hpp>
+#include <cairn/regions/grow_near_to_far.hpp>
+#include <cairn/regions/percent.hpp>
+#include <cairn/regions/segment_disparity.hpp>
+#include <cairn/regions/split_floor.hpp>
+#include <cairn/regions/watershed.hpp>
+
+namespace cairn {
+namespace {
+
+constexpr double kPerPixel = 16.0;  // the graph counts in 1/16 px
+
+/// Pixels of one row that are neighbours and of one kind.
+struct Run {
+  std::int32_t begin;
+  std::int32_t end;
+  std::int32_t kind;
+};
+
+constexpr std::int32_t kFloor = -1;
+
+/// Appends the runs of a row; a pixel's kind is its basin, or kFloor.
+void append_runs(const RegionId* basin, const std::uint8_t* floor, int width, std::vector<Run>& runs) {
+  for (int x = 0; x < width;) {
+    const bool on_floor = floor[x] != 0;
+    Run run{x, x + 1, on_floor ? kFloor : number(basin[x])};
+    while (run.end < width && (floor[run.end] != 0) == on_floor && (on_floor || basin[run.end] == basin[x]))
+      ++run.end;
+    runs.push_back(run);
+    x = run.end;
+  }
+}
+
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
+  const auto at = [&](std::int32_t i) -> std::int32_t& { return parent[static_cast<std::size_t>(i)]; };
+  while (at(run) != run) {
+    at(run) = at(at(run));
+    run = at(run);
+  }
+  return run;
+}
+
+/// The earlier run becomes the root, so that roots are first in raster order.
+void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
+}  // namespace
+
+Basins split_floor(const Basins& basins, View<const std::uint8_t> floor, const Exec& exec) {
+  const Size size = basins.labels.size();
+  std::vector<Run> runs;
+  std::vector<std::size_t> row_begin{0};
+  std::vector<std::int32_t> parent;
+  std::int32_t floor_run = -1;
+  for (int y = 0; y < size.height; ++y) {
+    append_runs(basins.labels.row(y), floor.row(y), size.width, runs);
+    std::size_t above = y > 0 ? row_begin[static_cast<std::size_t>(y) - 1] : 0;
+    const std::size_t above_end = row_begin.back();
+    for (std::size_t i = row_begin.back(); i < runs.size(); ++i) {
+      const auto id = static_cast<std::int32_t>(i);
+      parent.push_back(id);
+      if (runs[i].kind == kFloor) {
+        if (floor_run < 0) floor_run = id;
+        unite(parent, id, floor_run);
+        continue;
+      }
+      while (above < above_end && runs[above].end <= runs[i].begin) ++above;
+      for (std::size_t j = above; j < above_end && runs[j].begin < runs[i].end; ++j) {
+        if (runs[j].kind == runs[i].kind) unite(parent, id, static_cast<std::int32_t>(j));
+      }
+    }
+    row_begin.push_back(runs.size());
+  }
+
+  Basins result{Image<RegionId>(size, exec.pool), 0};
+  std::vector<RegionId> labels(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto root = static_cast<std::size_t>(root_of(parent, static_cast<std::int32_t>(i)));
+    labels[i] = root == i ? RegionId{result.count++} : labels[root];
+  }
+  for (int y = 0; y < size.height; ++y) {
+    RegionId* const out = result.labels.row(y);
+    for (std::size_t i = row_begin[static_cast<std::size_t>(y)];
+         i < row_begin[static_cast<std::size_t>(y) + 1]; ++i) {
+      std::fill(out + runs[i].begin, out + runs[i].end, labels[i]);
+    }
+  }
+  return result;
+}
+
+Segmentation segment_disparity(const DisparityMap& disparity, View<const std::uint8_t> floor,
+                               const DisparityConfig& config, const Exec& exec) {
+  const Image<std::int16_t> values = quantised(disparity, exec);
+  const Image<std::uint16_t> edges = gradient(values, config.smoothing_sigma, exec);
+  Basins basins = watershed(edges, exec);
+  if (!floor.empty()) basins = split_floor(basins, floor, exec);
+  const RegionGraph graph = build_graph(basins.labels, basins.count, values, floor, exec);
+  const Merges merges =
+      grow_near_to_far(graph, {.mean_difference_max = config.mean_difference_max * kPerPixel,
+                               .deviation_max = config.deviation_max,
+                               .sigma_min = config.sigma_min * kPerPixel,
+                               .min_region_area = pixels_in(config.min_region_area, values.size())});
+  return apply_merges(basins.labels, graph, merges, 1.0 / kPerPixel, exec);
+}
+
+}  // namespace cairn

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/objects/fuse.hpp>
+#include <cairn/regions/gradient.hpp>
+#include <cairn/regions/grow_near_to_far.hpp>
+#include <cairn/regions/segment_disparity.hpp>
+#include <cairn/regions/segment_intensity.hpp>
+#include <cairn/regions/watershed.hpp>
+
+/// The slow twins of regions/ and objects/: what the fast ones must give, bit for bit. Written to be read,
+/// with sets and maps and whole-image searches; only for small images.
+namespace cairn::reference {
+
+Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma);
+Image<std::int16_t> quantised(const DisparityMap& disparity);
+Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smoothing_sigma);
+Basins watershed(View<const std::uint16_t> gradient);
+Basins split_floor(const Basins& basins, View<const std::uint8_t> floor);
+RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
+                        View<const std::uint8_t> floor);
+bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,
+              const GrowCriteria& criteria);
+Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria);
+Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria);
+Merges fuse_small_regions(const RegionGraph& graph, const Merges& merged_into, std::int64_t min_region_area);
+Segmentation apply_merges(View<const RegionId> labels, const RegionGraph& graph, const Merges& merged_into,
+                          double value_scale);
+Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& config);
+Segmentation segment_disparity(const DisparityMap& disparity, View<const std::uint8_t> floor,
+                               const DisparityConfig& config);
+Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity);
+
+}  // namespace cairn::reference
