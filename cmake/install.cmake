@@ -4,7 +4,9 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS cairn EXPORT cairn)
-install(DIRECTORY cairn/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY cairn/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn FILES_MATCHING
+  PATTERN "*.hpp"
+  PATTERN "*-inl.hpp" EXCLUDE)
 if(CAIRN_IO)
   install(TARGETS cairn_cli)
 endif()

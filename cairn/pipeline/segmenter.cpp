@@ -12,6 +12,8 @@ Segmenter::Segmenter(Config config, std::optional<StereoRig> rig, Exec exec)
   exec_.pool = Pool::make();
 }
 
-Frame Segmenter::segment(const StereoPair& pair) const { return cairn::segment(pair, rig_, config_, exec_); }
+Frame Segmenter::segment(const StereoPair& pair) const {
+  return cairn::segment(pair, rig_, config_, exec_);
+}
 
 }  // namespace cairn

@@ -7,13 +7,13 @@
 
 namespace cairn {
 
-/// The method for video: holds what the frames of one camera share, above all the pool of image buffers, so that from the
-/// second frame on no image is allocated (as long as the frames before it have died).
-/// The only class of the library with state, and none of it reaches a result: every call returns what segment() would.
+/// The method for video: holds what the frames of one camera share, above all the pool of image buffers, so
+/// that from the second frame on no image is allocated (as long as the frames before it have died). The only
+/// class of the library with state, and none of it reaches a result: every call returns what segment() would.
 class Segmenter {
  public:
-  /// Throws Error where validate(config) or the rig's own validate() does. Buffers come from a pool of its own,
-  /// whatever exec.pool is.
+  /// Throws Error where validate(config) or the rig's own validate() does. Buffers come from a pool of its
+  /// own, whatever exec.pool is.
   explicit Segmenter(Config config, std::optional<StereoRig> rig = std::nullopt, Exec exec = {});
 
   /// Throws Error where the configuration does not suit the pair's size.

@@ -73,7 +73,9 @@ Json summary(const std::string& name, const Config& preset) {
   out["bad_1_of_matched"] = rounded(disparity.bad_of_matched(1));
   out["objects"] = frame.objects.list.size();
   out["true_objects"] = Json::array();
-  for (const auto& score : object_errors(frame.objects.labels, true_objects(name), {}).truth) {
+  const Image<TruthId> truth = true_objects(name);
+  const ObjectErrors errors = object_errors(frame.objects.labels, truth, {});
+  for (const TrueObjectScore& score : errors.truth) {
     out["true_objects"].push_back(describe(score, frame.objects));
   }
   return out;

@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# update.sh [--check] BUILD_DIR: writes the generated parts of the pages anew, or with --check only says which are stale.
+#   docs/options.md                         `cairn config --markdown`
+#   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]`
+#   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout
+# Each marker is followed by a fenced block, which is what is replaced. Pictures (docs/images) are made without --check.
+set -euo pipefail
+check=no
+if [[ $1 == --check ]]; then
+  check=yes
+  shift
+fi
+build_dir=$(cd "$1" && pwd)
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+options_page() {
+  cat <<'TEXT'
+# Options
+
+<!-- Written by ./dev docs from `cairn config --markdown`; do not edit. -->
+
+Every option of every stage, with the value that the preset `default` gives it.
+Set one with `--set stage.name=value`, several in a file with `--config FILE`; see [formats](formats.md) for the file.
+
+TEXT
+  "$build_dir/cairn" config --markdown
+}
+
+code_of() {  # FILE#NAME
+  awk -v name="${1#*#}" '
+    index($0, "// [/" name "]") { shown = 0 }
+    shown { print substr($0, match($0, /[^ ]/) > indent ? indent + 1 : 1); found = 1 }
+    index($0, "// [" name "]") { shown = 1; indent = match($0, /[^ ]/) - 1 }
+    END { exit !found }' "${1%%#*}"
+}
+
+output_of() {  # COMMAND ARGUMENTS
+  local words
+  read -ra words <<<"$1"
+  "$build_dir/${words[0]}" "${words[@]:1}"
+}
+
+# The page with the block after each marker replaced by what it should be.
+page_anew() {
+  local line
+  while IFS= read -r line; do
+    printf '%s\n' "$line"
+    [[ $line =~ ^'<!-- '(code|output):' '(.*)' -->'$ ]] || continue
+    local kind=${BASH_REMATCH[1]} source=${BASH_REMATCH[2]}
+    IFS= read -r line
+    [[ $line == '```'* ]] || { echo "$1: no block after the marker of $source" >&2; return 1; }
+    printf '%s\n' "$line"
+    while IFS= read -r line && [[ $line != '```' ]]; do :; done
+    "${kind}_of" "$source" || { echo "$1: cannot make $source" >&2; return 1; }
+    printf '```\n'
+  done <"$1"
+}
+
+stale=0
+put() {  # FILE < its contents as they should be
+  local contents
+  contents=$(cat)
+  if [[ -e $1 && $contents == "$(cat "$1")" ]]; then
+    return
+  elif [[ $check == yes ]]; then
+    echo "$1 is not as generated; ./dev docs writes it anew:"
+    diff -u "$1" - <<<"$contents" || true
+    stale=1
+  else
+    printf '%s\n' "$contents" >"$1"
+    echo "wrote $1"
+  fi
+}
+
+contents=$(options_page)
+put docs/options.md <<<"$contents"
+while read -r page; do
+  contents=$(page_anew "$page")
+  put "$page" <<<"$contents"
+done < <(find . -name '*.md' -not -path './build/*' | xargs grep -lE '^<!-- (code|output): ' | sort)
+
+if [[ $check == no ]]; then
+  pictures=$build_dir/docs_pictures
+  for name in four_in_a_row overlap; do
+    "$build_dir/cairn" segment "samples/$name" -o "$pictures/$name" >/dev/null
+    cp "$pictures/$name/overlay.png" "docs/images/$name.png"
+  done
+fi
+[[ $stale == 0 ]]
