@@ -1,2 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// Compiles kernels-inl.hpp once for plain C++ and once for each of Highway's targets, and lists what there
+// is.
+#include <algorithm>
+#include <array>
+#include <cairn/matching/kernels.hpp>
+#include <cairn/matching/pixel_math.hpp>
+#include <cairn/matching/scratch.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#if CAIRN_WITH_HWY
+// Only what Target names; SSSE3 alone, the finer kinds of AVX-512 and Highway's emulation are never asked for.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cairn/matching/kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+#define CAIRN_KERNEL_TARGET HWY_NAMESPACE
+#define CAIRN_LANES_INLINE HWY_INLINE
+HWY_BEFORE_NAMESPACE();
+#include <cairn/matching/lanes_highway-inl.hpp>
+
+#include <cairn/matching/kernels-inl.hpp>
+HWY_AFTER_NAMESPACE();
+#undef CAIRN_KERNEL_TARGET
+#undef CAIRN_LANES_INLINE
+#endif
+#endif
+
+#if !CAIRN_WITH_HWY || HWY_ONCE
+#include <cairn/matching/lanes_plain.hpp>
+namespace cairn::kernels::plain_kernels {
+namespace lanes = plain;
+}
+#define CAIRN_KERNEL_TARGET plain_kernels
+#define CAIRN_LANES_INLINE inline
+#include <cairn/matching/kernels-inl.hpp>
+
+namespace cairn::kernels {
+
+MatchRows match_rows(Target target) {
+  switch (target) {
+    case Target::scalar:
+      return plain_kernels::match_rows;
+#if CAIRN_WITH_HWY
+#if HWY_TARGETS & HWY_SSE4
+    case Target::sse4:
+      return N_SSE4::match_rows;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Target::avx2:
+      return N_AVX2::match_rows;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Target::avx512:
+      return N_AVX3::match_rows;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Target::neon:
+      return N_NEON::match_rows;
+#endif
+#endif
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace cairn::kernels
+#endif

@@ -27,12 +27,12 @@ inline constexpr std::array kEvidences{Choice<Evidence>{"winner", Evidence::winn
 
 struct MatchConfig {
   Cost cost = Cost::zncc;
-  int window_size = 9;                   // px; odd; the window is clipped at the image's border
-  int min_disparity = 0;                 // px
-  int num_disparities = 64;              // candidates min_disparity … min_disparity + num_disparities - 1
-  int row_band = 0;                      // rows; also tries rows y−k … y+k of the right image
+  int window_size = 9;       // px; odd; the window is clipped at the image's border
+  int min_disparity = 0;     // px
+  int num_disparities = 64;  // candidates min_disparity … min_disparity + num_disparities - 1
+  int row_band = 0;          // rows; also tries rows y−k … y+k of the right image
   Prefilter prefilter = Prefilter::none;
-  int prefilter_cap = 31;                // grey levels; x-Sobel responses are clipped to ±cap
+  int prefilter_cap = 31;  // grey levels; x-Sobel responses are clipped to ±cap
   Evidence evidence = Evidence::full;
 };
 template <class V>
@@ -40,8 +40,8 @@ void fields(MatchConfig& c, V&& v) {
   v("cost", c.cost, "", "correlation operator", kCosts);
   v("window_size", c.window_size, "px", "side of the square correlation window, odd", odd_range(3, 31));
   v("min_disparity", c.min_disparity, "px", "first disparity tried; may be negative", range(-1024, 1023));
-  v("num_disparities", c.num_disparities, "px", "how many disparities are tried; a calibration's ndisp replaces the default",
-    range(1, 1024));
+  v("num_disparities", c.num_disparities, "px",
+    "how many disparities are tried; a calibration's ndisp replaces the default", range(1, 1024));
   v("row_band", c.row_band, "rows", "also search k rows above and below (vibration)", range(0, 8));
   v("prefilter", c.prefilter, "", "filter both images before matching", kPrefilters);
   v("prefilter_cap", c.prefilter_cap, "grey levels", "clip the x-Sobel response to ±cap", range(1, 63));
@@ -50,13 +50,14 @@ void fields(MatchConfig& c, V&& v) {
 
 /// In Matches::best: no candidate lay inside the right image.
 inline constexpr std::int16_t kNoMatch = std::numeric_limits<std::int16_t>::min();
-/// In the cost maps of Matches: there is no such candidate (neighbour outside the range or the image, no runner-up).
+/// In the cost maps of Matches: there is no such candidate (neighbour outside the range or the image, no
+/// runner-up).
 inline constexpr float kNoCost = std::numeric_limits<float>::infinity();
 
 /// The outcome of correlation, per left pixel (best_right: per right pixel). The cost volume is never stored.
 /// With Evidence::winner only best, row_offset and cost are there; the other images are empty.
 struct Matches {
-  Image<std::int16_t> best;        // disparity of least cost in px, kNoMatch = none; ties: the smallest disparity
+  Image<std::int16_t> best;  // disparity of least cost in px, kNoMatch = none; ties: the smallest disparity
   Image<std::int16_t> best_right;  // the same seen from the right image, out of the same costs
   Image<std::int8_t> row_offset;   // row of the match minus y; empty where row_band = 0
   Image<float> cost;               // of best; kNoCost where there is no match
@@ -68,15 +69,15 @@ struct Matches {
 
 /// Correlates every left pixel with its candidates on the epipolar line; winner takes all.
 ///
-/// cost(x, y, d) compares the window around (x, y) of the left image with that around (x − d, y) of the right one,
-/// clipped to where both lie inside their images. With L, R the window's pixels and N their count:
+/// cost(x, y, d) compares the window around (x, y) of the left image with that around (x − d, y) of the right
+/// one, clipped to where both lie inside their images. With L, R the window's pixels and N their count:
 ///   sad  Σ|L−R|      ssd  Σ(L−R)²
-///   zsad Σ|L'−R'| / 16, each image first minus the mean over the window centred on the pixel itself, in 1/16 levels
-///   zssd (N·Σ(L−R)² − (ΣL−ΣR)²) / N
-///   nssd Σ(L−R)² / sqrt(ΣL²·ΣR²), 65536 where either has no energy
+///   zsad Σ|L'−R'| / 16, each image first minus the mean over the window centred on the pixel itself, in 1/16
+///   levels zssd (N·Σ(L−R)² − (ΣL−ΣR)²) / N nssd Σ(L−R)² / sqrt(ΣL²·ΣR²), 65536 where either has no energy
 ///   zncc 1 − (N·ΣLR − ΣL·ΣR) / sqrt((N·ΣL²−(ΣL)²)·(N·ΣR²−(ΣR)²)), 1 where either has no variance
 /// Sums are exact integers; the last formula is float and the same on every target (pixel_math.hpp).
-/// With row_band k, cost(x, y, d) is the least over the rows y+r of the right image, |r| ≤ k (ties: r = 0, −1, 1, −2 …).
+/// With row_band k, cost(x, y, d) is the least over the rows y+r of the right image, |r| ≤ k (ties: r = 0,
+/// −1, 1, −2 …).
 ///
 /// The time per pixel and disparity depends neither on the window's size nor on what the picture shows.
 /// (METHOD §1; paper, "Disparity map estimation")

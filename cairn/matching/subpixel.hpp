@@ -14,8 +14,9 @@ void fields(SubpixelConfig& c, V&& v) {
   v("enabled", c.enabled, "", "refine each winner by a parabola through its cost and its neighbours'", Any{});
 }
 
-/// The vertex of the parabola through (best−1, best, best+1); the integer winner where a neighbour is missing, where the
-/// three are flat, or where refinement is off or Matches holds no neighbours. NaN where there is no match. (METHOD §1)
+/// The vertex of the parabola through (best−1, best, best+1); the integer winner where a neighbour is
+/// missing, where the three are flat, or where refinement is off or Matches holds no neighbours. NaN where
+/// there is no match. (METHOD §1)
 Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -1,2 +1,173 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include "reference/match.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/matching/pixel_math.hpp>
+#include <cstdlib>
+#include <utility>
+
+namespace cairn::reference {
+namespace {
+
+/// What the windows are laid over: grey levels, or zsad's 1/16 levels less the local mean.
+struct Pictures {
+  Image<std::int16_t> left;
+  Image<std::int16_t> right;
+};
+
+Image<std::int16_t> picture(View<const Gray> image, const MatchConfig& config) {
+  Image<Gray> filtered(image.size());
+  for (int y = 0; y < image.height(); ++y) std::copy_n(image.row(y), image.width(), filtered.row(y));
+  if (config.prefilter == Prefilter::xsobel) filtered = filter_xsobel(image, config.prefilter_cap);
+  if (config.cost == Cost::zsad) return remove_mean(filtered, config.window_size);
+  Image<std::int16_t> wide(image.size());
+  for (int y = 0; y < image.height(); ++y) std::copy_n(filtered.row(y), image.width(), wide.row(y));
+  return wide;
+}
+
+/// The cost of left pixel (x, y) against right pixel (x − d, y + row); kNoCost where that lies outside.
+float cost_of(const Pictures& in, const MatchConfig& config, int x, int y, int d, int row) {
+  if (!in.right.view().contains(x - d, y + row)) return kNoCost;
+  std::int64_t n = 0, l = 0, r = 0, ll = 0, rr = 0, lr = 0, ad = 0;
+  const int half = config.window_size / 2;
+  for (int v = y - half; v <= y + half; ++v) {
+    for (int u = x - half; u <= x + half; ++u) {
+      if (!in.left.view().contains(u, v) || !in.right.view().contains(u - d, v + row)) continue;
+      const std::int64_t a = in.left(u, v), b = in.right(u - d, v + row);
+      n += 1, l += a, r += b, ll += a * a, rr += b * b, lr += a * b, ad += std::abs(a - b);
+    }
+  }
+  using namespace pixel_math;
+  const std::int64_t ssd_sum = ll + rr - 2 * lr;
+  switch (config.cost) {
+    case Cost::sad:
+      return sad(ad);
+    case Cost::ssd:
+      return ssd(ssd_sum);
+    case Cost::zsad:
+      return zsad(ad);
+    case Cost::zssd:
+      return zssd(n, ssd_sum, l - r);
+    case Cost::nssd:
+      return nssd(ssd_sum, inverse_root(ll), inverse_root(rr));
+    case Cost::zncc:
+      return zncc(n, lr, l, r, inverse_root(n * ll - l * l), inverse_root(n * rr - r * r));
+  }
+  return kNoCost;
+}
+
+/// The least cost over the rows y, y − 1, y + 1, y − 2 …, and which row gave it.
+std::pair<float, int> cost_in_band(const Pictures& in, const MatchConfig& config, int x, int y, int d) {
+  std::pair best{cost_of(in, config, x, y, d, 0), 0};
+  for (int k = 1; k <= config.row_band; ++k) {
+    for (const int row : {-k, k}) {
+      const float cost = cost_of(in, config, x, y, d, row);
+      if (cost < best.first) best = {cost, row};
+    }
+  }
+  return best;
+}
+
+void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Matches& out) {
+  const bool full = config.evidence == Evidence::full;
+  std::vector<float> costs;
+  std::array<float, pixel_math::kPartialSums> partial{};
+  int count = 0;
+  for (int i = 0; i < config.num_disparities; ++i) {
+    costs.push_back(cost_in_band(in, config, x, y, config.min_disparity + i).first);
+    if (costs.back() == kNoCost) continue;
+    partial[static_cast<std::size_t>(i % pixel_math::kPartialSums)] += costs.back();
+    ++count;
+  }
+  const int best = static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+  const auto cost_at = [&](int i) {
+    return i >= 0 && i < config.num_disparities ? costs[static_cast<std::size_t>(i)] : kNoCost;
+  };
+  out.cost(x, y) = cost_at(best);
+  out.best(x, y) = count > 0 ? static_cast<std::int16_t>(config.min_disparity + best) : kNoMatch;
+  if (config.row_band > 0) {
+    out.row_offset(x, y) = static_cast<std::int8_t>(
+        count > 0 ? cost_in_band(in, config, x, y, config.min_disparity + best).second : 0);
+  }
+  if (!full) return;
+  out.runner_up(x, y) = kNoCost;
+  for (int i = 0; i < config.num_disparities; ++i) {
+    if (std::abs(i - best) > 1) out.runner_up(x, y) = std::min(out.runner_up(x, y), cost_at(i));
+  }
+  out.mean_cost(x, y) =
+      count > 0 ? pixel_math::sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
+  out.cost_before(x, y) = count > 0 ? cost_at(best - 1) : kNoCost;
+  out.cost_after(x, y) = count > 0 ? cost_at(best + 1) : kNoCost;
+}
+
+/// Seen from the right image: every left pixel and row that may have matched (x_right, y_right).
+std::int16_t best_of_right(const Pictures& in, const MatchConfig& config, int x_right, int y_right) {
+  std::int16_t best = kNoMatch;
+  float least = kNoCost;
+  for (int d = config.min_disparity; d < config.min_disparity + config.num_disparities; ++d) {
+    for (int row = -config.row_band; row <= config.row_band; ++row) {
+      if (!in.left.view().contains(x_right + d, y_right - row)) continue;
+      const float cost = cost_of(in, config, x_right + d, y_right - row, d, row);
+      if (cost < least) least = cost, best = static_cast<std::int16_t>(d);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Image<Gray> filter_xsobel(View<const Gray> image, int cap) {
+  Image<Gray> out(image.size());
+  const int width = image.width(), height = image.height();
+  for (int y = 0; y < height; ++y) {
+    const int above = y > 0 ? y - 1 : std::min(1, height - 1);
+    const int below = y < height - 1 ? y + 1 : std::max(0, height - 2);
+    for (int x = 0; x < width; ++x) {
+      int slope = 0;
+      for (const auto& [row, weight] : {std::pair{above, 1}, std::pair{y, 2}, std::pair{below, 1}}) {
+        if (x > 0 && x < width - 1) slope += weight * (image(x + 1, row) - image(x - 1, row));
+      }
+      out(x, y) = static_cast<Gray>(std::clamp(slope, -cap, cap) + cap);
+    }
+  }
+  return out;
+}
+
+Image<std::int16_t> remove_mean(View<const Gray> image, int window_size) {
+  Image<std::int16_t> out(image.size());
+  const int half = window_size / 2;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      int sum = 0, count = 0;
+      for (int v = y - half; v <= y + half; ++v) {
+        for (int u = x - half; u <= x + half; ++u) {
+          if (image.contains(u, v)) sum += image(u, v), ++count;
+        }
+      }
+      out(x, y) = static_cast<std::int16_t>(16 * image(x, y) - (16 * sum + count / 2) / count);
+    }
+  }
+  return out;
+}
+
+Matches match(const StereoPair& pair, const MatchConfig& config) {
+  const Pictures in{picture(pair.left(), config), picture(pair.right(), config)};
+  const Size size = pair.size();
+  const Size band = config.row_band > 0 ? size : Size{};
+  const Size full = config.evidence == Evidence::full ? size : Size{};
+  Matches out{Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(band),
+              Image<float>(size),        Image<float>(full),        Image<float>(full),
+              Image<float>(full),        Image<float>(full)};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      match_pixel(in, config, x, y, out);
+      if (!full.width) continue;
+      out.best_right(x, y) = best_of_right(in, config, x, y);
+    }
+  }
+  return out;
+}
+
+}  // namespace cairn::reference

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/target.hpp>
+#include <cairn/matching/kernels.hpp>
+#include <utility>
+
+#if CAIRN_WITH_HWY
+#include <hwy/targets.h>
+#endif
+
+namespace cairn {
+namespace {
+
+constexpr std::array kNames{std::pair{Target::best, std::string_view("best")},
+                            std::pair{Target::scalar, std::string_view("scalar")},
+                            std::pair{Target::sse4, std::string_view("sse4")},
+                            std::pair{Target::avx2, std::string_view("avx2")},
+                            std::pair{Target::avx512, std::string_view("avx512")},
+                            std::pair{Target::neon, std::string_view("neon")}};
+
+bool runs_here(Target target) {
+  if (target == Target::scalar) return true;
+#if CAIRN_WITH_HWY
+  const auto has = [supported = hwy::SupportedTargets()](std::int64_t bit) { return (supported & bit) != 0; };
+#if HWY_ARCH_X86
+  if (target == Target::sse4) return has(HWY_SSE4);
+  if (target == Target::avx2) return has(HWY_AVX2);
+  if (target == Target::avx512) return has(HWY_AVX3);
+#elif HWY_ARCH_ARM
+  if (target == Target::neon) return has(HWY_NEON);
+#endif
+#endif
+  return false;
+}
+
+}  // namespace
+
+std::vector<Target> compiled_targets() {
+  std::vector<Target> targets;
+  for (const auto& [target, unused] : kNames) {
+    if (target != Target::best && kernels::match_rows(target) != nullptr) targets.push_back(target);
+  }
+  return targets;
+}
+
+std::vector<Target> supported_targets() {
+  std::vector<Target> targets = compiled_targets();
+  std::erase_if(targets, [](Target target) { return !runs_here(target); });
+  return targets;
+}
+
+Target active_target(const Exec& exec) {
+  const std::vector<Target> targets = supported_targets();
+  if (exec.target == Target::best) return targets.back();
+  return std::find(targets.begin(), targets.end(), exec.target) != targets.end() ? exec.target
+                                                                                 : Target::scalar;
+}
+
+std::string_view name(Target target) {
+  for (const auto& [known, text] : kNames) {
+    if (known == target) return text;
+  }
+  return "unknown";
+}
+
+std::optional<Target> target_named(std::string_view name) {
+  for (const auto& [target, text] : kNames) {
+    if (text == name) return target;
+  }
+  return std::nullopt;
+}
+
+}  // namespace cairn

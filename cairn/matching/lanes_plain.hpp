@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+/// Vectors of one lane in plain C++, with those of Highway's operations that the kernels use, under Highway's
+/// names and with its meaning. The kernels compiled over these are Target::scalar.
+namespace cairn::kernels::plain {
+
+template <class T>
+struct Tag {
+  using Lane = T;
+};
+template <class T, std::size_t kMost>
+using CappedTag = Tag<T>;
+template <class T, class Other>
+using Rebind = Tag<T>;
+template <class D>
+using Vec = typename D::Lane;
+
+template <class T>
+constexpr int Lanes(Tag<T>) {
+  return 1;
+}
+template <class T>
+T Set(Tag<T>, T value) {
+  return value;
+}
+template <class T>
+T Zero(Tag<T>) {
+  return 0;
+}
+template <class T>
+T Iota(Tag<T>, T first) {
+  return first;
+}
+template <class T>
+T Load(Tag<T>, const T* from) {
+  return *from;
+}
+template <class T>
+T LoadU(Tag<T>, const T* from) {
+  return *from;
+}
+template <class T>
+void Store(T value, Tag<T>, T* to) {
+  *to = value;
+}
+template <class T>
+void StoreU(T value, Tag<T>, T* to) {
+  *to = value;
+}
+
+inline float Add(float a, float b) {
+  return a + b;
+}
+inline float Sub(float a, float b) {
+  return a - b;
+}
+inline float Mul(float a, float b) {
+  return a * b;
+}
+inline double Mul(double a, double b) {
+  return a * b;
+}
+inline double Sub(double a, double b) {
+  return a - b;
+}
+inline double Div(double a, double b) {
+  return a / b;
+}
+inline double Sqrt(double a) {
+  return std::sqrt(a);
+}
+// As on every processor, what overflows wraps around.
+constexpr std::uint32_t bits(std::int32_t a) {
+  return static_cast<std::uint32_t>(a);
+}
+inline std::int32_t Add(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(bits(a) + bits(b));
+}
+inline std::int32_t Sub(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(bits(a) - bits(b));
+}
+inline std::int32_t Mul(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(bits(a) * bits(b));
+}
+
+template <class T>
+T Min(T a, T b) {
+  return std::min(a, b);
+}
+template <class T>
+T Max(T a, T b) {
+  return std::max(a, b);
+}
+template <class T>
+bool Lt(T a, T b) {
+  return a < b;
+}
+template <class T>
+bool Gt(T a, T b) {
+  return a > b;
+}
+template <class T>
+bool Eq(T a, T b) {
+  return a == b;
+}
+inline bool And(bool a, bool b) {
+  return a && b;
+}
+inline bool Or(bool a, bool b) {
+  return a || b;
+}
+template <class T>
+T IfThenElse(bool mask, T yes, T no) {
+  return mask ? yes : no;
+}
+template <class T>
+T IfThenElseZero(bool mask, T yes) {
+  return mask ? yes : T{0};
+}
+template <class T>
+T IfThenZeroElse(bool mask, T no) {
+  return mask ? T{0} : no;
+}
+template <class T>
+T MinOfLanes(Tag<T>, T value) {
+  return value;
+}
+template <class T>
+T GetLane(T value) {
+  return value;
+}
+inline float ConvertTo(Tag<float>, std::int32_t value) {
+  return static_cast<float>(value);
+}
+
+// Beyond Highway.
+
+constexpr std::int32_t low(std::int32_t pair) {
+  return static_cast<std::int16_t>(pair & 0xFFFF);
+}
+constexpr std::int32_t high(std::int32_t pair) {
+  return pair >> 16;
+}
+
+/// Each lane holds two 16-bit numbers: low(a)·low(b) + high(a)·high(b).
+inline std::int32_t DotPairs(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
+  return low(a) * low(b) + high(a) * high(b);
+}
+/// |low(a) − low(b)| and |high(a) − high(b)|, again as a pair.
+inline std::int32_t AbsDiffPairs(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
+  const std::int32_t highs = std::abs(high(a) - high(b));
+  return static_cast<std::int32_t>(bits(highs) << 16 | bits(std::abs(low(a) - low(b))));
+}
+/// n·a − b·c, exact, then rounded once.
+inline float WideDifference(Tag<float>, std::int32_t n, std::int32_t a, std::int32_t b, std::int32_t c) {
+  return static_cast<float>(std::int64_t{n} * a - std::int64_t{b} * c);
+}
+/// 1/√(n·e − s²), 0 where that is 0.
+inline float InverseRoot(Tag<float>, std::int32_t n, std::int32_t e, std::int32_t s) {
+  const double v = static_cast<double>(std::int64_t{n} * e - std::int64_t{s} * s);
+  return v > 0 ? static_cast<float>(1.0 / std::sqrt(v)) : 0.0F;
+}
+
+}  // namespace cairn::kernels::plain

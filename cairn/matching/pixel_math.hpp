@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+/// The last step of every operator: from a window's exact integer sums to a float cost, one rounding per
+/// operation and none fused, so that every target gets the same bits. The kernels spell out the same steps
+/// lane by lane.
+///
+/// Notation: n pixels; sums l, r of the left and right pixels; ll, rr, lr of their products.
+namespace cairn::pixel_math {
+
+inline constexpr float kNoEnergyCost = 65536.0F;  // nssd of a window that is all black
+inline constexpr int kMeanSteps = 16;             // zsad's pixels are in 1/16 grey levels
+inline constexpr int kPartialSums = 16;           // of mean_cost; see sum_of_partials()
+
+/// 1/√v in float, 0 where v is 0.
+inline float inverse_root(std::int64_t v) {
+  return v > 0 ? static_cast<float>(1.0 / std::sqrt(static_cast<double>(v))) : 0.0F;
+}
+
+inline float sad(std::int64_t sum) {
+  return static_cast<float>(sum);
+}
+inline float ssd(std::int64_t sum) {
+  return static_cast<float>(sum);
+}
+inline float zsad(std::int64_t sum) {
+  return static_cast<float>(sum) * (1.0F / kMeanSteps);
+}
+
+/// (n·ssd − (l − r)²) / n
+inline float zssd(std::int64_t n, std::int64_t ssd_sum, std::int64_t l_minus_r) {
+  return static_cast<float>(n * ssd_sum - l_minus_r * l_minus_r) * (1.0F / static_cast<float>(n));
+}
+/// With the inverse roots of ll and rr.
+inline float nssd(std::int64_t ssd_sum, float inverse_l, float inverse_r) {
+  const float inverse = inverse_l * inverse_r;
+  return inverse > 0 ? static_cast<float>(ssd_sum) * inverse : kNoEnergyCost;
+}
+/// With the inverse roots of n·ll − l² and n·rr − r². Rounding may carry a perfect match below 0; it is held
+/// there.
+inline float zncc(std::int64_t n, std::int64_t lr, std::int64_t l, std::int64_t r, float inverse_l,
+                  float inverse_r) {
+  return std::max(0.0F, 1.0F - static_cast<float>(n * lr - l * r) * (inverse_l * inverse_r));
+}
+
+/// Adds up sixteen partial sums in a fixed order. The k-th holds the costs of the candidates number k, k +
+/// 16, …, so that a mean does not depend on how many lanes a vector has.
+inline float sum_of_partials(const float* partial) {
+  float quarter[4];
+  for (int i = 0; i < 4; ++i) quarter[i] = (partial[i] + partial[i + 8]) + (partial[i + 4] + partial[i + 12]);
+  return (quarter[0] + quarter[2]) + (quarter[1] + quarter[3]);
+}
+
+}  // namespace cairn::pixel_math

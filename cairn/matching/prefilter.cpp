@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/parallel.hpp>
+#include <cairn/matching/pixel_math.hpp>
+#include <cairn/matching/prefilter.hpp>
+#include <cstddef>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+int mirrored(int y, int height) {
+  if (height == 1) return 0;
+  if (y < 0) return 1;
+  return y < height ? y : height - 2;
+}
+
+/// Running sums of the window's columns; row after row, the time does not depend on the window's size.
+class ColumnSums {
+ public:
+  ColumnSums(View<const Gray> image, int half) : image_(image), half_(half), sums_(columns(image)) {}
+
+  /// The sums over the rows y ± half that lie inside the image. y = any first row, then one more each time.
+  const std::vector<int>& at(int y) {
+    if (started_) {
+      change(y - half_ - 1, -1);
+      change(y + half_, +1);
+    } else {
+      for (int row = y - half_; row <= y + half_; ++row) change(row, +1);
+      started_ = true;
+    }
+    return sums_;
+  }
+
+ private:
+  static std::size_t columns(View<const Gray> image) { return static_cast<std::size_t>(image.width()); }
+  void change(int y, int sign) {
+    if (y < 0 || y >= image_.height()) return;
+    const Gray* row = image_.row(y);
+    for (std::size_t x = 0; x < sums_.size(); ++x) sums_[x] += sign * row[x];
+  }
+
+  View<const Gray> image_;
+  int half_;
+  std::vector<int> sums_;
+  bool started_ = false;
+};
+
+}  // namespace
+
+Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec) {
+  Image<Gray> filtered(image.size(), exec.pool);
+  const int width = image.width();
+  parallel_for(exec, image.height(), 16, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const Gray* above = image.row(mirrored(y - 1, image.height()));
+      const Gray* here = image.row(y);
+      const Gray* below = image.row(mirrored(y + 1, image.height()));
+      Gray* out = filtered.row(y);
+      out[0] = out[width - 1] = static_cast<Gray>(cap);
+      for (int x = 1; x < width - 1; ++x) {
+        const int slope =
+            (above[x + 1] - above[x - 1]) + 2 * (here[x + 1] - here[x - 1]) + (below[x + 1] - below[x - 1]);
+        out[x] = static_cast<Gray>(std::clamp(slope, -cap, cap) + cap);
+      }
+    }
+  });
+  return filtered;
+}
+
+Image<std::int16_t> remove_mean(View<const Gray> image, int window_size, const Exec& exec) {
+  Image<std::int16_t> flat(image.size(), exec.pool);
+  const int half = window_size / 2;
+  const int width = image.width();
+  parallel_for(exec, image.height(), 2 * window_size, [&](int first, int last) {
+    ColumnSums columns(image, half);
+    for (int y = first; y < last; ++y) {
+      const std::vector<int>& sums = columns.at(y);
+      const int rows = std::min(y + half, image.height() - 1) - std::max(y - half, 0) + 1;
+      const Gray* in = image.row(y);
+      std::int16_t* out = flat.row(y);
+      int sum = 0;
+      for (int x = 0; x < std::min(half, width); ++x) sum += sums[static_cast<std::size_t>(x)];
+      for (int x = 0; x < width; ++x) {
+        if (x + half < width) sum += sums[static_cast<std::size_t>(x + half)];
+        if (x > half) sum -= sums[static_cast<std::size_t>(x - half - 1)];
+        const int count = rows * (std::min(x + half, width - 1) - std::max(x - half, 0) + 1);
+        const int mean = (pixel_math::kMeanSteps * sum + count / 2) / count;
+        out[x] = static_cast<std::int16_t>(pixel_math::kMeanSteps * in[x] - mean);
+      }
+    }
+  });
+  return flat;
+}
+
+}  // namespace cairn

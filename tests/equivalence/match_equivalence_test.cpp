@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/core/target.hpp>
+#include <cairn/matching/match.hpp>
+#include <cairn/matching/prefilter.hpp>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "reference/match.hpp"
+
+namespace {
+
+using namespace cairn;
+
+/// Two images out of the middle of larger ones, so that rows are not aligned and the stride is odd. Few grey
+/// levels in places, so that costs tie; black patches, so that windows have no energy.
+struct Pictures {
+  Size size;
+  std::ptrdiff_t stride;
+  std::vector<Gray> left;
+  std::vector<Gray> right;
+
+  Pictures(Size picture_size, unsigned seed)
+      : size(picture_size), stride(size.width + 7), left(count()), right(count()) {
+    std::mt19937 random(seed);
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      left[i] = dot(static_cast<std::uint32_t>(random()), i);
+      right[i] = i >= 3 && random() % 4 != 0 ? left[i - 3] : dot(static_cast<std::uint32_t>(random()), i);
+    }
+  }
+  [[nodiscard]] StereoPair pair() const {
+    return StereoPair::from(View<const Gray>(left.data() + 3, size, stride),
+                            View<const Gray>(right.data() + 3, size, stride));
+  }
+
+ private:
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(stride) * static_cast<std::size_t>(size.height + 1);
+  }
+  static Gray dot(std::uint32_t bits, std::size_t i) {
+    switch (i / 97 % 4) {
+      case 0:
+        return 0;
+      case 1:
+        return static_cast<Gray>(254 + bits % 2);
+      default:
+        return static_cast<Gray>(bits >> 24);
+    }
+  }
+};
+
+template <class T>
+std::string first_difference(const Image<T>& expected, const Image<T>& got) {
+  if (expected.size() != got.size()) return "sizes " + text(expected.size()) + " and " + text(got.size());
+  for (int y = 0; y < expected.height(); ++y) {
+    for (int x = 0; x < expected.width(); ++x) {
+      if (std::memcmp(&expected(x, y), &got(x, y), sizeof(T)) == 0) continue;
+      return "(" + std::to_string(x) + ", " + std::to_string(y) + "): expected " +
+             std::to_string(expected(x, y)) + ", got " + std::to_string(got(x, y));
+    }
+  }
+  return {};
+}
+
+std::string first_difference(const Matches& expected, const Matches& got) {
+  std::string report;
+  const auto compare = [&](const char* map, const auto& a, const auto& b) {
+    const std::string difference = first_difference(a, b);
+    if (!difference.empty()) report += std::string(map) + " at " + difference + "\n";
+  };
+  compare("best", expected.best, got.best);
+  compare("best_right", expected.best_right, got.best_right);
+  compare("row_offset", expected.row_offset, got.row_offset);
+  compare("cost", expected.cost, got.cost);
+  compare("runner_up", expected.runner_up, got.runner_up);
+  compare("mean_cost", expected.mean_cost, got.mean_cost);
+  compare("cost_before", expected.cost_before, got.cost_before);
+  compare("cost_after", expected.cost_after, got.cost_after);
+  return report;
+}
+
+std::string description(Size size, const MatchConfig& c, Target target, int threads) {
+  return text(size) + " " + std::string(kCosts[static_cast<std::size_t>(c.cost)].name) + " window " +
+         std::to_string(c.window_size) + " disparities " + std::to_string(c.min_disparity) + "+" +
+         std::to_string(c.num_disparities) + " band " + std::to_string(c.row_band) + " prefilter " +
+         std::to_string(static_cast<int>(c.prefilter)) + " on " + std::string(name(target)) + ", " +
+         std::to_string(threads) + " threads";
+}
+
+void expect_equal_to_reference(Size size, const MatchConfig& config,
+                               const std::vector<int>& thread_counts = {1}) {
+  const Pictures pictures(size, static_cast<unsigned>(size.width * 31 + config.window_size));
+  const Matches expected = reference::match(pictures.pair(), config);
+  for (const Target target : supported_targets()) {
+    for (const int threads : thread_counts) {
+      const Matches got = match(pictures.pair(), config, Exec::with_threads(threads, target));
+      EXPECT_EQ(first_difference(expected, got), "") << description(size, config, target, threads);
+    }
+  }
+}
+
+class MatchEquivalence : public testing::TestWithParam<Cost> {
+ protected:
+  [[nodiscard]] static MatchConfig config(int window, int first, int count) {
+    return {.cost = GetParam(), .window_size = window, .min_disparity = first, .num_disparities = count};
+  }
+};
+
+TEST_P(MatchEquivalence, HoldsForEveryWidth) {
+  for (int width = 1; width <= 36; ++width) expect_equal_to_reference({width, 7}, config(5, 0, 9));
+}
+
+TEST_P(MatchEquivalence, HoldsForEveryHeight) {
+  for (int height = 1; height <= 12; ++height) expect_equal_to_reference({21, height}, config(5, 0, 6));
+}
+
+TEST_P(MatchEquivalence, HoldsForEveryWindow) {
+  for (int window = 3; window <= 31; window += 2) expect_equal_to_reference({44, 12}, config(window, 0, 7));
+}
+
+TEST_P(MatchEquivalence, HoldsForEveryCountOfCandidates) {
+  for (int count = 1; count <= 36; ++count) expect_equal_to_reference({40, 5}, config(3, 0, count));
+  expect_equal_to_reference({150, 4}, config(3, 0, 129));
+}
+
+TEST_P(MatchEquivalence, HoldsForNegativeAndDistantDisparities) {
+  for (const int first : {-1024, -40, -17, -9, -1, 1, 5, 20, 39, 1000}) {
+    expect_equal_to_reference({40, 5}, config(5, first, 18));
+  }
+}
+
+TEST_P(MatchEquivalence, HoldsForEverySplitIntoThreads) {
+  expect_equal_to_reference({33, 41}, config(3, -2, 10), {1, 2, 3});
+  auto banded = config(3, -2, 10);
+  banded.row_band = 2;
+  expect_equal_to_reference({33, 41}, banded, {1, 2, 3});
+}
+
+TEST_P(MatchEquivalence, HoldsForEveryRowBand) {
+  for (int band = 1; band <= 3; ++band) {
+    auto banded = config(5, -1, 11);
+    banded.row_band = band;
+    expect_equal_to_reference({29, 9}, banded);
+    expect_equal_to_reference({19, 2}, banded);
+    banded.evidence = Evidence::winner;
+    expect_equal_to_reference({29, 9}, banded);
+  }
+}
+
+TEST_P(MatchEquivalence, HoldsForTheWinnerAlone) {
+  for (const int window : {3, 9, 17, 23}) {
+    auto winner = config(window, 0, 19);
+    winner.evidence = Evidence::winner;
+    expect_equal_to_reference({41, 8}, winner);
+  }
+}
+
+TEST_P(MatchEquivalence, HoldsForPrefilteredImages) {
+  for (const int cap : {1, 31, 63}) {
+    for (const int window : {5, 21, 23}) {
+      auto filtered = config(window, 0, 17);
+      filtered.prefilter = Prefilter::xsobel;
+      filtered.prefilter_cap = cap;
+      expect_equal_to_reference({38, 7}, filtered);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllCosts, MatchEquivalence,
+                         testing::Values(Cost::sad, Cost::ssd, Cost::zsad, Cost::zssd, Cost::nssd,
+                                         Cost::zncc),
+                         [](const auto& cost) {
+                           return std::string(kCosts[static_cast<std::size_t>(cost.param)].name);
+                         });
+
+TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
+  for (const Size size : {Size{1, 1}, Size{2, 1}, Size{1, 5}, Size{3, 2}, Size{37, 41}}) {
+    const Pictures pictures(size, 5);
+    const View<const Gray> image = pictures.pair().left();
+    for (const int threads : {1, 3}) {
+      const Exec exec = Exec::with_threads(threads);
+      EXPECT_EQ(first_difference(reference::filter_xsobel(image, 31), filter_xsobel(image, 31, exec)), "");
+      for (const int window : {3, 9, 31}) {
+        EXPECT_EQ(first_difference(reference::remove_mean(image, window), remove_mean(image, window, exec)),
+                  "");
+      }
+    }
+  }
+}
+
+}  // namespace

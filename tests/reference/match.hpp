@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/matching/match.hpp>
+
+namespace cairn::reference {
+
+/// The definitions of the matching stage, written out: every window summed anew for every candidate.
+Matches match(const StereoPair& pair, const MatchConfig& config);
+Image<Gray> filter_xsobel(View<const Gray> image, int cap);
+Image<std::int16_t> remove_mean(View<const Gray> image, int window_size);
+
+}  // namespace cairn::reference
