@@ -265,7 +265,8 @@ std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
   const std::string text = read_file(path, kMost);
   try {
     std::vector<ObjectConfidence> all;
-    for (const auto& object : nlohmann::json::parse(text).at("objects")) {
+    const auto whole = nlohmann::json::parse(text);
+    for (const auto& object : whole.at("objects")) {
       all.push_back({ObjectId{object.at("id").get<std::int32_t>()}, object.at("confidence").get<double>()});
     }
     return all;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/core/image.hpp>
+#include <cstdlib>
+#include <io/overlay.hpp>
+#include <limits>
+#include <set>
+
+namespace cairn::io {
+namespace {
+
+Objects one_object(Size size, Rect box) {
+  Objects objects;
+  objects.labels = Image<ObjectId>(size, ObjectId::none, {});
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    for (int x = box.x; x < box.x + box.width; ++x) objects.labels(x, y) = ObjectId{1};
+  }
+  Object object;
+  object.id = ObjectId{1};
+  object.box_px = box;
+  object.pixel_count = box.width * box.height;
+  object.disparity_px = 12.5F;
+  objects.list.push_back(object);
+  return objects;
+}
+
+int distance(Rgb a, Rgb b) {
+  return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
+}
+
+TEST(ObjectPicture, IsTheLeftPictureEnlargedByAWholeFactorWhereItIsSmall) {
+  const Image<Gray> small({160, 120}, Gray{100}, {});
+  const Image<Gray> large({1280, 960}, Gray{100}, {});
+  EXPECT_EQ(draw_objects(small, {}, one_object({160, 120}, {10, 10, 60, 60}), {}).size(), (Size{640, 480}));
+  EXPECT_EQ(draw_objects(large, {}, one_object({1280, 960}, {10, 10, 60, 60}), {}).size(), (Size{1280, 960}));
+}
+
+TEST(ObjectPicture, TintsObjectsAndFloorAndLeavesTheRestGrey) {
+  const Size size{640, 480};
+  const Image<Gray> left(size, Gray{120}, {});
+  Image<std::uint8_t> floor(size, 0, {});
+  for (int y = 400; y < 480; ++y) std::fill_n(floor.row(y), size.width, std::uint8_t{255});
+  const Image<Rgb> picture = draw_objects(left, {}, one_object(size, {100, 100, 200, 200}), floor);
+  const Rgb background = picture(10, 10);
+  EXPECT_EQ(background.r, background.g);
+  EXPECT_EQ(background.g, background.b);
+  EXPECT_GT(distance(picture(120, 120), background), 60);  // in the object, away from its label
+  EXPECT_GT(distance(picture(10, 450), background), 10);
+  EXPECT_LT(distance(picture(10, 450), background), distance(picture(120, 120), background));
+}
+
+TEST(ObjectPicture, LabelsEachObject) {
+  const Size size{640, 480};
+  const Image<Gray> left(size, Gray{120}, {});
+  const Image<Rgb> picture = draw_objects(left, {}, one_object(size, {100, 100, 200, 200}), {});
+  int white = 0;
+  for (int y = 180; y < 220; ++y) {
+    for (int x = 150; x < 250; ++x) white += distance(picture(x, y), {255, 255, 255}) < 30 ? 1 : 0;
+  }
+  EXPECT_GT(white, 20);
+}
+
+TEST(ObjectPicture, KnowsObjectsAtTheBorderAndPicturesOfOnePixel) {
+  const Image<Gray> left({1, 1}, Gray{0}, {});
+  const Image<std::uint8_t> floor({1, 1}, 255, {});
+  EXPECT_FALSE(draw_objects(left, {}, one_object({1, 1}, {0, 0, 1, 1}), floor).empty());
+  const Image<Gray> strip({700, 2}, Gray{0}, {});
+  EXPECT_FALSE(draw_objects(strip, {}, one_object({700, 2}, {699, 0, 1, 2}), {}).empty());
+}
+
+TEST(ObjectColours, OfTheFirstObjectsAreFarApart) {
+  for (int a = 1; a <= 8; ++a) {
+    for (int b = a + 1; b <= 8; ++b)
+      EXPECT_GT(distance(object_colour(ObjectId{a}), object_colour(ObjectId{b})), 60);
+  }
+}
+
+DisparityMap map_of(Size size, float disparity) {
+  return {Image<float>(size, disparity, {}), Image<Reject>(size, Reject::none, {})};
+}
+
+TEST(DisparityPicture, ShowsEveryReasonInAColourOfItsOwn) {
+  DisparityMap map = map_of({640, 480}, 20);
+  int x = 0;
+  std::set<std::array<std::uint8_t, 3>> colours;
+  for (const auto& reason : kRejects) {
+    map.reject(x, 0) = reason.value;
+    map.disparity_px(x, 0) = std::numeric_limits<float>::quiet_NaN();
+    ++x;
+  }
+  const Image<Rgb> picture = draw_disparity(map, std::nullopt);
+  for (int i = 0; i <= x; ++i) colours.insert({picture(i, 0).r, picture(i, 0).g, picture(i, 0).b});
+  EXPECT_EQ(colours.size(), kRejects.size() + 1);  // and that of a disparity
+}
+
+TEST(DisparityPicture, HasALegendBesideThePicture) {
+  const DisparityMap map = map_of({640, 480}, 20);
+  const Image<Rgb> picture = draw_disparity(map, StereoRig{500, 320, 240, 0.1F, 0});
+  ASSERT_GT(picture.width(), 640);
+  EXPECT_EQ(picture.height(), 480);
+  int bright = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 640; x < picture.width(); ++x) bright += picture(x, y).g > 180 ? 1 : 0;
+  }
+  EXPECT_GT(bright, 200);
+}
+
+TEST(DisparityPicture, IsDrawnOfNothingButHolesAndOfOnePixel) {
+  DisparityMap map = map_of({1, 1}, std::numeric_limits<float>::quiet_NaN());
+  map.reject(0, 0) = Reject::border | Reject::no_texture;
+  EXPECT_FALSE(draw_disparity(map, std::nullopt).empty());
+}
+
+}  // namespace
+}  // namespace cairn::io

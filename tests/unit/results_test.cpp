@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/core/error.hpp>
+#include <filesystem>
+#include <fstream>
+#include <io/disparity_files.hpp>
+#include <io/image_files.hpp>
+#include <io/results.hpp>
+#include <io/rle.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr Size kSize{60, 40};
+
+/// A folder of the test's own, gone after it.
+class ResultFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    root_ = fs::temp_directory_path() / (std::string("cairn_results_") + test->name());
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  static std::set<std::string> names(const fs::path& folder) {
+    std::set<std::string> all;
+    for (const auto& entry : fs::directory_iterator(folder)) all.insert(entry.path().filename().string());
+    return all;
+  }
+
+  fs::path root_;
+};
+
+Frame frame_with_one_object(bool with_floor) {
+  Frame frame;
+  frame.disparity = {Image<float>(kSize, 10.0F, {}), Image<Reject>(kSize, Reject::none, {})};
+  frame.disparity.disparity_px(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  frame.disparity.reject(0, 0) = Reject::border | Reject::flat;
+  frame.disparity.disparity_px(1, 0) = 0;
+  if (with_floor) {
+    frame.floor = Image<std::uint8_t>(kSize, 255, {});
+    frame.ground.plane = GroundPlane{0.0F, 0.1F, -2.0F};
+    frame.ground.support = 0.5F;
+  } else {
+    frame.ground.refusal = Refusal::no_plane;
+  }
+  frame.objects.labels = Image<ObjectId>(kSize, ObjectId::none, {});
+  Object object;
+  object.id = ObjectId{1};
+  object.box_px = {20, 10, 15, 12};
+  object.pixel_count = 15 * 12;
+  object.disparity_px = 10.7F;
+  object.valid_share = 0.75F;
+  object.mean_colour = {1, 2, 3};
+  object.position_in_camera_m = Vec3{0.1F, -0.2F, 1.5F};
+  object.confidence = 0.9F;
+  for (int y = 10; y < 22; ++y) std::fill_n(frame.objects.labels.row(y) + 20, 15, ObjectId{1});
+  frame.objects.list.push_back(object);
+  return frame;
+}
+
+Provenance some_provenance() {
+  Provenance provenance;
+  provenance.preset = "paper";
+  provenance.config.match.window_size = 11;
+  provenance.config.match.cost = Cost::zncc;
+  provenance.rig = StereoRig{500, 30, 20, 0.12F, 0};
+  provenance.timings = {{"match", 3.25}, {"measure", 0.5}};
+  return provenance;
+}
+
+void write(const fs::path& folder, const Frame& frame, const Provenance& provenance) {
+  const Image<Gray> left(kSize, Gray{90}, {});
+  write_result(folder, left, {}, frame, provenance);
+}
+
+TEST(ObjectsJson, SaysWhatWasFoundAndHow) {
+  const Frame frame = frame_with_one_object(true);
+  const Json j = Json::parse(objects_json(frame, some_provenance()));
+  EXPECT_EQ(j.at("image"), (Json{{"width", 60}, {"height", 40}}));
+  EXPECT_EQ(j.at("preset"), "paper");
+  EXPECT_EQ(j.at("rig").at("baseline_m"), 0.12);  // the shortest text of the float, not 0.119999997
+  EXPECT_EQ(j.at("config").at("match").at("window_size"), 11);
+  EXPECT_EQ(j.at("config").at("match").at("cost"), "zncc");
+  EXPECT_TRUE(j.at("config").at("subpixel").at("enabled").is_boolean());
+  EXPECT_TRUE(j.at("config").at("ground").at("points").is_array());
+  EXPECT_EQ(j.at("timings_ms").at("match"), 3.25);
+  EXPECT_EQ(j.at("ground").at("plane").at("b"), 0.1);
+  EXPECT_EQ(j.at("ground").at("refusal"), "none");
+  const Json& object = j.at("objects").at(0);
+  EXPECT_EQ(object.at("id"), 1);
+  EXPECT_EQ(object.at("bbox"), (Json{20, 10, 15, 12}));
+  EXPECT_EQ(object.at("area"), 180);
+  EXPECT_EQ(object.at("disparity_px"), 10.7);
+  EXPECT_EQ(object.at("position_m"), (Json{0.1, -0.2, 1.5}));
+  EXPECT_TRUE(object.at("extent_m").is_null());
+  EXPECT_EQ(object.at("mean_colour"), (Json{1, 2, 3}));
+  EXPECT_EQ(object.at("valid_share"), 0.75);
+  EXPECT_EQ(object.at("confidence"), 0.9);
+}
+
+TEST(ObjectsJson, NamesEveryOptionOnce) {
+  const Provenance provenance = some_provenance();
+  const Json config = Json::parse(objects_json(frame_with_one_object(false), provenance)).at("config");
+  std::size_t count = 0;
+  for (const OptionInfo& option : options(provenance.config)) {
+    const std::size_t dot = option.name.find('.');
+    EXPECT_TRUE(config.at(option.name.substr(0, dot)).contains(option.name.substr(dot + 1))) << option.name;
+  }
+  for (const auto& section : config) count += section.size();
+  EXPECT_EQ(count, options(provenance.config).size());
+}
+
+TEST(ObjectsJson, HoldsTheMaskAsCocoWritesIt) {
+  const Json object =
+      Json::parse(objects_json(frame_with_one_object(false), some_provenance())).at("objects").at(0);
+  EXPECT_EQ(object.at("segmentation").at("size"), (Json{40, 60}));  // height first
+  const Image<std::uint8_t> mask = decode_rle({kSize, object.at("segmentation").at("counts")});
+  EXPECT_EQ(mask(20, 10), 1);
+  EXPECT_EQ(mask(34, 21), 1);
+  EXPECT_EQ(mask(35, 21), 0);
+  EXPECT_EQ(mask(20, 9), 0);
+}
+
+TEST(ObjectsJson, WritesWhatIsNotKnownAsNull) {
+  Provenance provenance = some_provenance();
+  provenance.rig = std::nullopt;
+  const Json j = Json::parse(objects_json(frame_with_one_object(false), provenance));
+  EXPECT_TRUE(j.at("rig").is_null());
+  EXPECT_TRUE(j.at("ground").at("plane").is_null());
+  EXPECT_EQ(j.at("ground").at("refusal"), "no plane has enough support");
+}
+
+TEST_F(ResultFolder, HoldsAllFilesOfAResultAndNoTemporaryOnes) {
+  write(root_ / "out", frame_with_one_object(true), some_provenance());
+  EXPECT_EQ(names(root_), std::set<std::string>{"out"});
+  EXPECT_EQ(names(root_ / "out"),
+            (std::set<std::string>{"disparity.png", "reject.png", "objects.png", "floor.png", "overlay.png",
+                                   "disparity_view.png", "objects.json"}));
+}
+
+TEST_F(ResultFolder, ComesBackAsItWasWritten) {
+  const Frame frame = frame_with_one_object(true);
+  write(root_ / "out", frame, some_provenance());
+  const Image<float> disparity = load_disparity(root_ / "out" / "disparity.png");
+  EXPECT_TRUE(std::isnan(disparity(0, 0)));
+  EXPECT_FLOAT_EQ(disparity(1, 0), 1 / 256.0F);  // a true 0 is written as 1
+  EXPECT_FLOAT_EQ(disparity(30, 30), 10.0F);
+  const Labels objects = load_labels(root_ / "out" / "objects.png");
+  EXPECT_EQ(objects.bits, 16);
+  EXPECT_EQ(objects.ids(20, 10), 1);
+  EXPECT_EQ(objects.ids(19, 10), 0);
+  const Labels reject = load_labels(root_ / "out" / "reject.png");
+  EXPECT_EQ(reject.bits, 8);
+  EXPECT_EQ(reject.ids(0, 0), 1 + 8);
+  const auto confidences = load_confidences(root_ / "out" / "objects.json");
+  ASSERT_EQ(confidences.size(), 1U);
+  EXPECT_EQ(confidences[0].id, ObjectId{1});
+  EXPECT_DOUBLE_EQ(confidences[0].confidence, 0.9);
+}
+
+TEST_F(ResultFolder, GetsAPfmWhereSixteenBitsCannotHoldTheSearchRange) {
+  Provenance provenance = some_provenance();
+  provenance.config.match.min_disparity = -16;
+  write(root_ / "out", frame_with_one_object(false), provenance);
+  EXPECT_TRUE(fs::exists(root_ / "out" / "disparity.pfm"));
+  EXPECT_FALSE(fs::exists(root_ / "out" / "disparity.png"));
+  EXPECT_FLOAT_EQ(load_disparity(root_ / "out" / "disparity.pfm")(1, 0), 0.0F);
+}
+
+TEST_F(ResultFolder, ReplacesAnOlderResultWhollyAndLeavesForeignFilesAlone) {
+  Provenance provenance = some_provenance();
+  write(root_ / "out", frame_with_one_object(true), provenance);
+  std::ofstream(root_ / "out" / "notes.txt") << "mine";
+  provenance.config.match.min_disparity = -16;
+  write(root_ / "out", frame_with_one_object(false), provenance);
+  EXPECT_EQ(names(root_ / "out"),
+            (std::set<std::string>{"disparity.pfm", "reject.png", "objects.png", "overlay.png",
+                                   "disparity_view.png", "objects.json", "notes.txt"}));
+}
+
+TEST_F(ResultFolder, MakesMissingParentsAndTakesASlashAtTheEnd) {
+  write(root_ / "a" / "b" / "out/", frame_with_one_object(false), some_provenance());
+  EXPECT_TRUE(fs::exists(root_ / "a" / "b" / "out" / "objects.json"));
+}
+
+TEST_F(ResultFolder, IsReadableForOthers) {
+  write(root_ / "out", frame_with_one_object(false), some_provenance());
+  fs::create_directory(root_ / "usual");
+  EXPECT_EQ(fs::status(root_ / "out").permissions(), fs::status(root_ / "usual").permissions());
+}
+
+TEST_F(ResultFolder, BelowAFileIsRefusedAndLeavesNothing) {
+  std::ofstream(root_ / "file") << "x";
+  EXPECT_THROW(write(root_ / "file", frame_with_one_object(false), some_provenance()), Error);
+  EXPECT_THROW(write(root_ / "file" / "out", frame_with_one_object(false), some_provenance()), Error);
+  EXPECT_THROW(write(root_ / "file" / "deep" / "out", frame_with_one_object(false), some_provenance()),
+               Error);
+  EXPECT_EQ(names(root_), std::set<std::string>{"file"});
+}
+
+TEST_F(ResultFolder, OfAFailedWritingIsNotThereNorAreItsParents) {
+  Frame frame = frame_with_one_object(false);
+  frame.objects.labels(0, 0) = ObjectId{70000};  // does not fit into 16 bits
+  EXPECT_THROW(write(root_ / "a" / "out", frame, some_provenance()), Error);
+  EXPECT_TRUE(names(root_).empty());
+}
+
+TEST_F(ResultFolder, KeepsTheOlderResultWhereTheNewOneFails) {
+  write(root_ / "out", frame_with_one_object(true), some_provenance());
+  const auto before = names(root_ / "out");
+  Frame frame = frame_with_one_object(false);
+  frame.objects.labels(0, 0) = ObjectId{70000};
+  EXPECT_THROW(write(root_ / "out", frame, some_provenance()), Error);
+  EXPECT_EQ(names(root_ / "out"), before);
+  EXPECT_EQ(load_labels(root_ / "out" / "objects.png").ids(20, 10), 1);
+}
+
+TEST_F(ResultFolder, ObjectsJsonOfAnotherKindIsRefused) {
+  std::ofstream(root_ / "objects.json") << R"({"objects": [{"id": "one"}]})";
+  EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
+  std::ofstream(root_ / "objects.json") << "{";
+  EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
+}
+
+}  // namespace
+}  // namespace cairn::io
