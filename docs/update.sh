@@ -22,11 +22,22 @@ options_page() {
 
 <!-- Written by ./dev docs from `cairn config --markdown`; do not edit. -->
 
-Every option of every stage, with the value that the preset `default` gives it.
+Every option of every stage, with its value in the presets `default` and `paper` (empty: the same as in `default`).
 Set one with `--set stage.name=value`, several in a file with `--config FILE`; see [formats](formats.md) for the file.
-
 TEXT
-  "$build_dir/cairn" config --markdown
+  # One heading per stage, and the paper's value beside the default.
+  awk -F'|' '
+    !/^\| `/ { next }
+    NR == FNR { paper[$2] = $3; next }
+    {
+      split($2, name, /[`.]/)
+      if (name[2] != section) {
+        section = name[2]
+        printf "\n## %s\n\n| option | default | paper | unit | values | meaning |\n|---|---|---|---|---|---|\n", section
+      }
+      rest = substr($0, length($2) + length($3) + 3)
+      printf "|%s|%s|%s%s\n", $2, $3, paper[$2] == $3 ? " " : paper[$2], rest
+    }' <("$build_dir/cairn" config --preset paper --markdown) <("$build_dir/cairn" config --markdown)
 }
 
 code_of() {  # FILE#NAME
