@@ -44,12 +44,18 @@ void set_from_text(Config& config, const std::string& assignment) {
 
 }  // namespace
 
-Config resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities) {
-  Config config = Config::preset(options.preset);
-  if (calibrated_disparities) set(config, "match.num_disparities", std::to_string(*calibrated_disparities));
-  if (!options.file.empty()) io::load_config(options.file, config);
-  for (const std::string& assignment : options.sets) set_from_text(config, assignment);
-  return config;
+ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities) {
+  ResolvedConfig resolved;
+  const auto from_preset = [&](std::string_view name) {
+    Config config = Config::preset(name);
+    if (calibrated_disparities) set(config, "match.num_disparities", std::to_string(*calibrated_disparities));
+    resolved.preset = name;
+    return config;
+  };
+  resolved.config = from_preset(options.preset);
+  if (!options.file.empty()) io::load_config(options.file, resolved.config, from_preset);
+  for (const std::string& assignment : options.sets) set_from_text(resolved.config, assignment);
+  return resolved;
 }
 
 void add_exec_options(CLI::App& app, ExecOptions& options) {
@@ -158,7 +164,9 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     io::check_size(calibration, frame.left.gray.size(), *calib);
   }
   frame.rig = calibration.rig;
-  frame.config = resolve(options.config, calibration.num_disparities);
+  ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);
+  frame.config = std::move(resolved.config);
+  frame.preset = std::move(resolved.preset);
   return frame;
 }
 

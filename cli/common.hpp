@@ -25,8 +25,13 @@ struct ConfigOptions {
   std::vector<std::string> sets;  // "match.window_size=9"
 };
 void add_config_options(CLI::App& app, ConfigOptions& options);
+struct ResolvedConfig {
+  Config config;
+  std::string preset;  // what it started from: the config file's word, else --preset
+};
 /// Preset, then a calibration's number of disparities, then the config file, then --set; later ones win.
-Config resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities = std::nullopt);
+ResolvedConfig resolve(const ConfigOptions& options,
+                       std::optional<int> calibrated_disparities = std::nullopt);
 
 struct ExecOptions {
   int threads = 0;  // 0 = one for each processor
@@ -57,6 +62,7 @@ struct LoadedFrame {
   Image<float> given_disparity;  // empty where it is to be matched
   std::optional<StereoRig> rig;
   Config config;
+  std::string preset;
 };
 /// Reads and checks everything before any work is done. Throws Error.
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Pool& pool);

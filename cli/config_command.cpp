@@ -37,7 +37,7 @@ Work declare_config(CLI::App& app) {
   app.add_flag("--markdown", show->markdown,
                "a table for the reference page instead of YAML that --config reads");
   return [show] {
-    const Config config = resolve(show->config);
+    const Config config = resolve(show->config).config;
     validate(config);
     std::cout << (show->markdown ? markdown(config) : io::config_yaml(config));
     return 0;

@@ -71,7 +71,7 @@ std::string work_on(const io::FrameFiles& files, const SegmentOptions& options,
   LoadedFrame loaded = load_frame(files, options.input, exec.pool);
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
-  const io::Provenance provenance{options.input.config.preset, loaded.config, loaded.rig, watch.times(),
+  const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
                                   !loaded.given_disparity.empty()};
   if (!folder.empty()) {
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance);

@@ -69,16 +69,18 @@ void read_section(Config& config, const std::string& section, const YAML::Node& 
   }
 }
 
-void read_preset(Config& config, const YAML::Node& value) {
+using FromPreset = std::function<Config(std::string_view)>;
+
+void read_preset(Config& config, const YAML::Node& value, const FromPreset& from_preset) {
   if (!value.IsScalar()) throw Error(at_line(value.Mark()) + "preset is no word, expected default or paper");
   try {
-    config = Config::preset(value.Scalar());
+    config = from_preset(value.Scalar());
   } catch (const Error& error) {
     throw Error(at_line(value.Mark()) + error.what());
   }
 }
 
-void read_root(Config& config, const YAML::Node& root) {
+void read_root(Config& config, const YAML::Node& root, const FromPreset& from_preset) {
   if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments alone: nothing is set
   if (!root.IsMap()) throw Error("is no map of options, expected lines such as 'match.window_size: 9'");
   bool first = true;
@@ -90,7 +92,7 @@ void read_root(Config& config, const YAML::Node& root) {
     }
     first = false;
     if (key == "preset") {
-      read_preset(config, entry.second);
+      read_preset(config, entry.second, from_preset);
     } else if (entry.second.IsMap()) {
       read_section(config, key, entry.second);
     } else if (entry.second.IsNull() && key.find('.') == std::string::npos) {
@@ -108,11 +110,15 @@ std::string written(const OptionInfo& option) {
 
 }  // namespace
 
-void load_config(const fs::path& path, Config& config) {
+void load_config(const fs::path& path, Config& config, const FromPreset& from_preset) {
   const std::string text = read_file(path, kMostTextBytes);
   Config read = config;
   try {
-    read_root(read, YAML::Load(text));
+    if (text.find('\0') != std::string::npos) throw Error("is no text, expected options in YAML");
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      throw Error("has " + std::to_string(documents.size()) + " documents, expected one");
+    if (!documents.empty()) read_root(read, documents.front());
   } catch (const YAML::Exception& exception) {
     throw Error(path.string() + ": " + at_line(exception.mark) + "is no YAML: " + exception.msg);
   } catch (const Error& error) {

@@ -4,7 +4,9 @@
 
 #include <cairn/pipeline/config.hpp>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 
 namespace cairn::io {
 
@@ -17,8 +19,10 @@ namespace cairn::io {
 ///   left_right.max_diff: -1  # or flat
 ///
 /// Throws Error with one line that names file, line, key and the nearest known one, or the range; `config` is
-/// then as it was.
-void load_config(const std::filesystem::path& path, Config& config);
+/// then as it was. `from_preset` makes what a `preset:` line starts from (the command adds there what a calibration
+/// says).
+void load_config(const std::filesystem::path& path, Config& config,
+                 const std::function<Config(std::string_view)>& from_preset = Config::preset);
 
 /// Every option with its value, in the form that load_config() reads, one comment per option.
 std::string config_yaml(const Config& config);

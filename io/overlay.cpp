@@ -137,7 +137,7 @@ constexpr std::array kReasons{
     Reason{Reject::border, "border", {60, 60, 60}},
     Reason{Reject::below_ground, "below ground", {205, 185, 255}},
     Reason{Reject::speckle, "speckle", {255, 240, 200}},
-    Reason{Reject::no_texture, "no texture", {95, 95, 110}},
+    Reason{Reject::no_texture, "no texture", {105, 105, 105}},
     Reason{Reject::not_unique, "not unique", {150, 135, 135}},
     Reason{Reject::flat, "flat", {125, 150, 140}},
     Reason{Reject::left_right, "left-right", {205, 205, 205}},

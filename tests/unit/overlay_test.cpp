@@ -57,7 +57,7 @@ TEST(ObjectPicture, LabelsEachObject) {
   const Image<Rgb> picture = draw_objects(left, {}, one_object(size, {100, 100, 200, 200}), {});
   int white = 0;
   for (int y = 180; y < 220; ++y) {
-    for (int x = 150; x < 250; ++x) white += distance(picture(x, y), {255, 255, 255}) < 30 ? 1 : 0;
+    for (int x = 150; x < 250; ++x) white += distance(picture(x, y), {255, 255, 255}) < 150 ? 1 : 0;
   }
   EXPECT_GT(white, 20);
 }
