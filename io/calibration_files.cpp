@@ -247,7 +247,7 @@ Statement from_projections(const Projection& left, const Projection& right) {
   // x_left = (f X + l3) / Z + cx and x_right = (f X + r3) / Z + cx', so B = (l3 − r3) / f and doffs = cx' −
   // cx.
   says.baseline_m = (left[3] - right[3]) / left[0];
-  if (*says.baseline_m == 0 && left[7] != right[7]) {
+  if (std::abs(left[7] - right[7]) > std::abs(left[3] - right[3])) {
     throw Error("is of two cameras one above the other, expected one beside the other");
   }
   return says;
@@ -304,9 +304,9 @@ Statement read_kitti(std::string_view text) {
       const auto first = pairs.find(prefix + left);
       const auto second = pairs.find(prefix + right);
       if (first == pairs.end() || second == pairs.end()) continue;
-      Statement says =
-          from_projections(projection_of(finite_numbers(first->second, first->first), first->first),
-                           projection_of(finite_numbers(second->second, second->first), second->first));
+      const Projection of_left = projection_of(finite_numbers(first->second, first->first), first->first);
+      const Projection of_right = projection_of(finite_numbers(second->second, second->first), second->first);
+      Statement says = from_projections(of_left, of_right);
       if (const auto size = pairs.find(std::string("S_rect_0") + left); size != pairs.end()) {
         const std::vector<double> sides = finite_numbers(size->second, size->first);
         if (sides.size() != 2)

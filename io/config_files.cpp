@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cairn/core/error.hpp>
+#include <functional>
 #include <io/config_files.hpp>
 #include <io/read_file.hpp>
 #include <string_view>
@@ -118,7 +119,7 @@ void load_config(const fs::path& path, Config& config, const FromPreset& from_pr
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() > 1)
       throw Error("has " + std::to_string(documents.size()) + " documents, expected one");
-    if (!documents.empty()) read_root(read, documents.front());
+    if (!documents.empty()) read_root(read, documents.front(), from_preset);
   } catch (const YAML::Exception& exception) {
     throw Error(path.string() + ": " + at_line(exception.mark) + "is no YAML: " + exception.msg);
   } catch (const Error& error) {

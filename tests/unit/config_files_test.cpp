@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <io/config_files.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace cairn {
+namespace {
+
+namespace fs = std::filesystem;
+using support::has;
+using support::refusal;
+using support::survives_damage;
+using support::TemporaryFolder;
+
+std::vector<std::string> values_of(const Config& config) {
+  std::vector<std::string> values;
+  for (const OptionInfo& option : options(config)) values.push_back(option.name + "=" + option.value);
+  return values;
+}
+
+class ConfigFiles : public testing::Test {
+ protected:
+  [[nodiscard]] Config read(std::string_view yaml, Config config = {}) const {
+    io::load_config(folder_.with("options.yaml", yaml), config);
+    return config;
+  }
+  [[nodiscard]] std::string refused(std::string_view yaml) const {
+    const fs::path path = folder_.with("options.yaml", yaml);
+    Config config;
+    config.match.window_size = 13;
+    std::string message = refusal([&] { io::load_config(path, config); });
+    EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
+    Config before;
+    before.match.window_size = 13;
+    EXPECT_EQ(values_of(config), values_of(before)) << "a refused file changes nothing";
+    return message;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(ConfigFiles, SectionsAndFlatNamesSayTheSame) {
+  EXPECT_EQ(read("match:\n  window_size: 7\n").match.window_size, 7);
+  EXPECT_EQ(read("match.window_size: 7\n").match.window_size, 7);
+  EXPECT_EQ(read("{\"match\": {\"window_size\": 7}, \"left_right.max_diff\": -1}").match.window_size, 7);
+}
+
+TEST_F(ConfigFiles, WhatTheFileLeavesOutStays) {
+  Config before;
+  before.match.window_size = 13;
+  const Config after = read("left_right:\n  max_diff: 2.5\n", before);
+  EXPECT_EQ(after.match.window_size, 13);
+  EXPECT_EQ(after.left_right.max_diff, 2.5F);
+}
+
+TEST_F(ConfigFiles, AnEmptyFileSetsNothing) {
+  for (const char* yaml : {"", "# only a comment\n", "match:\n  # window_size: 9\n", "---\n"}) {
+    EXPECT_EQ(values_of(read(yaml)), values_of({})) << yaml;
+  }
+}
+
+TEST_F(ConfigFiles, APresetIsWhereTheOptionsStart) {
+  const Config read_config = read("preset: paper\nmatch.window_size: 11\n");
+  Config expected = Config::paper();
+  expected.match.window_size = 11;
+  EXPECT_EQ(values_of(read_config), values_of(expected));
+  EXPECT_TRUE(has(refused("match.window_size: 11\npreset: paper\n"), {"line 2", "preset", "first"}));
+  EXPECT_TRUE(has(refused("preset: papre\n"), {"line 1", "papre", "paper"}));
+  EXPECT_TRUE(has(refused("preset: [paper]\n"), {"preset"}));
+}
+
+TEST_F(ConfigFiles, PointsMayBeTextOrLists) {
+  const Config lists = read("ground:\n  points: [[1, 2, 3, 4], [5.5, 6, 7, 8]]\n");
+  EXPECT_EQ(values_of(lists), values_of(read("ground.points: '1,2,3,4;5.5,6,7,8'\n")));
+  EXPECT_EQ(lists.ground.points.size(), 2U);
+}
+
+TEST_F(ConfigFiles, EveryPresetIsReadBackAsItWasWritten) {
+  for (const std::string& name : preset_names()) {
+    Config config = Config::preset(name);
+    config.ground.points = {{1, 2, 3, 4}, {5.25F, 6, 7, 8}};
+    Config other = Config::preset(name == "paper" ? "default" : "paper");
+    EXPECT_EQ(values_of(read(io::config_yaml(config), other)), values_of(config)) << name;
+  }
+  EXPECT_EQ(values_of(read(io::config_yaml({}), Config::paper())), values_of({})) << "no points";
+}
+
+TEST_F(ConfigFiles, ErrorsNameLineKeyAndTheNearestKnownOne) {
+  EXPECT_TRUE(has(refused("match:\n  cost: sad\n  windowsize: 9\n"),
+                  {"line 3", "match.windowsize", "match.window_size"}));
+  EXPECT_TRUE(has(refused("mtch.window_size: 9\n"), {"line 1", "mtch.window_size", "match.window_size"}));
+  EXPECT_TRUE(has(refused("match.window_size: 8\n"), {"line 1", "match.window_size", "8", "odd"}));
+  EXPECT_TRUE(has(refused("match.window_size: nine\n"), {"match.window_size", "nine"}));
+  EXPECT_TRUE(has(refused("match.window_size: 9999999999999999999\n"), {"match.window_size"}));
+  EXPECT_TRUE(has(refused("left_right.max_diff: .nan\n"), {"left_right.max_diff"}));
+  EXPECT_TRUE(has(refused("left_right.max_diff: nan\n"), {"left_right.max_diff"}));
+}
+
+TEST_F(ConfigFiles, RefusesOtherShapes) {
+  EXPECT_TRUE(has(refused("just words\n"), {"map of options"}));
+  EXPECT_TRUE(has(refused("- a\n- b\n"), {"map of options"}));
+  EXPECT_TRUE(has(refused("match:\n  window_size:\n    deep: 9\n"), {"line", "section"}));
+  EXPECT_TRUE(has(refused("match:\n  window_size:\n"), {"line", "value"}));
+  EXPECT_TRUE(has(refused("match: 9\n"), {"match"}));
+  EXPECT_TRUE(has(refused("? [a, b]\n: 9\n"), {"key"}));
+  EXPECT_TRUE(has(refused("match: {window_size: 9\n"), {"line", "no YAML"}));
+  EXPECT_TRUE(has(refused("match:\n\twindow_size: 9\n"), {"no YAML"}));
+  EXPECT_TRUE(has(refused("a: *nobody\n"), {"no YAML"}));
+  EXPECT_TRUE(has(refused("match.window_size: 9\n---\nmatch.window_size: 7\n"), {"2 documents"}));
+  EXPECT_TRUE(has(refused(std::string("\0\0\0", 3)), {"no text"}));
+}
+
+TEST_F(ConfigFiles, RefusesBombs) {
+  EXPECT_TRUE(has(refused(std::string((1U << 20) + 1, '#')), {"more than"}));
+  EXPECT_TRUE(has(refused(std::string(100000, '[')), {""}));
+  EXPECT_TRUE(has(refused("ground.points: " + std::string(10000, '[') + std::string(10000, ']')), {""}));
+  std::string laughs = "a: &a [1,1,1,1,1,1,1,1,1]\n";
+  for (char c = 'b'; c < 'k'; ++c) {
+    laughs += std::string(1, c) + ": &" + c + " [";
+    for (int i = 0; i < 9; ++i) laughs += std::string(i == 0 ? "*" : ",*") + static_cast<char>(c - 1);
+    laughs += "]\n";
+  }
+  EXPECT_TRUE(has(refused(laughs), {""}));
+  EXPECT_TRUE(has(refused("preset: default\nground.points: &p [[1,2,3,4], *p]\n"), {""}))
+      << "a list in itself";
+  EXPECT_TRUE(has(refused("match: &m\n  window_size: *m\n"), {""}));
+}
+
+TEST_F(ConfigFiles, RefusesMissingFilesAndFolders) {
+  Config config;
+  EXPECT_TRUE(has(refusal([&] { io::load_config(folder_.path() / "none.yaml", config); }),
+                  {"none.yaml", "No such file"}));
+  EXPECT_TRUE(has(refusal([&] { io::load_config(folder_.path(), config); }), {"is a folder"}));
+}
+
+TEST_F(ConfigFiles, NoDamagedFileDoesWorseThanAnError) {
+  const auto read = [](const fs::path& path) {
+    Config config;
+    io::load_config(path, config);
+  };
+  const std::string yaml =
+      "preset: paper\nmatch: {window_size: 9, cost: sad}\nground:\n  points: [[1, 2, 3, "
+      "4]]\nleft_right.max_diff: 1\n";
+  survives_damage(folder_, "options.yaml", yaml, read);
+}
+
+}  // namespace
+}  // namespace cairn
