@@ -1,2 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <cairn/core/parallel.hpp>
+#include <cairn/disparity/disparity_map.hpp>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace cairn {
+namespace {
+
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+/// Throws unless every finite value lies within bounds and there is one.
+void require_values(View<const float> disparity_px) {
+  bool any = false;
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      const float d = disparity_px(x, y);
+      if (!std::isfinite(d)) continue;
+      any = true;
+      if (std::abs(d) > kMaxDisparity) {
+        throw Error("external disparity: " + std::to_string(d) + " px at (" + std::to_string(x) + ", " +
+                    std::to_string(y) + "), expected at most ±" +
+                    std::to_string(static_cast<int>(kMaxDisparity)) +
+                    " px; is it a depth map, or in 1/16 or 1/256 px?");
+      }
+    }
+  }
+  if (!any) throw Error("external disparity: found no value in " + text(disparity_px.size()) + " pixels");
+}
+
+}  // namespace
+
+DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts,
+                     const Exec& exec) {
+  DisparityMap map{std::move(refined_px), {}};
+  const Size size = map.disparity_px.size();
+  map.reject = Image<Reject>(size, exec.pool);
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      float* const d = map.disparity_px.row(y);
+      Reject* const reject = map.reject.row(y);
+      for (int x = 0; x < size.width; ++x) reject[x] = std::isnan(d[x]) ? Reject::border : Reject::none;
+      for (const auto& verdict : verdicts) {
+        assert(verdict.size() == size);
+        const Reject* const more = verdict.row(y);
+        for (int x = 0; x < size.width; ++x) reject[x] |= more[x];
+      }
+      for (int x = 0; x < size.width; ++x) d[x] = reject[x] == Reject::none ? d[x] : kHole;
+    }
+  });
+  return map;
+}
+
+DisparityMap external_disparity(View<const float> disparity_px, const Exec& exec) {
+  const Size size = disparity_px.size();
+  if (disparity_px.empty())
+    throw Error("external disparity: found an empty map, expected at least 1x1 pixels");
+  require_values(disparity_px);
+  DisparityMap map{Image<float>(size, exec.pool), Image<Reject>(size, exec.pool)};
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const float* const in = disparity_px.row(y);
+      for (int x = 0; x < size.width; ++x) {
+        const bool known = std::isfinite(in[x]);
+        map.disparity_px(x, y) = known ? in[x] : kHole;
+        map.reject(x, y) = known ? Reject::none : Reject::no_data;
+      }
+    }
+  });
+  return map;
+}
+
+}  // namespace cairn

@@ -1,2 +1,156 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <cairn/core/parallel.hpp>
+#include <cairn/disparity/floor_search.hpp>
+#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/disparity/homography.hpp>
+#include <cairn/disparity/plane_fit.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+namespace cairn {
+namespace {
+
+/// The floor seen by a camera at `height` over it. With n = (sin r·cos p, cos r·cos p, sin p), the direction
+/// of gravity in the camera's frame for pitch p and roll r, a floor point X has n·X = height. Put into d +
+/// doffs = focal·baseline / Z and X = Z·((x − cx)/focal, (y − cy)/focal, 1) that is linear in x and y.
+GroundPlane ground_from_pose(const StereoRig& rig, const GroundConfig& config) {
+  const double pitch = double{config.pitch} * std::numbers::pi / 180;
+  const double roll = double{config.roll} * std::numbers::pi / 180;
+  const std::array down{std::sin(roll) * std::cos(pitch), std::cos(roll) * std::cos(pitch), std::sin(pitch)};
+  const double scale = double{rig.baseline_m} / double{config.height};
+  const double c =
+      scale * (double{rig.focal_px} * down[2] - double{rig.cx_px} * down[0] - double{rig.cy_px} * down[1]) -
+      double{rig.doffs_px};
+  return {static_cast<float>(scale * down[0]), static_cast<float>(scale * down[1]), static_cast<float>(c)};
+}
+
+/// The floor as a judge of rows of pixels. Its loops copy what they need: a byte that is written might
+/// otherwise be part of it.
+class Floor {
+ public:
+  Floor(const Ground& ground, const std::optional<StereoRig>& rig, const GroundConfig& config)
+      : plane_(*ground.plane), infinity_(rig ? rig->doffs_px : 0.0F), margin_(config.margin) {}
+
+  void reject_row(float* d, int y, int width, Reject* reject) const {
+    const GroundPlane plane = plane_;
+    const float infinity = infinity_;
+    const float margin = margin_;
+    for (int x = 0; x < width; ++x) {
+      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
+      const bool below = (floor + infinity > 0) & (d[x] < floor - margin);
+      d[x] = below ? std::numeric_limits<float>::quiet_NaN() : d[x];
+      reject[x] |= below ? Reject::below_ground : Reject::none;
+    }
+  }
+
+  void label_row(const float* d, int y, int width, std::uint8_t* label) const {
+    const GroundPlane plane = plane_;
+    const float infinity = infinity_;
+    const float margin = margin_;
+    for (int x = 0; x < width; ++x) {
+      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
+      const bool on = (floor + infinity > 0) & (std::abs(d[x] - floor) <= margin);
+      label[x] = on ? std::uint8_t{255} : std::uint8_t{0};
+    }
+  }
+
+ private:
+  GroundPlane plane_;
+  float infinity_;  // a point at infinity has disparity −infinity
+  float margin_;
+};
+
+void require_sound(const std::vector<PointPair>& points) {
+  constexpr const char* kOption = "ground.points: ";
+  if (points.size() < 4) {
+    throw Error(kOption + std::string("found ") + std::to_string(points.size()) +
+                " pairs, expected at least 4");
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& p = points[i];
+    for (const float value : {p.x_left, p.y_left, p.x_right, p.y_right}) {
+      if (std::isfinite(value)) continue;
+      throw Error(kOption + std::string("found a coordinate that is not finite in pair ") +
+                  std::to_string(i + 1) + ", expected px");
+    }
+  }
+}
+
+}  // namespace
+
+Ground ground_from_points(const std::vector<PointPair>& points) {
+  require_sound(points);
+  const auto fit = fit_homography_robustly(points);
+  PlaneFit plane_fit(points[0].x_left, points[0].y_left);
+  if (fit) {
+    for (const auto& p : fit->inliers) {
+      plane_fit.add(p.x_left, p.y_left, p.x_left - map_to_right(fit->homography, p.x_left, p.y_left)[0]);
+    }
+  }
+  const auto plane = plane_fit.solve();
+  if (!plane) {
+    throw Error(
+        "ground.points: found " + std::to_string(points.size()) +
+        " pairs that determine no plane, expected four of which no three lie on a line, in either image");
+  }
+  double sum = 0;
+  for (const auto& p : fit->inliers) {
+    const double off = double{p.x_left} - p.x_right - plane->disparity_px(p.x_left, p.y_left);
+    sum += off * off;
+  }
+  const double residual = std::sqrt(sum / static_cast<double>(fit->inliers.size()));
+  return {plane, 1.0F, static_cast<float>(residual), Refusal::none};
+}
+
+Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
+                  const GroundConfig& config, const Exec& exec) {
+  switch (config.source) {
+    case GroundSource::automatic:
+      return find_floor(disparity.disparity_px, rig, exec);
+    case GroundSource::points:
+      return ground_from_points(config.points);
+    case GroundSource::pose:
+      if (!rig) return {std::nullopt, 0.0F, 0.0F, Refusal::no_rig};
+      return {ground_from_pose(*rig, config), 1.0F, 0.0F, Refusal::none};
+    case GroundSource::off:
+      break;
+  }
+  return {std::nullopt, 0.0F, 0.0F, Refusal::off};
+}
+
+DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
+                                 const std::optional<StereoRig>& rig, const GroundConfig& config,
+                                 const Exec& exec) {
+  if (!ground.plane) return disparity;
+  const Size size = disparity.disparity_px.size();
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    const Floor floor(ground, rig, config);
+    for (int y = first; y < last; ++y) {
+      floor.reject_row(disparity.disparity_px.row(y), y, size.width, disparity.reject.row(y));
+    }
+  });
+  return disparity;
+}
+
+Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& ground,
+                                const std::optional<StereoRig>& rig, const GroundConfig& config,
+                                const Exec& exec) {
+  if (!ground.plane || !config.label_floor) return {};
+  const Size size = disparity.disparity_px.size();
+  Image<std::uint8_t> label(size, exec.pool);
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    const Floor floor(ground, rig, config);
+    for (int y = first; y < last; ++y) {
+      floor.label_row(disparity.disparity_px.row(y), y, size.width, label.row(y));
+    }
+  });
+  return label;
+}
+
+}  // namespace cairn

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/parallel.hpp>
+#include <cairn/disparity/floor_search.hpp>
+#include <cairn/disparity/plane_fit.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+// What a floor looks like. Distances in px of disparity, whatever the image's size: a matcher's errors are.
+constexpr float kTolerance = 1.0F;  // px; a right match is rarely farther from the floor
+constexpr float kSteepestPitch =
+    77.0F;                             // degrees below the horizon; a plane faced more squarely may be a wall
+constexpr float kLeastPitch = -30.0F;  // degrees; a camera that looks up more sees no floor
+constexpr float kMostRoll = 25.0F;     // degrees
+
+// When there is one.
+constexpr double kLeastMatches = 0.005;  // share of the image
+constexpr std::int64_t kFewestMatches = 64;
+constexpr double kLeastScore = 0.05;  // share of the matches under the plane's horizon
+constexpr double kLeastRise =
+    2.0 / 3.0;                    // share of the plane's slope that its matches show from one row to another
+constexpr int kFewestPairs = 8;   // that this is judged by
+constexpr int kLowerSurface = 3;  // a plane below the best counts with a third of its score
+
+// How hard it is searched: about a millisecond.
+constexpr std::size_t kSamples = 4096;
+constexpr std::size_t kRefining = 1024;  // of them, for least squares
+constexpr std::size_t kScreening = 512;  // of them, for a guess's score
+constexpr int kDraws = 8192;
+constexpr std::size_t kGuesses = 1024;
+constexpr std::size_t kFinalists = 24;
+
+/// Matches, one array per coordinate, so that several are judged at once.
+struct Points {
+  std::vector<float> x, y, d;
+
+  [[nodiscard]] std::size_t size() const { return d.size(); }
+  void add(float at_x, float at_y, float disparity) {
+    x.push_back(at_x);
+    y.push_back(at_y);
+    d.push_back(disparity);
+  }
+  [[nodiscard]] float above(const GroundPlane& plane, std::size_t i) const {
+    return d[i] - plane.disparity_px(x[i], y[i]);
+  }
+  [[nodiscard]] bool on(const GroundPlane& plane, std::size_t i) const {
+    return std::abs(above(plane, i)) <= kTolerance;
+  }
+};
+
+Points about(std::size_t count, const Points& points) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / count);
+  Points some;
+  for (std::size_t i = step / 2; i < points.size(); i += step)
+    some.add(points.x[i], points.y[i], points.d[i]);
+  return some;
+}
+
+std::int64_t count_valid(View<const float> disparity_px, const Exec& exec) {
+  std::vector<int> per_row(static_cast<std::size_t>(disparity_px.height()));
+  parallel_for(exec, disparity_px.height(), 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const float* const d = disparity_px.row(y);
+      int count = 0;
+      for (int x = 0; x < disparity_px.width(); ++x) count += std::isnan(d[x]) ? 0 : 1;
+      per_row[static_cast<std::size_t>(y)] = count;
+    }
+  });
+  std::int64_t sum = 0;
+  for (const int count : per_row) sum += count;
+  return sum;
+}
+
+/// The matches at the nodes of a grid that is as fine as kSamples allows.
+Points sample(View<const float> disparity_px, std::int64_t valid) {
+  const int step = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(valid) / kSamples)));
+  Points points;
+  for (int y = 0; y < disparity_px.height(); y += step) {
+    for (int x = 0; x < disparity_px.width(); x += step) {
+      const float d = disparity_px(x, y);
+      if (!std::isnan(d)) points.add(static_cast<float>(x), static_cast<float>(y), d);
+    }
+  }
+  return points;
+}
+
+/// How the matches under a plane's horizon lie to it.
+struct Tally {
+  int on = 0;      // within the tolerance
+  int beside = 0;  // else within twice of it
+  int below = 0;   // else farther away from the camera
+  int all = 0;
+
+  /// A surface that cuts through the plane puts as many matches beside it as on it, and so does noise: what a
+  /// plane has more on it than beside it is its own. Nothing should be below a floor, but for wrong matches
+  /// and for what is seen mirrored in it.
+  [[nodiscard]] int score() const { return on - beside - below; }
+  [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kLeastScore * all; }
+};
+
+Tally tally(const GroundPlane& plane, const Points& points, float infinity) {
+  Tally sum;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float floor = plane.disparity_px(points.x[i], points.y[i]);
+    const float above = points.d[i] - floor;
+    const float distance = std::abs(above);
+    const int counts = floor + infinity > 0 ? 1 : 0;
+    sum.all += counts;
+    sum.on += distance <= kTolerance ? counts : 0;
+    sum.beside += distance <= 2 * kTolerance ? counts : 0;
+    sum.below += above < -2 * kTolerance ? counts : 0;
+  }
+  sum.beside -= sum.on;
+  return sum;
+}
+
+/// What is known of the camera, or assumed.
+struct Camera {
+  float cx_px;
+  float cy_px;
+  float focal_px;
+  float infinity;  // a point at infinity has disparity −infinity
+
+  Camera(Size image, const std::optional<StereoRig>& rig)
+      : cx_px(rig ? rig->cx_px : static_cast<float>(image.width - 1) / 2),
+        cy_px(rig ? rig->cy_px : static_cast<float>(image.height - 1) / 2),
+        focal_px(rig ? rig->focal_px : static_cast<float>(image.width)),  // 53 degrees from left to right
+        infinity(rig ? rig->doffs_px : 0.0F) {}
+
+  /// Whether a camera that sees this plane as a floor has a pitch and roll that cameras have.
+  [[nodiscard]] bool may_stand_on(const GroundPlane& plane) const {
+    const auto tangent = [](float degrees) { return std::tan(degrees * std::numbers::pi_v<float> / 180); };
+    if (!(plane.b > 0) || std::abs(plane.a) > plane.b * tangent(kMostRoll)) return false;
+    const float pitch =
+        (plane.disparity_px(cx_px, cy_px) + infinity) / (focal_px * std::hypot(plane.a, plane.b));
+    return pitch <= tangent(kSteepestPitch) && pitch >= tangent(kLeastPitch);
+  }
+};
+
+/// splitmix64 (Steele, Lea, Flood 2014): a well mixed number for each n, without a state.
+std::uint64_t mixed(std::uint64_t n) {
+  n += 0x9E3779B97F4A7C15U;
+  n = (n ^ (n >> 30U)) * 0xBF58476D1CE4E5B9U;
+  n = (n ^ (n >> 27U)) * 0x94D049BB133111EBU;
+  return n ^ (n >> 31U);
+}
+
+struct Guess {
+  GroundPlane plane;
+  std::size_t i;
+  std::size_t j;
+  int score;
+};
+
+/// The plane through two matches, for an assumed roll: two are right together more often than three. Most
+/// cameras stand upright, the others are met within a step that refinement can bridge.
+Guess guess(const Points& points, std::uint64_t draw) {
+  constexpr std::array kRollTangents{0.0F,  0.0F,   0.0F,  0.0F,   0.0F,  0.0F,   0.06F, -0.06F,
+                                     0.12F, -0.12F, 0.18F, -0.18F, 0.26F, -0.26F, 0.36F, -0.36F};
+  const std::uint64_t bits = mixed(draw);
+  const auto i = static_cast<std::size_t>((bits & 0xFFFFFFU) % points.size());
+  const auto j = static_cast<std::size_t>((bits >> 24U & 0xFFFFFFU) % points.size());
+  const float roll = kRollTangents[bits >> 60U];
+  const float down = points.y[j] - points.y[i] + roll * (points.x[j] - points.x[i]);
+  const float b = down == 0 ? 0 : (points.d[j] - points.d[i]) / down;
+  const float a = b * roll;
+  return {{a, b, points.d[i] - a * points.x[i] - b * points.y[i]}, i, j, 0};
+}
+
+/// Possible floors, best first.
+std::vector<Guess> guesses(const Points& points, const Camera& camera) {
+  const Points few = about(kScreening, points);
+  std::vector<Guess> list;
+  for (int draw = 0; draw < kDraws && list.size() < kGuesses; ++draw) {
+    Guess next = guess(points, static_cast<std::uint64_t>(draw));
+    if (!camera.may_stand_on(next.plane)) continue;
+    next.score = tally(next.plane, few, camera.infinity).score();
+    list.push_back(next);
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Guess& p, const Guess& q) { return p.score > q.score; });
+  return list;
+}
+
+/// Least squares over the matches within reach, again and again while the reach shrinks.
+template <std::size_t N>
+GroundPlane refined(GroundPlane plane, const Points& points, const std::array<float, N>& reaches) {
+  for (const float reach : reaches) {
+    PlaneFit fit(points.x[points.size() / 2], points.y[points.size() / 2]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::abs(points.above(plane, i)) <= reach * kTolerance)
+        fit.add(points.x[i], points.y[i], points.d[i]);
+    }
+    plane = fit.solve().value_or(plane);
+  }
+  return plane;
+}
+
+/// Whether the matches on the plane themselves rise towards the camera as it does: disparities some rows
+/// apart must differ. This tells a floor from a plane that is laid across upright surfaces at different
+/// depths, an object before a wall for instance, each of which has its own disparity all the way down.
+bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points) {
+  double rise = 0;
+  double expected = 0;
+  int pairs = 0;
+  // Apart by more than a usual matching window, which would tie the two together.
+  for (const int rows : {disparity_px.height() / 24, disparity_px.height() / 12}) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points.on(plane, i)) continue;
+      const int y = static_cast<int>(points.y[i]) + rows;
+      if (y >= disparity_px.height()) break;  // points are in raster order
+      const float d = disparity_px(static_cast<int>(points.x[i]), y);
+      if (!(std::abs(d - plane.disparity_px(points.x[i], static_cast<float>(y))) <= kTolerance)) continue;
+      ++pairs;
+      rise += rows * (double{d} - points.d[i]);
+      expected += double{plane.b} * rows * rows;
+    }
+  }
+  return pairs >= kFewestPairs && rise >= kLeastRise * expected;
+}
+
+struct Candidate {
+  GroundPlane plane;
+  Tally tally;
+};
+
+/// What the search found: planes that may be the floor, best first; and whether there are others as good that
+/// cannot.
+struct Candidates {
+  std::vector<Candidate> floors;
+  bool others = false;
+};
+
+Candidates candidates(View<const float> disparity_px, const Points& points, const Camera& camera) {
+  const Points some = about(kRefining, points);
+  std::vector<GroundPlane> seen;
+  Candidates found;
+  for (const Guess& next : guesses(points, camera)) {
+    if (seen.size() == kFinalists) break;
+    const auto explains = [&](const GroundPlane& plane) {
+      return points.on(plane, next.i) && points.on(plane, next.j);
+    };
+    if (std::any_of(seen.begin(), seen.end(), explains)) continue;
+    const auto plane = refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F});
+    seen.push_back(plane);
+    const Tally judged = tally(plane, points, camera.infinity);
+    if (!judged.convincing()) continue;
+    if (camera.may_stand_on(plane) && rises(plane, disparity_px, points)) {
+      found.floors.push_back({plane, judged});
+    } else {
+      found.others = true;
+    }
+  }
+  std::stable_sort(found.floors.begin(), found.floors.end(),
+                   [](const Candidate& p, const Candidate& q) { return p.tally.score() > q.tally.score(); });
+  return found;
+}
+
+/// Whether most of the matches on `plane` are below `other`.
+bool lies_below(const GroundPlane& plane, const GroundPlane& other, const Points& points) {
+  int on = 0;
+  int below = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points.on(plane, i)) continue;
+    ++on;
+    below += points.above(other, i) < -2 * kTolerance ? 1 : 0;
+  }
+  return 4 * below >= 3 * on;
+}
+
+/// The best floor; but of two the lower, on which the other one, a box's lid perhaps, stands.
+const Candidate& choose(const std::vector<Candidate>& floors, const Points& points) {
+  const Candidate* best = &floors.front();
+  for (const auto& candidate : floors) {
+    const bool counts = candidate.tally.score() * kLowerSurface >= floors.front().tally.score();
+    if (counts && lies_below(candidate.plane, best->plane, points)) best = &candidate;
+  }
+  return *best;
+}
+
+/// Whether a plane that is no floor explains the picture: one that is faced squarely, at the median
+/// disparity.
+bool faces_a_wall(const Points& points, const Camera& camera) {
+  std::vector<float> sorted = points.d;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const auto wall = refined({0, 0, *middle}, points, std::array{2.0F, 1.0F, 1.0F});
+  return tally(wall, points, camera.infinity).convincing();
+}
+
+struct Support {
+  int on = 0;
+  int all = 0;
+};
+
+Support support_in_row(const float* d, int y, int width, GroundPlane plane, float infinity) {
+  Support row;
+  for (int x = 0; x < width; ++x) {
+    const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
+    const float distance = std::abs(d[x] - floor);  // NaN for a hole, which no comparison holds for
+    const int visible = floor + infinity > 0 ? 1 : 0;
+    row.all += distance >= 0 ? visible : 0;
+    row.on += distance <= kTolerance ? visible : 0;
+  }
+  return row;
+}
+
+/// The share of all matches under the horizon that lie on the plane.
+float support(const GroundPlane& plane, View<const float> disparity_px, float infinity, const Exec& exec) {
+  std::vector<Support> rows(static_cast<std::size_t>(disparity_px.height()));
+  parallel_for(exec, disparity_px.height(), 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      rows[static_cast<std::size_t>(y)] =
+          support_in_row(disparity_px.row(y), y, disparity_px.width(), plane, infinity);
+    }
+  });
+  std::int64_t on = 0;
+  std::int64_t all = 0;
+  for (const Support& row : rows) {
+    on += row.on;
+    all += row.all;
+  }
+  return static_cast<float>(static_cast<double>(on) / static_cast<double>(std::max<std::int64_t>(1, all)));
+}
+
+/// Root mean square distance from the plane of the points on it.
+float residual(const GroundPlane& plane, const Points& points) {
+  double squares = 0;
+  int on = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points.on(plane, i)) continue;
+    ++on;
+    squares += double{points.above(plane, i)} * points.above(plane, i);
+  }
+  return static_cast<float>(std::sqrt(squares / std::max(1, on)));
+}
+
+Ground refused(Refusal why) {
+  return {std::nullopt, 0.0F, 0.0F, why};
+}
+
+}  // namespace
+
+Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>& rig, const Exec& exec) {
+  const std::int64_t valid = count_valid(disparity_px, exec);
+  const auto least = kLeastMatches * static_cast<double>(disparity_px.size().area());
+  if (valid < kFewestMatches || static_cast<double>(valid) < least) return refused(Refusal::too_few_matches);
+  const Points points = sample(disparity_px, valid);
+  if (points.size() < kFewestMatches) return refused(Refusal::too_few_matches);
+
+  const Camera camera(disparity_px.size(), rig);
+  const auto found = candidates(disparity_px, points, camera);
+  if (found.floors.empty()) {
+    return refused(found.others || faces_a_wall(points, camera) ? Refusal::implausible : Refusal::no_plane);
+  }
+  const auto plane = refined(choose(found.floors, points).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F});
+  return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, points), Refusal::none};
+}
+
+}  // namespace cairn
