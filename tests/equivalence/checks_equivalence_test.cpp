@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <random>
+
+#include "reference/checks.hpp"
+#include "support/grids.hpp"
+
+namespace cairn {
+namespace {
+
+using grids::numbers;
+using grids::random_image;
+
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+Exec threads(int count) {
+  Exec exec = Exec::with_threads(count);
+  exec.pool = Pool::make();
+  return exec;
+}
+
+/// All widths about one, two and three vectors, and heights that several threads share unevenly.
+std::vector<Size> sizes() {
+  std::vector<Size> all{{1, 1}, {2, 1}, {1, 2}, {1, 70}, {70, 1}, {37, 131}, {130, 97}};
+  for (int width = 3; width <= 67; width += 4) all.push_back({width, 2 + width % 7});
+  return all;
+}
+
+Image<float> random_floats(Size size, int values, float step, std::uint32_t seed) {
+  const Image<int> whole = random_image<int>(size, 0, values, seed);
+  Image<float> image(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) image(x, y) = static_cast<float>(whole(x, y)) * step;
+  }
+  return image;
+}
+
+/// Matches that no matcher would make: few values, so that there are ties; holes; offsets to other rows.
+Matches random_matches(Size size, int band, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  Matches m{Image<std::int16_t>(size),
+            random_image<std::int16_t>(size, -2, 9, seed + 1),
+            {},
+            random_floats(size, 4, 0.25F, seed + 2),
+            random_floats(size, 5, 0.25F, seed + 3),
+            random_floats(size, 6, 0.2F, seed + 4),
+            {},
+            {}};
+  if (band > 0) m.row_offset = Image<std::int8_t>(size, 0, {});
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int least = std::max(-2, x - (size.width - 1));
+      const int most = std::min(9, x);
+      const int d = least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+      const bool none = random() % 8 == 0;
+      m.best(x, y) = none ? kNoMatch : static_cast<std::int16_t>(d);
+      if (none) m.cost(x, y) = m.runner_up(x, y) = m.mean_cost(x, y) = kNoCost;
+      if (random() % 8 == 0) m.runner_up(x, y) = kNoCost;
+      if (band > 0) {
+        const int row = y + static_cast<int>(random() % static_cast<unsigned>(2 * band + 1)) - band;
+        m.row_offset(x, y) = static_cast<std::int8_t>(std::clamp(row, 0, size.height - 1) - y);
+      }
+    }
+  }
+  return m;
+}
+
+/// Blocks of like disparities, some noise and holes.
+DisparityMap random_map(Size size, std::uint32_t seed) {
+  const Image<int> blocks = random_image<int>({size.width / 5 + 1, size.height / 4 + 1}, 0, 6, seed);
+  const Image<int> noise = random_image<int>(size, 0, 9, seed + 1);
+  DisparityMap map{Image<float>(size), Image<Reject>(size)};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const bool hole = noise(x, y) == 9;
+      map.disparity_px(x, y) =
+          hole ? kHole
+               : 1.5F * static_cast<float>(blocks(x / 5, y / 4)) + 0.25F * static_cast<float>(noise(x, y));
+      map.reject(x, y) = hole ? Reject::left_right : Reject::none;
+    }
+  }
+  return map;
+}
+
+DisparityMap clone(const DisparityMap& map) {
+  return {map.disparity_px.clone(), map.reject.clone()};
+}
+
+std::vector<std::uint32_t> bits(const Image<float>& image) {
+  std::vector<std::uint32_t> all;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      all.push_back(std::isnan(image(x, y)) ? 0x7FC00000U : std::bit_cast<std::uint32_t>(image(x, y)));
+    }
+  }
+  return all;
+}
+
+#define EXPECT_SAME_MAP(fast, slow)                          \
+  EXPECT_EQ(numbers((fast).reject), numbers((slow).reject)); \
+  EXPECT_EQ(bits((fast).disparity_px), bits((slow).disparity_px))
+
+class ChecksEquivalence : public testing::TestWithParam<int> {
+ protected:
+  Exec exec = threads(GetParam());
+};
+
+TEST_P(ChecksEquivalence, LeftRight) {
+  for (const Size size : sizes()) {
+    for (const int band : {0, 2}) {
+      const Matches matches = random_matches(size, band, 11);
+      for (const auto method : {LeftRightMethod::true_, LeftRightMethod::vote}) {
+        if (method == LeftRightMethod::vote && size.area() > 2000) continue;  // the twin's time is quadratic
+        for (const float max_diff : {-1.0F, 0.0F, 1.5F, 64.0F}) {
+          SCOPED_TRACE(text(size) + " band " + std::to_string(band) + " max_diff " +
+                       std::to_string(max_diff));
+          const LeftRightConfig config{max_diff, method};
+          EXPECT_EQ(numbers(reject_inconsistent(matches, config, exec)),
+                    numbers(reference::reject_inconsistent(matches, config)));
+        }
+      }
+    }
+  }
+}
+
+TEST_P(ChecksEquivalence, Uniqueness) {
+  for (const Size size : sizes()) {
+    const Matches matches = random_matches(size, 0, 12);
+    for (const float ratio : {-1.0F, 0.0F, 10.0F, 33.3F, 100.0F}) {
+      SCOPED_TRACE(text(size) + " ratio " + std::to_string(ratio));
+      EXPECT_EQ(numbers(reject_ambiguous(matches, {ratio}, exec)),
+                numbers(reference::reject_ambiguous(matches, {ratio})));
+    }
+  }
+}
+
+TEST_P(ChecksEquivalence, Flatness) {
+  for (const Size size : sizes()) {
+    const Matches matches = random_matches(size, 0, 13);
+    for (const float threshold : {-1.0F, 0.0F, 0.1F, 0.5F, 1.0F}) {
+      SCOPED_TRACE(text(size) + " threshold " + std::to_string(threshold));
+      EXPECT_EQ(numbers(reject_flat(matches, {threshold}, exec)),
+                numbers(reference::reject_flat(matches, {threshold})));
+    }
+  }
+}
+
+TEST_P(ChecksEquivalence, Texture) {
+  for (const Size size : sizes()) {
+    for (const int levels : {3, 255}) {
+      const auto image = random_image<Gray>(size, 0, levels, 14);
+      for (const int window : {3, 9, 31}) {
+        if (window == 31 && size.area() > 2000) continue;
+        for (const float threshold : {-1.0F, 0.0F, 2.0F, 2.37F, 10922.5F, 65025.0F}) {
+          SCOPED_TRACE(text(size) + " window " + std::to_string(window) + " threshold " +
+                       std::to_string(threshold));
+          const TextureConfig config{window, threshold};
+          EXPECT_EQ(numbers(reject_textureless(image, config, exec)),
+                    numbers(reference::reject_textureless(image, config)));
+        }
+      }
+    }
+  }
+}
+
+TEST_P(ChecksEquivalence, TextureOfTheStrongestContrast) {
+  Image<Gray> image({40, 53});
+  for (int y = 0; y < 53; ++y) {
+    for (int x = 0; x < 40; ++x) image(x, y) = (x / 2 + y / 2) % 2 == 0 ? Gray{0} : Gray{255};
+  }
+  for (const float threshold : {32512.0F, 32513.0F, 65025.0F}) {
+    const TextureConfig config{31, threshold};
+    EXPECT_EQ(numbers(reject_textureless(image, config, exec)),
+              numbers(reference::reject_textureless(image, config)));
+  }
+}
+
+TEST_P(ChecksEquivalence, TextureOfAPartOfALargerImage) {
+  const auto image = random_image<Gray>({90, 60}, 0, 4, 15);
+  const auto part = image.view().sub({7, 3, 61, 43});
+  EXPECT_EQ(numbers(reject_textureless(part, {5, 2.0F}, exec)),
+            numbers(reference::reject_textureless(part, {5, 2.0F})));
+}
+
+TEST_P(ChecksEquivalence, Combine) {
+  for (const Size size : sizes()) {
+    const DisparityMap some = random_map(size, 16);
+    const auto one = random_image<Reject>(size, 0, 3, 17);
+    const auto two = random_image<Reject>(size, 0, 2, 18);
+    SCOPED_TRACE(text(size));
+    EXPECT_SAME_MAP(combine(some.disparity_px.clone(), {one, two}, exec),
+                    reference::combine(some.disparity_px, {one, two}));
+  }
+}
+
+TEST_P(ChecksEquivalence, BelowGroundAndFloor) {
+  for (const Size size : sizes()) {
+    const DisparityMap map = random_map(size, 19);
+    for (const float doffs : {0.0F, 3.0F}) {
+      const GroundPlane plane{0.05F, 0.3F, -2.0F};
+      const Ground ground{plane, 1.0F, 0.0F, Refusal::none};
+      const StereoRig rig{100, 10, 10, 0.1F, doffs};
+      for (const float margin : {0.0F, 1.0F, 64.0F}) {
+        SCOPED_TRACE(text(size) + " doffs " + std::to_string(doffs) + " margin " + std::to_string(margin));
+        GroundConfig config;
+        config.margin = margin;
+        EXPECT_SAME_MAP(reject_below_ground(clone(map), ground, rig, config, exec),
+                        reference::reject_below_ground(map, plane, doffs, margin));
+        EXPECT_EQ(numbers(label_floor(map, ground, rig, config, exec)),
+                  numbers(reference::label_floor(map, plane, doffs, margin)));
+      }
+    }
+  }
+}
+
+TEST_P(ChecksEquivalence, Speckle) {
+  for (const Size size : sizes()) {
+    const DisparityMap map = random_map(size, 20);
+    for (const int largest : {-1, 0, 1, 6, 40, 1000000}) {
+      for (const float range : {0.0F, 0.5F, 1.0F, 64.0F}) {
+        SCOPED_TRACE(text(size) + " size " + std::to_string(largest) + " range " + std::to_string(range));
+        EXPECT_SAME_MAP(reject_speckles(clone(map), {largest, range}, exec),
+                        reference::reject_speckles(map, {largest, range}));
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, ChecksEquivalence, testing::Values(1, 2, 3),
+                         [](const auto& test) { return std::to_string(test.param); });
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/disparity/flatness.hpp>
+#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/disparity/left_right.hpp>
+#include <cairn/disparity/speckle.hpp>
+#include <cairn/disparity/texture.hpp>
+#include <cairn/disparity/uniqueness.hpp>
+#include <vector>
+
+/// The slow twins of disparity/: what the fast ones must give, bit for bit. One pixel at a time, and each
+/// from scratch.
+namespace cairn::reference {
+
+Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config);
+Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& config);
+Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config);
+Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config);
+DisparityMap combine(const Image<float>& refined_px, const std::vector<View<const Reject>>& verdicts);
+DisparityMap reject_below_ground(const DisparityMap& disparity, const GroundPlane& plane, float doffs_px,
+                                 float margin);
+Image<std::uint8_t> label_floor(const DisparityMap& disparity, const GroundPlane& plane, float doffs_px,
+                                float margin);
+DisparityMap reject_speckles(const DisparityMap& disparity, const SpeckleConfig& config);
+
+}  // namespace cairn::reference
