@@ -140,18 +140,41 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   return {frame_of_files(options)};
 }
 
-LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Pool& pool) {
+namespace {
+
+DisparityMap load_given(const fs::path& path, Size size, const fs::path& left, const Exec& exec) {
+  const Image<float> values = io::load_disparity(path, exec.pool);
+  if (values.size() != size) {
+    throw Error(path.string() + ": the disparity map is " + text(values.size()) + ", " + left.string() +
+                " is " + text(size));
+  }
+  try {
+    return external_disparity(values, exec);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+}
+
+void check_search_range(const io::Calibration& calibration, const fs::path& path) {
+  if (!calibration.num_disparities) return;
+  try {
+    Config config;
+    set(config, "match.num_disparities", std::to_string(*calibration.num_disparities));
+  } catch (const Error& error) {
+    throw Error(path.string() + ": ndisp, the default of " + error.what());
+  }
+}
+
+}  // namespace
+
+LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec) {
   LoadedFrame frame;
   if (!options.disparity.empty()) {
-    frame.left = io::load_picture(files.left, pool);
-    frame.given_disparity = io::load_disparity(options.disparity, pool);
-    if (frame.given_disparity.size() != frame.left.gray.size()) {
-      throw Error(options.disparity + ": the disparity map is " + text(frame.given_disparity.size()) + ", " +
-                  files.left.string() + " is " + text(frame.left.gray.size()));
-    }
+    frame.left = io::load_picture(files.left, exec.pool);
+    frame.given = load_given(options.disparity, frame.left.gray.size(), files.left, exec);
   } else {
     if (!files.right) throw Error(files.folder.string() + ": no right picture beside " + files.left.string());
-    io::PicturePair pair = io::load_pair(files.left, *files.right, pool);
+    io::PicturePair pair = io::load_pair(files.left, *files.right, exec.pool);
     frame.left = std::move(pair.left);
     frame.right = std::move(pair.right.gray);
   }
@@ -162,6 +185,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   if (calib) {
     calibration = io::load_calibration(*calib);
     io::check_size(calibration, frame.left.gray.size(), *calib);
+    check_search_range(calibration, *calib);
   }
   frame.rig = calibration.rig;
   ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);

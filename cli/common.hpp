@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
+#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <filesystem>
 #include <io/dataset.hpp>
@@ -58,14 +59,14 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options);
 /// A frame with all that is needed to work on it.
 struct LoadedFrame {
   io::Picture left;
-  Image<Gray> right;             // empty where the disparity is given
-  Image<float> given_disparity;  // empty where it is to be matched
+  Image<Gray> right;                  // empty where the disparity is given
+  std::optional<DisparityMap> given;  // instead of the right picture
   std::optional<StereoRig> rig;
   Config config;
   std::string preset;
 };
 /// Reads and checks everything before any work is done. Throws Error.
-LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Pool& pool);
+LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec);
 
 /// Collects the time of every stage while it lives.
 class Stopwatch {

@@ -73,7 +73,7 @@ int estimate(const DisparityOptions& options) {
   }
   (void)resolve(options.input.config);
   Exec exec = make_exec(options.exec);
-  const LoadedFrame loaded = load_frame(frames.front(), options.input, exec.pool);
+  const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(

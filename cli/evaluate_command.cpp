@@ -267,7 +267,7 @@ std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOp
     objects.push_back(*frame.objects);
     tolerances.insert(frame.objects->errors.boundary_tolerance_px);
   }
-  if (objects.empty()) return "objects             no truth or no result\n";
+  if (objects.empty()) return "objects             not compared: no truth, or none in the result\n";
   const ObjectSummary s = summarise(objects);
   std::string tolerance = std::to_string(*tolerances.begin());
   if (tolerances.size() > 1) tolerance += " to " + std::to_string(*tolerances.rbegin());
@@ -333,7 +333,7 @@ std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left
     visible += *frame.visible;
     everything += *frame.all;
   }
-  if (count == 0) return "disparity           no truth or no result\n";
+  if (count == 0) return "disparity           not compared: no truth, or none in the result\n";
   const std::string skipped = skip_left > 0 ? ", columns from " + std::to_string(skip_left) + " on" : "";
   const std::string title = "disparity           " + frames_text(count) + ", ";
   std::string all;

@@ -20,9 +20,9 @@ struct SegmentOptions {
 };
 
 Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
-  if (!loaded.given_disparity.empty()) {
-    return segment(loaded.left.gray, loaded.left.rgb, external_disparity(loaded.given_disparity, exec),
-                   loaded.rig, loaded.config, exec);
+  if (loaded.given) {
+    return segment(loaded.left.gray, loaded.left.rgb, std::move(*loaded.given), loaded.rig, loaded.config,
+                   exec);
   }
   return segment(StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config,
                  exec);
@@ -68,11 +68,11 @@ std::string summary(const Frame& frame, double milliseconds) {
 /// One frame from files to results; what goes to stdout is returned.
 std::string work_on(const io::FrameFiles& files, const SegmentOptions& options,
                     const std::filesystem::path& folder, bool one_of_many, Exec& exec) {
-  LoadedFrame loaded = load_frame(files, options.input, exec.pool);
+  LoadedFrame loaded = load_frame(files, options.input, exec);
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
   const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
-                                  !loaded.given_disparity.empty()};
+                                  loaded.given.has_value()};
   if (!folder.empty()) {
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance);
     if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {

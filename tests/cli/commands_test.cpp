@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <io/disparity_files.hpp>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+namespace cairn::command {
+namespace {
+
+using Json = nlohmann::json;
+using Command = CommandTest;
+
+TEST_F(Command, ShowsHelpForEveryCommandAndForNone) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"--help"},
+                                                    {"-h"},
+                                                    {"segment", "--help"},
+                                                    {"disparity", "--help"},
+                                                    {"evaluate", "--help"},
+                                                    {"config", "--help"},
+                                                    {"info", "--help"}}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err, "");
+    const std::string name = arguments.empty() || arguments[0].starts_with('-') ? "segment" : arguments[0];
+    EXPECT_NE(outcome.out.find(name), std::string::npos) << outcome.out;
+  }
+  EXPECT_EQ(run({"--version"}).out.find("cairn "), 0U);
+}
+
+TEST_F(Command, InfoNamesInstructionSetsAndThreads) {
+  const Outcome outcome = run({"info", "--target", "scalar", "--threads", "2"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.out.find("active     scalar"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("compiled"), std::string::npos);
+}
+
+TEST_F(Command, ConfigPrintsWhatItReadsBack) {
+  const std::string changed = run({"config", "--preset", "paper", "--set", "match.window_size=11"}).out;
+  EXPECT_NE(changed.find("window_size: 11"), std::string::npos) << changed;
+  write(at("options.yaml"), changed);
+  EXPECT_EQ(run({"config", "--config", path("options.yaml")}).out, changed);
+  const Outcome markdown = run({"config", "--markdown"});
+  EXPECT_EQ(markdown.code, 0);
+  EXPECT_NE(markdown.out.find("| `match.window_size` |"), std::string::npos) << markdown.out;
+}
+
+TEST_F(Command, SegmentPrintsATableAndWritesNothingWithoutAFolder) {
+  const auto pair = pair_in("pair");
+  const auto before = everything();
+  const Outcome outcome = run(with("segment", pair));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("object"), std::string::npos);
+  EXPECT_EQ(everything(), before);
+}
+
+TEST_F(Command, SegmentWritesAResultThatEvaluateReads) {
+  const auto pair = pair_in("pair");
+  ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);
+  for (const char* name :
+       {"disparity.png", "reject.png", "objects.png", "overlay.png", "disparity_view.png", "objects.json"}) {
+    EXPECT_TRUE(fs::exists(at("out") / name)) << name;
+  }
+  const Image<std::uint16_t> disparity({96, 72}, 6 * 256, {});
+  fs::create_directories(at("truth"));
+  io::save_png(at("truth/disp_left.png"), disparity.view());
+  const Outcome outcome = run({"evaluate", path("out"), path("truth"), "--skip-left", "16"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("bad-1 0.0 %"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {
+  pair_in("many/b");
+  pair_in("many/a");
+  ASSERT_EQ(run({"segment", path("many/a"), "-o", path("one")}).code, 0);
+  EXPECT_TRUE(fs::exists(at("one/objects.json")));
+  const Outcome outcome = run({"segment", path("many"), "-o", path("all")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(at("all/a/objects.json")));
+  EXPECT_TRUE(fs::exists(at("all/b/objects.json")));
+  EXPECT_FALSE(fs::exists(at("all/objects.json")));
+  EXPECT_LT(outcome.out.find("a:"), outcome.out.find("b:"));
+  EXPECT_EQ(outcome.err, "");  // no progress bar where stderr is no terminal
+}
+
+TEST_F(Command, AFolderWithOneSubFolderIsStillAFolderOfFrames) {
+  pair_in("many/a");
+  ASSERT_EQ(run({"segment", path("many"), "-o", path("all")}).code, 0);
+  EXPECT_TRUE(fs::exists(at("all/a/objects.json")));
+}
+
+TEST_F(Command, SegmentPrintsJson) {
+  const Outcome outcome = run(with("segment", pair_in("pair"), {"--json"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.out).at("image").at("width"), 96);
+}
+
+TEST_F(Command, LaterSettingsWin) {
+  const auto pair = pair_in("pair");
+  write(at("pair/calib.txt"), "fx=100\nfy=100\ncx=48\ncy=36\nbaseline=0.1\nndisp=24\n");
+  write(at("options.yaml"), "match.num_disparities: 20\n");
+  write(at("preset.yaml"), "preset: paper\n");
+  const auto disparities = [&](const std::vector<std::string>& more) {
+    const Outcome outcome = run(with("segment", with("--json", pair), more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json::parse(outcome.out).at("config").at("match").at("num_disparities").get<int>();
+  };
+  EXPECT_EQ(disparities({}), 24);  // the frame's own calibration
+  EXPECT_EQ(disparities({"--preset", "paper"}), 24);
+  EXPECT_EQ(disparities({"--config", path("preset.yaml")}), 24);  // a preset is no setting of this option
+  EXPECT_EQ(disparities({"--config", path("options.yaml")}), 20);
+  EXPECT_EQ(disparities({"--config", path("options.yaml"), "--set", "match.num_disparities=16"}), 16);
+  EXPECT_EQ(disparities({"--set", "match.num_disparities=16", "--set", "match.num_disparities=12"}), 12);
+  write(at("other.txt"), "fx=100\nfy=100\ncx=48\ncy=36\nbaseline=0.1\nndisp=32\n");
+  EXPECT_EQ(disparities({"--calib", path("other.txt")}), 32);
+}
+
+TEST_F(Command, TheCalibrationOfAnotherFolderIsFoundInItsTruth) {
+  const auto pair = pair_in("base/variant");
+  fs::create_directories(at("base/gt"));
+  write(at("base/gt/calib.txt"), "fx=100\nfy=100\ncx=48\ncy=36\nbaseline=0.1\n");
+  const Json from_folder = Json::parse(run({"segment", path("base/variant"), "--json"}).out);
+  EXPECT_EQ(from_folder.at("rig").at("focal_px"), 100);
+  const Json from_files = Json::parse(run(with("segment", pair, {"--json"})).out);
+  EXPECT_EQ(from_files.at("rig"), from_folder.at("rig"));
+}
+
+TEST_F(Command, SegmentTakesADisparityMapInsteadOfTheRightPicture) {
+  const auto pair = pair_in("pair");
+  fs::remove(pair[1]);
+  std::vector<float> values(96 * 72, 4.0F);
+  for (int y = 20; y < 50; ++y) std::fill_n(values.begin() + y * 96 + 30, 30, -9.0F);
+  write(at("map.pfm"), pfm({96, 72}, values));
+  for (const std::string& input : {pair[0], path("pair")}) {
+    const Outcome outcome = run({"segment", input, "--disparity", path("map.pfm"), "-o", path("out")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("disparity.pfm"), std::string::npos);  // said, since 16 bits hold no −9
+    EXPECT_TRUE(fs::exists(at("out/disparity.pfm")));
+    EXPECT_TRUE(Json::parse(content(at("out/objects.json"))).at("external_disparity").get<bool>());
+  }
+}
+
+TEST_F(Command, DisparityWritesTheFormThatTheNameAsksFor) {
+  const auto pair = pair_in("pair");
+  ASSERT_EQ(run(with("disparity", pair, {"-o", path("d.png"), "--set", "match.num_disparities=16"})).code, 0);
+  ASSERT_EQ(run(with("disparity", pair, {"-o", path("d.pfm"), "--set", "match.num_disparities=16"})).code, 0);
+  const Image<float> png = io::load_disparity(at("d.png"));
+  const Image<float> map = io::load_disparity(at("d.pfm"));
+  int valid = 0;
+  for (int y = 0; y < 72; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      ASSERT_EQ(std::isnan(png(x, y)), std::isnan(map(x, y)));
+      if (std::isnan(map(x, y))) continue;
+      ++valid;
+      EXPECT_NEAR(png(x, y), map(x, y), 1 / 256.0);
+    }
+  }
+  EXPECT_GT(valid, 96 * 72 / 2);
+}
+
+TEST_F(Command, ThreadsAndTargetsChangeNoBitOfAResult) {
+  const auto pair = pair_in("pair");
+  ASSERT_EQ(run(with("segment", pair, {"-o", path("one"), "--threads", "1", "--target", "scalar"})).code, 0);
+  ASSERT_EQ(run(with("segment", pair, {"-o", path("two"), "--threads", "3"})).code, 0);
+  for (const char* name :
+       {"disparity.png", "reject.png", "objects.png", "overlay.png", "disparity_view.png"}) {
+    EXPECT_EQ(content(at("one") / name), content(at("two") / name)) << name;
+  }
+}
+
+/// Two frames with truth beside a third without a result: what `evaluate` makes of results that equal their
+/// truth.
+TEST_F(Command, EvaluateFindsNoErrorInTheTruthItself) {
+  Image<std::uint16_t> ids({96, 72}, 0, {});
+  for (int y = 10; y < 40; ++y) std::fill_n(ids.row(y) + 10, 30, std::uint16_t{1});
+  for (int y = 10; y < 60; ++y) std::fill_n(ids.row(y) + 50, 30, std::uint16_t{7});
+  for (const char* name : {"a", "b", "c"}) {
+    fs::create_directories(at("truth") / name);
+    io::save_png(at("truth") / name / "objects.png", ids.view());
+  }
+  for (const char* name : {"a", "b"}) {
+    fs::create_directories(at("result") / name);
+    io::save_png(at("result") / name / "objects.png", ids.view());
+  }
+  const Outcome outcome = run({"evaluate", path("result"), path("truth")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* text :
+       {"E1 %", "E7 %", "2/2", "4 true ones of at least 200 px in 2 frames", "IoU >= 0.5: 100.0 %",
+        "mean 0.0 %   median 0.0 %", "phantoms            0.00 per frame", "1 frame of the truth: c"}) {
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
+  }
+  write(at("truth/a/partial"), "");
+  write(at("truth/b/partial"), "");
+  EXPECT_NE(run({"evaluate", path("result"), path("truth")}).out.find("precision           not known"),
+            std::string::npos);
+}
+
+TEST_F(Command, EvaluateFindsTheTruthOfVariantsInTheFolderBeside) {
+  const Image<std::uint16_t> disparity({96, 72}, 6 * 256, {});
+  for (const char* name : {"base/gt", "base/dim", "base/noisy", "out/dim", "out/noisy"})
+    fs::create_directories(at(name));
+  io::save_png(at("base/gt/disp_left.png"), disparity.view());
+  io::save_png(at("out/dim/disparity.png"), disparity.view());
+  io::save_png(at("out/noisy/disparity.png"), disparity.view());
+  const Outcome outcome = run({"evaluate", path("out"), path("base")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("noisy"), std::string::npos);
+  EXPECT_NE(outcome.out.find("no occlusion.png"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("no result"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Command, EvaluateTakesTwoHundredFiftyFiveForDontCareInEightBitsOnly) {
+  Image<std::uint16_t> ours({96, 72}, 0, {});
+  for (int y = 10; y < 40; ++y) std::fill_n(ours.row(y) + 10, 30, std::uint16_t{255});
+  Image<std::uint8_t> eight({96, 72}, 0, {});
+  for (int y = 10; y < 40; ++y) std::fill_n(eight.row(y) + 10, 30, std::uint8_t{255});
+  fs::create_directories(at("result"));
+  fs::create_directories(at("truth"));
+  io::save_png(at("result/objects.png"), ours.view());
+  io::save_png(at("truth/objects.png"), ours.view());
+  EXPECT_NE(run({"evaluate", path("result"), path("truth")}).out.find("1 true ones"), std::string::npos);
+  io::save_png(at("truth/objects.png"), eight.view());
+  const std::string out = run({"evaluate", path("result"), path("truth")}).out;
+  EXPECT_NE(out.find("0 true ones"), std::string::npos) << out;
+  EXPECT_NE(out.find("phantoms            0.00"), std::string::npos) << out;
+}
+
+}  // namespace
+}  // namespace cairn::command
