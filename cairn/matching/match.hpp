@@ -11,12 +11,17 @@
 
 namespace cairn {
 
+/// window: a square window for every pixel, on its own. semi_global: single pixels, neighbours agree
+/// (semi_global.hpp).
+enum class MatchMethod : std::uint8_t { window, semi_global };
 /// The correlation operators, each as a cost ≥ 0 where less is better. (paper, "Disparity map estimation")
 enum class Cost : std::uint8_t { sad, ssd, zsad, zssd, nssd, zncc };
 enum class Prefilter : std::uint8_t { none, xsobel };
 /// Which maps of Matches are wanted and paid for: winner = best and cost only.
 enum class Evidence : std::uint8_t { winner, full };
 
+inline constexpr std::array kMatchMethods{Choice<MatchMethod>{"window", MatchMethod::window},
+                                          Choice<MatchMethod>{"semi_global", MatchMethod::semi_global}};
 inline constexpr std::array kCosts{Choice<Cost>{"sad", Cost::sad},   Choice<Cost>{"ssd", Cost::ssd},
                                    Choice<Cost>{"zsad", Cost::zsad}, Choice<Cost>{"zssd", Cost::zssd},
                                    Choice<Cost>{"nssd", Cost::nssd}, Choice<Cost>{"zncc", Cost::zncc}};
@@ -26,6 +31,7 @@ inline constexpr std::array kEvidences{Choice<Evidence>{"winner", Evidence::winn
                                        Choice<Evidence>{"full", Evidence::full}};
 
 struct MatchConfig {
+  MatchMethod method = MatchMethod::window;
   Cost cost = Cost::zncc;
   int window_size = 9;       // px; odd; the window is clipped at the image's border
   int min_disparity = 0;     // px
@@ -37,6 +43,8 @@ struct MatchConfig {
 };
 template <class V>
 void fields(MatchConfig& c, V&& v) {
+  v("method", c.method, "", "window: correlation alone; semi_global: neighbours agree along paths",
+    kMatchMethods);
   v("cost", c.cost, "", "correlation operator", kCosts);
   v("window_size", c.window_size, "px", "side of the square correlation window, odd", odd_range(3, 31));
   v("min_disparity", c.min_disparity, "px", "first disparity tried; may be negative", range(-1024, 1023));
@@ -81,6 +89,7 @@ struct Matches {
 ///
 /// The time per pixel and disparity depends neither on the window's size nor on what the picture shows.
 /// (METHOD §1; paper, "Disparity map estimation")
+/// With method=semi_global: match_semi_global() with its default penalties instead.
 Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// Compiles semi_global_kernels-inl.hpp once for plain C++ and once for each of Highway's targets, and lists
+// what there is.
+#include <algorithm>
+#include <array>
+#include <cairn/matching/scratch.hpp>
+#include <cairn/matching/semi_global_kernels.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#if CAIRN_WITH_HWY
+// Only what Target names; see kernels.cpp.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cairn/matching/semi_global_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+#define CAIRN_KERNEL_TARGET HWY_NAMESPACE
+#define CAIRN_LANES_INLINE HWY_INLINE
+#define CAIRN_LANES_ATTR HWY_ATTR
+HWY_BEFORE_NAMESPACE();
+#include <cairn/matching/byte_lanes_highway-inl.hpp>
+
+#include <cairn/matching/semi_global_kernels-inl.hpp>
+HWY_AFTER_NAMESPACE();
+#undef CAIRN_KERNEL_TARGET
+#undef CAIRN_LANES_INLINE
+#undef CAIRN_LANES_ATTR
+#endif
+#endif
+
+#if !CAIRN_WITH_HWY || HWY_ONCE
+#include <cairn/matching/byte_lanes_plain.hpp>
+namespace cairn::kernels::plain_kernels {
+namespace bytes = plain_bytes;
+}
+#define CAIRN_KERNEL_TARGET plain_kernels
+#define CAIRN_LANES_INLINE inline
+#define CAIRN_LANES_ATTR
+#include <cairn/matching/semi_global_kernels-inl.hpp>
+
+namespace cairn::kernels {
+
+const SemiGlobalKernels* semi_global_kernels(Target target) {
+  switch (target) {
+    case Target::scalar:
+      return &plain_kernels::kSemiGlobalKernels;
+#if CAIRN_WITH_HWY
+#if HWY_TARGETS & HWY_SSE4
+    case Target::sse4:
+      return &N_SSE4::kSemiGlobalKernels;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Target::avx2:
+      return &N_AVX2::kSemiGlobalKernels;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Target::avx512:
+      return &N_AVX3::kSemiGlobalKernels;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Target::neon:
+      return &N_NEON::kSemiGlobalKernels;
+#endif
+#endif
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace cairn::kernels
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/exec.hpp>
+#include <cairn/matching/match.hpp>
+#include <cairn/matching/scratch.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: everything of match_semi_global() that runs per pixel. Private to the
+/// library.
+namespace cairn::kernels {
+
+/// C of a box of nine pixels whose 24 bits all differ.
+inline constexpr int kGreatestCost = (9 * 24 + 2) / 4;
+/// Two paths' penalties together fit a byte.
+inline constexpr int kGreatestPenalty = 127;
+
+struct SemiGlobalPenalties {
+  std::uint8_t small = 0;
+  std::array<std::uint8_t, 256> large{};  // by the step of intensity
+};
+
+/// The search, and where the partners of a left pixel stand in a reversed right row: side by side, lane i for
+/// first_d + i.
+struct SearchLayout {
+  int width;
+  int height;
+  int first_d;  // px
+  int count;    // candidates
+  int lanes;    // the same, rounded up to whole vectors
+  static constexpr int kMargin = 64;
+
+  [[nodiscard]] int pad() const { return std::max(0, -first_d); }
+  [[nodiscard]] int length() const {
+    return round_up(pad() + width + std::max(0, first_d) + lanes + kMargin, 64);
+  }
+  [[nodiscard]] int reversed(int x_right) const { return pad() + width - 1 - x_right; }
+  [[nodiscard]] int first_lane(int x) const { return reversed(x - first_d); }
+  /// The candidates of x that lie inside the right image: lanes begin … end − 1.
+  [[nodiscard]] int begin(int x) const { return std::clamp(x - width + 1 - first_d, 0, count); }
+  [[nodiscard]] int end(int x) const { return std::clamp(x - first_d + 1, begin(x), count); }
+};
+
+/// One call of match_semi_global(): its images and its working memory.
+struct SemiGlobalTask {
+  SearchLayout layout;
+  SemiGlobalPenalties penalties;
+  bool full;  // evidence
+  View<const Gray> left;
+  View<const Gray> right;
+  View<Gray> smooth;                // the left image, smoothed
+  View<std::uint8_t> left_bits;     // census: three rows of bytes side by side, round_up(width, 64) each
+  View<std::uint8_t> right_bits;    // the same reversed, layout.length() each
+  View<const std::uint8_t> inside;  // one reversed row: 255 where there is a pixel
+  View<std::uint8_t> costs;         // C: width·lanes in a row; 255 in lanes ≥ count
+  View<std::uint8_t> steps;  // L − C of the path down; with that of the path up added once that is known
+  View<std::uint8_t> along;  // L of the path up, one row
+  View<std::uint8_t> least;  // the least of these, for each pixel
+  Matches& out;
+};
+
+struct SemiGlobalKernels {
+  /// How many lanes `count` candidates take.
+  int (*lanes)(int count);
+  /// Census of both images and the smoothed left one, for the rows first … last − 1.
+  void (*describe_rows)(const SemiGlobalTask& task, int first, int last);
+  /// Costs and the path down, for the columns first … last − 1 of all rows.
+  void (*match_down)(const SemiGlobalTask& task, int first, int last);
+  /// The path up, for the columns first … last − 1 of the rows bottom − 1 … top. Call it from the lowest rows
+  /// to the highest.
+  void (*match_up)(const SemiGlobalTask& task, int first, int last, int top, int bottom);
+  /// The paths to the left and to the right, and the winners, for the rows first … last − 1.
+  void (*match_across)(const SemiGlobalTask& task, int first, int last);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const SemiGlobalKernels* semi_global_kernels(Target target);
+
+}  // namespace cairn::kernels

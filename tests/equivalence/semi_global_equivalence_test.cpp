@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/core/target.hpp>
+#include <cairn/matching/semi_global.hpp>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "reference/semi_global.hpp"
+
+namespace {
+
+using namespace cairn;
+
+/// Two images out of the middle of larger ones, so that rows are not aligned and the stride is odd. Plain
+/// patches and few grey levels in places, so that costs tie and every penalty occurs.
+struct Pictures {
+  Size size;
+  std::ptrdiff_t stride;
+  std::vector<Gray> left;
+  std::vector<Gray> right;
+
+  Pictures(Size picture_size, unsigned seed)
+      : size(picture_size), stride(size.width + 7), left(count()), right(count()) {
+    std::mt19937 random(seed);
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      left[i] = dot(static_cast<std::uint32_t>(random()), i);
+      right[i] = i >= 3 && random() % 4 != 0 ? left[i - 3] : dot(static_cast<std::uint32_t>(random()), i);
+    }
+  }
+  [[nodiscard]] StereoPair pair() const {
+    return StereoPair::from(View<const Gray>(left.data() + 3, size, stride),
+                            View<const Gray>(right.data() + 3, size, stride));
+  }
+
+ private:
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(stride) * static_cast<std::size_t>(size.height + 1);
+  }
+  static Gray dot(std::uint32_t bits, std::size_t i) {
+    switch (i / 53 % 4) {
+      case 0:
+        return 0;
+      case 1:
+        return static_cast<Gray>(100 + bits % 4);
+      case 2:
+        return static_cast<Gray>(250 + bits % 6);
+      default:
+        return static_cast<Gray>(bits >> 24);
+    }
+  }
+};
+
+template <class T>
+std::string first_difference(const char* map, const Image<T>& expected, const Image<T>& got) {
+  if (expected.size() != got.size()) {
+    return std::string(map) + ": sizes " + text(expected.size()) + " and " + text(got.size()) + "\n";
+  }
+  for (int y = 0; y < expected.height(); ++y) {
+    for (int x = 0; x < expected.width(); ++x) {
+      if (std::memcmp(&expected(x, y), &got(x, y), sizeof(T)) == 0) continue;
+      return std::string(map) + " at (" + std::to_string(x) + ", " + std::to_string(y) + "): expected " +
+             std::to_string(expected(x, y)) + ", got " + std::to_string(got(x, y)) + "\n";
+    }
+  }
+  return {};
+}
+
+std::string first_difference(const Matches& expected, const Matches& got) {
+  return first_difference("best", expected.best, got.best) +
+         first_difference("best_right", expected.best_right, got.best_right) +
+         first_difference("row_offset", expected.row_offset, got.row_offset) +
+         first_difference("cost", expected.cost, got.cost) +
+         first_difference("runner_up", expected.runner_up, got.runner_up) +
+         first_difference("mean_cost", expected.mean_cost, got.mean_cost) +
+         first_difference("cost_before", expected.cost_before, got.cost_before) +
+         first_difference("cost_after", expected.cost_after, got.cost_after);
+}
+
+MatchConfig search(int first, int count, Evidence evidence = Evidence::full) {
+  return {.method = MatchMethod::semi_global,
+          .min_disparity = first,
+          .num_disparities = count,
+          .evidence = evidence};
+}
+
+void expect_equal_to_reference(Size size, const MatchConfig& config, const SemiGlobalConfig& penalties = {},
+                               const std::vector<int>& thread_counts = {1}) {
+  const Pictures pictures(size, static_cast<unsigned>(size.width * 31 + config.num_disparities));
+  const Matches expected = reference::match_semi_global(pictures.pair(), config, penalties);
+  for (const Target target : supported_targets()) {
+    for (const int threads : thread_counts) {
+      const Matches got =
+          match_semi_global(pictures.pair(), config, penalties, Exec::with_threads(threads, target));
+      EXPECT_EQ(first_difference(expected, got), "")
+          << text(size) << " disparities " << config.min_disparity << "+" << config.num_disparities
+          << " penalties " << penalties.penalty_small << ", " << penalties.penalty_large << ", "
+          << penalties.penalty_edge << " on " << name(target) << ", " << threads << " threads";
+    }
+  }
+}
+
+TEST(SemiGlobalEquivalence, HoldsForEveryWidth) {
+  for (int width = 1; width <= 70; ++width) expect_equal_to_reference({width, 5}, search(0, 9));
+}
+
+TEST(SemiGlobalEquivalence, HoldsForEveryHeight) {
+  for (int height = 1; height <= 20; ++height) expect_equal_to_reference({23, height}, search(0, 7));
+}
+
+TEST(SemiGlobalEquivalence, HoldsForEveryCountOfCandidates) {
+  for (int count = 1; count <= 68; ++count) expect_equal_to_reference({75, 4}, search(0, count));
+  for (const int count : {96, 127, 128, 129, 191, 257}) expect_equal_to_reference({260, 3}, search(0, count));
+  expect_equal_to_reference({40, 2}, search(-500, 1024));
+}
+
+TEST(SemiGlobalEquivalence, HoldsForNegativeAndDistantDisparities) {
+  for (const int first : {-1024, -60, -40, -33, -17, -9, -1, 1, 5, 20, 39, 1000}) {
+    expect_equal_to_reference({40, 5}, search(first, 18));
+    expect_equal_to_reference({70, 3}, search(first, 66));
+  }
+}
+
+TEST(SemiGlobalEquivalence, HoldsForEverySplitIntoThreads) {
+  for (const Size size : {Size{33, 41}, Size{97, 50}, Size{200, 3}, Size{2, 120}}) {
+    expect_equal_to_reference(size, search(-2, 11), {}, {1, 2, 3});
+  }
+}
+
+TEST(SemiGlobalEquivalence, HoldsWhereThePicturesAreCutIntoChunksOfRows) {
+  // So wide and deep that a few rows at a time are followed upward and across.
+  expect_equal_to_reference({400, 7}, search(0, 200), {}, {1, 3});
+}
+
+TEST(SemiGlobalEquivalence, HoldsForEveryPenalty) {
+  for (const float small : {0.0F, 0.01F, 0.42F, 1.0F, 2.3F}) {
+    for (const float large : {0.0F, 0.6F, 1.7F, 2.3F}) {
+      for (const float edge : {0.0F, 0.15F, 10.0F}) {
+        expect_equal_to_reference({45, 7}, search(0, 20), {small, large, edge});
+      }
+    }
+  }
+}
+
+TEST(SemiGlobalEquivalence, HoldsForTheWinnerAlone) {
+  expect_equal_to_reference({41, 8}, search(0, 19, Evidence::winner));
+  expect_equal_to_reference({70, 8}, search(0, 64, Evidence::winner));
+}
+
+}  // namespace
