@@ -8,7 +8,7 @@
 //
 //   reversed index j = pad + width − 1 − x_right         partner of lane i:  j = first_lane(x) + i
 //
-// columns[x][i] is the sum over the window's rows of what pixel x and its partner i have in common (a
+// column_sums[x][i] is the sum over the window's rows of what pixel x and its partner i have in common (a
 // product, or an absolute difference). One row further down it changes by the row that comes in and the row
 // that goes out. Both stand side by side in one 32-bit number (a pair of 16-bit ones), and one multiply-add
 // of pairs gives the change. One pixel further right, the box sum gains a column and loses one. So a
@@ -66,119 +66,112 @@ struct Geometry {
 
   [[nodiscard]] int reversed(int x_right) const { return pad + width - 1 - x_right; }
   [[nodiscard]] int first_lane(int x) const { return reversed(x - first_d); }
+  /// Where a left pixel's column stands, its lanes i and on; x = −1: the one that stays 0. Sixteen lanes of
+  /// all columns lie together, so that a walk along the row reads memory in its order.
+  [[nodiscard]] std::ptrdiff_t column(int x, int i) const {
+    return static_cast<std::ptrdiff_t>(i & ~15) * (width + 1) + (x + 1) * 16 + (i & 15);
+  }
   /// The candidates of x that lie inside the right image: lanes begin … end − 1.
   [[nodiscard]] int begin(int x) const { return std::clamp(x - width + 1 - first_d, 0, count); }
   [[nodiscard]] int end(int x) const { return std::clamp(x - first_d + 1, begin(x), count); }
 };
 
-/// Sums of one image's own windows for the current row, each clipped at that image's borders.
+/// Sums of one image's own windows for the current row, each clipped at that image's borders. Entries: the
+/// pixels of the row in the order of its pairs, with margins before and after.
 struct Moments {
   int half;
-  int count;  // entries: a row's pixels, in the order of its pairs
-  Scratch<std::int32_t> column_sum;
-  Scratch<std::int32_t> column_energy;
-  Scratch<std::uint32_t>
-      sum_before;  // over the columns left of an entry's window; may wrap, differences do not
-  Scratch<std::uint32_t> energy_before;
-  Scratch<std::int32_t> columns;  // of the window, those inside the image
+  int first;                            // entry of a pixel
+  int width;                            // so many are
+  Scratch<std::int32_t> column_sum;     // [entry + half]
+  Scratch<std::int32_t> column_energy;  // likewise, of squares
+  Scratch<std::int32_t>
+      sum_before;  // [entry + half]: over the columns before the entry; may wrap, differences do not
+  Scratch<std::int32_t> energy_before;
+  Scratch<std::int32_t> columns;  // [entry]: of the window, those inside the image
   Scratch<std::int32_t> sum;
   Scratch<std::int32_t> energy;
-  Scratch<float> inverse;  // as the operator asks for it
+  Scratch<float> inverse;  // root, as the operator asks for it
 
-  /// Of a row of `length` entries, of which `width` from `first` on are pixels.
-  Moments(int length, int first, int width, int window_half)
-      : half(window_half),
-        count(round_up(length, 16)),
-        column_sum(count + 2 * half + 16),
-        column_energy(count + 2 * half + 16),
-        sum_before(count + 2 * half + 17),
-        energy_before(count + 2 * half + 17),
-        columns(count),
-        sum(count),
-        energy(count),
-        inverse(count) {
+  Moments(const Geometry& g, int first_entry)
+      : half(g.half),
+        first(first_entry),
+        width(g.width),
+        column_sum(g.length + 2 * half + 16),
+        column_energy(g.length + 2 * half + 16),
+        sum_before(g.length + 2 * half + 17),
+        energy_before(g.length + 2 * half + 17),
+        columns(g.length + 16),
+        sum(g.length + 16),
+        energy(g.length + 16),
+        inverse(g.length + 16) {
     for (int x = 0; x < width; ++x) {
       columns[first + x] = std::min(x + half, width - 1) - std::max(x - half, 0) + 1;
     }
-  }
-
-  [[nodiscard]] std::int32_t sum_over(int first, int last) const {
-    return static_cast<std::int32_t>(sum_before[last + 1 + half] - sum_before[first + half]);
-  }
-  [[nodiscard]] std::int32_t energy_over(int first, int last) const {
-    return static_cast<std::int32_t>(energy_before[last + 1 + half] - energy_before[first + half]);
   }
 };
 
 /// What one row of the right image (the left row's own, or one of its band) is correlated with.
 struct Strip {
-  int row;                        // of the right image, relative to the left one's
-  int rows = 0;                   // of the window, those inside both images
-  Scratch<std::int32_t> columns;  // [x][lane], and one more column that stays 0
-  Scratch<std::int32_t> box;      // [lane]
-  Scratch<std::int32_t> left_pairs;
+  int row;                            // of the right image, relative to the left one's
+  int rows = 0;                       // of the window, those inside both images
+  Scratch<std::int32_t> column_sums;  // Geometry::column()
+  Scratch<std::int32_t> box;          // [lane]
+  Scratch<std::int32_t> left_pairs;   // [pad + x]
   Scratch<std::int32_t> right_pairs;  // reversed
   Moments left;
   Moments right;
 
-  Strip(int strip_row, const Geometry& g, bool with_moments)
+  Strip(int strip_row, const Geometry& g)
       : row(strip_row),
-        columns((g.width + 1) * g.lanes),
+        column_sums((g.width + 1) * g.lanes),
         box(g.lanes),
-        left_pairs(round_up(g.width, 16) + 16),
-        right_pairs(g.length),
-        left(with_moments ? g.width : 0, 0, with_moments ? g.width : 0, g.half),
-        right(with_moments ? g.length : 0, g.pad, with_moments ? g.width : 0, g.half) {}
+        left_pairs(g.length + 16),
+        right_pairs(g.length + 16),
+        left(g, g.pad),
+        right(g, g.pad) {}
 };
 
-/// A window of the left pixel and its partners, lane by lane: where clipping makes every candidate's window
-/// different.
-struct LaneSums {
-  Scratch<std::int32_t> n, l, ll, r, rr;
-  Scratch<float> inverse_l, inverse_r, inverse_n;
-  explicit LaneSums(int lanes)
-      : n(lanes),
-        l(lanes),
-        ll(lanes),
-        r(lanes),
-        rr(lanes),
-        inverse_l(lanes),
-        inverse_r(lanes),
-        inverse_n(lanes) {}
-};
+/// A strip's and its geometry's numbers as plain locals: the compiler must assume that a vector store changes
+/// whatever is reached through a reference, and would fetch it anew for every vector.
+struct Rows {
+  Geometry g;
+  int rows;
+  std::int32_t* column_sums;
+  std::int32_t* box;
+  const std::int32_t* left_pairs;
+  const std::int32_t* right_pairs;
+  const std::int32_t* l;
+  const std::int32_t* ll;
+  const float* inverse_l;
+  const std::int32_t* r;
+  const std::int32_t* rr;
+  const float* inverse_r;
+  const std::int32_t* l_before;  // [entry + half]
+  const std::int32_t* ll_before;
+  const std::int32_t* r_before;
+  const std::int32_t* rr_before;
 
-/// The sums that turn a pixel's box sums into costs. Away from the borders, the left ones are the same for
-/// every lane.
-struct PixelSums {
-  std::int32_t n = 0;
-  std::int32_t l = 0;
-  std::int32_t ll = 0;
-  float inverse_l = 0;
-  float inverse_n = 0;
-  const std::int32_t* r = nullptr;
-  const std::int32_t* rr = nullptr;
-  const float* inverse_r = nullptr;
+  Rows(const Strip& strip, const Geometry& geometry)
+      : g(geometry),
+        rows(strip.rows),
+        column_sums(strip.column_sums.data()),
+        box(strip.box.data()),
+        left_pairs(strip.left_pairs.data()),
+        right_pairs(strip.right_pairs.data()),
+        l(strip.left.sum.data()),
+        ll(strip.left.energy.data()),
+        inverse_l(strip.left.inverse.data()),
+        r(strip.right.sum.data()),
+        rr(strip.right.energy.data()),
+        inverse_r(strip.right.inverse.data()),
+        l_before(strip.left.sum_before.data()),
+        ll_before(strip.left.energy_before.data()),
+        r_before(strip.right.sum_before.data()),
+        rr_before(strip.right.energy_before.data()) {}
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 // Formulas: pixel_math.hpp, lane by lane
-
-template <bool kBorder>
-CAIRN_LANES_INLINE VI left_sum(std::int32_t same, const Scratch<std::int32_t>& per_lane, int i) {
-  if constexpr (kBorder) {
-    return lanes::Load(I(), per_lane.data() + i);
-  } else {
-    return lanes::Set(I(), same);
-  }
-}
-template <bool kBorder>
-CAIRN_LANES_INLINE VF left_factor(float same, const Scratch<float>& per_lane, int i) {
-  if constexpr (kBorder) {
-    return lanes::Load(F(), per_lane.data() + i);
-  } else {
-    return lanes::Set(F(), same);
-  }
-}
 
 /// n·a − b·c, rounded once. Narrow where the result is known to fit 32 bits, whatever the products do.
 template <bool kWide>
@@ -190,158 +183,242 @@ CAIRN_LANES_INLINE VF difference(VI n, VI a, VI b, VI c) {
   }
 }
 
-template <Cost kCost, bool kWide, bool kBorder>
-CAIRN_LANES_INLINE VF cost_of(VI box, const PixelSums& p, const LaneSums& per_lane, int i) {
+/// 1/√(n·energy − sum²) for zncc, 1/√energy for nssd; 0 where that is 1/0.
+template <Cost kCost, bool kWide>
+CAIRN_LANES_INLINE VF inverse_root(VI n, VI energy, VI sum) {
   const F f;
-  const I i32;
-  if constexpr (kCost == Cost::sad) {
-    return lanes::ConvertTo(f, box);
-  } else if constexpr (kCost == Cost::zsad) {
-    return lanes::Mul(lanes::ConvertTo(f, box), lanes::Set(f, 1.0F / pixel_math::kMeanSteps));
-  } else if constexpr (kCost == Cost::zncc) {
-    const VF covariance =
-        difference<kWide>(left_sum<kBorder>(p.n, per_lane.n, i), box, left_sum<kBorder>(p.l, per_lane.l, i),
-                          lanes::LoadU(i32, p.r + i));
-    const VF inverse = lanes::Mul(left_factor<kBorder>(p.inverse_l, per_lane.inverse_l, i),
-                                  lanes::LoadU(f, p.inverse_r + i));
-    return lanes::Max(lanes::Zero(f), lanes::Sub(lanes::Set(f, 1.0F), lanes::Mul(covariance, inverse)));
+  if constexpr (kCost != Cost::nssd && kCost != Cost::zncc) return lanes::Zero(f);
+  const VF v = kCost == Cost::nssd ? lanes::ConvertTo(f, energy) : difference<kWide>(n, energy, sum, sum);
+  return lanes::IfThenElseZero(lanes::Gt(v, lanes::Zero(f)), lanes::Div(lanes::Set(f, 1.0F), lanes::Sqrt(v)));
+}
+
+/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp.
+struct Sums {
+  VI n, l, ll, r, rr;
+  VF inverse_n, inverse_l, inverse_r;
+};
+
+/// sad, zsad: the box sum is the cost.
+template <Cost kCost>
+CAIRN_LANES_INLINE VF cost_of(VI box) {
+  const VF cost = lanes::ConvertTo(F(), box);
+  return kCost == Cost::zsad ? lanes::Mul(cost, lanes::Set(F(), 1.0F / pixel_math::kMeanSteps)) : cost;
+}
+
+template <Cost kCost, bool kWide>
+CAIRN_LANES_INLINE VF cost_of(VI box, const Sums& s) {
+  const F f;
+  if constexpr (kCost == Cost::zncc) {
+    const VF correlation =
+        lanes::Mul(difference<kWide>(s.n, box, s.l, s.r), lanes::Mul(s.inverse_l, s.inverse_r));
+    return lanes::Max(lanes::Zero(f), lanes::Sub(lanes::Set(f, 1.0F), correlation));
   } else {
-    const VI energies = lanes::Add(left_sum<kBorder>(p.ll, per_lane.ll, i), lanes::LoadU(i32, p.rr + i));
-    const VI ssd = lanes::Sub(energies, lanes::Add(box, box));  // Σ(L−R)² = ΣL² + ΣR² − 2ΣLR
+    const VI ssd = lanes::Sub(lanes::Add(s.ll, s.rr), lanes::Add(box, box));  // Σ(L−R)² = ΣL² + ΣR² − 2ΣLR
     if constexpr (kCost == Cost::ssd) {
       return lanes::ConvertTo(f, ssd);
     } else if constexpr (kCost == Cost::nssd) {
-      const VF inverse = lanes::Mul(left_factor<kBorder>(p.inverse_l, per_lane.inverse_l, i),
-                                    lanes::LoadU(f, p.inverse_r + i));
+      const VF inverse = lanes::Mul(s.inverse_l, s.inverse_r);
       return lanes::IfThenElse(lanes::Gt(inverse, lanes::Zero(f)),
                                lanes::Mul(lanes::ConvertTo(f, ssd), inverse),
                                lanes::Set(f, pixel_math::kNoEnergyCost));
     } else {
-      const VI l_minus_r = lanes::Sub(left_sum<kBorder>(p.l, per_lane.l, i), lanes::LoadU(i32, p.r + i));
-      const VF spread = difference<kWide>(left_sum<kBorder>(p.n, per_lane.n, i), ssd, l_minus_r, l_minus_r);
-      return lanes::Mul(spread, left_factor<kBorder>(p.inverse_n, per_lane.inverse_n, i));
+      const VI l_minus_r = lanes::Sub(s.l, s.r);
+      return lanes::Mul(difference<kWide>(s.n, ssd, l_minus_r, l_minus_r), s.inverse_n);
     }
   }
 }
 
 // ---------------------------------------------------------------------------------------------------------------
-// Running sums
-
-/// One step to the right: the column that comes in changes by this row, and joins the box; another leaves it.
-struct Step {
-  std::int32_t left_pair;
-  const std::int32_t* right_pairs;
-  const std::int32_t* signs;  // sums of differences only: (1, −1), 0 where a column has no partner
-  std::int32_t* incoming;
-  const std::int32_t* outgoing;
-};
-
-/// What the incoming column changes by.
-template <Cost kCost, bool kBorder>
-CAIRN_LANES_INLINE VI change_of(const Step& step, int i) {
-  const I i32;
-  const VI left = lanes::Set(i32, step.left_pair);
-  const VI right = lanes::LoadU(i32, step.right_pairs + i);
-  if constexpr (correlates(kCost)) {
-    return lanes::DotPairs(i32, left, right);
-  } else if constexpr (kBorder) {
-    return lanes::DotPairs(i32, lanes::AbsDiffPairs(i32, left, right), lanes::LoadU(i32, step.signs + i));
-  } else {
-    return lanes::DotPairs(i32, lanes::AbsDiffPairs(i32, left, right), lanes::Set(i32, pair_of(1, -1)));
-  }
-}
-
-template <Cost kCost, bool kBorder>
-CAIRN_LANES_INLINE VI updated_column(const Step& step, int i) {
-  const I i32;
-  const VI column = lanes::Add(lanes::Load(i32, step.incoming + i), change_of<kCost, kBorder>(step, i));
-  lanes::Store(column, i32, step.incoming + i);
-  return column;
-}
-
-/// Before a row's first pixel: the column alone, the box not yet complete.
-template <Cost kCost>
-void update_column(const Step& step, std::int32_t* box, int lanes_used) {
-  const I i32;
-  for (int i = 0; i < lanes_used; i += lane_count()) {
-    const VI column = updated_column<kCost, true>(step, i);
-    lanes::Store(lanes::Add(lanes::Load(i32, box + i), column), i32, box + i);
-  }
-}
-
-/// One pixel's costs, all lanes.
-template <Cost kCost, bool kWide, bool kBorder>
-CAIRN_LANES_INLINE void slide(const Step& step, std::int32_t* box_sums, const PixelSums& sums,
-                              const LaneSums& per_lane, int lanes_used, float* costs) {
-  const I i32;
-  for (int i = 0; i < lanes_used; i += lane_count()) {
-    const VI column = updated_column<kCost, kBorder>(step, i);
-    const VI box =
-        lanes::Sub(lanes::Add(lanes::Load(i32, box_sums + i), column), lanes::Load(i32, step.outgoing + i));
-    lanes::Store(box, i32, box_sums + i);
-    lanes::Store(cost_of<kCost, kWide, kBorder>(box, sums, per_lane, i), F(), costs + i);
-  }
-}
-
-// ---------------------------------------------------------------------------------------------------------------
-// Moments
-
-/// n·e − s² for zncc, e for nssd: what the inverse root is taken of.
-template <Cost kCost>
-CAIRN_LANES_INLINE VF inverse_of(VI n, VI energy, VI sum) {
-  if constexpr (kCost == Cost::nssd) {
-    return lanes::InverseRoot(F(), lanes::Set(I(), 1), energy, lanes::Zero(I()));
-  } else {
-    return lanes::InverseRoot(F(), n, energy, sum);
-  }
-}
-template <Cost kCost>
-float inverse_of(std::int64_t n, std::int64_t energy, std::int64_t sum) {
-  return pixel_math::inverse_root(kCost == Cost::nssd ? energy : n * energy - sum * sum);
-}
+// The windows' own sums
 
 /// The columns' sums, one row further down. `pairs`: as the image has them, nothing negated.
 inline void move_down(Moments& m, const std::int32_t* pairs) {
   const I i32;
   const VI difference_signs = lanes::Set(i32, pair_of(1, -1));
   const VI sum_signs = lanes::Set(i32, pair_of(1, 1));
-  for (int e = 0; e < m.count; e += lane_count()) {
+  std::int32_t* const sums = m.column_sum.data() + m.half;
+  std::int32_t* const energies = m.column_energy.data() + m.half;
+  for (int e = m.first, end = m.first + m.width; e < end; e += lane_count()) {
     const VI pair = lanes::LoadU(i32, pairs + e);
     const VI change = lanes::DotPairs(i32, pair, difference_signs);
     const VI squares = lanes::Mul(change, lanes::DotPairs(i32, pair, sum_signs));  // a² − b² = (a − b)(a + b)
-    std::int32_t* sum = m.column_sum.data() + m.half + e;
-    std::int32_t* energy = m.column_energy.data() + m.half + e;
-    lanes::StoreU(lanes::Add(lanes::LoadU(i32, sum), change), i32, sum);
-    lanes::StoreU(lanes::Add(lanes::LoadU(i32, energy), squares), i32, energy);
+    lanes::StoreU(lanes::Add(lanes::LoadU(i32, sums + e), change), i32, sums + e);
+    lanes::StoreU(lanes::Add(lanes::LoadU(i32, energies + e), squares), i32, energies + e);
+  }
+}
+
+inline void sum_up(const Scratch<std::int32_t>& columns, const Scratch<std::int32_t>& before) {
+  const std::int32_t* const column = columns.data();
+  std::int32_t* const out = before.data();
+  std::uint32_t sum = 0;
+  for (int e = 0, count = columns.size(); e < count; ++e) {
+    sum += static_cast<std::uint32_t>(column[e]);
+    out[e + 1] = static_cast<std::int32_t>(sum);
   }
 }
 
 /// Every window's own sums, out of the columns'. `rows`: of the window, those inside.
-template <Cost kCost>
+template <Cost kCost, bool kWide>
 void sum_windows(Moments& m, int rows) {
   const I i32;
-  std::uint32_t sum = 0;
-  std::uint32_t energy = 0;
-  for (int e = 0; e < m.count + 2 * m.half; ++e) {
-    sum += static_cast<std::uint32_t>(m.column_sum[e]);
-    energy += static_cast<std::uint32_t>(m.column_energy[e]);
-    m.sum_before[e + 1] = sum;
-    m.energy_before[e + 1] = energy;
-  }
-  const auto* sum_before = reinterpret_cast<const std::int32_t*>(m.sum_before.data());
-  const auto* energy_before = reinterpret_cast<const std::int32_t*>(m.energy_before.data());
+  sum_up(m.column_sum, m.sum_before);
+  sum_up(m.column_energy, m.energy_before);
+  const std::int32_t* const sum_before = m.sum_before.data();
+  const std::int32_t* const energy_before = m.energy_before.data();
+  const std::int32_t* const columns = m.columns.data();
+  std::int32_t* const sums = m.sum.data();
+  std::int32_t* const energies = m.energy.data();
+  float* const inverses = m.inverse.data();
   const int window = 2 * m.half + 1;
-  for (int e = 0; e < m.count; e += lane_count()) {
-    const VI l = lanes::Sub(lanes::LoadU(i32, sum_before + e + window), lanes::LoadU(i32, sum_before + e));
-    const VI ll =
+  for (int e = m.first, end = m.first + m.width; e < end; e += lane_count()) {
+    const VI sum = lanes::Sub(lanes::LoadU(i32, sum_before + e + window), lanes::LoadU(i32, sum_before + e));
+    const VI energy =
         lanes::Sub(lanes::LoadU(i32, energy_before + e + window), lanes::LoadU(i32, energy_before + e));
-    lanes::Store(l, i32, m.sum.data() + e);
-    lanes::Store(ll, i32, m.energy.data() + e);
-    if constexpr (kCost == Cost::nssd || kCost == Cost::zncc) {
-      const VI n = lanes::Mul(lanes::Set(i32, rows), lanes::Load(i32, m.columns.data() + e));
-      lanes::Store(inverse_of<kCost>(n, ll, l), F(), m.inverse.data() + e);
-    }
+    const VI n = lanes::Mul(lanes::Set(i32, rows), lanes::LoadU(i32, columns + e));
+    lanes::StoreU(sum, i32, sums + e);
+    lanes::StoreU(energy, i32, energies + e);
+    lanes::StoreU(inverse_root<kCost, kWide>(n, energy, sum), F(), inverses + e);
   }
+}
+
+/// Of left pixel x and its partners from lane i on, where no window is clipped at the left or right: each
+/// image's own.
+CAIRN_LANES_INLINE Sums own_sums(const Rows& in, int x, int i) {
+  const I i32;
+  const F f;
+  const int e = in.g.pad + x;
+  const int j = in.g.first_lane(x) + i;
+  const int n = in.rows * (2 * in.g.half + 1);
+  return {lanes::Set(i32, n),
+          lanes::Set(i32, in.l[e]),
+          lanes::Set(i32, in.ll[e]),
+          lanes::LoadU(i32, in.r + j),
+          lanes::LoadU(i32, in.rr + j),
+          lanes::Set(f, 1.0F / static_cast<float>(n)),
+          lanes::Set(f, in.inverse_l[e]),
+          lanes::LoadU(f, in.inverse_r + j)};
+}
+
+/// The sum over the left window's columns from max(begin, d) to min(end, width + d) − 1, lane by lane.
+CAIRN_LANES_INLINE VI clipped_left_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
+                                       int i) {
+  const I i32;
+  const VI d = lanes::Iota(i32, g.first_d + i);
+  const std::int32_t* const at = before + g.half + g.pad;  // [x]
+  const VI low = lanes::IfThenElse(lanes::Gt(d, lanes::Set(i32, begin)),
+                                   lanes::LoadU(i32, at + g.first_d + i), lanes::Set(i32, at[begin]));
+  const VI high =
+      lanes::IfThenElse(lanes::Lt(d, lanes::Set(i32, end - g.width)),
+                        lanes::LoadU(i32, at + g.width + g.first_d + i), lanes::Set(i32, at[end]));
+  return lanes::Sub(high, low);
+}
+
+/// The sum over the same columns' partners. Where a partner lies outside, its column is 0 and need not be
+/// left out.
+CAIRN_LANES_INLINE VI clipped_right_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
+                                        int i) {
+  const I i32;
+  const std::int32_t* const at = before + g.half + i;  // [first lane]
+  return lanes::Sub(lanes::LoadU(i32, at + g.first_lane(begin) + 1),
+                    lanes::LoadU(i32, at + g.first_lane(end - 1)));
+}
+
+/// The same near the left and right borders: of those columns alone that lie inside both images, lane by
+/// lane.
+template <Cost kCost, bool kWide>
+CAIRN_LANES_INLINE Sums clipped_sums(const Rows& in, int x, int i) {
+  const I i32;
+  const F f;
+  const Geometry& g = in.g;
+  const int begin = std::max(x - g.half, 0);
+  const int end = std::min(x + g.half + 1, g.width);
+  const VI d = lanes::Iota(i32, g.first_d + i);
+  const VI columns = lanes::Sub(lanes::Min(lanes::Set(i32, end), lanes::Add(lanes::Set(i32, g.width), d)),
+                                lanes::Max(lanes::Set(i32, begin), d));
+  const VI n = lanes::Mul(lanes::Set(i32, in.rows), columns);
+  const VI l = clipped_left_sum(in.l_before, g, begin, end, i);
+  const VI ll = clipped_left_sum(in.ll_before, g, begin, end, i);
+  const VI r = clipped_right_sum(in.r_before, g, begin, end, i);
+  const VI rr = clipped_right_sum(in.rr_before, g, begin, end, i);
+  return {n,
+          l,
+          ll,
+          r,
+          rr,
+          lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, n)),
+          inverse_root<kCost, kWide>(n, ll, l),
+          inverse_root<kCost, kWide>(n, rr, r)};
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// Running sums
+
+/// By how much the columns of left pixel x change with this row, lanes i and on.
+template <Cost kCost, bool kBorder>
+CAIRN_LANES_INLINE VI change_of(const Rows& in, int x, int i) {
+  const I i32;
+  const Geometry& g = in.g;
+  const int j = g.first_lane(x) + i;
+  const VI left = lanes::Set(i32, in.left_pairs[g.pad + x]);
+  const VI right = lanes::LoadU(i32, in.right_pairs + j);
+  if constexpr (correlates(kCost)) return lanes::DotPairs(i32, left, right);
+  VI signs = lanes::Set(i32, pair_of(1, -1));
+  if constexpr (kBorder) {
+    // Partners stand at the entries from pad to pad + width − 1; others count for nothing.
+    const VI entry = lanes::Iota(i32, j);
+    const auto inside = lanes::And(lanes::Gt(entry, lanes::Set(i32, g.pad - 1)),
+                                   lanes::Lt(entry, lanes::Set(i32, g.pad + g.width)));
+    signs = lanes::IfThenElseZero(inside, signs);
+  }
+  return lanes::DotPairs(i32, lanes::AbsDiffPairs(i32, left, right), signs);
+}
+
+template <Cost kCost, bool kBorder>
+CAIRN_LANES_INLINE VI updated_column(const Rows& in, int x, int i) {
+  const I i32;
+  std::int32_t* const sums = in.column_sums + in.g.column(x, i);
+  const VI column = lanes::Add(lanes::Load(i32, sums), change_of<kCost, kBorder>(in, x, i));
+  lanes::Store(column, i32, sums);
+  return column;
+}
+
+/// Before a row's first pixel: the columns x < end join the box, which starts anew.
+template <Cost kCost>
+void begin_box(const Strip& strip, const Geometry& g, int end) {
+  const I i32;
+  const Rows in(strip, g);
+  for (int i = 0; i < in.g.lanes; i += lane_count()) {
+    VI box = lanes::Zero(i32);
+    for (int x = 0; x < end; ++x) box = lanes::Add(box, updated_column<kCost, true>(in, x, i));
+    lanes::Store(box, i32, in.box + i);
+  }
+}
+
+/// The costs of left pixels x_begin … x_end − 1, lanes i and on. For each a column joins the box and one
+/// leaves it.
+template <Cost kCost, bool kWide, bool kBorder>
+void slide(const Strip& strip, const Geometry& geometry, int x_begin, int x_end, int i, float* costs,
+           std::ptrdiff_t stride) {
+  const I i32;
+  const Rows in(strip, geometry);
+  const int half = in.g.half;
+  VI box = lanes::Load(i32, in.box + i);
+  for (int x = x_begin; x < x_end; ++x) {
+    if (!kBorder || x + half < in.g.width) {
+      box = lanes::Add(box, updated_column<kCost, kBorder>(in, x + half, i));
+    }
+    const int leaving = kBorder ? std::max(x - half - 1, -1) : x - half - 1;
+    box = lanes::Sub(box, lanes::Load(i32, in.column_sums + in.g.column(leaving, i)));
+    if constexpr (!correlates(kCost)) {
+      lanes::Store(cost_of<kCost>(box), F(), costs);
+    } else if constexpr (kBorder) {
+      lanes::Store(cost_of<kCost, kWide>(box, clipped_sums<kCost, kWide>(in, x, i)), F(), costs);
+    } else {
+      lanes::Store(cost_of<kCost, kWide>(box, own_sums(in, x, i)), F(), costs);
+    }
+    costs += stride;
+  }
+  lanes::Store(box, i32, in.box + i);
 }
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -415,14 +492,15 @@ template <bool kTies>
 void update_right(const CostBlock& block, const Geometry& g, int x_first, int pixels, RightRow& right) {
   const F f;
   const VF one = lanes::Set(f, 1.0F);
-  const int first = g.first_lane(x_first + pixels - 1);
-  for (int j = 0; j < g.count + pixels - 1; j += lane_count()) {
-    float* const cost_at = right.cost.data() + first + j;
-    float* const lane_at = right.lane.data() + first + j;
-    VF least = lanes::LoadU(f, cost_at);
-    VF where = lanes::LoadU(f, lane_at);
+  float* const right_cost = right.cost.data() + g.first_lane(x_first + pixels - 1);
+  float* const right_lane = right.lane.data() + g.first_lane(x_first + pixels - 1);
+  const float* const first_costs = block.of(0) - pixels + 1;
+  const std::ptrdiff_t next = block.stride + 1;
+  for (int j = 0, end = g.count + pixels - 1; j < end; j += lane_count()) {
+    VF least = lanes::LoadU(f, right_cost + j);
+    VF where = lanes::LoadU(f, right_lane + j);
     VF lane = lanes::Iota(f, static_cast<float>(j - pixels + 1));
-    const float* costs = block.of(0) + j - pixels + 1;
+    const float* costs = first_costs + j;
     for (int pixel = 0; pixel < pixels; ++pixel) {
       const VF cost = lanes::LoadU(f, costs);
       auto better = lanes::Lt(cost, least);
@@ -432,10 +510,10 @@ void update_right(const CostBlock& block, const Geometry& g, int x_first, int pi
       where = lanes::IfThenElse(better, lane, where);
       least = lanes::Min(cost, least);
       lane = lanes::Add(lane, one);
-      costs += block.stride + 1;
+      costs += next;
     }
-    lanes::StoreU(least, f, cost_at);
-    lanes::StoreU(where, f, lane_at);
+    lanes::StoreU(least, f, right_cost + j);
+    lanes::StoreU(where, f, right_lane + j);
   }
 }
 
@@ -473,16 +551,13 @@ class Band {
         first_matched_(full_ ? std::max(0, first - radius_) : first),
         last_matched_(full_ ? std::min(g_.height, last + radius_) : last),
         zeros_(std::max(g_.length, g_.width)),
-        signs_(g_.length),
-        per_lane_(g_.lanes),
         block_(g_.lanes),
         least_(radius_ > 0 ? g_.lanes : 0),
         row_of_(radius_ > 0 ? g_.lanes : 0) {
-    std::fill_n(signs_.data() + g_.pad, g_.width, pair_of(1, -1));
-    strips_.emplace_back(0, g_, correlates(kCost));
+    strips_.emplace_back(0, g_);
     for (int k = 1; k <= radius_; ++k) {
-      strips_.emplace_back(-k, g_, correlates(kCost));
-      strips_.emplace_back(k, g_, correlates(kCost));
+      strips_.emplace_back(-k, g_);
+      strips_.emplace_back(k, g_);
     }
     for (int i = 0; full_ && i < 2 * radius_ + 1; ++i) right_rows_.emplace_back(g_.length);
   }
@@ -526,8 +601,8 @@ class Band {
       move_down(strip.right, strip.right_pairs.data());
       // The product that goes out is taken away.
       for (int x = 0; x < g_.width; ++x) {
-        const std::int32_t pair = strip.left_pairs[x];
-        strip.left_pairs[x] = pair_of(pair & 0xFFFF, -(pair >> 16));
+        std::int32_t& pair = strip.left_pairs[g_.pad + x];
+        pair = pair_of(pair & 0xFFFF, -(pair >> 16));
       }
     }
   }
@@ -538,7 +613,7 @@ class Band {
     const auto* zeros = reinterpret_cast<const Pixel*>(zeros_.data());
     const Pixel* in = incoming >= 0 ? left.row(incoming) : zeros;
     const Pixel* out = outgoing >= 0 ? left.row(outgoing) : zeros;
-    std::int32_t* pairs = strip.left_pairs.data();
+    std::int32_t* pairs = strip.left_pairs.data() + g_.pad;
     for (int x = 0; x < g_.width; ++x) pairs[x] = pair_of(in[x], out[x]);
 
     in = incoming >= 0 ? right.row(incoming + strip.row) : zeros;
@@ -547,21 +622,7 @@ class Band {
     for (int i = 0, x = g_.width - 1; i < g_.width; ++i, --x) pairs[i] = pair_of(in[x], out[x]);
   }
 
-  [[nodiscard]] Step step(const Strip& strip, int x_in, int x_out) const {
-    const bool comes = x_in < g_.width;
-    // The column number `width` is 0 and stays so: nothing comes in, or nothing goes out.
-    const auto column = [&](int x) {
-      return strip.columns.data() + static_cast<std::ptrdiff_t>(x) * g_.lanes;
-    };
-    return {comes ? strip.left_pairs[x_in] : 0,
-            comes ? strip.right_pairs.data() + g_.first_lane(x_in) : zeros_.data(),
-            comes ? signs_.data() + g_.first_lane(x_in) : zeros_.data(), column(comes ? x_in : g_.width),
-            column(x_out >= 0 ? x_out : g_.width)};
-  }
-
-  void update_all_columns(Strip& strip) {
-    for (int x = 0; x < g_.width; ++x) update_column<kCost>(step(strip, x, -1), strip.box.data(), g_.lanes);
-  }
+  void update_all_columns(Strip& strip) { begin_box<kCost>(strip, g_, g_.width); }
 
   // -- one row's costs
   // -------------------------------------------------------------------------------------------
@@ -574,13 +635,10 @@ class Band {
         continue;
       }
       if constexpr (correlates(kCost)) {
-        sum_windows<kCost>(strip.left, strip.rows);
-        sum_windows<kCost>(strip.right, strip.rows);
+        sum_windows<kCost, kWide>(strip.left, strip.rows);
+        sum_windows<kCost, kWide>(strip.right, strip.rows);
       }
-      std::fill_n(strip.box.data(), g_.lanes, 0);
-      for (int x = 0; x < std::min(g_.half, g_.width); ++x) {
-        update_column<kCost>(step(strip, x, -1), strip.box.data(), g_.lanes);
-      }
+      begin_box<kCost>(strip, g_, std::min(g_.half, g_.width));
     }
     for (int x = 0; x < g_.width; x += kBlock) match_block(x, std::min(kBlock, g_.width - x), y);
   }
@@ -594,7 +652,7 @@ class Band {
     if (radius_ > 0) std::fill_n(least_.costs.data(), kBlock * least_.stride, kNoCost);
     for (Strip& strip : strips_) {
       if (!wanted(strip, y)) continue;
-      for (int i = 0; i < pixels; ++i) costs_of(strip, x_first + i, block_.of(i));
+      fill_costs(strip, x_first, pixels);
       if (full_ && mine(y + strip.row)) {
         RightRow& right = right_row(y + strip.row);
         radius_ > 0 ? update_right<true>(block_, g_, x_first, pixels, right)
@@ -605,71 +663,27 @@ class Band {
     if (mine(y)) settle(radius_ > 0 ? least_ : block_, x_first, pixels, y);
   }
 
-  void costs_of(Strip& strip, int x, float* costs) {
-    const Step next = step(strip, x + g_.half, x - g_.half - 1);
-    if (at_border(x)) {
-      PixelSums sums;
-      if constexpr (correlates(kCost)) sums = sum_lanes(strip, x);
-      slide<kCost, kWide, true>(next, strip.box.data(), sums, per_lane_, g_.lanes, costs);
-    } else {
-      PixelSums sums;
-      if constexpr (correlates(kCost)) sums = sums_of(strip, x);
-      slide<kCost, kWide, false>(next, strip.box.data(), sums, per_lane_, g_.lanes, costs);
+  void fill_costs(Strip& strip, int x_first, int pixels) {
+    const int x_last = x_first + pixels;
+    for (int i = 0; i < g_.lanes; i += lane_count()) {
+      const int least_d = g_.first_d + i;
+      const int most_d = least_d + lane_count() - 1;
+      // Left of x_begin no lane's window has a column yet. From x_inside to x_border − 1 nothing is clipped.
+      const int x_begin = std::clamp(least_d - g_.half, x_first, x_last);
+      const int x_inside = std::clamp(g_.half + std::max(0, most_d), x_begin, x_last);
+      const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_last);
+      const auto slide_over = [&]<bool kBorder>(int begin, int end) {
+        slide<kCost, kWide, kBorder>(strip, g_, begin, end, i, block_.of(begin - x_first) + i, block_.stride);
+      };
+      slide_over.template operator()<true>(x_begin, x_inside);
+      slide_over.template operator()<false>(x_inside, x_border);
+      slide_over.template operator()<true>(x_border, x_last);
     }
-    std::fill(costs, costs + g_.begin(x), kNoCost);
-    std::fill(costs + g_.end(x), costs + g_.lanes, kNoCost);
-  }
-
-  /// Some candidate's window is clipped at the left or right.
-  [[nodiscard]] bool at_border(int x) const {
-    const int nearest = x - g_.first_d - g_.count + 1;  // the leftmost partner
-    const int furthest = x - g_.first_d;
-    return std::min(x, nearest) < g_.half || std::max(x, furthest) + g_.half >= g_.width;
-  }
-
-  // -- the windows' sums
-  // -----------------------------------------------------------------------------------------
-
-  /// Away from the borders: nothing is clipped.
-  [[nodiscard]] PixelSums sums_of(const Strip& strip, int x) const {
-    const int j = g_.first_lane(x);
-    const std::int32_t n = strip.rows * (2 * g_.half + 1);
-    return {n,
-            strip.left.sum[x],
-            strip.left.energy[x],
-            strip.left.inverse[x],
-            1.0F / static_cast<float>(n),
-            strip.right.sum.data() + j,
-            strip.right.energy.data() + j,
-            strip.right.inverse.data() + j};
-  }
-
-  /// At the borders: per_lane_ takes up both images' own windows, then those are put right that the other
-  /// image clips more than their own does.
-  PixelSums sum_lanes(const Strip& strip, int x) {
-    const int begin = g_.begin(x);
-    const int end = g_.end(x);
-    const int j = g_.first_lane(x);
-    LaneSums& to = per_lane_;
-    for (int i = begin; i < end; ++i) {
-      const int x_right = x - g_.first_d - i;
-      const int arm_left = std::min(g_.half, std::min(x, x_right));
-      const int arm_right = std::min(g_.half, g_.width - 1 - std::max(x, x_right));
-      const int n = strip.rows * (arm_left + arm_right + 1);
-      to.n[i] = n;
-      to.inverse_n[i] = 1.0F / static_cast<float>(n);
-      to.l[i] = strip.left.sum_over(x - arm_left, x + arm_right);
-      to.ll[i] = strip.left.energy_over(x - arm_left, x + arm_right);
-      to.r[i] = strip.right.sum_over(j + i - arm_right, j + i + arm_left);
-      to.rr[i] = strip.right.energy_over(j + i - arm_right, j + i + arm_left);
-      to.inverse_l[i] = inverse_of<kCost>(n, to.ll[i], to.l[i]);
-      to.inverse_r[i] = inverse_of<kCost>(n, to.rr[i], to.r[i]);
+    for (int i = 0; i < pixels; ++i) {
+      float* const costs = block_.of(i);
+      std::fill(costs, costs + g_.begin(x_first + i), kNoCost);
+      std::fill(costs + g_.end(x_first + i), costs + g_.lanes, kNoCost);
     }
-    PixelSums sums;
-    sums.r = to.r.data();
-    sums.rr = to.rr.data();
-    sums.inverse_r = to.inverse_r.data();
-    return sums;
   }
 
   // -- results
@@ -728,8 +742,6 @@ class Band {
   int first_matched_;
   int last_matched_;
   Scratch<std::int32_t> zeros_;
-  Scratch<std::int32_t> signs_;
-  LaneSums per_lane_;
   CostBlock block_;
   CostBlock least_;   // over the rows of the band
   CostBlock row_of_;  // these

@@ -13,7 +13,8 @@
 #include <vector>
 
 #if CAIRN_WITH_HWY
-// Only what Target names; SSSE3 alone, the finer kinds of AVX-512 and Highway's emulation are never asked for.
+// Only what Target names; SSSE3 alone, the finer kinds of AVX-512 and Highway's emulation are never asked
+// for.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/matching/kernels.cpp"

@@ -50,22 +50,4 @@ HWY_INLINE Vec<D> WideDifference(D d, VI n, VI a, VI b, VI c) {
   return Combine(d, DemoteTo(half, high), DemoteTo(half, low));
 }
 
-template <class DD>
-HWY_INLINE Vec<DD> InverseRootOf(DD dd, Vec<DD> v) {
-  return IfThenElseZero(Gt(v, Zero(dd)), Div(Set(dd, 1.0), Sqrt(v)));
-}
-
-/// 1/√(n·e − s²), 0 where that is 0.
-template <class D, class VI>
-HWY_INLINE Vec<D> InverseRoot(D d, VI n, VI e, VI s) {
-  const Half<D> half;
-  const Rebind<double, decltype(half)> dd;
-  const Half<Rebind<std::int32_t, D>> hi;
-  const auto low =
-      ExactDifference(dd, LowerHalf(hi, n), LowerHalf(hi, e), LowerHalf(hi, s), LowerHalf(hi, s));
-  const auto high =
-      ExactDifference(dd, UpperHalf(hi, n), UpperHalf(hi, e), UpperHalf(hi, s), UpperHalf(hi, s));
-  return Combine(d, DemoteTo(half, InverseRootOf(dd, high)), DemoteTo(half, InverseRootOf(dd, low)));
-}
-
 }  // namespace cairn::kernels::HWY_NAMESPACE::lanes

@@ -64,16 +64,10 @@ inline float Sub(float a, float b) {
 inline float Mul(float a, float b) {
   return a * b;
 }
-inline double Mul(double a, double b) {
-  return a * b;
-}
-inline double Sub(double a, double b) {
-  return a - b;
-}
-inline double Div(double a, double b) {
+inline float Div(float a, float b) {
   return a / b;
 }
-inline double Sqrt(double a) {
+inline float Sqrt(float a) {
   return std::sqrt(a);
 }
 // As on every processor, what overflows wraps around.
@@ -162,10 +156,4 @@ inline std::int32_t AbsDiffPairs(Tag<std::int32_t>, std::int32_t a, std::int32_t
 inline float WideDifference(Tag<float>, std::int32_t n, std::int32_t a, std::int32_t b, std::int32_t c) {
   return static_cast<float>(std::int64_t{n} * a - std::int64_t{b} * c);
 }
-/// 1/√(n·e − s²), 0 where that is 0.
-inline float InverseRoot(Tag<float>, std::int32_t n, std::int32_t e, std::int32_t s) {
-  const double v = static_cast<double>(std::int64_t{n} * e - std::int64_t{s} * s);
-  return v > 0 ? static_cast<float>(1.0 / std::sqrt(v)) : 0.0F;
-}
-
 }  // namespace cairn::kernels::plain

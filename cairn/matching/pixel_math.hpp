@@ -19,7 +19,7 @@ inline constexpr int kPartialSums = 16;           // of mean_cost; see sum_of_pa
 
 /// 1/√v in float, 0 where v is 0.
 inline float inverse_root(std::int64_t v) {
-  return v > 0 ? static_cast<float>(1.0 / std::sqrt(static_cast<double>(v))) : 0.0F;
+  return v > 0 ? 1.0F / std::sqrt(static_cast<float>(v)) : 0.0F;
 }
 
 inline float sad(std::int64_t sum) {
