@@ -6,8 +6,6 @@
 #include <io/atomic_file.hpp>
 #include <io/image_files.hpp>
 #include <io/raster.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
@@ -76,22 +74,19 @@ Picture picture_of(const Raster& raster, int depth, const Pool& pool) {
                                 : to_picture<std::uint16_t>(raster, depth, pool);
 }
 
-void encode(const fs::path& path, const cv::Mat& image) {
-  if (image.empty()) throw Error(path.string() + ": cannot be written: the image is empty");
-  std::vector<unsigned char> png;
-  try {
-    cv::imencode(".png", image, png);
-  } catch (const cv::Exception& exception) {
-    throw Error(path.string() + ": cannot be encoded as PNG: " + exception.err);
-  }
-  write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
-}
-
-/// OpenCV's header on the same pixels; it has no form for constant ones.
 template <class T>
-cv::Mat header_on(View<const T> image, int type) {
-  return {image.height(), image.width(), type, const_cast<T*>(image.data()),
-          static_cast<std::size_t>(image.stride()) * sizeof(T)};
+void save(const fs::path& path, View<const T> image, int channels) {
+  if (image.empty()) throw Error(path.string() + ": cannot be written: the image is empty");
+  constexpr auto kBytes = static_cast<std::ptrdiff_t>(sizeof(T));
+  const PngRows rows{image.size(), channels, static_cast<int>(kBytes) / channels,
+                     reinterpret_cast<const std::uint8_t*>(image.data()), image.stride() * kBytes};
+  std::string file;
+  try {
+    file = encode_png(rows);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+  write_file(path, file);
 }
 
 }  // namespace
@@ -131,22 +126,22 @@ Labels load_labels(const fs::path& path, const Pool& pool) {
   return labels;
 }
 
+static_assert(sizeof(Rgb) == 3, "a row of colours is a row of samples");
+
 void save_png(const fs::path& path, View<const std::uint8_t> image) {
-  encode(path, header_on(image, CV_8UC1));
+  save(path, image, 1);
 }
 
 void save_png(const fs::path& path, View<const std::uint16_t> image) {
-  encode(path, header_on(image, CV_16UC1));
+  save(path, image, 1);
 }
 
 void save_png(const fs::path& path, View<const Rgb> image) {
-  cv::Mat bgr;
-  if (!image.empty()) cv::cvtColor(header_on(image, CV_8UC3), bgr, cv::COLOR_RGB2BGR);
-  encode(path, bgr);
+  save(path, image, 3);
 }
 
 void save_png(const fs::path& path, View<const Reject> image) {
-  encode(path, header_on(image, CV_8UC1));
+  save(path, image, 1);
 }
 
 }  // namespace cairn::io

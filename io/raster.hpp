@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -50,5 +51,16 @@ Raster decode_png(std::string_view file, Palette palette);
 Raster decode_jpeg(std::string_view file);
 Raster decode_tiff(std::string_view file, Palette palette);
 Raster decode_pnm(std::string_view file);
+
+/// Rows of samples to be written: grey of 8 or 16 bits, or RGB of 8.
+struct PngRows {
+  Size size;
+  int channels = 1;
+  int bytes_each = 1;
+  const std::uint8_t* first = nullptr;
+  std::ptrdiff_t stride_bytes = 0;
+};
+/// A PNG file's bytes. Throws Error without a file's name.
+std::string encode_png(const PngRows& rows);
 
 }  // namespace cairn::io

@@ -13,35 +13,51 @@
 namespace cairn::io {
 namespace {
 
-struct Source {
-  std::string_view rest;
-  std::string complaint;
-};
-
 void complain(png_structp png, png_const_charp message) {
-  static_cast<Source*>(png_get_error_ptr(png))->complaint = message;
+  *static_cast<std::string*>(png_get_error_ptr(png)) = message;
   png_longjmp(png, 1);
 }
 void keep_quiet(png_structp, png_const_charp) {}
 
 void read_bytes(png_structp png, png_bytep out, std::size_t count) {
-  std::string_view& rest = static_cast<Source*>(png_get_io_ptr(png))->rest;
+  auto& rest = *static_cast<std::string_view*>(png_get_io_ptr(png));
   if (count > rest.size()) png_error(png, "the file ends too early");
   std::memcpy(out, rest.data(), count);
   rest.remove_prefix(count);
 }
 
+void append_bytes(png_structp png, png_bytep bytes, std::size_t count) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
+}
+void flush_nothing(png_structp) {}
+
 struct Reader {
-  explicit Reader(Source& source)
-      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, complain, keep_quiet)),
+  explicit Reader(std::string_view& rest)
+      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint, complain, keep_quiet)),
         info(png != nullptr ? png_create_info_struct(png) : nullptr) {
     if (info == nullptr) throw Error("cannot be read: libpng does not start");
-    png_set_read_fn(png, &source, read_bytes);
+    png_set_read_fn(png, &rest, read_bytes);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+  std::string complaint;
+  png_structp png;
+  png_infop info;
+};
+
+struct Writer {
+  explicit Writer(std::string& file)
+      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, complain, keep_quiet)),
+        info(png != nullptr ? png_create_info_struct(png) : nullptr) {
+    if (info == nullptr) throw Error("cannot be written: libpng does not start");
+    png_set_write_fn(png, &file, append_bytes, flush_nothing);
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+  std::string complaint;
   png_structp png;
   png_infop info;
 };
@@ -55,8 +71,8 @@ bool succeeds(png_structp png, const Steps& steps) {
   return true;
 }
 
-void run(const Reader& reader, const Source& source, const auto& steps) {
-  if (!succeeds(reader.png, steps)) throw Error("is a truncated or damaged PNG: " + source.complaint);
+void run(const Reader& reader, const auto& steps) {
+  if (!succeeds(reader.png, steps)) throw Error("is a truncated or damaged PNG: " + reader.complaint);
 }
 
 /// Deflate packs at most 1032:1, so a short file with a great claim is refused before it costs memory.
@@ -70,14 +86,14 @@ void check_plausible(Size size, std::size_t raster_bytes, std::size_t file_bytes
 }  // namespace
 
 Raster decode_png(std::string_view file, Palette palette) {
-  Source source{file, {}};
-  Reader reader(source);
+  std::string_view rest = file;
+  const Reader reader(rest);
   Raster raster;
   png_uint_32 width = 0;
   png_uint_32 height = 0;
   int depth = 0;
   int colour = 0;
-  run(reader, source, [&] {
+  run(reader, [&] {
     png_read_info(reader.png, reader.info);
     png_get_IHDR(reader.png, reader.info, &width, &height, &depth, &colour, nullptr, nullptr, nullptr);
   });
@@ -90,7 +106,7 @@ Raster decode_png(std::string_view file, Palette palette) {
   raster.declared = depth != 16;
 
   std::size_t row_bytes = 0;
-  run(reader, source, [&] {
+  run(reader, [&] {
     if (indexed && palette == Palette::colours) png_set_palette_to_rgb(reader.png);
     png_set_packing(reader.png);  // less than 8 bits: one byte each, values as they are
     png_set_strip_alpha(reader.png);
@@ -108,11 +124,30 @@ Raster decode_png(std::string_view file, Palette palette) {
   check_plausible(raster.size, bytes, file.size());
   raster.bytes.resize(bytes);
   for (std::size_t y = 0; y < height; ++y) rows[y] = raster.bytes.data() + y * row_bytes;
-  run(reader, source, [&] {
+  run(reader, [&] {
     png_read_image(reader.png, rows.data());
     png_read_end(reader.png, nullptr);
   });
   return raster;
+}
+
+std::string encode_png(const PngRows& rows) {
+  constexpr int kCompression = 3;  // of 9: pictures are written once a frame, and time is dearer than bytes
+  std::string file;
+  const Writer writer(file);
+  const auto steps = [&] {
+    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(rows.size.width),
+                 static_cast<png_uint_32>(rows.size.height), 8 * rows.bytes_each,
+                 rows.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_compression_level(writer.png, kCompression);
+    png_write_info(writer.png, writer.info);
+    if (std::endian::native == std::endian::little) png_set_swap(writer.png);
+    for (int y = 0; y < rows.size.height; ++y) png_write_row(writer.png, rows.first + y * rows.stride_bytes);
+    png_write_end(writer.png, nullptr);
+  };
+  if (!succeeds(writer.png, steps)) throw Error("cannot be encoded as PNG: " + writer.complaint);
+  return file;
 }
 
 }  // namespace cairn::io
