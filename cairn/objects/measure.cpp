@@ -71,12 +71,17 @@ bool is_object(const Outline& outline, const Region& disparity_region, Size imag
          percent <= config.max_area && borders_touched(outline.box, image) < 3;
 }
 
-/// The value of rank ⌊(percent·(n−1) + 50)/100⌋ in ascending order. Reorders `values`, which are not empty.
-float percentile(std::vector<float>& values, int percent) {
-  const auto rank = (static_cast<std::size_t>(percent) * (values.size() - 1) + 50) / 100;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+/// The 2nd to the 98th percentile: the values of ranks ⌊(p·(n−1) + 50)/100⌋ in ascending order. Reorders
+/// `values`, which are not empty.
+float span_without_tails(std::vector<float>& values) {
+  const auto rank = [&](std::size_t percent) {
+    return values.begin() + static_cast<std::ptrdiff_t>((percent * (values.size() - 1) + 50) / 100);
+  };
+  const auto low = rank(2);
+  const auto high = rank(98);
+  std::nth_element(values.begin(), low, values.end());
+  std::nth_element(low, high, values.end());  // what is not below the lower one still has ranks of the whole
+  return *high - *low;
 }
 
 /// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.
@@ -103,8 +108,7 @@ void place(Object& object, std::array<std::vector<float>, 3>& points) {
     std::vector<float>& values = points[axis];
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
     mean[axis] = static_cast<float>(sum / static_cast<double>(values.size()));
-    const float low = percentile(values, 2);
-    span[axis] = percentile(values, 98) - low;
+    span[axis] = span_without_tails(values);
   }
   object.position_in_camera_m = Vec3{mean[0], mean[1], mean[2]};
   object.extent_in_camera_m = Vec3{span[0], span[1], span[2]};
@@ -114,6 +118,7 @@ Object measured(const Inputs& in, RegionId region, const Outline& outline) {
   std::vector<float> disparities;
   disparities.reserve(static_cast<std::size_t>(outline.valid_count));
   std::array<std::vector<float>, 3> points;
+  for (std::vector<float>& axis : points) axis.reserve(in.rig ? disparities.capacity() : 0);
   const Rect box = outline.box;
   for (int y = box.y; y < box.y + box.height; ++y) {
     const RegionId* const label = in.fusion.labels.row(y);

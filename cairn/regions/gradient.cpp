@@ -209,4 +209,56 @@ Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smooth
   return over_neighbours(smooth, exec, disparity_magnitude);
 }
 
+namespace {
+
+Image<Gray> channel(View<const Rgb> rgb, std::uint8_t Rgb::*member, const Exec& exec) {
+  Image<Gray> plane(rgb.size(), exec.pool);
+  for (int y = 0; y < rgb.height(); ++y) {
+    const Rgb* const in = rgb.row(y);
+    Gray* const out = plane.row(y);
+    for (int x = 0; x < rgb.width(); ++x) out[x] = in[x].*member;
+  }
+  return plane;
+}
+
+/// Raises `strength` to the magnitude of one smoothed channel (1/16 levels) where that is larger.
+void raise_to_edges(View<const std::int16_t> smooth, View<std::uint16_t> strength, const Exec& exec) {
+  const int width = smooth.width();
+  const int height = smooth.height();
+  parallel_for(exec, height, kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const std::int16_t* const up = smooth.row(std::max(y - 1, 0));
+      const std::int16_t* const here = smooth.row(y);
+      const std::int16_t* const down = smooth.row(std::min(y + 1, height - 1));
+      std::uint16_t* const out = strength.row(y);
+      for (int x = 0; x < width; ++x) {
+        const int gx = here[std::min(x + 1, width - 1)] - here[std::max(x - 1, 0)];
+        const int gy = down[x] - up[x];
+        const float magnitude =
+            std::sqrt(static_cast<float>(gx * gx + gy * gy)) * 0.125F;  // 1/32 → 1/4 level
+        out[x] = std::max(out[x], static_cast<std::uint16_t>(magnitude + 0.5F));
+      }
+    }
+  });
+}
+
+}  // namespace
+
+Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, float smoothing_sigma,
+                                   const Exec& exec) {
+  const Kernel kernel = gaussian(smoothing_sigma);
+  Image<std::uint16_t> strength(gray.size(), 0, exec.pool);
+  if (rgb.empty()) {
+    const Image<std::int16_t> smooth = smoothed(gray, kernel, exec);
+    raise_to_edges(smooth, strength, exec);
+    return strength;
+  }
+  for (const auto member : {&Rgb::r, &Rgb::g, &Rgb::b}) {
+    const Image<Gray> plane = channel(rgb, member, exec);
+    const Image<std::int16_t> smooth = smoothed(plane.view(), kernel, exec);
+    raise_to_edges(smooth, strength, exec);
+  }
+  return strength;
+}
+
 }  // namespace cairn

@@ -22,6 +22,12 @@ inline constexpr int kSteepest16 = 4095;
 /// centre takes what is missing to 256; border replicated; s is rounded to 1/16 grey level. σ = 0: none.
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma, const Exec& exec);
 
+/// The same for edges between facets: central differences ((s(x+1) − s(x−1))/2), in 1/4 grey level, not
+/// capped; with colour (`rgb` not empty) the largest of the three channels' magnitudes, so that edges of
+/// equal grey count. (METHOD §4, beyond the paper)
+Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, float smoothing_sigma,
+                                   const Exec& exec);
+
 /// d·16 rounded to the nearest integer (halves up), kHole16 in holes.
 Image<std::int16_t> quantised(const DisparityMap& disparity, const Exec& exec);
 

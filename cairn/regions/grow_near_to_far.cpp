@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/growing_regions.hpp>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -64,36 +65,33 @@ class UntriedArcs {
   double mean_ = 0;
 };
 
-/// From the highest mean to the lowest, ties in raster order.
-std::vector<std::int32_t> near_to_far(const GrowingRegions& regions) {
+/// From the highest mean to the lowest, ties in raster order. Nodes that cannot fuse are left out.
+std::vector<Arc> near_to_far(const GrowingRegions& regions) {
   std::vector<Arc> order;
-  for (int i = 0; i < regions.count(); ++i) {
-    if (regions.node(i).valid_count > 0) order.push_back({regions.mean(i), regions.place(i), i});
+  for (std::int32_t i = 0; i < regions.count(); ++i) {
+    const GrowingRegions::Brief& brief = regions.brief(i);
+    if (brief.mean == brief.mean) order.push_back({brief.mean, brief.place, i});
   }
   std::sort(order.begin(), order.end(), [](const Arc& a, const Arc& b) {
     return a.mean > b.mean || (a.mean == b.mean && a.place < b.place);
   });
-  std::vector<std::int32_t> result;
-  result.reserve(order.size());
-  for (const Arc& entry : order) result.push_back(entry.neighbour);
-  return result;
+  return order;
 }
 
-/// The buffers of a visit; they keep their memory from one visit to the next.
+/// The lists of a visit; they keep their memory from one visit to the next.
 struct Visit {
   UntriedArcs untried;
   std::vector<std::int32_t> neighbours;  // every one that the visit saw
 };
 
-void visit_node(GrowingRegions& regions, int node, const GrowCriteria& criteria, Visit& visit) {
-  Absorption absorption(regions.node(node), criteria);
-  if (!absorption.may_absorb()) return;
+void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& criteria, Visit& visit) {
+  Absorption absorption(regions.sums(node), criteria);
   visit.untried.reset(absorption.mean());
   visit.neighbours.clear();
-  const auto add = [&](int neighbour) {
+  const auto add = [&](std::int32_t neighbour) {
     visit.neighbours.push_back(neighbour);
-    if (regions.node(neighbour).valid_count == 0 || regions.node(neighbour).is_floor) return;  // never fuse
-    visit.untried.add({regions.mean(neighbour), regions.place(neighbour), neighbour});
+    const GrowingRegions::Brief& brief = regions.brief(neighbour);
+    if (brief.mean == brief.mean) visit.untried.add({brief.mean, brief.place, neighbour});
   };
   regions.start_visit(node);
   regions.for_each_new_neighbour(node, add);
@@ -102,27 +100,27 @@ void visit_node(GrowingRegions& regions, int node, const GrowCriteria& criteria,
     const Arc arc = visit.untried.take_cheapest();
     // Once the cheapest arc is beyond Eq. (1), so are all, and as nothing fuses nothing moves the mean.
     if (!absorption.is_near(arc.mean)) break;
-    if (!absorption.admits(regions.node(arc.neighbour), arc.mean)) continue;
+    if (!absorption.admits(regions.sums(arc.neighbour))) continue;
     regions.for_each_new_neighbour(arc.neighbour, add);
     regions.absorb(node, arc.neighbour);
-    absorption.update(regions.node(node));
+    absorption.update(regions.sums(node));
     visit.untried.move_mean(absorption.mean());
     grew = true;
   }
   if (!grew) return;
-  std::erase_if(visit.neighbours, [&](int neighbour) { return !regions.is_alive(neighbour); });
-  regions.set_neighbours(node, visit.neighbours);
+  std::erase_if(visit.neighbours, [&](std::int32_t neighbour) { return !regions.is_alive(neighbour); });
+  regions.set_neighbours(node, visit.neighbours.size(), [&](std::size_t i) { return visit.neighbours[i]; });
 }
 
 }  // namespace
 
-Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria) {
-  GrowingRegions regions(graph);
+Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {
+  GrowingRegions regions(graph, exec);
   Visit visit;
-  for (const std::int32_t node : near_to_far(regions)) {
-    if (regions.is_alive(node)) visit_node(regions, node, criteria, visit);
+  for (const Arc& entry : near_to_far(regions)) {
+    if (regions.is_alive(entry.neighbour)) visit_node(regions, entry.neighbour, criteria, visit);
   }
-  fuse_small_regions(regions, criteria.min_region_area);
+  fuse_small_regions(regions, criteria.min_region_area, exec);
   return regions.merges();
 }
 

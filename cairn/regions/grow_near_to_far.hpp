@@ -14,6 +14,6 @@ namespace cairn {
 /// not tried again in this visit. Nodes visited before may be absorbed like any other. Regions without valid
 /// pixel and floor regions neither absorb nor are absorbed. Last come the small regions: see
 /// fuse_small_regions().
-Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria);
+Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec);
 
 }  // namespace cairn

@@ -16,9 +16,8 @@ struct GrowCriteria {
 
 /// Equations (1)–(3): may `visited` absorb `neighbour`?
 ///   |μ1−μ2| ≤ mean_difference_max  and  |μ_new−μ1| / max(σ1, sigma_min) ≤ deviation_max,
-///   μ_new = (N1·μ1+N2·μ2)/(N1+N2), N the valid pixels. Regions without a valid pixel and floor regions never
-///   fuse by
-/// this rule.
+///   μ_new = (N1·μ1+N2·μ2)/(N1+N2), N the valid pixels; N·μ is taken as the exact sum.
+/// Regions without a valid pixel and floor regions never fuse by this rule.
 bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,
               const GrowCriteria& criteria);
 
@@ -28,7 +27,7 @@ bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbo
 /// may_fuse() admits, statistics recomputed on each fusion; it does so again, neighbours that came with the
 /// fusions included, until a round fused nothing. Passes repeat until a whole pass fused nothing. The
 /// survivor of a fusion is the visited region. Last come the small regions: see fuse_small_regions().
-Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria);
+Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec);
 
 /// The end of either growing, as a rule. As long as there is one, the smallest region that is small (fewer
 /// pixels than min_region_area, or not one valid pixel), is no floor and has a neighbour that is no floor
@@ -37,6 +36,7 @@ Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria);
 /// unseen next to an object is mostly hidden background. Neighbours without valid pixel come last. All ties:
 /// raster order of the first pixels. (Paper, step g) `merged_into`: the fusions so far; returns them with the
 /// new ones.
-Merges fuse_small_regions(const RegionGraph& graph, const Merges& merged_into, std::int64_t min_region_area);
+Merges fuse_small_regions(const RegionGraph& graph, const Merges& merged_into, std::int64_t min_region_area,
+                          const Exec& exec);
 
 }  // namespace cairn

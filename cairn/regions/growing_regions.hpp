@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cairn/regions/grow_statistical.hpp>
+#include <cairn/regions/scratch.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
-#include <vector>
+#include <limits>
 
 namespace cairn {
 
@@ -19,134 +19,164 @@ namespace cairn {
 /// when they are read.
 class GrowingRegions {
  public:
-  using Node = RegionGraph::Node;
+  /// What every look at a neighbour needs: kept small, so that most looks find it in the cache.
+  struct Brief {
+    double mean;         // NaN where the region may not fuse by likeness: floor, or no valid pixel
+    std::int32_t place;  // its first pixel: different for any two living regions, ascending in raster order
+    std::int32_t pixel_count;
+  };
+  /// What only a fusion needs.
+  struct Sums {
+    std::int64_t sum;
+    std::int64_t sum_of_squares;
+    std::int32_t valid_count;
+    bool is_floor;
+  };
 
-  explicit GrowingRegions(const RegionGraph& graph)
-      : nodes_(graph.nodes),
-        arcs_(graph.arcs),
-        lists_(graph.nodes.size()),
-        parent_(graph.nodes.size()),
-        seen_(graph.nodes.size(), -1),
-        mean_(graph.nodes.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-    for (int i = 0; i < count(); ++i) {
-      lists_[at(i)] = {graph.first_arc[at(i)], graph.first_arc[at(i) + 1], -1, i};
-      mean_[at(i)] = nodes_[at(i)].mean();
+  GrowingRegions(const RegionGraph& graph, const Exec& exec)
+      : given_arcs_(graph.arcs.data()),
+        more_arcs_(graph.arcs.size(), exec.pool),
+        briefs_(graph.nodes.size(), exec.pool),
+        sums_(graph.nodes.size(), exec.pool),
+        lists_(graph.nodes.size(), exec.pool),
+        parent_(graph.nodes.size(), exec.pool),
+        seen_(graph.nodes.size(), -1, exec.pool) {
+    for (std::int32_t i = 0; i < count(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const RegionGraph::Node& node = graph.nodes[at];
+      sums_[i] = {node.sum, node.sum_of_squares, static_cast<std::int32_t>(node.valid_count), node.is_floor};
+      briefs_[i] = {mean_of(sums_[i]), node.first_pixel, static_cast<std::int32_t>(node.pixel_count)};
+      lists_[i] = {true, graph.first_arc[at], graph.first_arc[at + 1], -1, i};
+      parent_[i] = i;
     }
   }
 
-  [[nodiscard]] int count() const { return static_cast<int>(nodes_.size()); }
-  [[nodiscard]] const Node& node(int region) const { return nodes_[at(region)]; }
-  [[nodiscard]] double mean(int region) const { return mean_[at(region)]; }
-  [[nodiscard]] bool is_alive(int region) const { return parent_[at(region)] == region; }
-  /// Where it stands in raster order: different for any two living regions.
-  [[nodiscard]] int place(int region) const { return nodes_[at(region)].first_pixel; }
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(parent_.size()); }
+  [[nodiscard]] const Brief& brief(std::int32_t region) const { return briefs_[region]; }
+  [[nodiscard]] const Sums& sums(std::int32_t region) const { return sums_[region]; }
+  [[nodiscard]] bool is_alive(std::int32_t region) const { return parent_[region] == region; }
 
-  /// From here on found_neighbours() names each region once.
-  void start_visit(int region) {
+  /// From here on for_each_new_neighbour() names each region once.
+  void start_visit(std::int32_t region) {
     ++visit_;
-    seen_[at(region)] = visit_;
+    seen_[region] = visit_;
   }
   /// Calls found(neighbour) for each living neighbour of `region` that this visit has not named yet.
   template <class Found>
-  void for_each_new_neighbour(int region, Found found) {
-    for (int member = region; member >= 0; member = lists_[at(member)].next_member) {
-      for (int i = lists_[at(member)].begin; i < lists_[at(member)].end; ++i) {
-        const int neighbour = living(arcs_[at(i)]);
-        if (seen_[at(neighbour)] == visit_) continue;
-        seen_[at(neighbour)] = visit_;
+  void for_each_new_neighbour(std::int32_t region, Found found) {
+    for (std::int32_t member = region; member >= 0; member = lists_[member].next_member) {
+      const List& list = lists_[member];
+      const std::int32_t* const arcs = list.is_given ? given_arcs_ : more_arcs_.begin();
+      for (std::int32_t i = list.begin; i < list.end; ++i) {
+        const std::int32_t neighbour = living(arcs[i]);
+        if (seen_[neighbour] == visit_) continue;
+        seen_[neighbour] = visit_;
         found(neighbour);
       }
     }
   }
 
-  void absorb(int survivor, int other) {
-    nodes_[at(survivor)].absorb(nodes_[at(other)]);
-    mean_[at(survivor)] = nodes_[at(survivor)].mean();
-    parent_[at(other)] = survivor;
-    lists_[at(lists_[at(survivor)].last_member)].next_member = other;
-    lists_[at(survivor)].last_member = lists_[at(other)].last_member;
+  void absorb(std::int32_t survivor, std::int32_t other) {
+    Sums& sums = sums_[survivor];
+    sums.sum += sums_[other].sum;
+    sums.sum_of_squares += sums_[other].sum_of_squares;
+    sums.valid_count += sums_[other].valid_count;
+    Brief& brief = briefs_[survivor];
+    brief.mean = mean_of(sums);
+    brief.place = std::min(brief.place, briefs_[other].place);
+    brief.pixel_count += briefs_[other].pixel_count;
+    parent_[other] = survivor;
+    lists_[lists_[survivor].last_member].next_member = other;
+    lists_[survivor].last_member = lists_[other].last_member;
   }
 
   /// States anew which regions are beside `region`, so that later visits do not wade through its inner
-  /// borders.
-  void set_neighbours(int region, const std::vector<std::int32_t>& neighbours) {
-    const int begin = static_cast<int>(arcs_.size());
-    arcs_.insert(arcs_.end(), neighbours.begin(), neighbours.end());
-    lists_[at(region)] = {begin, static_cast<int>(arcs_.size()), -1, region};
+  /// borders. Calls neighbour_at(i) for i = 0 … count − 1.
+  template <class NeighbourAt>
+  void set_neighbours(std::int32_t region, std::size_t count, NeighbourAt neighbour_at) {
+    std::int32_t* const room = more_arcs_.room_for(count);
+    for (std::size_t i = 0; i < count; ++i) room[i] = neighbour_at(i);
+    const auto begin = static_cast<std::int32_t>(more_arcs_.size());
+    more_arcs_.grown(count);
+    lists_[region] = {false, begin, begin + static_cast<std::int32_t>(count), -1, region};
   }
 
   [[nodiscard]] Merges merges() {
-    Merges merged_into(nodes_.size());
-    for (int i = 0; i < count(); ++i) merged_into[at(i)] = living(i);
+    Merges merged_into(parent_.size());
+    for (std::int32_t i = 0; i < count(); ++i) merged_into[static_cast<std::size_t>(i)] = living(i);
     return merged_into;
   }
 
  private:
   struct List {
-    std::int32_t begin = 0;  // this member's neighbours: arcs_[begin] … arcs_[end − 1]
-    std::int32_t end = 0;
-    std::int32_t next_member = -1;
-    std::int32_t last_member = -1;  // kept up for living regions
+    bool is_given;       // this member's neighbours stand in the graph's arcs, not in more_arcs_,
+    std::int32_t begin;  // from here
+    std::int32_t end;    // to before here
+    std::int32_t next_member;
+    std::int32_t last_member;  // kept up for living regions
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  int living(int region) {
-    while (parent_[at(region)] != region) {
-      parent_[at(region)] = parent_[at(parent_[at(region)])];
-      region = parent_[at(region)];
+  static double mean_of(const Sums& sums) {
+    if (sums.valid_count == 0 || sums.is_floor) return std::numeric_limits<double>::quiet_NaN();
+    return static_cast<double>(sums.sum) / static_cast<double>(sums.valid_count);
+  }
+  std::int32_t living(std::int32_t region) {
+    while (parent_[region] != region) {
+      parent_[region] = parent_[parent_[region]];
+      region = parent_[region];
     }
     return region;
   }
 
-  std::vector<Node> nodes_;
-  std::vector<std::int32_t> arcs_;
-  std::vector<List> lists_;
-  std::vector<std::int32_t> parent_;
-  std::vector<std::int32_t> seen_;
-  std::vector<double> mean_;  // of living regions
+  const std::int32_t* given_arcs_;
+  ScratchList<std::int32_t> more_arcs_;
+  Scratch<Brief> briefs_;
+  Scratch<Sums> sums_;
+  Scratch<List> lists_;
+  Scratch<std::int32_t> parent_;
+  Scratch<std::int32_t> seen_;  // the last visit that named the region
   std::int32_t visit_ = 0;
 };
 
 /// Equations (1) to (3) for one visited region and many neighbours: what depends on the visited one is kept.
 class Absorption {
  public:
-  Absorption(const RegionGraph::Node& visited, const GrowCriteria& criteria) : criteria_(criteria) {
-    update(visited);
-  }
+  using Sums = GrowingRegions::Sums;
+
+  Absorption(const Sums& visited, const GrowCriteria& criteria) : criteria_(criteria) { update(visited); }
 
   /// After a fusion.
-  void update(const RegionGraph::Node& visited) {
-    valid_count_ = visited.valid_count;
+  void update(const Sums& visited) {
     sum_ = visited.sum;
-    mean_ = visited.mean();
-    sigma_ = std::max(std::sqrt(visited.variance()), criteria_.sigma_min);
-    may_absorb_ = visited.valid_count > 0 && !visited.is_floor;
+    valid_count_ = visited.valid_count;
+    if (valid_count_ == 0 || visited.is_floor) return;  // mean_ stays NaN: is near to nothing
+    const auto n = static_cast<double>(valid_count_);
+    mean_ = static_cast<double>(sum_) / n;
+    const double variance = std::max(0.0, static_cast<double>(visited.sum_of_squares) / n - mean_ * mean_);
+    sigma_ = std::max(std::sqrt(variance), criteria_.sigma_min);
   }
   [[nodiscard]] double mean() const { return mean_; }
-  [[nodiscard]] bool may_absorb() const { return may_absorb_; }
+  [[nodiscard]] bool may_absorb() const { return mean_ == mean_; }
+  /// Eq. (1)
   [[nodiscard]] bool is_near(double neighbour_mean) const {
-    return std::abs(mean_ - neighbour_mean) <= criteria_.mean_difference_max;  // Eq. (1)
+    return std::abs(mean_ - neighbour_mean) <= criteria_.mean_difference_max;
   }
-  [[nodiscard]] bool admits(const RegionGraph::Node& neighbour, double neighbour_mean) const {
-    if (!may_absorb_ || neighbour.valid_count == 0 || neighbour.is_floor || !is_near(neighbour_mean))
-      return false;
-    // Eq. (3): N·μ is the sum, exactly
-    const double new_mean =
-        static_cast<double>(sum_ + neighbour.sum) / static_cast<double>(valid_count_ + neighbour.valid_count);
-    return std::abs(new_mean - mean_) / sigma_ <= criteria_.deviation_max;  // Eq. (2)
+  /// Eq. (2) and (3), for a neighbour that is_near().
+  [[nodiscard]] bool admits(const Sums& neighbour) const {
+    const double new_mean = static_cast<double>(sum_ + neighbour.sum) /
+                            static_cast<double>(std::int64_t{valid_count_} + neighbour.valid_count);
+    return std::abs(new_mean - mean_) / sigma_ <= criteria_.deviation_max;
   }
 
  private:
   GrowCriteria criteria_;
-  std::int64_t valid_count_ = 0;
   std::int64_t sum_ = 0;
-  double mean_ = 0;
+  std::int32_t valid_count_ = 0;
+  double mean_ = std::numeric_limits<double>::quiet_NaN();
   double sigma_ = 0;
-  bool may_absorb_ = false;
 };
 
 /// fuse_small_regions() on regions that are growing already.
-void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area);
+void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, const Exec& exec);
 
 }  // namespace cairn

@@ -4,6 +4,8 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/regions/gradient.hpp>
 #include <cairn/regions/region_graph.hpp>
+#include <cairn/regions/scratch.hpp>
+#include <limits>
 #include <numeric>
 
 namespace cairn {
@@ -11,35 +13,62 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 
-std::vector<RegionGraph::Node> counted(View<const RegionId> labels, int count,
-                                       View<const std::int16_t> values, View<const std::uint8_t> floor) {
-  std::vector<RegionGraph::Node> nodes(static_cast<std::size_t>(count));
-  const int width = labels.width();
-  for (int y = 0; y < labels.height(); ++y) {
-    const RegionId* const label = labels.row(y);
-    const std::int16_t* const value = values.row(y);
-    const std::uint8_t* const is_floor = floor.empty() ? nullptr : floor.row(y);
-    for (int x = 0; x < width;) {
-      // A run of one label at a time: the node is fetched once for all of it.
-      const int start = x;
-      const RegionId id = label[x];
-      RegionGraph::Node run;
-      do {
-        const int v = value[x];
-        const bool valid = v != kHole16;
-        run.valid_count += valid ? 1 : 0;
-        run.sum += valid ? v : 0;
-        run.sum_of_squares += valid ? v * v : 0;
-        run.is_floor |= is_floor != nullptr && is_floor[x] != 0;
-        ++x;
-      } while (x < width && label[x] == id);
-      run.pixel_count = x - start;
-      run.first_pixel = y * width + start;
-      run.box = {start, y, x - start, 1};
-      nodes[index(id)].absorb(run);
-    }
+/// Where the runs of equal labels in a row end: ends[i] is one past the last pixel of run i. Returns how many
+/// there are. Written without a branch, as no processor can foretell where labels change.
+int find_runs(const RegionId* label, int width, std::int32_t* ends) {
+  int runs = 0;
+  for (int x = 0; x + 1 < width; ++x) {
+    ends[runs] = x + 1;
+    runs += label[x] != label[x + 1] ? 1 : 0;
   }
-  return nodes;
+  ends[runs] = width;
+  return runs + 1;
+}
+
+/// Sums from the start of a row up to a pixel, itself not counted.
+struct Prefix {
+  std::int64_t sum = 0;
+  std::int64_t sum_of_squares = 0;
+  std::int32_t valid_count = 0;
+  std::int32_t floor_count = 0;
+};
+
+void sum_up(const std::int16_t* value, const std::uint8_t* floor, int width, Prefix* prefix) {
+  Prefix p;
+  for (int x = 0; x < width; ++x) {
+    prefix[x] = p;
+    const bool valid = value[x] != kHole16;
+    const int v = valid ? value[x] : 0;
+    p.sum += v;
+    p.sum_of_squares += v * v;
+    p.valid_count += valid ? 1 : 0;
+    p.floor_count += floor != nullptr && floor[x] != 0 ? 1 : 0;
+  }
+  prefix[width] = p;
+}
+
+/// A row's runs added to the nodes. While counting, a box holds its right and lower end in place of width and
+/// height.
+void count_row(const RegionId* label, int y, int width, const Prefix* prefix, const std::int32_t* ends,
+               int runs, RegionGraph::Node* nodes) {
+  int begin = 0;
+  for (int i = 0; i < runs; ++i) {
+    const int end = ends[i];
+    const Prefix& from = prefix[begin];
+    const Prefix& to = prefix[end];
+    RegionGraph::Node& node = nodes[index(label[begin])];
+    node.pixel_count += end - begin;
+    node.valid_count += to.valid_count - from.valid_count;
+    node.sum += to.sum - from.sum;
+    node.sum_of_squares += to.sum_of_squares - from.sum_of_squares;
+    node.is_floor |= to.floor_count != from.floor_count;
+    node.first_pixel = std::min(node.first_pixel, y * width + begin);
+    node.box.x = std::min(node.box.x, begin);
+    node.box.y = std::min(node.box.y, y);
+    node.box.width = std::max(node.box.width, end);
+    node.box.height = std::max(node.box.height, y + 1);
+    begin = end;
+  }
 }
 
 struct Touch {
@@ -47,67 +76,131 @@ struct Touch {
   std::int32_t b;
 };
 
-/// Which regions touch; a pair may stand there several times, since only repetitions beside each other are
-/// left out.
-std::vector<Touch> touching(View<const RegionId> labels) {
-  std::vector<Touch> touches;
-  touches.reserve(static_cast<std::size_t>(labels.size().area() / 4));
+/// Pairs of labels side by side in a row. What the row above shows at the same place is left out; without
+/// branches, as find_runs(). Returns how many.
+int touches_beside(const RegionId* above, const RegionId* row, const std::int32_t* ends, int runs,
+                   Touch* touches) {
+  int n = 0;
+  for (int i = 0; i + 1 < runs; ++i) {
+    const int x = ends[i];
+    touches[n] = {number(row[x - 1]), number(row[x])};
+    n += static_cast<int>((above[x - 1] != row[x - 1]) | (above[x] != row[x]));
+  }
+  return n;
+}
+
+/// Pairs of labels one above the other. What the column before shows is left out.
+int touches_below(const RegionId* row, const RegionId* below, int width, Touch* touches) {
+  touches[0] = {number(row[0]), number(below[0])};
+  int n = row[0] != below[0] ? 1 : 0;
+  for (int x = 1; x < width; ++x) {
+    touches[n] = {number(row[x]), number(below[x])};
+    n += static_cast<int>((row[x] != below[x]) & ((row[x - 1] != row[x]) | (below[x - 1] != below[x])));
+  }
+  return n;
+}
+
+/// Drops most repetitions of pairs: remembers those seen last.
+class Recent {
+ public:
+  /// Keeps the first of each pair, smaller label first; returns how many.
+  int distinct(Touch* touches, int count) {
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      const Touch touch{std::min(touches[i].a, touches[i].b), std::max(touches[i].a, touches[i].b)};
+      const auto hash = static_cast<std::uint32_t>(touch.a) * 0x9E3779B1U +
+                        static_cast<std::uint32_t>(touch.b) * 0x85EBCA6BU;
+      Touch& last = seen_[hash >> (32U - kBits)];
+      touches[kept] = touch;
+      kept += static_cast<int>((last.a != touch.a) | (last.b != touch.b));
+      last = touch;
+    }
+    return kept;
+  }
+
+ private:
+  static constexpr unsigned kBits =
+      11;  // several times the pairs that two rows show; fits the first-level cache
+  std::vector<Touch> seen_ = std::vector<Touch>(1U << kBits, Touch{-1, -1});
+};
+
+/// One pass over the rows: counts the nodes and finds which of them touch. Some pairs may stand in the list
+/// twice.
+ScratchList<Touch> count_and_touch(View<const RegionId> labels, View<const std::int16_t> values,
+                                   View<const std::uint8_t> floor, std::vector<RegionGraph::Node>& nodes,
+                                   const Exec& exec) {
+  constexpr int kFarthest = std::numeric_limits<int>::max();
   const int width = labels.width();
+  const auto length = static_cast<std::size_t>(width);
+  std::fill(nodes.begin(), nodes.end(),
+            RegionGraph::Node{.first_pixel = kFarthest, .box = {kFarthest, kFarthest, 0, 0}});
+  std::vector<std::int32_t> ends(length);
+  std::vector<Prefix> prefix(length + 1);
+  const std::vector<RegionId> nothing(length, RegionId{-1});
+  ScratchList<Touch> touches(static_cast<std::size_t>(labels.size().area() / 4), exec.pool);
+  Recent recent;
   for (int y = 0; y < labels.height(); ++y) {
     const RegionId* const row = labels.row(y);
-    const RegionId* const below = y + 1 < labels.height() ? labels.row(y + 1) : row;
-    const RegionId* const above = y > 0 ? labels.row(y - 1) : row;
-    bool repeats = false;  // this pixel and the one below: the pair of the column before
-    for (int x = 0; x < width; ++x) {
-      if (row[x] != below[x]) {
-        repeats = x > 0 && row[x - 1] == row[x] && below[x - 1] == below[x];
-        if (!repeats) touches.push_back({number(row[x]), number(below[x])});
-      }
-      if (x + 1 < width && row[x] != row[x + 1]) {
-        repeats = y > 0 && above[x] == row[x] && above[x + 1] == row[x + 1];
-        if (!repeats) touches.push_back({number(row[x]), number(row[x + 1])});
-      }
-    }
+    sum_up(values.row(y), floor.empty() ? nullptr : floor.row(y), width, prefix.data());
+    const int runs = find_runs(row, width, ends.data());
+    count_row(row, y, width, prefix.data(), ends.data(), runs, nodes.data());
+    Touch* const found = touches.room_for(2 * length);
+    int count = touches_beside(y > 0 ? labels.row(y - 1) : nothing.data(), row, ends.data(), runs, found);
+    if (y + 1 < labels.height()) count += touches_below(row, labels.row(y + 1), width, found + count);
+    touches.grown(static_cast<std::size_t>(recent.distinct(found, count)));
+  }
+  for (RegionGraph::Node& node : nodes) {
+    if (node.pixel_count == 0) node = {};
+    node.box.width -= node.box.x;
+    node.box.height -= node.box.y;
   }
   return touches;
 }
 
 /// Compact adjacency from touches: every pair in both directions once, neighbours ascending.
-void link(RegionGraph& graph, const std::vector<Touch>& touches) {
-  const std::size_t count = graph.nodes.size();
-  std::vector<std::int32_t> first(count + 1, 0);
+void link(RegionGraph& graph, ScratchList<Touch>& touches, const Exec& exec) {
+  const auto count = static_cast<std::int32_t>(graph.nodes.size());
+  std::vector<std::int32_t>& first = graph.first_arc;
+  first.assign(graph.nodes.size() + 1, 0);
   for (const Touch& touch : touches) {
     ++first[static_cast<std::size_t>(touch.a) + 1];
     ++first[static_cast<std::size_t>(touch.b) + 1];
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::int32_t> unsorted(static_cast<std::size_t>(first[count]));
-  std::vector<std::int32_t> end(first.begin(), first.end() - 1);
+  Scratch<std::int32_t> unsorted(2 * touches.size(), exec.pool);
+  Scratch<std::int32_t> end(graph.nodes.size(), exec.pool);
+  std::copy_n(first.begin(), graph.nodes.size(), end.begin());
   for (const Touch& touch : touches) {
-    unsorted[static_cast<std::size_t>(end[static_cast<std::size_t>(touch.a)]++)] = touch.b;
-    unsorted[static_cast<std::size_t>(end[static_cast<std::size_t>(touch.b)]++)] = touch.a;
+    unsorted[end[touch.a]++] = touch.b;
+    unsorted[end[touch.b]++] = touch.a;
   }
 
   // Handing every node, in ascending order, to its neighbours' lists sorts those lists, and repetitions end
-  // up side by side. Pairs are symmetric, so the lists have the same lengths as before.
-  std::vector<std::int32_t> sorted(unsorted.size());
-  std::copy(first.begin(), first.end() - 1, end.begin());
-  for (std::size_t a = 0; a < count; ++a) {
-    for (auto i = first[a]; i < first[a + 1]; ++i) {
-      const auto b = static_cast<std::size_t>(unsorted[static_cast<std::size_t>(i)]);
-      const bool has_it =
-          end[b] > first[b] && sorted[static_cast<std::size_t>(end[b]) - 1] == static_cast<std::int32_t>(a);
-      if (!has_it) sorted[static_cast<std::size_t>(end[b]++)] = static_cast<std::int32_t>(a);
+  // up side by side, where they are seen. Pairs are symmetric, so the lists have room for the same number.
+  Scratch<std::int32_t> sorted(2 * touches.size(), exec.pool);
+  std::copy_n(first.begin(), graph.nodes.size(), end.begin());
+  for (std::int32_t a = 0; a < count; ++a) {
+    for (std::int32_t i = first[static_cast<std::size_t>(a)]; i < first[static_cast<std::size_t>(a) + 1];
+         ++i) {
+      const std::int32_t b = unsorted[i];
+      const std::int32_t at = end[b];
+      const bool is_new = at == first[static_cast<std::size_t>(b)] || sorted[at - 1] != a;
+      sorted[at] = a;
+      end[b] = at + (is_new ? 1 : 0);
     }
   }
 
-  graph.first_arc.resize(count + 1);
-  graph.first_arc[0] = 0;
-  for (std::size_t a = 0; a < count; ++a) graph.first_arc[a + 1] = graph.first_arc[a] + (end[a] - first[a]);
-  graph.arcs.resize(static_cast<std::size_t>(graph.first_arc[count]));
-  for (std::size_t a = 0; a < count; ++a) {
-    std::copy(sorted.begin() + first[a], sorted.begin() + end[a], graph.arcs.begin() + graph.first_arc[a]);
+  graph.arcs.resize(2 * touches.size());
+  std::int32_t size = 0;
+  for (std::int32_t a = 0; a < count; ++a) {
+    const std::int32_t begin = first[static_cast<std::size_t>(a)];
+    const std::int32_t length = end[a] - begin;
+    std::copy_n(sorted.begin() + begin, length, graph.arcs.begin() + size);
+    first[static_cast<std::size_t>(a)] = size;
+    size += length;
   }
+  first[graph.nodes.size()] = size;
+  graph.arcs.resize(static_cast<std::size_t>(size));
 }
 
 Region region_of(const RegionGraph::Node& node, double value_scale) {
@@ -121,58 +214,47 @@ Region region_of(const RegionGraph::Node& node, double value_scale) {
 
 }  // namespace
 
-double RegionGraph::Node::mean() const {
-  return valid_count > 0 ? static_cast<double>(sum) / static_cast<double>(valid_count) : 0.0;
-}
-
-double RegionGraph::Node::variance() const {
-  if (valid_count == 0) return 0.0;
-  const double m = mean();
-  return std::max(0.0, static_cast<double>(sum_of_squares) / static_cast<double>(valid_count) - m * m);
-}
-
-void RegionGraph::Node::absorb(const Node& other) {
-  first_pixel = pixel_count == 0 ? other.first_pixel : std::min(first_pixel, other.first_pixel);
-  pixel_count += other.pixel_count;
-  valid_count += other.valid_count;
-  sum += other.sum;
-  sum_of_squares += other.sum_of_squares;
-  box = united(box, other.box);
-  is_floor |= other.is_floor;
-}
-
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
-                        View<const std::uint8_t> floor, const Exec&) {
+                        View<const std::uint8_t> floor, const Exec& exec) {
   RegionGraph graph;
-  graph.nodes = counted(labels, count, values, floor);
-  link(graph, touching(labels));
+  graph.nodes.resize(static_cast<std::size_t>(count));
+  ScratchList<Touch> touches = count_and_touch(labels, values, floor, graph.nodes, exec);
+  link(graph, touches, exec);
   return graph;
 }
 
 Segmentation apply_merges(View<const RegionId> labels, const RegionGraph& graph, const Merges& merged_into,
                           double value_scale, const Exec& exec) {
   const std::size_t count = graph.nodes.size();
-  std::vector<RegionGraph::Node> merged(count);
-  for (std::size_t i = 0; i < count; ++i)
-    merged[static_cast<std::size_t>(merged_into[i])].absorb(graph.nodes[i]);
-
-  std::vector<std::int32_t> survivors;
+  // Survivors move together first, so that what is summed and sorted is as short as their number.
+  std::vector<RegionGraph::Node> merged;
+  std::vector<std::int32_t> compact(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
-    if (merged[i].pixel_count > 0) survivors.push_back(static_cast<std::int32_t>(i));
+    std::int32_t& at = compact[static_cast<std::size_t>(merged_into[i])];
+    if (at < 0) {
+      at = static_cast<std::int32_t>(merged.size());
+      merged.emplace_back();
+    }
+    merged[static_cast<std::size_t>(at)].absorb(graph.nodes[i]);
   }
-  std::sort(survivors.begin(), survivors.end(), [&](std::int32_t a, std::int32_t b) {
-    return merged[static_cast<std::size_t>(a)].first_pixel < merged[static_cast<std::size_t>(b)].first_pixel;
-  });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    if (merged[i].pixel_count > 0) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return merged[a].first_pixel < merged[b].first_pixel; });
 
   Segmentation result{Image<RegionId>(labels.size(), exec.pool), {}};
-  result.regions.reserve(survivors.size());
-  std::vector<RegionId> new_id(count);
-  for (const std::int32_t survivor : survivors) {
-    new_id[static_cast<std::size_t>(survivor)] = RegionId{static_cast<std::int32_t>(result.regions.size())};
-    result.regions.push_back(region_of(merged[static_cast<std::size_t>(survivor)], value_scale));
+  result.regions.reserve(order.size());
+  std::vector<RegionId> new_id(merged.size());
+  for (const std::size_t i : order) {
+    new_id[i] = RegionId{static_cast<std::int32_t>(result.regions.size())};
+    result.regions.push_back(region_of(merged[i], value_scale));
   }
   std::vector<RegionId> relabelled(count);
-  for (std::size_t i = 0; i < count; ++i) relabelled[i] = new_id[static_cast<std::size_t>(merged_into[i])];
+  for (std::size_t i = 0; i < count; ++i) {
+    relabelled[i] = new_id[static_cast<std::size_t>(compact[static_cast<std::size_t>(merged_into[i])])];
+  }
 
   parallel_for(exec, labels.height(), kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {

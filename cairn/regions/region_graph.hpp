@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/geometry.hpp>
 #include <cairn/core/ids.hpp>
@@ -39,9 +40,23 @@ struct RegionGraph {
     int first_pixel = 0;  // y·width + x of its first pixel in raster order
     Rect box;
     bool is_floor = false;
-    [[nodiscard]] double mean() const;
-    [[nodiscard]] double variance() const;
-    void absorb(const Node& other);
+    [[nodiscard]] double mean() const {
+      return valid_count > 0 ? static_cast<double>(sum) / static_cast<double>(valid_count) : 0.0;
+    }
+    [[nodiscard]] double variance() const {
+      if (valid_count == 0) return 0.0;
+      const double m = mean();
+      return std::max(0.0, static_cast<double>(sum_of_squares) / static_cast<double>(valid_count) - m * m);
+    }
+    void absorb(const Node& other) {
+      first_pixel = pixel_count == 0 ? other.first_pixel : std::min(first_pixel, other.first_pixel);
+      pixel_count += other.pixel_count;
+      valid_count += other.valid_count;
+      sum += other.sum;
+      sum_of_squares += other.sum_of_squares;
+      box = united(box, other.box);
+      is_floor |= other.is_floor;
+    }
   };
   std::vector<Node> nodes;
   std::vector<std::int32_t>

@@ -102,10 +102,12 @@ Segmentation segment_disparity(const DisparityMap& disparity, View<const std::ui
   if (!floor.empty()) basins = split_floor(basins, floor, exec);
   const RegionGraph graph = build_graph(basins.labels, basins.count, values, floor, exec);
   const Merges merges =
-      grow_near_to_far(graph, {.mean_difference_max = config.mean_difference_max * kPerPixel,
-                               .deviation_max = config.deviation_max,
-                               .sigma_min = config.sigma_min * kPerPixel,
-                               .min_region_area = pixels_in(config.min_region_area, values.size())});
+      grow_near_to_far(graph,
+                       {.mean_difference_max = config.mean_difference_max * kPerPixel,
+                        .deviation_max = config.deviation_max,
+                        .sigma_min = config.sigma_min * kPerPixel,
+                        .min_region_area = pixels_in(config.min_region_area, values.size())},
+                       exec);
   return apply_merges(basins.labels, graph, merges, 1.0 / kPerPixel, exec);
 }
 

@@ -10,10 +10,10 @@ namespace cairn {
 
 struct DisparityConfig {
   float smoothing_sigma = 0.0F;
-  float mean_difference_max = 1.0F;
+  float mean_difference_max = 2.0F;
   float deviation_max = 1.0F;
   float sigma_min = 0.25F;
-  float min_region_area = 0.1F;
+  float min_region_area = 0.2F;
 };
 template <class V>
 void fields(DisparityConfig& c, V&& v) {

@@ -32,11 +32,12 @@ Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& co
   const Basins basins = watershed(edges, exec);
   const Image<std::int16_t> values = widened(image, exec);
   const RegionGraph graph = build_graph(basins.labels, basins.count, values, {}, exec);
-  const Merges merges =
-      grow_statistical(graph, {.mean_difference_max = config.mean_difference_max,
-                               .deviation_max = config.deviation_max,
-                               .sigma_min = config.sigma_min,
-                               .min_region_area = pixels_in(config.min_region_area, image.size())});
+  const Merges merges = grow_statistical(graph,
+                                         {.mean_difference_max = config.mean_difference_max,
+                                          .deviation_max = config.deviation_max,
+                                          .sigma_min = config.sigma_min,
+                                          .min_region_area = pixels_in(config.min_region_area, image.size())},
+                                         exec);
   return apply_merges(basins.labels, graph, merges, 1.0, exec);
 }
 

@@ -10,7 +10,7 @@ namespace cairn {
 
 struct IntensityConfig {
   float smoothing_sigma = 0.7F;
-  float mean_difference_max = 8.0F;
+  float mean_difference_max = 3.0F;
   float deviation_max = 1.0F;
   float sigma_min = 2.0F;
   float min_region_area = 0.03F;

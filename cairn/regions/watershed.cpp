@@ -2,24 +2,31 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/parallel.hpp>
+#include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
-#include <cstring>
 
 namespace cairn {
 namespace {
 
-// Where a pixel flows to. The numbers are the order in which ties are decided.
-constexpr std::uint8_t kNowhere = 0;  // lowest around: a basin's floor, or a plateau pixel not reached yet
-constexpr std::uint8_t kUp = 1;
-constexpr std::uint8_t kLeft = 2;
-constexpr std::uint8_t kRight = 3;
-constexpr std::uint8_t kDown = 4;
-constexpr std::uint8_t kDirection = 7;   // mask of the direction
-constexpr std::uint8_t kAcross = 8;      // set where the pixel flows to a neighbour on its own plateau
-constexpr std::uint8_t kOutside = 0xFF;  // frame around the image: neither flows nor is flown to
+constexpr int kGrain = 16;  // rows
+
+// Where a pixel flows to. The numbers are the order in which ties are decided. As wide as heights, so that
+// the loops over both become vector code.
+using Arrow = std::uint16_t;
+constexpr Arrow kNowhere = 0;  // lowest around: a basin's floor, or a plateau pixel not reached yet
+constexpr Arrow kUp = 1;
+constexpr Arrow kLeft = 2;
+constexpr Arrow kRight = 3;
+constexpr Arrow kDown = 4;
+constexpr Arrow kDirection = 7;  // mask of the direction
+constexpr Arrow kBeside = 8;     // flows across its plateau to a pixel that flows downhill: distance 1
+constexpr Arrow kDeep = 16;      // the same, from further away
+constexpr Arrow kFloor = 32;     // part of a basin's floor that has been dealt with
+constexpr Arrow kOutside = 64;   // frame around the image: neither flows nor is flown to
 
 using Heights = Image<std::uint16_t>;
-using Arrows = Image<std::uint8_t>;
+using Arrows = Image<Arrow>;
 
 /// All working images have this size: a frame one pixel wide around the image, so that no neighbour needs a
 /// bounds check, and a width at which images of every pixel type have the same stride, so that one index
@@ -28,91 +35,128 @@ Size framed(Size size) {
   return {(size.width + 2 + 63) / 64 * 64, size.height + 2};
 }
 
-std::ptrdiff_t index_of(int x, int y, std::ptrdiff_t stride) {
-  return (y + 1) * stride + x + 1;
+/// Calls row(y) for the rows of the image, numbered as in the framed images: 1 … height.
+template <class Row>
+void for_each_row(Size size, const Exec& exec, Row row) {
+  parallel_for(exec, size.height, kGrain, [&](int first, int last) {
+    for (int y = first + 1; y <= last; ++y) row(y);
+  });
 }
 
-Heights with_frame(View<const std::uint16_t> gradient, const Exec& exec) {
-  const Size size = gradient.size();
-  Heights heights(framed(size), exec.pool);
-  std::fill_n(heights.row(0), heights.width(), UINT16_MAX);  // nothing is higher, so nothing flows out
-  for (int y = 0; y < size.height; ++y) {
-    std::uint16_t* const row = heights.row(y + 1);
-    row[0] = UINT16_MAX;
-    std::copy_n(gradient.row(y), size.width, row + 1);
-    std::fill(row + 1 + size.width, row + heights.width(), UINT16_MAX);
+template <class T>
+Image<T> with_frame(Size size, T frame, const Exec& exec) {
+  Image<T> image(framed(size), exec.pool);
+  std::fill_n(image.row(0), image.width(), frame);
+  std::fill_n(image.row(size.height + 1), image.width(), frame);
+  for (int y = 1; y <= size.height; ++y) {
+    image(0, y) = frame;
+    std::fill(image.row(y) + 1 + size.width, image.row(y) + image.width(), frame);
   }
-  std::fill_n(heights.row(size.height + 1), heights.width(), UINT16_MAX);
+  return image;
+}
+
+Heights heights_of(View<const std::uint16_t> gradient, const Exec& exec) {
+  Heights heights =
+      with_frame<std::uint16_t>(gradient.size(), UINT16_MAX, exec);  // nothing is higher: no way out
+  for_each_row(gradient.size(), exec,
+               [&](int y) { std::copy_n(gradient.row(y - 1), gradient.width(), heights.row(y) + 1); });
   return heights;
 }
 
 /// Arrows to the lowest neighbour, where that is lower.
-Arrows downhill(const Heights& heights, Size size, const Exec& exec) {
-  Arrows arrows(heights.size(), exec.pool);
-  std::fill_n(arrows.row(0), arrows.width(), kOutside);
-  for (int y = 1; y <= size.height; ++y) {
+Arrows flow_downhill(const Heights& heights, Size size, const Exec& exec) {
+  Arrows arrows = with_frame(size, kOutside, exec);
+  for_each_row(size, exec, [&](int y) {
     const std::uint16_t* const here = heights.row(y) + 1;
     const std::uint16_t* const up = heights.row(y - 1) + 1;
     const std::uint16_t* const down = heights.row(y + 1) + 1;
-    std::uint8_t* const out = arrows.row(y) + 1;
+    Arrow* const out = arrows.row(y) + 1;
     for (int x = 0; x < size.width; ++x) {
       const std::uint16_t lowest = std::min(std::min(up[x], here[x - 1]), std::min(here[x + 1], down[x]));
-      std::uint16_t arrow = down[x] == lowest ? kDown : kNowhere;
+      Arrow arrow = kDown;
       arrow = here[x + 1] == lowest ? kRight : arrow;
       arrow = here[x - 1] == lowest ? kLeft : arrow;
       arrow = up[x] == lowest ? kUp : arrow;
-      out[x] = static_cast<std::uint8_t>(lowest < here[x] ? arrow : kNowhere);
+      out[x] = lowest < here[x] ? arrow : kNowhere;
     }
-    out[-1] = kOutside;
-    std::fill(out + size.width, arrows.row(y) + arrows.width(), kOutside);
-  }
-  std::fill_n(arrows.row(size.height + 1), arrows.width(), kOutside);
+  });
   return arrows;
 }
 
-/// Calls found(x) for every x whose arrow is kNowhere. Eight at a time: most pixels have one.
-template <class Found>
-void for_each_nowhere(const std::uint8_t* arrows, int width, Found found) {
-  int x = 0;
-  for (; x + 8 <= width; x += 8) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, arrows + x, 8);
-    constexpr std::uint64_t kOnes = 0x0101010101010101;
-    if (((eight - kOnes) & ~eight & (kOnes << 7U)) == 0) continue;
-    for (int i = x; i < x + 8; ++i) {
-      if (arrows[i] == kNowhere) found(i);
+/// Adds the arrows of plateau pixels at distance 1: beside a pixel of the same height that flows downhill.
+Arrows flow_beside(const Arrows& downhill, const Heights& heights, Size size, const Exec& exec) {
+  Arrows arrows = with_frame(size, kOutside, exec);
+  for_each_row(size, exec, [&](int y) {
+    const std::uint16_t* const here = heights.row(y) + 1;
+    const std::uint16_t* const up = heights.row(y - 1) + 1;
+    const std::uint16_t* const down = heights.row(y + 1) + 1;
+    const Arrow* const arrow = downhill.row(y) + 1;
+    const Arrow* const arrow_up = downhill.row(y - 1) + 1;
+    const Arrow* const arrow_down = downhill.row(y + 1) + 1;
+    Arrow* const out = arrows.row(y) + 1;
+    // A neighbour with the flag kOutside has the height UINT16_MAX, as a hole may have: so it must be asked
+    // for an arrow.
+    const auto flows = [](Arrow a) { return static_cast<Arrow>(a - 1) < kDown; };
+    for (int x = 0; x < size.width; ++x) {
+      Arrow to = kNowhere;
+      to = (down[x] == here[x]) & flows(arrow_down[x]) ? kBeside | kDown : to;
+      to = (here[x + 1] == here[x]) & flows(arrow[x + 1]) ? kBeside | kRight : to;
+      to = (here[x - 1] == here[x]) & flows(arrow[x - 1]) ? kBeside | kLeft : to;
+      to = (up[x] == here[x]) & flows(arrow_up[x]) ? kBeside | kUp : to;
+      out[x] = arrow[x] != kNowhere ? arrow[x] : to;
     }
-  }
-  for (; x < width; ++x) {
-    if (arrows[x] == kNowhere) found(x);
-  }
+  });
+  return arrows;
 }
 
-/// Arrows on plateaus: every pixel without a lower neighbour flows towards the plateau's lower border, one
-/// level of distance after the other. Plateaus without lower border are left without arrows.
-void cross_plateaus(Arrows& arrows, const Heights& heights, Size size, const Exec& exec) {
-  Image<std::int32_t> queue_image(heights.size(), exec.pool);
-  std::int32_t* const queue = queue_image.row(0);
-  std::int32_t* last = queue;
+/// The pixels that have no arrow yet but a neighbour of the same height: the inner parts of plateaus.
+ScratchList<std::int32_t> inner_plateaus(const Arrows& arrows, const Heights& heights, Size size,
+                                         const Exec& exec) {
   const std::ptrdiff_t stride = heights.width();
   const std::uint16_t* const height = heights.row(0);
-  std::uint8_t* const arrow = arrows.row(0);
+  ScratchList<std::int32_t> inner(static_cast<std::size_t>(size.area()), exec.pool);
+  std::vector<std::int32_t> nowhere(static_cast<std::size_t>(size.width));
+  for (int y = 1; y <= size.height; ++y) {
+    const Arrow* const arrow = arrows.row(y) + 1;
+    const auto start = static_cast<std::int32_t>(y * stride + 1);
+    // Both loops without a branch: what they look for comes irregularly.
+    std::size_t found = 0;
+    for (int x = 0; x < size.width; ++x) {
+      nowhere[found] = start + x;
+      found += arrow[x] == kNowhere ? 1 : 0;
+    }
+    std::int32_t* const room = inner.room_for(found);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found; ++i) {
+      const std::uint16_t* const p = height + nowhere[i];
+      const bool has_equal = (p[-stride] == *p) | (p[-1] == *p) | (p[1] == *p) | (p[stride] == *p);
+      room[kept] = nowhere[i];
+      kept += has_equal ? 1 : 0;
+    }
+    inner.grown(kept);
+  }
+  return inner;
+}
 
-  // Distance 1: beside a pixel of the same height that flows downhill (its arrow has no kAcross).
+/// Arrows of plateau pixels from distance 2 on, one level of distance after the other. Plateaus without lower
+/// border are left without arrows.
+void flow_across(const ScratchList<std::int32_t>& inner, Arrows& arrows, const Heights& heights,
+                 const Exec& exec) {
+  const std::ptrdiff_t stride = heights.width();
+  const std::uint16_t* const height = heights.row(0);
+  Arrow* const arrow = arrows.row(0);
+  Scratch<std::int32_t> queue(inner.size(), exec.pool);
+  std::int32_t* last = queue.begin();
+
   const std::array<std::ptrdiff_t, 4> steps{-stride, -1, 1, stride};
-  for (int y = 0; y < size.height; ++y) {
-    const std::ptrdiff_t start = index_of(0, y, stride);
-    for_each_nowhere(arrow + start, size.width, [&](int x) {
-      const std::ptrdiff_t p = start + x;
-      for (std::uint8_t k = 0; k < 4; ++k) {
-        const std::ptrdiff_t q = p + steps[k];
-        if (height[q] == height[p] && arrow[q] >= kUp && arrow[q] <= kDown) {
-          arrow[p] = static_cast<std::uint8_t>((k + 1) | kAcross);
-          *last++ = static_cast<std::int32_t>(p);
-          return;
-        }
-      }
-    });
+  for (const std::int32_t p : inner) {
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const std::ptrdiff_t q = p + steps[k];
+      if (height[q] != height[p] || (arrow[q] & kBeside) == 0) continue;
+      arrow[p] = static_cast<Arrow>((k + 1) | kDeep);
+      *last++ = p;
+      break;
+    }
   }
 
   // Distance n+1 from distance n. Ties: a pixel may be reached from several sides, and "up" must win. So the
@@ -120,75 +164,117 @@ void cross_plateaus(Arrows& arrows, const Heights& heights, Size size, const Exe
   // and above.
   struct Claim {
     std::ptrdiff_t step;
-    std::uint8_t arrow;
+    Arrow arrow;
   };
-  const std::array<Claim, 4> claims{Claim{stride, kUp}, Claim{1, kLeft}, Claim{-1, kRight},
-                                    Claim{-stride, kDown}};
-  for (const std::int32_t* first = queue; first != last;) {
+  const std::array<Claim, 4> claims{Claim{stride, kUp | kDeep}, Claim{1, kLeft | kDeep},
+                                    Claim{-1, kRight | kDeep}, Claim{-stride, kDown | kDeep}};
+  for (const std::int32_t* first = queue.begin(); first != last;) {
     const std::int32_t* const level_end = last;
     for (const Claim& claim : claims) {
       for (const std::int32_t* p = first; p != level_end; ++p) {
         const std::ptrdiff_t q = *p + claim.step;
-        if (arrow[q] == kNowhere && height[q] == height[*p]) {
-          arrow[q] = claim.arrow | kAcross;
-          *last++ = static_cast<std::int32_t>(q);
-        }
+        if (arrow[q] != kNowhere || height[q] != height[*p]) continue;
+        arrow[q] = claim.arrow;
+        *last++ = static_cast<std::int32_t>(q);
       }
     }
     first = level_end;
   }
 }
 
-/// Gives a whole basin floor its label: pixels without arrow that touch have the same height.
-void flood_basin(std::ptrdiff_t start, std::int32_t id, const std::uint8_t* arrow, std::int32_t* label,
-                 std::ptrdiff_t stride, std::int32_t* stack) {
-  std::int32_t* top = stack;
-  label[start] = id;
-  *top++ = static_cast<std::int32_t>(start);
-  while (top != stack) {
-    const std::ptrdiff_t p = *--top;
-    for (const std::ptrdiff_t q : {p - stride, p - 1, p + 1, p + stride}) {
-      if (arrow[q] == kNowhere && label[q] < 0) {
-        label[q] = id;
-        *top++ = static_cast<std::int32_t>(q);
+/// For each pixel the index of the pixel that it flows to; its own on a basin's floor.
+Image<std::int32_t> targets_of(const Arrows& arrows, Size size, const Exec& exec) {
+  Image<std::int32_t> targets(arrows.size(), exec.pool);
+  const auto stride = static_cast<std::int32_t>(arrows.width());
+  const std::array<std::int32_t, kDirection + 1> steps{0, -stride, -1, 1, stride, 0, 0, 0};
+  for_each_row(size, exec, [&](int y) {
+    const Arrow* const arrow = arrows.row(y) + 1;
+    std::int32_t* const target = targets.row(y) + 1;
+    for (int x = 0; x < size.width; ++x) {
+      target[x] = y * stride + 1 + x + steps[arrow[x] & kDirection];
+    }
+  });
+  return targets;
+}
+
+/// Basin floors of several pixels: leads all of them to one.
+void join_floors(ScratchList<std::int32_t>& inner, Arrows& arrows, Image<std::int32_t>& targets,
+                 const Exec& exec) {
+  const std::ptrdiff_t stride = arrows.width();
+  Arrow* const arrow = arrows.row(0);
+  std::int32_t* const target = targets.row(0);
+  Scratch<std::int32_t> stack(inner.size(), exec.pool);
+  for (const std::int32_t start : inner) {
+    if (arrow[start] != kNowhere) continue;
+    std::int32_t* top = stack.begin();
+    const auto reach = [&](std::ptrdiff_t p) {
+      arrow[p] = kFloor;
+      target[p] = start;
+      *top++ = static_cast<std::int32_t>(p);
+    };
+    reach(start);
+    while (top != stack.begin()) {
+      const std::ptrdiff_t p = *--top;
+      // Pixels without arrow that touch have the same height: the higher one would flow.
+      for (const std::ptrdiff_t q : {p - stride, p - 1, p + 1, p + stride}) {
+        if (arrow[q] == kNowhere) reach(q);
       }
     }
   }
+}
+
+/// Leads every pixel to the end of its way: to a pixel that is its own target. Sweeps to and fro, since a
+/// sweep follows a way in its own direction to the end, and at least halves what is left of any other.
+void follow_targets(Image<std::int32_t>& targets, Size size) {
+  std::int32_t* const target = targets.row(0);
+  const std::ptrdiff_t stride = targets.width();
+  const auto advance = [&](std::ptrdiff_t p) {
+    const std::int32_t before = target[p];
+    target[p] = target[before];
+    return before ^ target[p];
+  };
+  for (std::int32_t moved = 1; moved != 0;) {
+    moved = 0;
+    for (std::ptrdiff_t y = 1; y <= size.height; ++y) {
+      for (std::ptrdiff_t p = y * stride + 1; p <= y * stride + size.width; ++p) moved |= advance(p);
+    }
+    if (moved == 0) break;
+    moved = 0;
+    for (std::ptrdiff_t y = size.height; y >= 1; --y) {
+      for (std::ptrdiff_t p = y * stride + size.width; p > y * stride; --p) moved |= advance(p);
+    }
+  }
+}
+
+/// Numbers the ends of the ways in raster order of the first pixel that leads there.
+Basins numbered(const Image<std::int32_t>& targets, Size size, const Exec& exec) {
+  Basins basins{Image<RegionId>(size, exec.pool), 0};
+  Image<std::int32_t> ids(targets.size(), -1, exec.pool);
+  std::int32_t* const id = ids.row(0);
+  for (int y = 0; y < size.height; ++y) {
+    const std::int32_t* const target = targets.row(y + 1) + 1;
+    RegionId* const label = basins.labels.row(y);
+    for (int x = 0; x < size.width; ++x) {
+      std::int32_t& known = id[target[x]];
+      if (known < 0) known = basins.count++;
+      label[x] = RegionId{known};
+    }
+  }
+  return basins;
 }
 
 }  // namespace
 
 Basins watershed(View<const std::uint16_t> gradient, const Exec& exec) {
   const Size size = gradient.size();
-  const Heights heights = with_frame(gradient, exec);
-  Arrows arrows = downhill(heights, size, exec);
-  cross_plateaus(arrows, heights, size, exec);
-
-  const std::ptrdiff_t stride = heights.width();
-  Image<std::int32_t> labels(heights.size(), -1, exec.pool);
-  Image<std::int32_t> stack(heights.size(), exec.pool);
-  const std::uint8_t* const arrow = arrows.row(0);
-  std::int32_t* const label = labels.row(0);
-  const std::array<std::ptrdiff_t, 8> step{0, -stride, -1, 1, stride, 0, 0, 0};
-
-  // In raster order, so that basins are numbered by their first pixel: follow the arrows to a pixel that has
-  // its label, then go the same way again and hand the label to every pixel on it. No pixel is walked through
-  // more than twice.
-  Basins basins{Image<RegionId>(size, exec.pool), 0};
-  for (int y = 0; y < size.height; ++y) {
-    const std::ptrdiff_t start = index_of(0, y, stride);
-    for (std::ptrdiff_t p = start; p < start + size.width; ++p) {
-      if (label[p] >= 0) continue;
-      std::ptrdiff_t q = p;
-      while (label[q] < 0 && arrow[q] != kNowhere) q += step[arrow[q] & kDirection];
-      if (label[q] < 0) flood_basin(q, basins.count++, arrow, label, stride, stack.row(0));
-      const std::int32_t id = label[q];
-      for (q = p; label[q] < 0; q += step[arrow[q] & kDirection]) label[q] = id;
-    }
-    // Nothing changes a label once given, and every pixel up to here has its own.
-    std::memcpy(basins.labels.row(y), label + start, static_cast<std::size_t>(size.width) * sizeof(RegionId));
-  }
-  return basins;
+  const Heights heights = heights_of(gradient, exec);
+  Arrows arrows = flow_beside(flow_downhill(heights, size, exec), heights, size, exec);
+  ScratchList<std::int32_t> inner = inner_plateaus(arrows, heights, size, exec);
+  flow_across(inner, arrows, heights, exec);
+  Image<std::int32_t> targets = targets_of(arrows, size, exec);
+  join_floors(inner, arrows, targets, exec);
+  follow_targets(targets, size);
+  return numbered(targets, size, exec);
 }
 
 }  // namespace cairn

@@ -192,7 +192,7 @@ TEST(RegionsEquivalence, GraphOfScatteredLabelsIsItsTwin) {
   const Image<std::int16_t> values = random_disparity16({33, 21}, 43);
   const RegionGraph graph = build_graph(labels, 20, values, {}, {});
   expect_equal(graph, reference::build_graph(labels, 20, values, {}));
-  const Merges merges = grow_statistical(graph, {100, 1, 30, 20});
+  const Merges merges = grow_statistical(graph, {100, 1, 30, 20}, {});
   EXPECT_EQ(merges, reference::grow_statistical(graph, {100, 1, 30, 20}));
   expect_equal(apply_merges(labels, graph, merges, 1.0, {}),
                reference::apply_merges(labels, graph, merges, 1.0));
@@ -234,14 +234,14 @@ TEST(RegionsEquivalence, MayFuseIsItsTwin) {
 
 TEST(RegionsEquivalence, StatisticalGrowingIsItsTwin) {
   for_each_graph([](const RegionGraph& graph, const GrowCriteria& criteria, std::uint32_t seed) {
-    EXPECT_EQ(grow_statistical(graph, criteria), reference::grow_statistical(graph, criteria))
+    EXPECT_EQ(grow_statistical(graph, criteria, {}), reference::grow_statistical(graph, criteria))
         << "seed " << seed << " mean_difference_max " << criteria.mean_difference_max;
   });
 }
 
 TEST(RegionsEquivalence, NearToFarGrowingIsItsTwin) {
   for_each_graph([](const RegionGraph& graph, const GrowCriteria& criteria, std::uint32_t seed) {
-    EXPECT_EQ(grow_near_to_far(graph, criteria), reference::grow_near_to_far(graph, criteria))
+    EXPECT_EQ(grow_near_to_far(graph, criteria, {}), reference::grow_near_to_far(graph, criteria))
         << "seed " << seed << " mean_difference_max " << criteria.mean_difference_max;
   });
 }
@@ -249,8 +249,8 @@ TEST(RegionsEquivalence, NearToFarGrowingIsItsTwin) {
 TEST(RegionsEquivalence, FusingSmallRegionsIsItsTwin) {
   for_each_graph([](const RegionGraph& graph, const GrowCriteria& criteria, std::uint32_t) {
     const Merges so_far =
-        grow_near_to_far(graph, {.mean_difference_max = 5, .deviation_max = 1, .sigma_min = 1});
-    EXPECT_EQ(fuse_small_regions(graph, so_far, criteria.min_region_area),
+        grow_near_to_far(graph, {.mean_difference_max = 5, .deviation_max = 1, .sigma_min = 1}, {});
+    EXPECT_EQ(fuse_small_regions(graph, so_far, criteria.min_region_area, {}),
               reference::fuse_small_regions(graph, so_far, criteria.min_region_area));
   });
 }

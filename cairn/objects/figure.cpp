@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/objects/figure.hpp>
+#include <cmath>
+#include <cstdlib>
+
+namespace cairn {
+namespace {
+
+// Votes in tenths: what is seen counts double what is concluded, and a conclusion over too long a stretch
+// next to nothing.
+constexpr int kSeen = 20;
+constexpr int kConcluded = 10;
+constexpr int kCutOff = 5;
+constexpr int kTooLong = 1;
+
+struct Votes {
+  std::vector<std::int64_t> figure, ground, pixels;
+  explicit Votes(int facets)
+      : figure(static_cast<std::size_t>(facets)), ground(figure.size()), pixels(figure.size()) {}
+};
+
+struct Scales {
+  float margin_px;
+  float agreement_px;
+  int longest_bridge_px;
+};
+
+/// One pixel of a row that has evidence.
+struct Seen {
+  int x;
+  float disparity_px;
+  float before_background_px;
+};
+
+void vote(const RegionId* facet, int first, int last, bool figure, int weight, Votes& votes) {
+  auto& side = figure ? votes.figure : votes.ground;
+  for (int x = first; x < last; ++x) side[index(facet[x])] += weight;
+}
+
+void vote_between(const RegionId* facet, const Seen& left, const Seen& right, const Scales& scales,
+                  Votes& votes) {
+  const bool figure =
+      left.before_background_px > scales.margin_px && right.before_background_px > scales.margin_px;
+  int weight = kConcluded;
+  if (figure && std::abs(left.disparity_px - right.disparity_px) > scales.agreement_px) weight = 0;
+  if (figure && weight > 0 && right.x - left.x > scales.longest_bridge_px) weight = kTooLong;
+  vote(facet, left.x + 1, right.x, figure, weight, votes);
+}
+
+void vote_to_border(const RegionId* facet, int first, int last, const Seen* end, const Scales& scales,
+                    Votes& votes) {
+  const bool sure = end != nullptr && !(end->before_background_px > scales.margin_px);
+  vote(facet, first, last, false, sure ? kConcluded : kCutOff, votes);
+}
+
+void vote_in_row(const RegionId* facet, int width, const std::vector<Seen>& seen, const Scales& scales,
+                 Votes& votes) {
+  if (seen.empty()) {
+    vote_to_border(facet, 0, width, nullptr, scales, votes);
+    return;
+  }
+  vote_to_border(facet, 0, seen.front().x, &seen.front(), scales, votes);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    vote(facet, seen[i].x, seen[i].x + 1, seen[i].before_background_px > scales.margin_px, kSeen, votes);
+    if (i + 1 < seen.size()) vote_between(facet, seen[i], seen[i + 1], scales, votes);
+  }
+  vote_to_border(facet, seen.back().x + 1, width, &seen.back(), scales, votes);
+}
+
+}  // namespace
+
+std::vector<std::int32_t> separate_figure(const Facets& facets, const DisparityMap& disparity,
+                                          View<const std::uint8_t> evidence, const Background& background,
+                                          const FigureConfig& config, const Exec&) {
+  const Size size = facets.labels.size();
+  const auto per_mille = 0.001F * static_cast<float>(size.width);
+  const Scales scales{config.margin * per_mille, config.agreement * per_mille,
+                      static_cast<int>(0.01F * config.longest_bridge * static_cast<float>(size.width))};
+  Votes votes(facets.count);
+  std::vector<Seen> seen;
+  for (int y = 0; y < size.height; ++y) {
+    seen.clear();
+    for (int x = 0; x < size.width; ++x) {
+      if (evidence(x, y) == 0) continue;
+      const float d = disparity.disparity_px(x, y);
+      seen.push_back({x, d, d - background.disparity_px(static_cast<float>(x), static_cast<float>(y))});
+    }
+    vote_in_row(facets.labels.row(y), size.width, seen, scales, votes);
+    for (int x = 0; x < size.width; ++x) ++votes.pixels[index(facets.labels(x, y))];
+  }
+
+  std::vector<std::int32_t> labels(votes.pixels.size());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const auto known = static_cast<double>(votes.figure[i] + votes.ground[i]);
+    const bool enough = known > 0.01 * config.least_known * kConcluded * static_cast<double>(votes.pixels[i]);
+    labels[i] = enough ? static_cast<std::int32_t>(votes.figure[i] > votes.ground[i]) : -1;
+  }
+  return flooded(std::move(labels), facets.borders, 0);
+}
+
+}  // namespace cairn

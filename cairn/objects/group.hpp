@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/fields.hpp>
+#include <cairn/objects/figure.hpp>
+#include <cairn/regions/region_graph.hpp>
+
+namespace cairn {
+
+struct GroupConfig {
+  float step = 2.8F;
+  float deviation = 4.7F;
+  float min_area = 0.15F;
+};
+template <class V>
+void fields(GroupConfig& c, V&& v) {
+  v("step", c.step, "‰ of the width", "largest step of disparity across a border within one object",
+    range(0.0F, 1000.0F));
+  v("deviation", c.deviation, "‰ of the width",
+    "how far a facet may lie off the plane of the object that it joins", range(0.0F, 1000.0F));
+  v("min_area", c.min_area, "% of the image", "smaller groups join a neighbour", range(0.0F, 100.0F));
+}
+
+/// Groups figure facets to objects: the paper's growing from near to far, on facets and with planes instead
+/// of means, so that slanted surfaces hold together and a step in depth parts what touches in the picture.
+///
+/// Each facet gets the plane of its disparities (pixels next to its border hardly count, for there the
+/// matcher blends two surfaces; slopes are damped, so that small facets are level). The nearest free facet
+/// begins a group; the group takes in neighbours, least step across the common border first, as long as the
+/// step is at most `step` and the neighbour there lies within `deviation` of the group's own plane, which is
+/// refitted each time. Then groups below min_area join the figure neighbour with the longest, smoothest
+/// common border, and facets without disparity follow their weakest border. (METHOD §5 c–g and "regions
+/// modelled as planes", beyond the paper)
+///
+/// Result: region 0 is the background (is_floor), the others are groups. Means in px.
+Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,
+                          const DisparityMap& disparity, View<const std::uint8_t> evidence,
+                          const Background& background, const FigureConfig& figure_config,
+                          const GroupConfig& config, const Exec& exec);
+
+}  // namespace cairn

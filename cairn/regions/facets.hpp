@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/fields.hpp>
+#include <cairn/core/ids.hpp>
+#include <cairn/core/image.hpp>
+#include <cairn/regions/region_graph.hpp>
+#include <cstdint>
+#include <vector>
+
+namespace cairn {
+
+struct FacetsConfig {
+  float smoothing_sigma = 0.7F;
+  float edge_min = 2.0F;
+  float noise_factor = 3.0F;
+};
+template <class V>
+void fields(FacetsConfig& c, V&& v) {
+  v("smoothing_sigma", c.smoothing_sigma, "px", "Gaussian smoothing before the edges", range(0.0F, 5.0F));
+  v("edge_min", c.edge_min, "grey levels", "basins fuse across borders whose mean edge is weaker than this …",
+    range(0.0F, 255.0F));
+  v("noise_factor", c.noise_factor, "σ of the noise", "… plus this many deviations of the image noise",
+    range(0.0F, 100.0F));
+}
+
+/// The common border of two facets, a < b. Positions are those of the pixel pairs' midpoints, summed in half
+/// pixels.
+struct Border {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+  std::int64_t length = 0;    // pairs of 4-neighbours
+  std::int64_t edge_sum = 0;  // of the stronger edge of each pair, in 1/4 grey level
+  std::int64_t x2_sum = 0;
+  std::int64_t y2_sum = 0;
+  [[nodiscard]] double mean_edge() const {
+    return static_cast<double>(edge_sum) / static_cast<double>(length);
+  }
+  [[nodiscard]] double x() const { return static_cast<double>(x2_sum) / static_cast<double>(2 * length); }
+  [[nodiscard]] double y() const { return static_cast<double>(y2_sum) / static_cast<double>(2 * length); }
+};
+
+/// The image cut into facets: connected pieces that no clear edge runs through. Borders sorted by (a, b).
+struct Facets {
+  Image<RegionId> labels;  // 0 … count−1 in raster order of their first pixel
+  int count = 0;
+  std::vector<Border> borders;
+};
+
+/// The borders between the regions of `labels`, sorted.
+std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges);
+
+/// Watershed of the edges (in colour where there is colour), then each basin fuses with the neighbour across
+/// its weakest border where that border's mean edge is below edge_min + noise_factor·noise; borders are
+/// recomputed and it is done again, four times at most. Unlike a comparison of means this follows shading
+/// across a plain surface and stops at faint outlines. (METHOD §4, beyond the paper)
+Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, float noise, const FacetsConfig& config,
+                      const Exec& exec);
+
+/// The facets as a segmentation, with their grey statistics.
+Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const Exec& exec);
+
+/// Fills what is undecided (< 0) from its neighbours, across the weakest borders first: a flooding whose
+/// markers are the decided facets. Where no decided facet can be reached, `otherwise`.
+std::vector<std::int32_t> flooded(std::vector<std::int32_t> labels, const std::vector<Border>& borders,
+                                  std::int32_t otherwise);
+
+}  // namespace cairn
