@@ -15,20 +15,20 @@ namespace cairn {
 namespace {
 
 // What a floor looks like. Distances in px of disparity, whatever the image's size: a matcher's errors are.
-constexpr float kTolerance = 1.0F;  // px; a right match is rarely farther from the floor
-constexpr float kSteepestPitch =
-    77.0F;                             // degrees below the horizon; a plane faced more squarely may be a wall
-constexpr float kLeastPitch = -30.0F;  // degrees; a camera that looks up more sees no floor
-constexpr float kMostRoll = 25.0F;     // degrees
+constexpr float kTolerance = 1.0F;       // px; a right match is rarely farther from the floor
+constexpr float kSteepestPitch = 77.0F;  // degrees below the horizon; planes faced more squarely are walls
+constexpr float kLeastPitch = -30.0F;    // degrees; a camera that looks up more sees no floor
+constexpr float kMostRoll = 20.0F;       // degrees
+constexpr float kParallel = 5.0F;        // degrees; fits to parallel surfaces differ by less
 
 // When there is one.
 constexpr double kLeastMatches = 0.005;  // share of the image
 constexpr std::int64_t kFewestMatches = 64;
 constexpr double kLeastScore = 0.05;  // share of the matches under the plane's horizon
-constexpr double kLeastRise =
-    2.0 / 3.0;                    // share of the plane's slope that its matches show from one row to another
-constexpr int kFewestPairs = 8;   // that this is judged by
-constexpr int kLowerSurface = 3;  // a plane below the best counts with a third of its score
+constexpr double kLeastRise = 0.5;    // share of its slope that the matches show from row to row, for sure
+constexpr int kFewestPairs = 8;       // of matches, that this is judged by
+constexpr double kAlike = 4;          // so many neighbouring matches err alike
+constexpr int kLowerSurface = 3;      // a plane below the best counts with a third of its score
 
 // How hard it is searched: about a millisecond.
 constexpr std::size_t kSamples = 4096;
@@ -103,6 +103,11 @@ struct Tally {
   /// plane has more on it than beside it is its own. Nothing should be below a floor, but for wrong matches
   /// and for what is seen mirrored in it.
   [[nodiscard]] int score() const { return on - beside - below; }
+  /// What planes are compared by: the score, and its share in what lies under the horizon. By the score
+  /// alone, a plane that spans the picture would beat a road that fills its lower half.
+  [[nodiscard]] double rank() const {
+    return score() <= 0 ? 0.0 : static_cast<double>(score()) * score() / all;
+  }
   [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kLeastScore * all; }
 };
 
@@ -122,6 +127,10 @@ Tally tally(const GroundPlane& plane, const Points& points, float infinity) {
   return sum;
 }
 
+float radians(float degrees) {
+  return degrees * std::numbers::pi_v<float> / 180;
+}
+
 /// What is known of the camera, or assumed.
 struct Camera {
   float cx_px;
@@ -135,13 +144,17 @@ struct Camera {
         focal_px(rig ? rig->focal_px : static_cast<float>(image.width)),  // 53 degrees from left to right
         infinity(rig ? rig->doffs_px : 0.0F) {}
 
+  /// The plane's normal in the camera's frame, towards the ground; of any length.
+  [[nodiscard]] Vec3 normal(const GroundPlane& plane) const {
+    return {focal_px * plane.a, focal_px * plane.b, plane.disparity_px(cx_px, cy_px) + infinity};
+  }
+
   /// Whether a camera that sees this plane as a floor has a pitch and roll that cameras have.
   [[nodiscard]] bool may_stand_on(const GroundPlane& plane) const {
-    const auto tangent = [](float degrees) { return std::tan(degrees * std::numbers::pi_v<float> / 180); };
-    if (!(plane.b > 0) || std::abs(plane.a) > plane.b * tangent(kMostRoll)) return false;
-    const float pitch =
-        (plane.disparity_px(cx_px, cy_px) + infinity) / (focal_px * std::hypot(plane.a, plane.b));
-    return pitch <= tangent(kSteepestPitch) && pitch >= tangent(kLeastPitch);
+    const Vec3 down = normal(plane);
+    if (!(down.y > 0) || std::abs(down.x) > down.y * std::tan(radians(kMostRoll))) return false;
+    const float pitch = down.z / std::hypot(down.x, down.y);
+    return pitch <= std::tan(radians(kSteepestPitch)) && pitch >= std::tan(radians(kLeastPitch));
   }
 };
 
@@ -205,26 +218,35 @@ GroundPlane refined(GroundPlane plane, const Points& points, const std::array<fl
 }
 
 /// Whether the matches on the plane themselves rise towards the camera as it does: disparities some rows
-/// apart must differ. This tells a floor from a plane that is laid across upright surfaces at different
-/// depths, an object before a wall for instance, each of which has its own disparity all the way down.
+/// apart must differ, and by more than noise explains. This tells a floor from a plane that is laid across
+/// upright surfaces at different depths, an object before a wall for instance, each of which has its own
+/// disparity all the way down.
 bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points) {
-  double rise = 0;
-  double expected = 0;
+  double nn = 0;  // n rows apart, d px apart
+  double nd = 0;
+  double dd = 0;
   int pairs = 0;
-  // Apart by more than a usual matching window, which would tie the two together.
-  for (const int rows : {disparity_px.height() / 24, disparity_px.height() / 12}) {
+  // Apart by more than a usual matching window, which would tie the two together, but not from one surface to
+  // the next.
+  for (const int rows : {disparity_px.height() / 24 + 1, disparity_px.height() / 12 + 1}) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!points.on(plane, i)) continue;
       const int y = static_cast<int>(points.y[i]) + rows;
       if (y >= disparity_px.height()) break;  // points are in raster order
       const float d = disparity_px(static_cast<int>(points.x[i]), y);
       if (!(std::abs(d - plane.disparity_px(points.x[i], static_cast<float>(y))) <= kTolerance)) continue;
+      const double apart = double{d} - points.d[i];
       ++pairs;
-      rise += rows * (double{d} - points.d[i]);
-      expected += double{plane.b} * rows * rows;
+      nn += rows * rows;
+      nd += rows * apart;
+      dd += apart * apart;
     }
   }
-  return pairs >= kFewestPairs && rise >= kLeastRise * expected;
+  if (pairs < kFewestPairs) return false;
+  const double slope = nd / nn;
+  const double variance = std::max(0.0, dd - slope * nd) / pairs;
+  const double uncertainty = 2 * std::sqrt(kAlike * variance / nn);  // two standard deviations of the slope
+  return slope - uncertainty >= kLeastRise * double{plane.b};
 }
 
 struct Candidate {
@@ -260,7 +282,7 @@ Candidates candidates(View<const float> disparity_px, const Points& points, cons
     }
   }
   std::stable_sort(found.floors.begin(), found.floors.end(),
-                   [](const Candidate& p, const Candidate& q) { return p.tally.score() > q.tally.score(); });
+                   [](const Candidate& p, const Candidate& q) { return p.tally.rank() > q.tally.rank(); });
   return found;
 }
 
@@ -276,12 +298,22 @@ bool lies_below(const GroundPlane& plane, const GroundPlane& other, const Points
   return 4 * below >= 3 * on;
 }
 
-/// The best floor; but of two the lower, on which the other one, a box's lid perhaps, stands.
-const Candidate& choose(const std::vector<Candidate>& floors, const Points& points) {
+/// Whether the two are parallel in space, as well as fits can tell.
+bool parallel(const GroundPlane& p, const GroundPlane& q, const Camera& camera) {
+  const Vec3 m = camera.normal(p);
+  const Vec3 n = camera.normal(q);
+  const auto dot = [](Vec3 u, Vec3 v) { return u.x * v.x + u.y * v.y + u.z * v.z; };
+  return dot(m, n) >= std::cos(radians(kParallel)) * std::sqrt(dot(m, m) * dot(n, n));
+}
+
+/// The best floor; but of parallel ones the lower, on which the other one, a box's lid perhaps, stands.
+const Candidate& choose(const std::vector<Candidate>& floors, const Points& points, const Camera& camera) {
   const Candidate* best = &floors.front();
   for (const auto& candidate : floors) {
     const bool counts = candidate.tally.score() * kLowerSurface >= floors.front().tally.score();
-    if (counts && lies_below(candidate.plane, best->plane, points)) best = &candidate;
+    const bool carries = counts && parallel(candidate.plane, best->plane, camera) &&
+                         lies_below(candidate.plane, best->plane, points);
+    if (carries) best = &candidate;
   }
   return *best;
 }
@@ -361,7 +393,8 @@ Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>
   if (found.floors.empty()) {
     return refused(found.others || faces_a_wall(points, camera) ? Refusal::implausible : Refusal::no_plane);
   }
-  const auto plane = refined(choose(found.floors, points).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F});
+  const auto plane =
+      refined(choose(found.floors, points, camera).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F});
   return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, points), Refusal::none};
 }
 
