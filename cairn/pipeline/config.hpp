@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/disparity/background.hpp>
+#include <cairn/disparity/evidence.hpp>
 #include <cairn/disparity/flatness.hpp>
 #include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/left_right.hpp>
@@ -9,8 +11,13 @@
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
 #include <cairn/matching/match.hpp>
+#include <cairn/matching/semi_global.hpp>
 #include <cairn/matching/subpixel.hpp>
+#include <cairn/objects/figure.hpp>
+#include <cairn/objects/fuse.hpp>
+#include <cairn/objects/group.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/regions/facets.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
 #include <string>
@@ -22,6 +29,7 @@ namespace cairn {
 /// What is computed: one section per stage. A default-constructed Config is the preset `default`.
 struct Config {
   MatchConfig match;
+  SemiGlobalConfig semi_global;
   SubpixelConfig subpixel;
   LeftRightConfig left_right;
   UniquenessConfig uniqueness;
@@ -29,8 +37,14 @@ struct Config {
   TextureConfig texture;
   GroundConfig ground;
   SpeckleConfig speckle;
+  EvidenceConfig evidence;
+  BackgroundConfig background;
   IntensityConfig intensity;
   DisparityConfig disparity;
+  FusionConfig fusion;
+  FacetsConfig facets;
+  FigureConfig figure;
+  GroupConfig group;
   ObjectsConfig objects;
 
   /// Only what the paper describes. (METHOD, "Two presets")
@@ -43,6 +57,7 @@ struct Config {
 template <class C, class F>
 void for_each_section(C& c, F&& visit) {
   visit("match", c.match);
+  visit("semi_global", c.semi_global);
   visit("subpixel", c.subpixel);
   visit("left_right", c.left_right);
   visit("uniqueness", c.uniqueness);
@@ -50,8 +65,14 @@ void for_each_section(C& c, F&& visit) {
   visit("texture", c.texture);
   visit("ground", c.ground);
   visit("speckle", c.speckle);
+  visit("evidence", c.evidence);
+  visit("background", c.background);
   visit("intensity", c.intensity);
   visit("disparity", c.disparity);
+  visit("fusion", c.fusion);
+  visit("facets", c.facets);
+  visit("figure", c.figure);
+  visit("group", c.group);
   visit("objects", c.objects);
 }
 

@@ -8,48 +8,78 @@
 namespace cairn {
 namespace {
 
-SceneDisparity check_against_scene(DisparityMap disparity, const std::optional<StereoRig>& rig, const Config& config,
-                                   const Exec& exec, Observed& stage) {
+SceneDisparity check_against_scene(DisparityMap disparity, const std::optional<StereoRig>& rig,
+                                   const Config& config, const Exec& exec, Observed& stage) {
   Ground ground = stage("fit_ground", fit_ground(disparity, rig, config.ground, exec));
-  disparity = stage("reject_below_ground", reject_below_ground(std::move(disparity), ground, rig, config.ground, exec));
+  disparity = stage("reject_below_ground",
+                    reject_below_ground(std::move(disparity), ground, rig, config.ground, exec));
   disparity = stage("reject_speckles", reject_speckles(std::move(disparity), config.speckle, exec));
   auto floor = stage("label_floor", label_floor(disparity, ground, rig, config.ground, exec));
   return {std::move(disparity), ground, std::move(floor)};
 }
 
-DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec, Observed& stage) {
-  const Matches matches = stage("match", match(pair, config.match, exec));
+DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec,
+                             Observed& stage) {
+  const Matches matches = stage("match", match(pair, config.match, config.semi_global, exec));
   auto refined = stage("refine_subpixel", refine_subpixel(matches, config.subpixel, exec));
 
-  const auto inconsistent = stage("reject_inconsistent", reject_inconsistent(matches, config.left_right, exec));
+  const auto inconsistent =
+      stage("reject_inconsistent", reject_inconsistent(matches, config.left_right, exec));
   const auto ambiguous = stage("reject_ambiguous", reject_ambiguous(matches, config.uniqueness, exec));
   const auto flat = stage("reject_flat", reject_flat(matches, config.flatness, exec));
   const auto textureless = stage("reject_textureless", reject_textureless(pair.left(), config.texture, exec));
   return stage("combine", combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec));
 }
 
+/// The paper's way: two segmentations, united where they overlap.
+void unite_by_overlap(View<const Gray> left, Frame& frame, const Config& config, const Exec& exec,
+                      Observed& stage) {
+  frame.by_intensity = stage("segment_intensity", segment_intensity(left, config.intensity, exec));
+  frame.by_disparity =
+      stage("segment_disparity", segment_disparity(frame.disparity, frame.floor, config.disparity, exec));
+}
+
+/// What texture proves decides which facets stand before the background, and which of those belong together.
+void unite_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
+                       Frame& frame, const Config& config, const Exec& exec, Observed& stage) {
+  const float noise = noise_sigma(left);
+  const auto evidence =
+      stage("find_evidence", find_evidence(left, frame.disparity, noise, config.evidence, exec));
+  const Background background =
+      fit_background(frame.disparity, evidence, frame.ground, rig, config.background, exec);
+  const Facets facets = segment_facets(left, left_rgb, noise, config.facets, exec);
+  frame.by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
+  const auto figure = separate_figure(facets, frame.disparity, evidence, background, config.figure, exec);
+  frame.by_disparity = stage("group_facets", group_facets(facets, figure, frame.disparity, evidence,
+                                                          background, config.figure, config.group, exec));
+}
+
 Frame find_objects(View<const Gray> left, View<const Rgb> left_rgb, SceneDisparity scene,
-                   const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage) {
-  auto by_intensity = stage("segment_intensity", segment_intensity(left, config.intensity, exec));
-  auto by_disparity =
-      stage("segment_disparity", segment_disparity(scene.disparity, scene.floor, config.disparity, exec));
-  auto fusion = stage("fuse", fuse(by_intensity, by_disparity, exec));
-  auto objects =
-      stage("measure", measure(fusion, by_disparity, scene.disparity, left, left_rgb, rig, config.objects, exec));
-  return {std::move(scene.disparity), scene.ground,      std::move(scene.floor), std::move(by_intensity),
-          std::move(by_disparity),    std::move(fusion), std::move(objects)};
+                   const std::optional<StereoRig>& rig, const Config& config, const Exec& exec,
+                   Observed& stage) {
+  Frame frame{std::move(scene.disparity), scene.ground, std::move(scene.floor), {}, {}, {}, {}};
+  if (config.fusion.method == FusionMethod::evidence) {
+    unite_by_evidence(left, left_rgb, rig, frame, config, exec, stage);
+  } else {
+    unite_by_overlap(left, frame, config, exec, stage);
+  }
+  frame.fusion = stage("fuse", fuse(frame.by_intensity, frame.by_disparity, exec));
+  frame.objects = stage("measure", measure(frame.fusion, frame.by_disparity, frame.disparity, left, left_rgb,
+                                           rig, config.objects, exec));
+  return frame;
 }
 
 }  // namespace
 
-SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
-                                  const Exec& exec) {
+SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
+                                  const Config& config, const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
   return check_against_scene(match_and_check(pair, config, exec, stage), rig, config, exec, stage);
 }
 
-Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config, const Exec& exec) {
+Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
+              const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
   auto scene = check_against_scene(match_and_check(pair, config, exec, stage), rig, config, exec, stage);
@@ -59,8 +89,8 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
 Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
               const std::optional<StereoRig>& rig, const Config& config, const Exec& exec) {
   if (left.size() != disparity.disparity_px.size()) {
-    throw Error("external disparity: the map is " + text(disparity.disparity_px.size()) + ", the left image " +
-                text(left.size()));
+    throw Error("external disparity: the map is " + text(disparity.disparity_px.size()) +
+                ", the left image " + text(left.size()));
   }
   validate(config);
   Observed stage(exec);

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/disparity/background.hpp>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+namespace cairn {
+namespace {
+
+constexpr int kTrials = 300;
+constexpr std::size_t kSample = 600;
+constexpr double kBehindWeight = 2.0;  // a point behind a wall speaks against it as two on it speak for it
+
+struct Point3 {
+  float x, y, d;
+};
+
+/// Minimal standard generator: the same walls on every machine.
+class Draw {
+ public:
+  std::size_t below(std::size_t n) {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<std::size_t>((state_ >> 33U) % n);
+  }
+
+ private:
+  std::uint64_t state_ = 0x9E3779B97F4A7C15ULL;
+};
+
+float at(const GroundPlane& p, const Point3& q) {
+  return p.a * q.x + p.b * q.y + p.c;
+}
+
+/// A linear condition k·(a, b, c) = value on planes.
+struct Condition {
+  std::array<double, 3> k{};
+  double value = 0;
+};
+
+/// Upright on the floor: a plane d = a·x + b·y + c has the normal (a·f, b·f, a·cx + b·cy + c + doffs) in the
+/// camera's frame (from 1/Z), and two planes are upright on each other where their normals are.
+Condition upright(const GroundPlane& floor, const StereoRig& rig) {
+  const double f = rig.focal_px;
+  const double nx = floor.a * f;
+  const double ny = floor.b * f;
+  const double nz = floor.a * rig.cx_px + floor.b * rig.cy_px + floor.c + rig.doffs_px;
+  const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+  return {{(f * nx + rig.cx_px * nz) / length, (f * ny + rig.cy_px * nz) / length, nz / length},
+          -rig.doffs_px * nz / length};
+}
+
+std::optional<GroundPlane> solve(const std::array<Condition, 3>& c) {
+  const auto& [p, q, r] = c;
+  const auto det = [](const std::array<double, 3>& u, const std::array<double, 3>& v,
+                      const std::array<double, 3>& w) {
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
+  };
+  const double determinant = det(p.k, q.k, r.k);
+  if (!(std::abs(determinant) > 1e-6)) return std::nullopt;
+  std::array<double, 3> solution{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::array<std::array<double, 3>, 3> m{p.k, q.k, r.k};
+    m[0][i] = p.value;
+    m[1][i] = q.value;
+    m[2][i] = r.value;
+    solution[i] = det(m[0], m[1], m[2]) / determinant;
+  }
+  return GroundPlane{static_cast<float>(solution[0]), static_cast<float>(solution[1]),
+                     static_cast<float>(solution[2])};
+}
+
+Condition through(const Point3& p) {
+  return {{p.x, p.y, 1}, p.d};
+}
+
+/// Looks for walls among points; keeps what was found so far.
+class WallSearch {
+ public:
+  WallSearch(std::vector<Point3> points, std::vector<GroundPlane> planes, std::optional<Condition> upright,
+             int width, const BackgroundConfig& config)
+      : points_(std::move(points)),
+        behind_(points_.size(), 0.0F),
+        planes_(std::move(planes)),
+        upright_(std::move(upright)),
+        least_distance_(0.06F * static_cast<float>(width)),
+        tolerance_(config.tolerance * 0.001F * static_cast<float>(width)),
+        min_share_(config.min_share * 0.01),
+        max_behind_(config.max_behind * 0.01) {
+    for (const GroundPlane& plane : planes_) put_behind(plane);
+  }
+
+  /// Adds the best wall; false where none is good enough.
+  bool find_next() {
+    std::vector<std::size_t> before;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (points_[i].d - behind_[i] > tolerance_) before.push_back(i);
+    }
+    if (static_cast<double>(before.size()) < min_share_ * static_cast<double>(points_.size()) ||
+        before.size() < 8) {
+      return false;
+    }
+    const std::optional<GroundPlane> guess = best_guess(before);
+    if (!guess) return false;
+    const std::optional<GroundPlane> wall = refined(*guess, before);
+    if (!wall || !good_enough(*wall)) return false;
+    planes_.push_back(*wall);
+    put_behind(*wall);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<GroundPlane> planes() && { return std::move(planes_); }
+
+ private:
+  void put_behind(const GroundPlane& plane) {
+    for (std::size_t i = 0; i < points_.size(); ++i) behind_[i] = std::max(behind_[i], at(plane, points_[i]));
+  }
+
+  [[nodiscard]] std::vector<std::size_t> sample(const std::vector<std::size_t>& of) {
+    if (of.size() <= kSample) return of;
+    std::vector<std::size_t> drawn(kSample);
+    for (std::size_t& i : drawn) i = of[draw_.below(of.size())];
+    return drawn;
+  }
+
+  std::optional<GroundPlane> hypothesis(const std::vector<std::size_t>& before) {
+    const Point3& p = points_[before[draw_.below(before.size())]];
+    const Point3& q = points_[before[draw_.below(before.size())]];
+    if (std::abs(p.x - q.x) < least_distance_) return std::nullopt;
+    if (upright_) return solve({through(p), through(q), *upright_});
+    return solve({through(p), through(q), through(points_[before[draw_.below(before.size())]])});
+  }
+
+  std::optional<GroundPlane> best_guess(const std::vector<std::size_t>& before) {
+    std::vector<std::size_t> everything(points_.size());
+    for (std::size_t i = 0; i < everything.size(); ++i) everything[i] = i;
+    const std::vector<std::size_t> all = sample(everything);
+    const std::vector<std::size_t> front = sample(before);
+    const double front_share = static_cast<double>(before.size()) / static_cast<double>(points_.size());
+    std::optional<GroundPlane> best;
+    double best_score = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const std::optional<GroundPlane> plane = hypothesis(before);
+      if (!plane) continue;
+      std::size_t on = 0;
+      for (const std::size_t i : front)
+        on += std::abs(points_[i].d - at(*plane, points_[i])) < 0.7F * tolerance_ ? 1 : 0;
+      std::size_t beyond = 0;
+      for (const std::size_t i : all) {
+        beyond += points_[i].d - std::max(behind_[i], at(*plane, points_[i])) < -tolerance_ ? 1 : 0;
+      }
+      const double score = front_share * static_cast<double>(on) / static_cast<double>(front.size()) -
+                           kBehindWeight * static_cast<double>(beyond) / static_cast<double>(all.size());
+      if (score > best_score) {
+        best_score = score;
+        best = plane;
+      }
+    }
+    return best;
+  }
+
+  /// Least squares over the wall's own points; the condition of uprightness kept.
+  [[nodiscard]] std::optional<GroundPlane> refined(GroundPlane plane,
+                                                   const std::vector<std::size_t>& before) const {
+    for (int round = 0; round < 3; ++round) {
+      std::array<Condition, 3> normal{};
+      double weight = 0;
+      for (const std::size_t i : before) {
+        const Point3& p = points_[i];
+        if (!(std::abs(p.d - at(plane, p)) < 0.7F * tolerance_)) continue;
+        const std::array<double, 3> row{p.x, p.y, 1};
+        for (std::size_t r = 0; r < 3; ++r) {
+          for (std::size_t c = 0; c < 3; ++c) normal[r].k[c] += row[r] * row[c];
+          normal[r].value += row[r] * p.d;
+        }
+        weight += 1;
+      }
+      if (weight < 3) return plane;
+      if (upright_) {  // as an observation so heavy that nothing moves it
+        const double heavy = 1e6 * weight;
+        for (std::size_t r = 0; r < 3; ++r) {
+          for (std::size_t c = 0; c < 3; ++c) normal[r].k[c] += heavy * upright_->k[r] * upright_->k[c];
+          normal[r].value += heavy * upright_->k[r] * upright_->value;
+        }
+      }
+      const std::optional<GroundPlane> better = solve(normal);
+      if (!better) return plane;
+      plane = *better;
+    }
+    return plane;
+  }
+
+  [[nodiscard]] bool good_enough(const GroundPlane& wall) const {
+    std::size_t on = 0;
+    std::size_t beyond = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const float d = at(wall, points_[i]);
+      if (d > behind_[i] && std::abs(points_[i].d - d) < 0.7F * tolerance_) ++on;
+      if (points_[i].d - std::max(behind_[i], d) < -tolerance_) ++beyond;
+    }
+    const auto all = static_cast<double>(points_.size());
+    return static_cast<double>(on) >= min_share_ * all && static_cast<double>(beyond) <= max_behind_ * all;
+  }
+
+  std::vector<Point3> points_;
+  std::vector<float> behind_;  // the background's disparity at each point
+  std::vector<GroundPlane> planes_;
+  std::optional<Condition> upright_;
+  float least_distance_;
+  float tolerance_;
+  double min_share_;
+  double max_behind_;
+  Draw draw_;
+};
+
+}  // namespace
+
+float Background::disparity_px(float x, float y) const {
+  float d = 0;
+  for (const GroundPlane& plane : planes) d = std::max(d, plane.disparity_px(x, y));
+  return d;
+}
+
+Background fit_background(const DisparityMap& disparity, View<const std::uint8_t> evidence,
+                          const Ground& ground, const std::optional<StereoRig>& rig,
+                          const BackgroundConfig& config, const Exec&) {
+  const Size size = disparity.disparity_px.size();
+  std::vector<Point3> points;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if (evidence(x, y) == 0) continue;
+      points.push_back({static_cast<float>(x), static_cast<float>(y), disparity.disparity_px(x, y)});
+    }
+  }
+  std::vector<GroundPlane> planes;
+  std::optional<Condition> condition;
+  if (ground.plane) {
+    planes.push_back(*ground.plane);
+    if (rig) condition = upright(*ground.plane, *rig);
+  }
+  WallSearch search(std::move(points), std::move(planes), condition, size.width, config);
+  for (int i = 0; i < config.max_walls && search.find_next(); ++i) {
+  }
+  return {std::move(search).planes()};
+}
+
+}  // namespace cairn

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/disparity/ground_plane.hpp>
+#include <optional>
+#include <vector>
+
+namespace cairn {
+
+struct BackgroundConfig {
+  int max_walls = 3;
+  float tolerance = 2.3F;
+  float min_share = 1.5F;
+  float max_behind = 3.0F;
+};
+template <class V>
+void fields(BackgroundConfig& c, V&& v) {
+  v("max_walls", c.max_walls, "", "how many walls are looked for besides the floor", range(0, 8));
+  v("tolerance", c.tolerance, "‰ of the width",
+    "how far a disparity may lie from a wall's and still support it", range(0.0F, 100.0F));
+  v("min_share", c.min_share, "% of the evidence", "least support of a wall", range(0.0F, 100.0F));
+  v("max_behind", c.max_behind, "% of the evidence", "most that may lie behind a wall", range(0.0F, 100.0F));
+}
+
+/// The planes that bound the scene from behind: the floor, if there is one, and walls. A room seen from
+/// inside is convex, so a pixel's background is the nearest of them, and nothing but reflections lies behind
+/// it.
+struct Background {
+  std::vector<GroundPlane> planes;
+  /// At least 0: infinitely far away is behind everything.
+  [[nodiscard]] float disparity_px(float x, float y) const;
+};
+
+/// Finds walls: planes upright on the floor, through much of the evidence that stands before the background
+/// found so far, with hardly any evidence behind them; that tells a wall from a box's side. Deterministic.
+/// Without a ground the planes may lean as they like. `evidence` as find_evidence() marks it. (beyond the
+/// paper)
+Background fit_background(const DisparityMap& disparity, View<const std::uint8_t> evidence,
+                          const Ground& ground, const std::optional<StereoRig>& rig,
+                          const BackgroundConfig& config, const Exec& exec);
+
+}  // namespace cairn

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/fields.hpp>
+#include <cairn/disparity/disparity_map.hpp>
+
+namespace cairn {
+
+struct EvidenceConfig {
+  float noise_factor = 1.0F;
+  float gradient_min = 1.0F;
+  float agreement = 1.5F;
+};
+template <class V>
+void fields(EvidenceConfig& c, V&& v) {
+  v("noise_factor", c.noise_factor, "σ of the noise",
+    "least horizontal gradient of a pixel that counts as evidence: this many deviations of the image noise …",
+    range(0.0F, 100.0F));
+  v("gradient_min", c.gradient_min, "grey levels", "… plus this", range(0.0F, 255.0F));
+  v("agreement", c.agreement, "‰ of the width",
+    "how far the disparities of neighbouring evidence may lie apart", range(0.0F, 100.0F));
+}
+
+/// The standard deviation of the image's noise in grey levels: the median of |response| to a kernel that
+/// answers to neither steps nor ramps (1 −2 1; −2 4 −2; 1 −2 1), over 6·0.6745. Images under 3×3 have none
+/// (0). (beyond the paper)
+float noise_sigma(View<const Gray> image);
+
+/// 255 where a disparity rests on the pixel's own texture: it is valid, the horizontal gradient there stands
+/// out of the noise and is no mere grazing edge (|gx| > |gy|/2), and at least three pixels of its 5×5
+/// neighbourhood that pass the same test agree with it. Elsewhere 0: there a matcher can only have carried
+/// disparity over from its surroundings, which is how near objects grow over their borders. (beyond the
+/// paper)
+Image<std::uint8_t> find_evidence(View<const Gray> left, const DisparityMap& disparity, float noise,
+                                  const EvidenceConfig& config, const Exec& exec);
+
+}  // namespace cairn
