@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 void add_config_options(CLI::App& app, ConfigOptions& options) {
   app.add_option("--preset", options.preset, "start from this preset: default or paper")
       ->capture_default_str();
-  app.add_option("--config", options.file, "YAML file with options (as `cairn config` prints them)");
+  app.add_option("--config", options.file, "YAML file with options, as `cairn config` prints them")
+      ->type_name("FILE");
   app.add_option("--set", options.sets, "one option, e.g. match.window_size=9; may be repeated")
       ->type_name("NAME=VALUE")
       ->expected(1)
@@ -61,11 +62,13 @@ ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrat
 void add_exec_options(CLI::App& app, ExecOptions& options) {
   constexpr int kMostThreads = 1024;
   app.add_option("--threads", options.threads, "number of threads; 0 = one for each processor")
-      ->check(CLI::Range(0, kMostThreads))
+      ->check(CLI::Range(0, kMostThreads).name(""))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option("--target", options.target,
                  "instruction set of the kernels (scalar, sse4, avx2, avx512, neon); default: $CAIRN_TARGET, "
-                 "else the best");
+                 "else the best")
+      ->type_name("NAME");
 }
 
 Target wanted_target(const std::string& option) {
@@ -97,27 +100,40 @@ Exec make_exec(const ExecOptions& options) {
   return exec;
 }
 
+void add_input_options(CLI::App& app, InputOptions& options) {
+  app.add_option("LEFT", options.left,
+                 "left picture of a rectified pair, or a folder with left.png and right.png")
+      ->required()
+      ->type_name("");
+  app.add_option("RIGHT", options.right, "right picture; not with a folder")->type_name("");
+  app.add_option("--calib", options.calib,
+                 "calibration; default: calib.txt beside the left picture, else ../gt/calib.txt, else none: "
+                 "no metres")
+      ->type_name("FILE");
+  add_config_options(app, options.config);
+}
+
 // ---- frames ----
 
 namespace {
 
 std::optional<fs::path> calibration_beside(const fs::path& left) {
-  const fs::path folder = fs::absolute(left).parent_path();
+  std::error_code ignored;
+  const fs::path folder = fs::absolute(left, ignored).parent_path();
   for (const fs::path& candidate :
        {left.parent_path() / "calib.txt", folder.parent_path() / "gt" / "calib.txt"}) {
-    std::error_code ignored;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
   }
   return std::nullopt;
 }
 
 io::FrameFiles frame_of_files(const InputOptions& options) {
-  const fs::path left = options.paths[0];
+  const fs::path left = options.left;
   io::FrameFiles files;
   files.name = left.stem().string();
   files.folder = left.parent_path();
   files.left = left;
-  if (options.paths.size() == 2) files.right = options.paths[1];
+  if (!options.right.empty()) files.right = options.right;
   files.calib = calibration_beside(left);
   return files;
 }
@@ -125,17 +141,18 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
 }  // namespace
 
 std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
+  if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
-  if (options.paths.size() == 1 && fs::is_directory(options.paths[0], ignored)) {
-    auto frames = io::find_frames(options.paths[0]);
+  if (options.right.empty() && fs::is_directory(options.left, ignored)) {
+    auto frames = io::find_frames(options.left);
     if (!options.disparity.empty() && frames.size() > 1) {
       throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
-                  " frames of " + options.paths[0] + "; give one frame");
+                  " frames of " + options.left + "; give one frame");
     }
     return frames;
   }
-  if (options.paths.size() == 1 && options.disparity.empty() && fs::exists(options.paths[0], ignored)) {
-    throw Error(options.paths[0] + ": a left picture alone; give the right one as well, or --disparity FILE");
+  if (options.right.empty() && options.disparity.empty() && fs::exists(options.left, ignored)) {
+    throw Error(options.left + ": a left picture alone, expected the right one as well");
   }
   return {frame_of_files(options)};
 }
@@ -173,7 +190,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     frame.left = io::load_picture(files.left, exec.pool);
     frame.given = load_given(options.disparity, frame.left.gray.size(), files.left, exec);
   } else {
-    if (!files.right) throw Error(files.folder.string() + ": no right picture beside " + files.left.string());
+    if (!files.right) throw Error(files.left.string() + ": there is no right picture");
     io::PicturePair pair = io::load_pair(files.left, *files.right, exec.pool);
     frame.left = std::move(pair.left);
     frame.right = std::move(pair.right.gray);

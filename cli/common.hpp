@@ -45,15 +45,19 @@ Exec make_exec(const ExecOptions& options);
 Target wanted_target(const std::string& option);
 
 struct InputOptions {
-  std::vector<std::string> paths;  // LEFT [RIGHT] or FOLDER
+  std::string left;   // or a folder
+  std::string right;  // empty with a folder, or where the disparity is given
   std::string calib;
   std::string disparity;
   ConfigOptions config;
 };
 
+/// LEFT, RIGHT, --calib and those of add_config_options().
+void add_input_options(CLI::App& app, InputOptions& options);
+
 // ---- frames ----
 
-/// The frames that the paths name: one pair, one folder, or a folder of folders.
+/// The frames that the options name: one pair, one folder, or a folder of folders.
 std::vector<io::FrameFiles> frames_of(const InputOptions& options);
 
 /// A frame with all that is needed to work on it.

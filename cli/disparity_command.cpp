@@ -68,7 +68,7 @@ std::string describe(const SceneDisparity& scene, double milliseconds) {
 int estimate(const DisparityOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   if (frames.size() != 1) {
-    throw Error(options.input.paths.front() + ": holds " + std::to_string(frames.size()) +
+    throw Error(options.input.left + ": holds " + std::to_string(frames.size()) +
                 " frames; cairn disparity takes one, cairn segment a folder of them");
   }
   (void)resolve(options.input.config);
@@ -87,16 +87,7 @@ int estimate(const DisparityOptions& options) {
 
 Work declare_disparity(CLI::App& app) {
   auto options = std::make_shared<DisparityOptions>();
-  app.add_option(
-         "LEFT RIGHT | FOLDER", options->input.paths,
-         "the left and the right picture of a rectified pair; or a folder with left.png and right.png")
-      ->required()
-      ->expected(1, 2)
-      ->type_name("");
-  app.add_option(
-      "--calib", options->input.calib,
-      "calibration file; default: calib.txt beside the left picture, else ../gt/calib.txt, else none");
-  add_config_options(app, options->input.config);
+  add_input_options(app, options->input);
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
                  "file.png: 16 bits, disparity x 256, 0 = hole; file.pfm: float, inf = hole")

@@ -377,20 +377,24 @@ Work declare_evaluate(CLI::App& app) {
       ->required()
       ->type_name("");
   app.add_option("--min-area", options->objects.min_area, "px; smaller true objects are not scored")
-      ->check(CLI::Range(1, 1 << 30))
+      ->check(CLI::Range(1, 1 << 30).name(""))
+      ->type_name("PX")
       ->capture_default_str();
   app.add_option("--boundary-tolerance", options->objects.boundary_tolerance,
                  "% of the image's diagonal that boundaries may lie apart; at least 1 px")
-      ->check(CLI::Range(0.0F, 10.0F))
+      ->check(CLI::Range(0.0F, 10.0F).name(""))
+      ->type_name("PERCENT")
       ->capture_default_str();
   app.add_option("--skip-left", options->skip_left, "leave out the left N columns of disparities")
-      ->check(CLI::Range(0, 1 << 20))
+      ->check(CLI::Range(0, 1 << 20).name(""))
+      ->type_name("N")
       ->capture_default_str();
   app.footer(
       "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true objects found "
-      "with IoU >= "
-      "0.5, objects of ours, those of them with IoU >= 0.5, phantoms, and disparity where both cameras see "
-      "the scene.");
+      "with\n"
+      "IoU >= 0.5, objects of ours, those of them with IoU >= 0.5, phantoms, and disparity where both "
+      "cameras see.\n"
+      "docs/evaluation.md defines each word.");
   return [options] { return evaluate(*options); };
 }
 

@@ -96,8 +96,8 @@ int segment_all(const SegmentOptions& options) {
   // them.
   std::error_code ignored;
   const bool many = !std::filesystem::equivalent(frames.front().folder.empty() ? "." : frames.front().folder,
-                                                 options.input.paths.front(), ignored) &&
-                    std::filesystem::is_directory(options.input.paths.front(), ignored);
+                                                 options.input.left, ignored) &&
+                    std::filesystem::is_directory(options.input.left, ignored);
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
@@ -117,27 +117,21 @@ int segment_all(const SegmentOptions& options) {
 
 Work declare_segment(CLI::App& app) {
   auto options = std::make_shared<SegmentOptions>();
-  app.add_option("LEFT RIGHT | FOLDER", options->input.paths,
-                 "the left and the right picture of a rectified pair; or a folder with left.png and "
-                 "right.png; or a folder "
-                 "of such folders")
-      ->required()
-      ->expected(1, 2)
-      ->type_name("");
-  app.add_option("--calib", options->input.calib,
-                 "calibration file; default: calib.txt beside the left picture, else ../gt/calib.txt, else "
-                 "none: no metres");
+  add_input_options(app, options->input);
   app.add_option("--disparity", options->input.disparity,
-                 "take this disparity map (.png, .pfm) instead of matching; RIGHT may be left out");
-  add_config_options(app, options->input.config);
+                 "take this disparity map (.png, .pfm) instead of matching; RIGHT may be left out")
+      ->type_name("FILE");
   add_exec_options(app, options->exec);
   app.add_option(
          "-o,--output", options->output,
          "folder for disparity.png, reject.png, objects.png, floor.png, overlay.png, disparity_view.png and "
-         "objects.json; of several frames, each has its own inside")
+         "objects.json")
       ->type_name("DIR");
   app.add_flag("--json", options->json, "print the content of objects.json instead of a table");
-  app.footer("Of several frames the run ends at the first bad one; results before it stay.");
+  app.footer(
+      "LEFT may also be a folder of such folders: each is a frame, and its result goes to a folder of its "
+      "name in DIR.\n"
+      "The run ends at the first bad frame; results before it stay.");
   return [options] { return segment_all(*options); };
 }
 

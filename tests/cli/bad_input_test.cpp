@@ -35,7 +35,7 @@ TEST_F(BadInput, PairsThatAreNone) {
   const auto other = pair_in("other", {90, 72});
   refuses({"segment", pair[0], other[1]}, {"96x72", "90x72"});
   refuses({"segment", pair[0]}, {pair[0], "right"});
-  refuses({"segment", pair[0], pair[1], pair[1]}, {"LEFT", "3"});
+  refuses({"segment", pair[0], pair[1], pair[1]}, {pair[1]});
   fs::remove(pair[1]);
   refuses({"segment", path("pair")}, {"pair", "right"});
 }
@@ -81,6 +81,7 @@ TEST_F(BadInput, OptionsThatAreUnknownOrOutOfRange) {
   refuses({"segmnt"}, {"segmnt", "segment"});
   refuses({"quux"}, {"quux"});
   refuses({"segment"}, {"LEFT"});
+  refuses({"segment", "", ""}, {"LEFT", "empty"});
   refuses({"--no-such-option"}, {"--no-such-option"});
 }
 
