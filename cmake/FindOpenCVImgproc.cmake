@@ -1,0 +1,23 @@
+# OpenCV's drawing functions: target opencv_imgproc with what it needs.
+#
+# OpenCV's own package file demands every module of OpenCV, which on Debian are 270 more packages and 760 MB for lines and
+# text on a picture. So the two libraries are looked for directly first (libopencv-imgproc-dev has them).
+find_path(OpenCVImgproc_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
+find_library(OpenCVImgproc_LIBRARY opencv_imgproc)
+find_library(OpenCVImgproc_CORE_LIBRARY opencv_core)
+mark_as_advanced(OpenCVImgproc_INCLUDE_DIR OpenCVImgproc_LIBRARY OpenCVImgproc_CORE_LIBRARY)
+
+if(OpenCVImgproc_INCLUDE_DIR AND OpenCVImgproc_LIBRARY AND OpenCVImgproc_CORE_LIBRARY)
+  set(OpenCVImgproc_FOUND TRUE)
+  if(NOT TARGET opencv_imgproc)
+    add_library(opencv_imgproc UNKNOWN IMPORTED)
+    set_target_properties(opencv_imgproc PROPERTIES
+      IMPORTED_LOCATION ${OpenCVImgproc_LIBRARY}
+      INTERFACE_INCLUDE_DIRECTORIES ${OpenCVImgproc_INCLUDE_DIR}
+      INTERFACE_LINK_LIBRARIES ${OpenCVImgproc_CORE_LIBRARY})
+  endif()
+else()
+  # Somewhere else than where libraries usually are: OpenCV_DIR tells.
+  find_package(OpenCV REQUIRED COMPONENTS core imgproc)
+  set(OpenCVImgproc_FOUND ${OpenCV_FOUND})
+endif()
