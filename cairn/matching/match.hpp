@@ -62,7 +62,7 @@ inline constexpr std::int16_t kNoMatch = std::numeric_limits<std::int16_t>::min(
 /// runner-up).
 inline constexpr float kNoCost = std::numeric_limits<float>::infinity();
 
-/// The outcome of correlation, per left pixel (best_right: per right pixel). The cost volume is never stored.
+/// The outcome of correlation, per left pixel (best_right: per right pixel).
 /// With Evidence::winner only best, row_offset and cost are there; the other images are empty.
 struct Matches {
   Image<std::int16_t> best;  // disparity of least cost in px, kNoMatch = none; ties: the smallest disparity

@@ -9,9 +9,9 @@ namespace cairn {
 /// What it costs a path when the disparity changes, in units of the greatest cost that one pixel's match can
 /// have.
 struct SemiGlobalConfig {
-  float penalty_small = 0.42F;  // by one pixel: slanted and curved surfaces
-  float penalty_large = 1.7F;   // by more: the rim of an object
-  float penalty_edge = 0.15F;   // per grey level; how fast the large penalty falls with the intensity's step
+  float penalty_small = 0.6F;  // by one pixel: slanted and curved surfaces
+  float penalty_large = 2.2F;  // by more: the rim of an object
+  float penalty_edge = 0.15F;  // per grey level; how fast the large penalty falls with the intensity's step
 };
 template <class V>
 void fields(SemiGlobalConfig& c, V&& v) {
@@ -43,8 +43,9 @@ void fields(SemiGlobalConfig& c, V&& v) {
 /// the
 ///    right image have none and never win. Ties and best_right as with match().
 ///
-/// All of it is integer. Of `config` only min_disparity, num_disparities and evidence count; row_offset stays
-/// empty. Unlike a window's, this takes memory for all candidates of all pixels: 2 bytes for each.
+/// All of it is integer, so that every instruction set gets the same bits. Of `config` only min_disparity,
+/// num_disparities and evidence count; row_offset stays empty. Unlike a window's, this takes memory for all
+/// candidates of all pixels: 2 bytes for each.
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec);
 

@@ -320,9 +320,11 @@ class Crossing {
         back_(g_.width * g_.lanes),
         along_(g_.lanes),
         sums_(kBlock * stride_),
+        lane_numbers_(32),
         right_sum_(task.full ? g_.length() : 0),
         right_lane_(task.full ? g_.length() : 0) {
     std::fill_n(sums_.data(), sums_.size(), kNoSum);
+    std::iota(lane_numbers_.data(), lane_numbers_.data() + lane_numbers_.size(), std::int16_t{0});
   }
 
   void run(int first, int last) {
@@ -403,6 +405,11 @@ class Crossing {
 
   static float cost_of(std::int16_t sum) { return sum < kNoSum ? static_cast<float>(sum) : kNoCost; }
 
+  /// 0, 1, 2 … Loaded: compilers put Iota() together lane by lane.
+  [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<Wide<D>> first_lanes() const {
+    return bytes::Load(Wide<D>(), lane_numbers_.data());
+  }
+
   /// The least sum of a pixel, and its first lane. With kBorder, also takes out the lanes without candidate.
   template <bool kBorder>
   Winner find_winner(int pixel, int begin, int end) {
@@ -410,11 +417,12 @@ class Crossing {
     const bytes::Repartition<std::int32_t, D> d_total;
     std::int16_t* sums = sums_of(pixel);
     const auto none = bytes::Set(d, kNoSum);
+    const auto vector = bytes::Set(d, static_cast<std::int16_t>(lane_count(d)));
     auto least = none;
     auto where = bytes::Zero(d);
     auto total = bytes::Zero(d_total);
+    auto lane = first_lanes();
     for (int i = 0; i < g_.lanes; i += lane_count(d)) {
-      const auto lane = bytes::Iota(d, static_cast<std::int16_t>(i));
       auto sum = bytes::Load(d, sums + i);
       if constexpr (kBorder) {
         const auto outside = bytes::Or(bytes::Lt(lane, bytes::Set(d, static_cast<std::int16_t>(begin))),
@@ -427,6 +435,7 @@ class Crossing {
       }
       where = bytes::IfThenElse(bytes::Lt(sum, least), lane, where);
       least = bytes::Min(sum, least);
+      lane = bytes::Add(lane, vector);
     }
     const auto least_of_all = bytes::MinOfAll(d, least);
     const auto first = bytes::MinOfAll(d, bytes::IfThenElse(bytes::Eq(least, least_of_all), where, none));
@@ -439,12 +448,13 @@ class Crossing {
     const std::int16_t* sums = sums_of(pixel);
     const auto none = bytes::Set(d, kNoSum);
     const auto one = bytes::Set(d, std::int16_t{1});
-    auto distance = bytes::Iota(d, static_cast<std::int16_t>(-winner));
+    const auto vector = bytes::Set(d, static_cast<std::int16_t>(lane_count(d)));
+    auto distance = bytes::Sub(first_lanes(), bytes::Set(d, static_cast<std::int16_t>(winner)));
     auto least = none;
     for (int i = 0; i < g_.lanes; i += lane_count(d)) {
       const auto far = bytes::Gt(bytes::Abs(distance), one);
       least = bytes::Min(least, bytes::IfThenElse(far, bytes::Load(d, sums + i), none));
-      distance = bytes::Add(distance, bytes::Set(d, static_cast<std::int16_t>(lane_count(d))));
+      distance = bytes::Add(distance, vector);
     }
     return bytes::GetLane(bytes::MinOfAll(d, least));
   }
@@ -458,7 +468,7 @@ class Crossing {
     for (int j = 0; j < g_.count + pixels - 1; j += lane_count(d)) {
       auto least = bytes::LoadU(d, right_sum_.data() + first + j);
       auto where = bytes::LoadU(d, right_lane_.data() + first + j);
-      auto lane = bytes::Iota(d, static_cast<std::int16_t>(j - pixels + 1));
+      auto lane = bytes::Add(first_lanes(), bytes::Set(d, static_cast<std::int16_t>(j - pixels + 1)));
       const std::int16_t* sums = sums_of(0) + j - pixels + 1;
       for (int pixel = 0; pixel < pixels; ++pixel) {
         const auto sum = bytes::LoadU(d, sums);
@@ -485,7 +495,8 @@ class Crossing {
   int stride_;
   Scratch<std::uint8_t> back_;  // L − C of the path to the left, one row
   Scratch<std::uint8_t> along_;
-  Scratch<std::int16_t> sums_;        // S of a block of pixels
+  Scratch<std::int16_t> sums_;  // S of a block of pixels
+  Scratch<std::int16_t> lane_numbers_;
   Scratch<std::int16_t> right_sum_;   // least S of the right pixels, reversed
   Scratch<std::int16_t> right_lane_;  // and its lane
 };

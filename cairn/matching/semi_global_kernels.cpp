@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <numeric>
 
 #if CAIRN_WITH_HWY
 // Only what Target names; see kernels.cpp.

@@ -101,7 +101,7 @@ int large_penalty(const SemiGlobalConfig& penalties, int step) {
   return static_cast<int>(std::lround(54.0F * std::max({0.5F, falling, penalties.penalty_small})));
 }
 
-/// Adds the L of the paths that run by (dx, dy) to `sums`. `first` … are visited in the order of the path.
+/// Adds the L of the paths that run by (dx, dy) to `sums`.
 void add_paths(Volume& costs, const Image<Gray>& smooth, const SemiGlobalConfig& penalties, int dx, int dy,
                Volume& sums) {
   const auto [width, height] = smooth.size();
@@ -129,6 +129,41 @@ void add_paths(Volume& costs, const Image<Gray>& smooth, const SemiGlobalConfig&
   }
 }
 
+Matches make_matches(Size size, Evidence evidence) {
+  const Size full = evidence == Evidence::full ? size : Size{};
+  return {Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(), Image<float>(size),
+          Image<float>(full),        Image<float>(full),        Image<float>(full),   Image<float>(full)};
+}
+
+void settle_pixel(Volume& sums, int x, int y, Matches& out) {
+  const Size size = out.best.size();
+  // The cost of a left pixel for d; kNoCost where there is no such candidate.
+  const auto cost_at = [&](int x_left, int d) {
+    const bool exists = d >= sums.first() && d < sums.end() && x_left >= 0 && x_left < size.width &&
+                        x_left - d >= 0 && x_left - d < size.width;
+    return exists ? static_cast<float>(sums(x_left, y, d)) : kNoCost;
+  };
+  std::int16_t best = kNoMatch, best_right = kNoMatch;
+  float least = kNoCost, least_right = kNoCost, runner_up = kNoCost, total = 0, count = 0;
+  for (int d = sums.first(); d < sums.end(); ++d) {
+    const float cost = cost_at(x, d), cost_right = cost_at(x + d, d);
+    if (cost < kNoCost) total += cost, count += 1;
+    if (cost < least) least = cost, best = static_cast<std::int16_t>(d);
+    if (cost_right < least_right) least_right = cost_right, best_right = static_cast<std::int16_t>(d);
+  }
+  for (int d = sums.first(); d < sums.end(); ++d) {
+    if (std::abs(d - best) > 1) runner_up = std::min(runner_up, cost_at(x, d));
+  }
+  out.best(x, y) = best;
+  out.cost(x, y) = least;
+  if (out.best_right.empty()) return;
+  out.best_right(x, y) = best_right;
+  out.runner_up(x, y) = runner_up;
+  out.mean_cost(x, y) = count > 0 ? total / count : kNoCost;
+  out.cost_before(x, y) = cost_at(x, best - 1);
+  out.cost_after(x, y) = cost_at(x, best + 1);
+}
+
 }  // namespace
 
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
@@ -141,38 +176,9 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   add_paths(costs, smooth, penalties, -1, 0, sums);
   add_paths(costs, smooth, penalties, 0, 1, sums);
   add_paths(costs, smooth, penalties, 0, -1, sums);
-
-  const Size full = config.evidence == Evidence::full ? size : Size{};
-  Matches out{Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(), Image<float>(size),
-              Image<float>(full),        Image<float>(full),        Image<float>(full),   Image<float>(full)};
-  // The cost of left pixel x for d; kNoCost where there is no such candidate.
-  const auto cost_at = [&](int x, int y, int d) {
-    const bool exists =
-        d >= sums.first() && d < sums.end() && x >= 0 && x < size.width && x - d >= 0 && x - d < size.width;
-    return exists ? static_cast<float>(sums(x, y, d)) : kNoCost;
-  };
+  Matches out = make_matches(size, config.evidence);
   for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      std::int16_t best = kNoMatch, best_right = kNoMatch;
-      float least = kNoCost, least_right = kNoCost, runner_up = kNoCost, total = 0, count = 0;
-      for (int d = sums.first(); d < sums.end(); ++d) {
-        const float cost = cost_at(x, y, d), cost_right = cost_at(x + d, y, d);
-        if (cost < kNoCost) total += cost, count += 1;
-        if (cost < least) least = cost, best = static_cast<std::int16_t>(d);
-        if (cost_right < least_right) least_right = cost_right, best_right = static_cast<std::int16_t>(d);
-      }
-      for (int d = sums.first(); d < sums.end(); ++d) {
-        if (std::abs(d - best) > 1) runner_up = std::min(runner_up, cost_at(x, y, d));
-      }
-      out.best(x, y) = best;
-      out.cost(x, y) = least;
-      if (full.width == 0) continue;
-      out.best_right(x, y) = best_right;
-      out.runner_up(x, y) = runner_up;
-      out.mean_cost(x, y) = count > 0 ? total / count : kNoCost;
-      out.cost_before(x, y) = count > 0 ? cost_at(x, y, best - 1) : kNoCost;
-      out.cost_after(x, y) = count > 0 ? cost_at(x, y, best + 1) : kNoCost;
-    }
+    for (int x = 0; x < size.width; ++x) settle_pixel(sums, x, y, out);
   }
   return out;
 }
