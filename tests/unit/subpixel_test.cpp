@@ -35,6 +35,24 @@ TEST(Subpixel, FindsTheVertexOfAnExactParabola) {
   EXPECT_EQ(refined(pixel(9, 1, 9)), 7.0F);
 }
 
+float refined_by_lines(const Matches& matches) {
+  return refine_subpixel(matches, {.method = SubpixelMethod::equiangular}, {})(0, 0);
+}
+
+TEST(Subpixel, FindsTheTipOfTwoLinesOfOppositeSlope) {
+  // |d − 7.25| · 8 + 3 at d = 6, 7, 8
+  EXPECT_EQ(refined_by_lines(pixel(13, 5, 9)), 7.25F);
+  EXPECT_EQ(refined_by_lines(pixel(9, 5, 13)), 6.75F);
+  EXPECT_EQ(refined_by_lines(pixel(9, 1, 1)), 7.5F);
+  EXPECT_EQ(refined_by_lines(pixel(1, 1, 9)), 6.5F);
+}
+
+TEST(Subpixel, KeepsTheWholePixelWhereNoLinesCanBeLaid) {
+  EXPECT_EQ(refined_by_lines(pixel(5, 5, 5)), 7.0F);
+  EXPECT_EQ(refined_by_lines(pixel(kNoCost, 1, 9)), 7.0F);
+  EXPECT_EQ(refined_by_lines(pixel(9, 1, kNoCost)), 7.0F);
+}
+
 TEST(Subpixel, NeverLeavesTheHalfPixelAroundTheWinner) {
   EXPECT_EQ(refined(pixel(9, 1, 1)), 7.5F);
   EXPECT_EQ(refined(pixel(1, 1, 9)), 6.5F);
