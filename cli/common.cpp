@@ -276,6 +276,10 @@ std::string Table::text() const {
 Progress::Progress(std::size_t count) : count_(count), shown_(count > 1 && isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
+  clear();
+}
+
+void Progress::clear() const {
   if (shown_) std::fputs("\r\033[K", stderr);
 }
 

@@ -114,6 +114,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void at(std::size_t index, const std::string& name) const;
+  /// Takes the bar away, so that other text may follow.
+  void clear() const;
 
  private:
   std::size_t count_;

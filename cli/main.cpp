@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cctype>
 #include <iostream>
 #include <new>
 #include <string>

@@ -12,6 +12,8 @@
 namespace cairn::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct SegmentOptions {
   InputOptions input;
   ExecOptions exec;
@@ -65,46 +67,60 @@ std::string summary(const Frame& frame, double milliseconds) {
          (frame.ground.plane ? "ground found, " : "no ground, ") + text_of("%.1f ms", milliseconds);
 }
 
-/// One frame from files to results; what goes to stdout is returned.
-std::string work_on(const io::FrameFiles& files, const SegmentOptions& options,
-                    const std::filesystem::path& folder, bool one_of_many, Exec& exec) {
+struct Report {
+  std::string out;   // for stdout
+  std::string note;  // for stderr; mostly empty
+};
+
+/// One frame from files to results.
+Report work_on(const io::FrameFiles& files, const SegmentOptions& options, const fs::path& folder,
+               bool one_of_many, Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
   const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
                                   loaded.given.has_value()};
+  Report report;
   if (!folder.empty()) {
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance);
     if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
-      std::cerr << "cairn: " << (folder / "disparity.pfm").string()
-                << ": written instead of disparity.png, since 16 bits cannot hold disparities below 0 or "
-                   "from 256 on\n";
+      report.note = "cairn: " + (folder / "disparity.pfm").string() +
+                    ": written instead of disparity.png, since 16 bits cannot hold disparities below 0 or "
+                    "from 256 on\n";
     }
   }
-  if (options.json) return io::objects_json(frame, provenance);
-  const std::string line = files.name + ": " + summary(frame, watch.total_ms()) + "\n";
-  if (one_of_many && !folder.empty()) return line;
-  return line + (frame.objects.list.empty() ? "" : object_table(frame.objects.list)) +
-         (one_of_many ? "\n" : "");
+  if (options.json) {
+    report.out = io::objects_json(frame, provenance);
+    return report;
+  }
+  report.out = files.name + ": " + summary(frame, watch.total_ms()) + "\n";
+  if (one_of_many && !folder.empty()) return report;
+  if (!frame.objects.list.empty()) report.out += object_table(frame.objects.list);
+  if (one_of_many) report.out += "\n";
+  return report;
+}
+
+/// Whether `input` is a folder of frames, each with a result of its own, rather than the only frame itself.
+bool is_folder_of_frames(const fs::path& input, const io::FrameFiles& first) {
+  std::error_code ignored;
+  return fs::is_directory(input, ignored) && !fs::equivalent(first.folder, input, ignored);
 }
 
 int segment_all(const SegmentOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // a bad option is one whatever the frames hold
   Exec exec = make_exec(options.exec);
-  // A folder with a left picture is itself the frame; a folder of such folders has one result for each of
-  // them.
-  std::error_code ignored;
-  const bool many = !std::filesystem::equivalent(frames.front().folder.empty() ? "." : frames.front().folder,
-                                                 options.input.left, ignored) &&
-                    std::filesystem::is_directory(options.input.left, ignored);
+  const bool many = is_folder_of_frames(options.input.left, frames.front());
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
-    std::filesystem::path folder = options.output;
+    fs::path folder = options.output;
     if (many && !options.output.empty()) folder /= frames[i].name;
     try {
-      std::cout << work_on(frames[i], options, folder, many, exec) << std::flush;
+      const Report report = work_on(frames[i], options, folder, many, exec);
+      progress.clear();
+      std::cerr << report.note;
+      std::cout << report.out << std::flush;
     } catch (const Error& error) {
       if (!many) throw;
       throw Error("frame " + frames[i].name + ": " + error.what());
