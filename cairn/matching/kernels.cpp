@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Compiles kernels-inl.hpp once for plain C++ and once for each of Highway's targets, and lists what there
+// Compiles the kernels once for plain C++ and once for each of Highway's targets, and lists what there
 // is.
 #include <algorithm>
 #include <array>
@@ -10,6 +10,8 @@
 #include <cairn/matching/scratch.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 #include <vector>
 
 #if CAIRN_WITH_HWY
@@ -25,9 +27,13 @@
 #define CAIRN_KERNEL_TARGET HWY_NAMESPACE
 #define CAIRN_LANES_INLINE HWY_INLINE
 HWY_BEFORE_NAMESPACE();
+// clang-format off
 #include <cairn/matching/lanes_highway-inl.hpp>
-
+#include <cairn/matching/geometry-inl.hpp>
+#include <cairn/matching/window_sums-inl.hpp>
+#include <cairn/matching/winners-inl.hpp>
 #include <cairn/matching/kernels-inl.hpp>
+// clang-format on
 HWY_AFTER_NAMESPACE();
 #undef CAIRN_KERNEL_TARGET
 #undef CAIRN_LANES_INLINE
@@ -41,7 +47,12 @@ namespace lanes = plain;
 }
 #define CAIRN_KERNEL_TARGET plain_kernels
 #define CAIRN_LANES_INLINE inline
+// clang-format off
+#include <cairn/matching/geometry-inl.hpp>
+#include <cairn/matching/window_sums-inl.hpp>
+#include <cairn/matching/winners-inl.hpp>
 #include <cairn/matching/kernels-inl.hpp>
+// clang-format on
 
 namespace cairn::kernels {
 

@@ -24,29 +24,64 @@ HWY_INLINE Vec<D> DotPairs(D d, Vec<D> a, Vec<D> b) {
 #endif
 }
 
-/// |low(a) − low(b)| and |high(a) − high(b)|, again as a pair.
-template <class D>
-HWY_INLINE Vec<D> AbsDiffPairs(D d, Vec<D> a, Vec<D> b) {
+/// Each lane holds two 16-bit numbers: |low(a) − low(b)| − |high(a) − high(b)|.
+template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
+HWY_INLINE Vec<D> AbsChange(D d, Vec<D> a, Vec<D> b) {
   const Repartition<std::int16_t, D> d16;
-  return BitCast(d, Abs(Sub(BitCast(d16, a), BitCast(d16, b))));
+  return DotPairs(d, BitCast(d, Abs(Sub(BitCast(d16, a), BitCast(d16, b)))), Set(d, -0xFFFF));  // (1, −1)
+}
+
+/// Each lane holds two bytes: |low(a) − low(b)| − |high(a) − high(b)|.
+template <class D, HWY_IF_LANE_SIZE_D(D, 2)>
+HWY_INLINE Vec<D> AbsChange(D d, Vec<D> a, Vec<D> b) {
+  const Repartition<std::uint8_t, D> d8;
+  const auto a8 = BitCast(d8, a);
+  const auto b8 = BitCast(d8, b);
+  const auto differences = BitCast(RebindToUnsigned<D>(), Sub(Max(a8, b8), Min(a8, b8)));
+  const auto low = And(differences, Set(RebindToUnsigned<D>(), 0xFF));
+  return BitCast(d, Sub(low, ShiftRight<8>(differences)));
+}
+
+/// The least of all lanes.
+template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
+HWY_INLINE auto LeastLane(D d, Vec<D> v) {
+  return GetLane(MinOfLanes(d, v));
+}
+template <class D, HWY_IF_LANE_SIZE_D(D, 2)>
+HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
+  if constexpr (MaxLanes(D()) > 8) {
+    const Half<D> half;
+    return LeastLane(half, Min(LowerHalf(half, v), UpperHalf(half, v)));
+  } else {
+    // Unsigned, x86 has one instruction for it.
+    const RebindToUnsigned<D> du;
+    const auto shifted = Xor(BitCast(du, v), Set(du, 0x8000));
+    return static_cast<std::int16_t>(GetLane(MinOfLanes(du, shifted)) ^ 0x8000);
+  }
+}
+
+/// As many 16-bit numbers as there are 32-bit lanes.
+template <class D>
+HWY_INLINE Vec<D> LoadWidened(D d, const std::int16_t* from) {
+  return PromoteTo(d, LoadU(Rebind<std::int16_t, D>(), from));
 }
 
 /// n·a − b·c in double lanes: below 2^53, thus exact.
 template <class DD, class VI>
-HWY_INLINE Vec<DD> ExactDifference(DD dd, VI n, VI a, VI b, VI c) {
+HWY_INLINE Vec<DD> DoubleDifference(DD dd, VI n, VI a, VI b, VI c) {
   return Sub(Mul(PromoteTo(dd, n), PromoteTo(dd, a)), Mul(PromoteTo(dd, b), PromoteTo(dd, c)));
 }
 
 /// n·a − b·c, exact, then rounded once.
 template <class D, class VI>
-HWY_INLINE Vec<D> WideDifference(D d, VI n, VI a, VI b, VI c) {
+HWY_INLINE Vec<D> ExactDifference(D d, VI n, VI a, VI b, VI c) {
   const Half<D> half;
   const Rebind<double, decltype(half)> dd;
   const Half<Rebind<std::int32_t, D>> hi;
   const auto low =
-      ExactDifference(dd, LowerHalf(hi, n), LowerHalf(hi, a), LowerHalf(hi, b), LowerHalf(hi, c));
+      DoubleDifference(dd, LowerHalf(hi, n), LowerHalf(hi, a), LowerHalf(hi, b), LowerHalf(hi, c));
   const auto high =
-      ExactDifference(dd, UpperHalf(hi, n), UpperHalf(hi, a), UpperHalf(hi, b), UpperHalf(hi, c));
+      DoubleDifference(dd, UpperHalf(hi, n), UpperHalf(hi, a), UpperHalf(hi, b), UpperHalf(hi, c));
   return Combine(d, DemoteTo(half, high), DemoteTo(half, low));
 }
 

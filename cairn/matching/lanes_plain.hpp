@@ -34,6 +34,12 @@ template <class T>
 T Zero(Tag<T>) {
   return 0;
 }
+inline std::int16_t Add(std::int16_t a, std::int16_t b) {
+  return static_cast<std::int16_t>(a + b);
+}
+inline std::int16_t Sub(std::int16_t a, std::int16_t b) {
+  return static_cast<std::int16_t>(a - b);
+}
 template <class T>
 T Iota(Tag<T>, T first) {
   return first;
@@ -122,13 +128,9 @@ template <class T>
 T IfThenZeroElse(bool mask, T no) {
   return mask ? T{0} : no;
 }
-template <class T>
-T MinOfLanes(Tag<T>, T value) {
-  return value;
-}
-template <class T>
-T GetLane(T value) {
-  return value;
+/// 0 where the only lane is true, else −1.
+inline int FindFirstTrue(auto, bool mask) {
+  return mask ? 0 : -1;
 }
 inline float ConvertTo(Tag<float>, std::int32_t value) {
   return static_cast<float>(value);
@@ -147,13 +149,26 @@ constexpr std::int32_t high(std::int32_t pair) {
 inline std::int32_t DotPairs(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
   return low(a) * low(b) + high(a) * high(b);
 }
-/// |low(a) − low(b)| and |high(a) − high(b)|, again as a pair.
-inline std::int32_t AbsDiffPairs(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
-  const std::int32_t highs = std::abs(high(a) - high(b));
-  return static_cast<std::int32_t>(bits(highs) << 16 | bits(std::abs(low(a) - low(b))));
+/// Each lane holds two 16-bit numbers: |low(a) − low(b)| − |high(a) − high(b)|.
+inline std::int32_t AbsChange(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
+  return std::abs(low(a) - low(b)) - std::abs(high(a) - high(b));
+}
+/// Each lane holds two bytes: likewise.
+inline std::int16_t AbsChange(Tag<std::int16_t>, std::int16_t a, std::int16_t b) {
+  const auto low_byte = [](std::int16_t pair) { return pair & 0xFF; };
+  const auto high_byte = [](std::int16_t pair) { return pair >> 8 & 0xFF; };
+  return static_cast<std::int16_t>(std::abs(low_byte(a) - low_byte(b)) -
+                                   std::abs(high_byte(a) - high_byte(b)));
+}
+template <class T>
+T LeastLane(Tag<T>, T value) {
+  return value;
+}
+inline std::int32_t LoadWidened(Tag<std::int32_t>, const std::int16_t* from) {
+  return *from;
 }
 /// n·a − b·c, exact, then rounded once.
-inline float WideDifference(Tag<float>, std::int32_t n, std::int32_t a, std::int32_t b, std::int32_t c) {
+inline float ExactDifference(Tag<float>, std::int32_t n, std::int32_t a, std::int32_t b, std::int32_t c) {
   return static_cast<float>(std::int64_t{n} * a - std::int64_t{b} * c);
 }
 }  // namespace cairn::kernels::plain

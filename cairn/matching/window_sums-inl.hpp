@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
+//
+// Running sums over windows, and the costs that they make.
+
+namespace cairn::kernels::CAIRN_KERNEL_TARGET {
+namespace {
+
+/// Sums of one image's own windows for the current row, each clipped at that image's borders. Entries: the
+/// pixels of the row in the order of its pairs, with margins before and after.
+struct Moments {
+  int half;
+  int first;                            // entry of a pixel
+  int width;                            // so many are
+  Scratch<std::int32_t> column_sum;     // [entry + half]
+  Scratch<std::int32_t> column_energy;  // likewise, of squares
+  Scratch<std::int32_t>
+      sum_before;  // [entry + half]: over the columns before the entry; may wrap, differences do not
+  Scratch<std::int32_t> energy_before;
+  Scratch<std::int32_t> columns;  // [entry]: of the window, those inside the image
+  Scratch<std::int32_t> sum;
+  Scratch<std::int32_t> energy;
+  Scratch<float> inverse;  // root, as the operator asks for it
+
+  /// Operators that compare nothing but differences need none.
+  Moments(const Geometry& g, bool wanted)
+      : half(g.half),
+        first(g.pad),
+        width(wanted ? g.width : 0),
+        column_sum(wanted ? g.length + 2 * half + 16 : 0),
+        column_energy(column_sum.size()),
+        sum_before(column_sum.size() + 1),
+        energy_before(column_sum.size() + 1),
+        columns(wanted ? g.length + 16 : 0),
+        sum(columns.size()),
+        energy(columns.size()),
+        inverse(columns.size()) {
+    for (int x = 0; x < width; ++x) {
+      columns[first + x] = std::min(x + half, width - 1) - std::max(x - half, 0) + 1;
+    }
+  }
+};
+
+/// What one row of the right image (the left row's own, or one of its band) is correlated with.
+template <class Width>
+struct Strip {
+  using Sum = typename Width::Sum;
+  int row;                   // of the right image, relative to the left one's
+  int rows = 0;              // of the window, those inside both images
+  Scratch<Sum> column_sums;  // Geometry::column()
+  Scratch<Sum> box;          // [lane]
+  Scratch<Sum> left_pairs;   // [pad + x]
+  Scratch<Sum> right_pairs;  // reversed
+  Moments left;
+  Moments right;
+
+  Strip(int strip_row, const Geometry& g, bool with_moments)
+      : row(strip_row),
+        column_sums((g.width + 1) * g.lanes),
+        box(g.lanes),
+        left_pairs(g.length + 16),
+        right_pairs(g.length + 16),
+        left(g, with_moments),
+        right(g, with_moments) {}
+};
+
+/// A strip's and its geometry's numbers as plain locals: the compiler must assume that a vector store changes
+/// whatever is reached through a reference, and would fetch it anew for every vector.
+template <class Width>
+struct Rows {
+  using Sum = typename Width::Sum;
+  Geometry g;
+  int rows;
+  Sum* column_sums;
+  Sum* box;
+  const Sum* left_pairs;
+  const Sum* right_pairs;
+  const std::int32_t* l;
+  const std::int32_t* ll;
+  const float* inverse_l;
+  const std::int32_t* r;
+  const std::int32_t* rr;
+  const float* inverse_r;
+  const std::int32_t* l_before;  // [entry + half]
+  const std::int32_t* ll_before;
+  const std::int32_t* r_before;
+  const std::int32_t* rr_before;
+
+  Rows(const Strip<Width>& strip, const Geometry& geometry)
+      : g(geometry),
+        rows(strip.rows),
+        column_sums(strip.column_sums.data()),
+        box(strip.box.data()),
+        left_pairs(strip.left_pairs.data()),
+        right_pairs(strip.right_pairs.data()),
+        l(strip.left.sum.data()),
+        ll(strip.left.energy.data()),
+        inverse_l(strip.left.inverse.data()),
+        r(strip.right.sum.data()),
+        rr(strip.right.energy.data()),
+        inverse_r(strip.right.inverse.data()),
+        l_before(strip.left.sum_before.data()),
+        ll_before(strip.left.energy_before.data()),
+        r_before(strip.right.sum_before.data()),
+        rr_before(strip.right.energy_before.data()) {}
+};
+
+// ---------------------------------------------------------------------------------------------------------------
+// Formulas: pixel_math.hpp, lane by lane
+
+/// n·a − b·c, rounded once. In 32 bits where the result is known to fit them, whatever the products do.
+template <bool kDouble>
+CAIRN_LANES_INLINE VF difference(VI n, VI a, VI b, VI c) {
+  if constexpr (kDouble) {
+    return lanes::ExactDifference(F(), n, a, b, c);
+  } else {
+    return lanes::ConvertTo(F(), lanes::Sub(lanes::Mul(n, a), lanes::Mul(b, c)));
+  }
+}
+
+/// 1/√(n·energy − sum²) for zncc, 1/√energy for nssd; 0 where that is 1/0.
+template <Cost kCost, bool kDouble>
+CAIRN_LANES_INLINE VF inverse_root(VI n, VI energy, VI sum) {
+  const F f;
+  if constexpr (kCost != Cost::nssd && kCost != Cost::zncc) return lanes::Zero(f);
+  const VF v = kCost == Cost::nssd ? lanes::ConvertTo(f, energy) : difference<kDouble>(n, energy, sum, sum);
+  return lanes::IfThenElseZero(lanes::Gt(v, lanes::Zero(f)), lanes::Div(lanes::Set(f, 1.0F), lanes::Sqrt(v)));
+}
+
+/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp.
+struct Sums {
+  VI n, l, ll, r, rr;
+  VF inverse_n, inverse_l, inverse_r;
+};
+
+/// sad, zsad: the box sum is the cost.
+template <Cost kCost>
+CAIRN_LANES_INLINE VF cost_of(VI box) {
+  const VF cost = lanes::ConvertTo(F(), box);
+  return kCost == Cost::zsad ? lanes::Mul(cost, lanes::Set(F(), 1.0F / pixel_math::kMeanSteps)) : cost;
+}
+
+template <Cost kCost, bool kDouble>
+CAIRN_LANES_INLINE VF cost_of(VI box, const Sums& s) {
+  const F f;
+  if constexpr (kCost == Cost::zncc) {
+    const VF correlation =
+        lanes::Mul(difference<kDouble>(s.n, box, s.l, s.r), lanes::Mul(s.inverse_l, s.inverse_r));
+    return lanes::Max(lanes::Zero(f), lanes::Sub(lanes::Set(f, 1.0F), correlation));
+  } else {
+    const VI ssd = lanes::Sub(lanes::Add(s.ll, s.rr), lanes::Add(box, box));  // Σ(L−R)² = ΣL² + ΣR² − 2ΣLR
+    if constexpr (kCost == Cost::ssd) {
+      return lanes::ConvertTo(f, ssd);
+    } else if constexpr (kCost == Cost::nssd) {
+      const VF inverse = lanes::Mul(s.inverse_l, s.inverse_r);
+      return lanes::IfThenElse(lanes::Gt(inverse, lanes::Zero(f)),
+                               lanes::Mul(lanes::ConvertTo(f, ssd), inverse),
+                               lanes::Set(f, pixel_math::kNoEnergyCost));
+    } else {
+      const VI l_minus_r = lanes::Sub(s.l, s.r);
+      return lanes::Mul(difference<kDouble>(s.n, ssd, l_minus_r, l_minus_r), s.inverse_n);
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// The windows' own sums
+
+/// The columns' sums, one row further down. `pairs`: as the image has them, nothing negated.
+inline void move_down(Moments& m, const std::int32_t* pairs) {
+  const I i32;
+  const VI difference_signs = lanes::Set(i32, Wide::pair_of(1, -1));
+  const VI sum_signs = lanes::Set(i32, Wide::pair_of(1, 1));
+  std::int32_t* const sums = m.column_sum.data() + m.half;
+  std::int32_t* const energies = m.column_energy.data() + m.half;
+  for (int e = m.first, end = m.first + m.width; e < end; e += lane_count<Wide>()) {
+    const VI pair = lanes::LoadU(i32, pairs + e);
+    const VI change = lanes::DotPairs(i32, pair, difference_signs);
+    const VI squares = lanes::Mul(change, lanes::DotPairs(i32, pair, sum_signs));  // a² − b² = (a − b)(a + b)
+    lanes::StoreU(lanes::Add(lanes::LoadU(i32, sums + e), change), i32, sums + e);
+    lanes::StoreU(lanes::Add(lanes::LoadU(i32, energies + e), squares), i32, energies + e);
+  }
+}
+
+inline void sum_up(const Scratch<std::int32_t>& columns, const Scratch<std::int32_t>& before) {
+  const std::int32_t* const column = columns.data();
+  std::int32_t* const out = before.data();
+  std::uint32_t sum = 0;
+  for (int e = 0, count = columns.size(); e < count; ++e) {
+    sum += static_cast<std::uint32_t>(column[e]);
+    out[e + 1] = static_cast<std::int32_t>(sum);
+  }
+}
+
+/// Every window's own sums, out of the columns'. `rows`: of the window, those inside.
+template <Cost kCost, bool kDouble>
+void sum_windows(Moments& m, int rows) {
+  const I i32;
+  sum_up(m.column_sum, m.sum_before);
+  sum_up(m.column_energy, m.energy_before);
+  const std::int32_t* const sum_before = m.sum_before.data();
+  const std::int32_t* const energy_before = m.energy_before.data();
+  const std::int32_t* const columns = m.columns.data();
+  std::int32_t* const sums = m.sum.data();
+  std::int32_t* const energies = m.energy.data();
+  float* const inverses = m.inverse.data();
+  const int window = 2 * m.half + 1;
+  for (int e = m.first, end = m.first + m.width; e < end; e += lane_count<Wide>()) {
+    const VI sum = lanes::Sub(lanes::LoadU(i32, sum_before + e + window), lanes::LoadU(i32, sum_before + e));
+    const VI energy =
+        lanes::Sub(lanes::LoadU(i32, energy_before + e + window), lanes::LoadU(i32, energy_before + e));
+    const VI n = lanes::Mul(lanes::Set(i32, rows), lanes::LoadU(i32, columns + e));
+    lanes::StoreU(sum, i32, sums + e);
+    lanes::StoreU(energy, i32, energies + e);
+    lanes::StoreU(inverse_root<kCost, kDouble>(n, energy, sum), F(), inverses + e);
+  }
+}
+
+/// Of left pixel x and its partners from lane i on, where no window is clipped at the left or right: each
+/// image's own.
+CAIRN_LANES_INLINE Sums own_sums(const Rows<Wide>& in, int x, int i) {
+  const I i32;
+  const F f;
+  const int e = in.g.pad + x;
+  const int j = in.g.first_lane(x) + i;
+  const int n = in.rows * (2 * in.g.half + 1);
+  return {lanes::Set(i32, n),
+          lanes::Set(i32, in.l[e]),
+          lanes::Set(i32, in.ll[e]),
+          lanes::LoadU(i32, in.r + j),
+          lanes::LoadU(i32, in.rr + j),
+          lanes::Set(f, 1.0F / static_cast<float>(n)),
+          lanes::Set(f, in.inverse_l[e]),
+          lanes::LoadU(f, in.inverse_r + j)};
+}
+
+/// The sum over the left window's columns from max(begin, d) to min(end, width + d) − 1, lane by lane.
+CAIRN_LANES_INLINE VI clipped_left_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
+                                       int i) {
+  const I i32;
+  const VI d = lanes::Iota(i32, g.first_d + i);
+  const std::int32_t* const at = before + g.half + g.pad;  // [x]
+  const VI low = lanes::IfThenElse(lanes::Gt(d, lanes::Set(i32, begin)),
+                                   lanes::LoadU(i32, at + g.first_d + i), lanes::Set(i32, at[begin]));
+  const VI high =
+      lanes::IfThenElse(lanes::Lt(d, lanes::Set(i32, end - g.width)),
+                        lanes::LoadU(i32, at + g.width + g.first_d + i), lanes::Set(i32, at[end]));
+  return lanes::Sub(high, low);
+}
+
+/// The sum over the same columns' partners. Where a partner lies outside, its column is 0 and need not be
+/// left out.
+CAIRN_LANES_INLINE VI clipped_right_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
+                                        int i) {
+  const I i32;
+  const std::int32_t* const at = before + g.half + i;  // [first lane]
+  return lanes::Sub(lanes::LoadU(i32, at + g.first_lane(begin) + 1),
+                    lanes::LoadU(i32, at + g.first_lane(end - 1)));
+}
+
+/// The same near the left and right borders: of those columns alone that lie inside both images, lane by
+/// lane.
+template <Cost kCost, bool kDouble>
+CAIRN_LANES_INLINE Sums clipped_sums(const Rows<Wide>& in, int x, int i) {
+  const I i32;
+  const F f;
+  const Geometry& g = in.g;
+  const int begin = std::max(x - g.half, 0);
+  const int end = std::min(x + g.half + 1, g.width);
+  const VI d = lanes::Iota(i32, g.first_d + i);
+  const VI columns = lanes::Sub(lanes::Min(lanes::Set(i32, end), lanes::Add(lanes::Set(i32, g.width), d)),
+                                lanes::Max(lanes::Set(i32, begin), d));
+  const VI n = lanes::Mul(lanes::Set(i32, in.rows), columns);
+  const VI l = clipped_left_sum(in.l_before, g, begin, end, i);
+  const VI ll = clipped_left_sum(in.ll_before, g, begin, end, i);
+  const VI r = clipped_right_sum(in.r_before, g, begin, end, i);
+  const VI rr = clipped_right_sum(in.rr_before, g, begin, end, i);
+  return {n,
+          l,
+          ll,
+          r,
+          rr,
+          lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, n)),
+          inverse_root<kCost, kDouble>(n, ll, l),
+          inverse_root<kCost, kDouble>(n, rr, r)};
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+// Running sums
+
+/// By how much the columns of left pixel x change with this row, lanes i and on.
+template <Cost kCost, class Width, bool kBorder>
+CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(const Rows<Width>& in, int x, int i) {
+  const typename Width::SumTag d;
+  const Geometry& g = in.g;
+  const int j = g.first_lane(x) + i;
+  const auto left = lanes::Set(d, in.left_pairs[g.pad + x]);
+  const auto right = lanes::LoadU(d, in.right_pairs + j);
+  if constexpr (correlates(kCost)) {
+    return lanes::DotPairs(d, left, right);
+  } else if constexpr (kBorder) {
+    // Partners stand at the entries from pad to pad + width − 1; others count for nothing.
+    using Sum = typename Width::Sum;
+    const auto lane = lanes::Iota(d, Sum{0});
+    const auto bound = [](int entries) { return static_cast<Sum>(std::clamp(entries, 0, Width::kGroup)); };
+    const auto before = lanes::Lt(lane, lanes::Set(d, bound(g.pad - j)));
+    const auto within = lanes::Lt(lane, lanes::Set(d, bound(g.pad + g.width - j)));
+    return lanes::IfThenZeroElse(before, lanes::IfThenElseZero(within, lanes::AbsChange(d, left, right)));
+  } else {
+    return lanes::AbsChange(d, left, right);
+  }
+}
+
+template <Cost kCost, class Width, bool kBorder>
+CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> updated_column(const Rows<Width>& in, int x, int i) {
+  const typename Width::SumTag d;
+  typename Width::Sum* const sums = in.column_sums + in.g.column(x, i);
+  const auto column = lanes::Add(lanes::Load(d, sums), change_of<kCost, Width, kBorder>(in, x, i));
+  lanes::Store(column, d, sums);
+  return column;
+}
+
+/// Before a row's first pixel: the columns x < end join the box, which starts anew.
+template <Cost kCost, class Width>
+void begin_box(const Strip<Width>& strip, const Geometry& g, int end) {
+  const typename Width::SumTag d;
+  const Rows<Width> in(strip, g);
+  for (int i = 0; i < in.g.lanes; i += lane_count<Width>()) {
+    auto box = lanes::Set(d, Width::kEmptyBox);
+    for (int x = 0; x < end; ++x) box = lanes::Add(box, updated_column<kCost, Width, true>(in, x, i));
+    lanes::Store(box, d, in.box + i);
+  }
+}
+
+/// The costs of left pixels x_begin … x_end − 1, lanes i and on. For each a column joins the box and one
+/// leaves it.
+template <Cost kCost, class Width, bool kDouble, bool kBorder>
+void slide(const Strip<Width>& strip, const Geometry& geometry, int x_begin, int x_end, int i,
+           typename Width::Cost* costs, std::ptrdiff_t stride) {
+  const typename Width::SumTag d;
+  const Rows<Width> in(strip, geometry);
+  const int half = in.g.half;
+  auto box = lanes::Load(d, in.box + i);
+  for (int x = x_begin; x < x_end; ++x) {
+    if (!kBorder || x + half < in.g.width) {
+      box = lanes::Add(box, updated_column<kCost, Width, kBorder>(in, x + half, i));
+    }
+    const int leaving = kBorder ? std::max(x - half - 1, -1) : x - half - 1;
+    box = lanes::Sub(box, lanes::Load(d, in.column_sums + in.g.column(leaving, i)));
+    if constexpr (std::is_same_v<Width, Narrow>) {
+      lanes::Store(box, d, costs);
+    } else if constexpr (!correlates(kCost)) {
+      lanes::Store(cost_of<kCost>(box), F(), costs);
+    } else if constexpr (kBorder) {
+      lanes::Store(cost_of<kCost, kDouble>(box, clipped_sums<kCost, kDouble>(in, x, i)), F(), costs);
+    } else {
+      lanes::Store(cost_of<kCost, kDouble>(box, own_sums(in, x, i)), F(), costs);
+    }
+    costs += stride;
+  }
+  lanes::Store(box, d, in.box + i);
+}
+
+}  // namespace
+}  // namespace cairn::kernels::CAIRN_KERNEL_TARGET
