@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+#include <cairn/cairn.hpp>
+#include <io/calibration_files.hpp>
+#include <io/image_files.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+/// The floor of the rendered frames, by the whole first half of the preset `paper`.
+namespace cairn {
+namespace {
+
+std::filesystem::path rendered() {
+  const char* given = std::getenv("CAIRN_DATA");
+  const std::filesystem::path data =
+      given != nullptr ? given : std::filesystem::path(CAIRN_SOURCE_DIR) / ".." / "shared" / "data";
+  return data / "rendered" / "dev";
+}
+
+/// a, b, c: the numbers of the file's last line.
+GroundPlane truth(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string last;
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty()) last = line;
+  }
+  GroundPlane plane;
+  std::istringstream(last) >> plane.a >> plane.b >> plane.c;
+  return plane;
+}
+
+Ground found_in(const std::filesystem::path& frame) {
+  const auto pictures = io::load_pair(frame / "left.png", frame / "right.png");
+  const auto calibration = io::load_calibration(frame / "calib.txt");
+  Config config = Config::paper();
+  config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
+  const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray);
+  return estimate_disparity(pair, calibration.rig, config, {}).ground;
+}
+
+class GroundFrames : public testing::TestWithParam<const char*> {};
+
+TEST_P(GroundFrames, AreWithinHalfAPixelOrRefused) {
+  const auto folder = rendered() / GetParam();
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
+  int found = 0;
+  int frames = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!std::filesystem::exists(entry.path() / "ground.txt")) continue;
+    ++frames;
+    const Ground ground = found_in(entry.path());
+    if (!ground.plane) continue;
+    ++found;
+    const GroundPlane should = truth(entry.path() / "ground.txt");
+    const Size size = io::load_picture(entry.path() / "left.png").gray.size();
+    for (const int y : {size.height / 2, size.height - 1}) {
+      for (const int x : {0, size.width - 1}) {
+        const auto fx = static_cast<float>(x);
+        const auto fy = static_cast<float>(y);
+        EXPECT_NEAR(ground.plane->disparity_px(fx, fy), should.disparity_px(fx, fy), 0.5F) << entry.path();
+      }
+    }
+  }
+  // Two of the twelve floors, plain and mirroring, have hardly a match of their own: those are refused.
+  EXPECT_GE(found, frames - 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, GroundFrames, testing::Values("320x240", "640x480"),
+                         [](const auto& test) { return "Of" + std::string(test.param); });
+
+}  // namespace
+}  // namespace cairn
