@@ -80,8 +80,9 @@ float span_without_tails(std::vector<float>& values) {
   const auto low = rank(2);
   const auto high = rank(98);
   std::nth_element(values.begin(), low, values.end());
-  std::nth_element(low, high, values.end());  // what is not below the lower one still has ranks of the whole
-  return *high - *low;
+  const float lowest = *low;
+  std::nth_element(low, high, values.end());  // what is not below it keeps its ranks
+  return *high - lowest;
 }
 
 /// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/regions/split_floor.hpp>
+#include <random>
 
 #include "reference/regions.hpp"
 #include "support/grids.hpp"
@@ -198,6 +199,40 @@ TEST(RegionsEquivalence, GraphOfScatteredLabelsIsItsTwin) {
                reference::apply_merges(labels, graph, merges, 1.0));
 }
 
+/// Regions in a grid, of very different sizes and spreads, and in a raster order that is not that of their
+/// numbers: large ones absorb small ones that came before them, so growing takes several passes.
+RegionGraph random_graph(Size grid, std::uint32_t seed) {
+  const int count = grid.width * grid.height;
+  std::mt19937 random(seed);
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  std::vector<int> places(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places[i] = static_cast<int>(i);
+    std::swap(places[i], places[static_cast<std::size_t>(below(static_cast<int>(i) + 1))]);
+  }
+  RegionGraph graph;
+  for (int i = 0; i < count; ++i) {
+    const std::int64_t pixels = 1 + (std::int64_t{below(16)} << below(8));
+    const std::int64_t mean = below(120);
+    const std::int64_t spread = below(12);
+    const std::int64_t valid = below(12) == 0 ? 0 : pixels;
+    graph.nodes.push_back({.pixel_count = pixels,
+                           .valid_count = valid,
+                           .sum = valid * mean,
+                           .sum_of_squares = valid * (mean * mean + spread * spread),
+                           .first_pixel = places[static_cast<std::size_t>(i)],
+                           .box = {0, 0, 1, 1},
+                           .is_floor = below(20) == 0});
+    graph.first_arc.push_back(static_cast<std::int32_t>(graph.arcs.size()));
+    if (i >= grid.width) graph.arcs.push_back(i - grid.width);
+    if (i % grid.width > 0) graph.arcs.push_back(i - 1);
+    if (i % grid.width < grid.width - 1) graph.arcs.push_back(i + 1);
+    if (i < count - grid.width) graph.arcs.push_back(i + grid.width);
+  }
+  graph.first_arc.push_back(static_cast<std::int32_t>(graph.arcs.size()));
+  return graph;
+}
+
 /// Graphs with noisy and smooth values, holes and a floor, under criteria from strict to loose.
 template <class Check>
 void for_each_graph(Check check) {
@@ -217,6 +252,12 @@ void for_each_graph(Check check) {
     const View<const std::uint8_t> given = seed % 2 == 0 ? floor.view() : View<std::uint8_t>{};
     const RegionGraph graph = build_graph(basins.labels, basins.count, values, given, {});
     for (const GrowCriteria& c : criteria) check(graph, c, seed);
+  }
+  for (std::uint32_t seed = 100; seed < 112; ++seed) {
+    const RegionGraph graph = random_graph({4 + static_cast<int>(seed % 11), 9}, seed);
+    for (const GrowCriteria& c : criteria) check(graph, c, seed);
+    check(graph, {25, 0.3, 2, 40}, seed);
+    check(graph, {60, 0.6, 1, 7}, seed);
   }
 }
 

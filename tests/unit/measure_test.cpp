@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/objects/measure.hpp>
+#include <limits>
+
+#include "support/grids.hpp"
+
+namespace cairn {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr StereoRig kRig{.focal_px = 100, .cx_px = 20, .cy_px = 10, .baseline_m = 0.1F, .doffs_px = 0};
+
+/// A background of region 0 with rectangles as regions 1, 2, …; each region has one disparity.
+struct Scene {
+  Fusion fusion;
+  Segmentation by_disparity;
+  DisparityMap disparity;
+  Image<Gray> left;
+
+  Scene(Size size, const std::vector<std::pair<Rect, float>>& boards)
+      : fusion{Image<RegionId>(size, RegionId{0}, {}), {}, {}},
+        by_disparity{Image<RegionId>(size, RegionId{0}, {}), {}},
+        disparity{Image<float>(size, 2.0F, {}), Image<Reject>(size, Reject::none, {})},
+        left(size, Gray{10}, {}) {
+    add_region();
+    for (const auto& [rect, d] : boards) {
+      const RegionId id{static_cast<std::int32_t>(fusion.parts.size())};
+      for (int y = rect.y; y < rect.y + rect.height; ++y) {
+        for (int x = rect.x; x < rect.x + rect.width; ++x) {
+          fusion.labels(x, y) = id;
+          disparity.disparity_px(x, y) = d;
+          left(x, y) = static_cast<Gray>(100 + number(id));
+        }
+      }
+      add_region();
+    }
+  }
+  [[nodiscard]] Objects measured(const ObjectsConfig& config = {}, std::optional<StereoRig> rig = {}) const {
+    return measure(fusion, by_disparity, disparity, left, {}, rig, config, {});
+  }
+
+ private:
+  void add_region() {
+    const RegionId id{static_cast<std::int32_t>(fusion.parts.size())};
+    fusion.parts.push_back({id});
+    fusion.disparity_region.push_back(id);
+    by_disparity.regions.emplace_back();
+  }
+};
+
+TEST(Measure, NumbersObjectsNearestFirst) {
+  const Objects objects =
+      Scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, 16}, {{20, 2, 5, 5}, 4}}).measured();
+  ASSERT_EQ(objects.list.size(), 3U);
+  EXPECT_EQ(objects.list[0].id, ObjectId{1});
+  EXPECT_EQ(objects.list[0].disparity_px, 16);
+  EXPECT_EQ(objects.list[0].box_px, (Rect{10, 2, 5, 5}));
+  EXPECT_EQ(objects.list[2].disparity_px, 4);
+  EXPECT_EQ(objects.labels(3, 3), ObjectId{2});
+  EXPECT_EQ(objects.labels(0, 0), ObjectId::none);
+}
+
+TEST(Measure, DecidesEqualDisparitiesInRasterOrder) {
+  const Objects objects =
+      Scene({40, 20}, {{{20, 8, 5, 5}, 8}, {{2, 9, 5, 5}, 8}, {{10, 2, 5, 5}, 8}}).measured();
+  EXPECT_EQ(objects.list[0].box_px.x, 10);
+  EXPECT_EQ(objects.list[1].box_px.x, 20);
+  EXPECT_EQ(objects.list[2].box_px.x, 2);
+}
+
+TEST(Measure, TheFloorIsNoObject) {
+  Scene scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, 9}});
+  scene.by_disparity.regions[1].is_floor = true;
+  const Objects objects = scene.measured();
+  ASSERT_EQ(objects.list.size(), 1U);
+  EXPECT_EQ(objects.list[0].box_px.x, 10);
+}
+
+TEST(Measure, WhatTouchesThreeBordersIsBackground) {
+  const Scene scene({40, 20}, {{{0, 15, 40, 5}, 8}, {{0, 0, 10, 10}, 9}});
+  const Objects objects = scene.measured();
+  ASSERT_EQ(objects.list.size(), 1U);  // the corner touches two
+  EXPECT_EQ(objects.list[0].disparity_px, 9);
+}
+
+TEST(Measure, WhatIsLargerOrSmallerThanAllowedIsNoObject) {
+  const Scene scene({40, 20}, {{{2, 2, 20, 12}, 8}, {{30, 2, 4, 2}, 9}});  // 30 % and 1 %
+  EXPECT_EQ(scene.measured({.min_area = 1, .max_area = 30}).list.size(), 2U);
+  EXPECT_EQ(scene.measured({.min_area = 1, .max_area = 29.9F}).list.size(), 1U);
+  EXPECT_EQ(scene.measured({.min_area = 1.1F, .max_area = 30}).list.size(), 1U);
+}
+
+TEST(Measure, WhatHasNoDisparityIsNoObject) {
+  EXPECT_TRUE(Scene({40, 20}, {{{2, 2, 5, 5}, kNan}}).measured().list.empty());
+}
+
+TEST(Measure, TakesTheMedianOverValidPixels) {
+  Scene scene({40, 20}, {{{2, 2, 2, 2}, 8}});
+  scene.disparity.disparity_px(2, 2) = 100;
+  scene.disparity.disparity_px(3, 2) = kNan;
+  Objects objects = scene.measured();
+  EXPECT_EQ(objects.list[0].disparity_px, 8);
+  EXPECT_FLOAT_EQ(objects.list[0].valid_share, 0.75F);
+  EXPECT_EQ(objects.list[0].confidence, objects.list[0].valid_share);
+  scene.disparity.disparity_px(3, 2) = 9;  // 8 8 9 100
+  objects = scene.measured();
+  EXPECT_EQ(objects.list[0].disparity_px, 8.5F);
+}
+
+TEST(Measure, TakesTheMeanColourOfTheMask) {
+  Scene scene({40, 20}, {{{2, 2, 2, 1}, 8}});
+  EXPECT_EQ(scene.measured().list[0].mean_colour, (Rgb{101, 101, 101}));
+  Image<Rgb> rgb(Size{40, 20}, Rgb{1, 2, 3}, {});
+  rgb(2, 2) = {10, 20, 31};
+  rgb(3, 2) = {20, 40, 60};
+  const Objects objects =
+      measure(scene.fusion, scene.by_disparity, scene.disparity, scene.left, rgb, {}, {}, {});
+  EXPECT_EQ(objects.list[0].mean_colour, (Rgb{15, 30, 46}));
+}
+
+TEST(Measure, PlacesAnObjectInMetresWhereARigIsKnown) {
+  // Z = 100 · 0.1 / 5 = 2 m; a pixel is 2 cm wide there. The board's middle is at (24.5, 9.5).
+  const Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
+  EXPECT_FALSE(scene.measured().list[0].position_in_camera_m);
+  const Object object = scene.measured({}, kRig).list[0];
+  ASSERT_TRUE(object.position_in_camera_m);
+  EXPECT_NEAR(object.position_in_camera_m->x, 4.5 * 0.02, 1e-5);
+  EXPECT_NEAR(object.position_in_camera_m->y, -0.5 * 0.02, 1e-5);
+  EXPECT_NEAR(object.position_in_camera_m->z, 2, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->x, 9 * 0.02, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->y, 9 * 0.02, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
+}
+
+TEST(Measure, AFewWildMatchesDoNotStretchTheExtent) {
+  Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
+  scene.disparity.disparity_px(22, 7) = 0.5F;  // 20 m
+  EXPECT_NEAR(scene.measured({}, kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
+  for (int i = 0; i < 4; ++i) scene.disparity.disparity_px(21 + i, 8) = 0.5F;
+  EXPECT_NEAR(scene.measured({}, kRig).list[0].extent_in_camera_m->z, 18, 1e-4);
+}
+
+TEST(Measure, AnObjectAtInfinityHasNoPosition) {
+  const Scene scene({60, 20}, {{{20, 5, 10, 10}, 0}});
+  ASSERT_EQ(scene.measured({}, kRig).list.size(), 1U);
+  EXPECT_FALSE(scene.measured({}, kRig).list[0].position_in_camera_m);
+}
+
+}  // namespace
+}  // namespace cairn
