@@ -59,8 +59,7 @@ class Band {
     return y >= 0 && y < g_.height && y + strip.row >= 0 && y + strip.row < g_.height;
   }
 
-  // -- rows
-  // ------------------------------------------------------------------------------------------------------
+  // -- rows -----------------------------------------------------------------------------------------------
 
   /// Lays the row that comes in and the one that goes out side by side, and moves the moments down.
   void load_rows(Strip& strip, int incoming, int outgoing) {
@@ -100,8 +99,7 @@ class Band {
 
   void update_all_columns(Strip& strip) { begin_box<kCost, Width>(strip, g_, g_.width); }
 
-  // -- one row's costs
-  // -------------------------------------------------------------------------------------------
+  // -- one row's costs ------------------------------------------------------------------------------------
 
   void match_row(int y) {
     for (Strip& strip : strips_) {
@@ -136,7 +134,7 @@ class Band {
       }
       if (radius_ > 0) keep_lesser<Width>(block_, strip.row, pixels, g_.lanes, least_, row_of_);
     }
-    if (mine(y)) settle(radius_ > 0 ? least_ : block_, x_first, pixels, y);
+    if (mine(y)) settle(radius_ > 0 ? least_ : block_, x_first, y);
   }
 
   void fill_costs(Strip& strip, int x_first, int pixels) {
@@ -156,61 +154,61 @@ class Band {
       slide_over.template operator()<false>(x_inside, x_border);
       slide_over.template operator()<true>(x_border, x_last);
     }
-    for (int i = 0; i < pixels; ++i) {
+    const bool all_inside = g_.begin(x_last - 1) == 0 && g_.end(x_first) == g_.count && g_.count == g_.lanes;
+    for (int i = 0; !all_inside && i < pixels; ++i) {
       Lane* const costs = block_.of(i);
       std::fill(costs, costs + g_.begin(x_first + i), kNone<Lane>);
       std::fill(costs + g_.end(x_first + i), costs + g_.lanes, kNone<Lane>);
     }
   }
 
-  // -- results
-  // ---------------------------------------------------------------------------------------------------
+  // -- results --------------------------------------------------------------------------------------------
 
   RightRow& right_row(int y) { return right_rows_[static_cast<std::size_t>(y % (2 * radius_ + 1))]; }
 
   /// Writes a block's evidence. One question after the other for all its pixels, so that no pixel waits for
-  /// its own answer.
-  void settle(const CostBlock& block, int x_first, int pixels, int y) {
-    std::array<int, kBlock> best;
+  /// its own answer. All sixteen are asked, also where the row ends before: rows of images are padded to more
+  /// than that.
+  void settle(const CostBlock& block, int x_first, int y) {
+    std::array<Lane, kBlock> least;
+    std::array<int, kBlock> best{};
+    for (std::size_t i = 0; i < kBlock; ++i) least[i] = least_cost<Width>(block.of(i), g_.lanes);
+    for (std::size_t i = 0; i < kBlock; ++i) best[i] = first_lane_of<Width>(block.of(i), g_.lanes, least[i]);
     float* const cost = task_.out.cost.row(y) + x_first;
     std::int16_t* const disparity = task_.out.best.row(y) + x_first;
-    for (int i = 0; i < pixels; ++i) {
-      const Lane least = least_cost<Width>(block.of(i), g_.lanes);
-      const int lane = first_lane_of<Width>(block.of(i), g_.lanes, least);
-      const bool found = g_.begin(x_first + i) < g_.end(x_first + i);
-      best[static_cast<std::size_t>(i)] = lane;
-      cost[i] = as_cost(least);
-      disparity[i] = found ? static_cast<std::int16_t>(g_.first_d + lane) : kNoMatch;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      cost[i] = as_cost(least[i]);
+      disparity[i] = least[i] < kNone<Lane> ? static_cast<std::int16_t>(g_.first_d + best[i]) : kNoMatch;
     }
     if (radius_ > 0) {
-      for (int i = 0; i < pixels; ++i) {
-        const bool found = disparity[i] != kNoMatch;
-        task_.out.row_offset(x_first + i, y) =
-            found ? static_cast<std::int8_t>(row_of_.of(i)[best[static_cast<std::size_t>(i)]])
-                  : std::int8_t{0};
+      std::int8_t* const row = task_.out.row_offset.row(y) + x_first;
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        row[i] = least[i] < kNone<Lane> ? static_cast<std::int8_t>(row_of_.of(i)[best[i]]) : std::int8_t{0};
       }
     }
-    if (full_) settle_evidence(block, best, x_first, pixels, y);
+    if (full_) settle_evidence(block, best, x_first, y);
   }
 
-  void settle_evidence(const CostBlock& block, const std::array<int, kBlock>& best, int x_first, int pixels,
-                       int y) {
+  void settle_evidence(const CostBlock& block, const std::array<int, kBlock>& best, int x_first, int y) {
+    std::array<float, kBlock> sums;
+    for (std::size_t i = 0; i < kBlock; ++i) sums[i] = sum_of_costs(block.of(i), g_.lanes);
     float* const mean = task_.out.mean_cost.row(y) + x_first;
-    for (int i = 0; i < pixels; ++i) {
-      const int candidates = g_.end(x_first + i) - g_.begin(x_first + i);
-      const float sum = sum_of_costs<Width>(block.of(i), g_.lanes);
-      mean[i] = candidates > 0 ? sum / static_cast<float>(candidates) : kNoCost;
+    const Geometry g = g_;
+    for (int i = 0; i < kBlock; ++i) {
+      const int candidates = g.end(x_first + i) - g.begin(x_first + i);
+      const float quotient = sums[static_cast<std::size_t>(i)] / static_cast<float>(std::max(candidates, 1));
+      mean[i] = candidates > 0 ? quotient : kNoCost;
     }
     float* const before = task_.out.cost_before.row(y) + x_first;
     float* const after = task_.out.cost_after.row(y) + x_first;
-    for (int i = 0; i < pixels; ++i) {
-      Lane* const costs = block.of(i) + best[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      Lane* const costs = block.of(i) + best[i];
       before[i] = as_cost(costs[-1]);
       after[i] = as_cost(costs[1]);
       costs[-1] = costs[0] = costs[1] = kNone<Lane>;  // so that the runner-up is the least of what is left
     }
     float* const runner_up = task_.out.runner_up.row(y) + x_first;
-    for (int i = 0; i < pixels; ++i) runner_up[i] = as_cost(least_cost<Width>(block.of(i), g_.lanes));
+    for (std::size_t i = 0; i < kBlock; ++i) runner_up[i] = as_cost(least_cost<Width>(block.of(i), g_.lanes));
   }
 
   void finish_right(int y) {

@@ -60,6 +60,19 @@ HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
   }
 }
 
+/// The sum of all lanes: the upper half is added to the lower one until one lane is left.
+template <class D>
+HWY_INLINE float SumByHalves(D d, Vec<D> v) {
+  if constexpr (MaxLanes(D()) > 4) {
+    const Half<D> half;
+    return SumByHalves(half, Add(LowerHalf(half, v), UpperHalf(half, v)));
+  } else {
+    (void)d;
+    v = Add(v, Shuffle1032(v));
+    return GetLane(Add(v, Shuffle2301(v)));
+  }
+}
+
 /// As many 16-bit numbers as there are 32-bit lanes.
 template <class D>
 HWY_INLINE Vec<D> LoadWidened(D d, const std::int16_t* from) {

@@ -27,6 +27,10 @@ constexpr int Lanes(Tag<T>) {
   return 1;
 }
 template <class T>
+constexpr int MaxLanes(Tag<T>) {
+  return 1;
+}
+template <class T>
 T Set(Tag<T>, T value) {
   return value;
 }
@@ -128,10 +132,6 @@ template <class T>
 T IfThenZeroElse(bool mask, T no) {
   return mask ? T{0} : no;
 }
-/// 0 where the only lane is true, else −1.
-inline int FindFirstTrue(auto, bool mask) {
-  return mask ? 0 : -1;
-}
 inline float ConvertTo(Tag<float>, std::int32_t value) {
   return static_cast<float>(value);
 }
@@ -159,6 +159,9 @@ inline std::int16_t AbsChange(Tag<std::int16_t>, std::int16_t a, std::int16_t b)
   const auto high_byte = [](std::int16_t pair) { return pair >> 8 & 0xFF; };
   return static_cast<std::int16_t>(std::abs(low_byte(a) - low_byte(b)) -
                                    std::abs(high_byte(a) - high_byte(b)));
+}
+inline float SumByHalves(Tag<float>, float value) {
+  return value;
 }
 template <class T>
 T LeastLane(Tag<T>, T value) {

@@ -47,23 +47,30 @@ class ColumnSums {
   bool started_ = false;
 };
 
+/// Out of three rows of the image one of the filtered. Short loops over small types, on copies of all that
+/// they need: compilers turn them into vectors without help. `columns`: room for a row.
+void filter_row(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
+                std::int16_t* columns, Gray* out) {
+  for (int x = 0; x < width; ++x) columns[x] = static_cast<std::int16_t>(above[x] + 2 * here[x] + below[x]);
+  const auto most = static_cast<std::int16_t>(cap);
+  const auto least = static_cast<std::int16_t>(-cap);
+  for (int x = 1; x < width - 1; ++x) {
+    const auto slope = static_cast<std::int16_t>(columns[x + 1] - columns[x - 1]);
+    out[x] = static_cast<Gray>(std::clamp(slope, least, most) + most);
+  }
+  out[0] = out[width - 1] = static_cast<Gray>(cap);
+}
+
 }  // namespace
 
 Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec) {
   Image<Gray> filtered(image.size(), exec.pool);
-  const int width = image.width();
-  parallel_for(exec, image.height(), 16, [&](int first, int last) {
+  const Size size = image.size();
+  parallel_for(exec, size.height, 16, [&](int first, int last) {
+    std::vector<std::int16_t> columns(static_cast<std::size_t>(size.width));
     for (int y = first; y < last; ++y) {
-      const Gray* above = image.row(mirrored(y - 1, image.height()));
-      const Gray* here = image.row(y);
-      const Gray* below = image.row(mirrored(y + 1, image.height()));
-      Gray* out = filtered.row(y);
-      out[0] = out[width - 1] = static_cast<Gray>(cap);
-      for (int x = 1; x < width - 1; ++x) {
-        const int slope =
-            (above[x + 1] - above[x - 1]) + 2 * (here[x + 1] - here[x - 1]) + (below[x + 1] - below[x - 1]);
-        out[x] = static_cast<Gray>(std::clamp(slope, -cap, cap) + cap);
-      }
+      filter_row(image.row(mirrored(y - 1, size.height)), image.row(y),
+                 image.row(mirrored(y + 1, size.height)), size.width, cap, columns.data(), filtered.row(y));
     }
   });
   return filtered;

@@ -107,7 +107,7 @@ struct Rows {
         rr_before(strip.right.energy_before.data()) {}
 };
 
-// ---------------------------------------------------------------------------------------------------------------
+// ----------------------------------------------------------------------------------------------------
 // Formulas: pixel_math.hpp, lane by lane
 
 /// n·a − b·c, rounded once. In 32 bits where the result is known to fit them, whatever the products do.
@@ -165,7 +165,7 @@ CAIRN_LANES_INLINE VF cost_of(VI box, const Sums& s) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------
+// ----------------------------------------------------------------------------------------------------
 // The windows' own sums
 
 /// The columns' sums, one row further down. `pairs`: as the image has them, nothing negated.
@@ -184,13 +184,18 @@ inline void move_down(Moments& m, const std::int32_t* pairs) {
   }
 }
 
-inline void sum_up(const Scratch<std::int32_t>& columns, const Scratch<std::int32_t>& before) {
-  const std::int32_t* const column = columns.data();
-  std::int32_t* const out = before.data();
+inline void sum_up_columns(Moments& m) {
+  const std::int32_t* const column_sum = m.column_sum.data();
+  const std::int32_t* const column_energy = m.column_energy.data();
+  std::int32_t* const sum_before = m.sum_before.data();
+  std::int32_t* const energy_before = m.energy_before.data();
   std::uint32_t sum = 0;
-  for (int e = 0, count = columns.size(); e < count; ++e) {
-    sum += static_cast<std::uint32_t>(column[e]);
-    out[e + 1] = static_cast<std::int32_t>(sum);
+  std::uint32_t energy = 0;
+  for (int e = 0, count = m.column_sum.size(); e < count; ++e) {
+    sum += static_cast<std::uint32_t>(column_sum[e]);
+    energy += static_cast<std::uint32_t>(column_energy[e]);
+    sum_before[e + 1] = static_cast<std::int32_t>(sum);
+    energy_before[e + 1] = static_cast<std::int32_t>(energy);
   }
 }
 
@@ -198,8 +203,7 @@ inline void sum_up(const Scratch<std::int32_t>& columns, const Scratch<std::int3
 template <Cost kCost, bool kDouble>
 void sum_windows(Moments& m, int rows) {
   const I i32;
-  sum_up(m.column_sum, m.sum_before);
-  sum_up(m.column_energy, m.energy_before);
+  sum_up_columns(m);
   const std::int32_t* const sum_before = m.sum_before.data();
   const std::int32_t* const energy_before = m.energy_before.data();
   const std::int32_t* const columns = m.columns.data();
@@ -275,19 +279,22 @@ CAIRN_LANES_INLINE Sums clipped_sums(const Rows<Wide>& in, int x, int i) {
   const VI n = lanes::Mul(lanes::Set(i32, in.rows), columns);
   const VI l = clipped_left_sum(in.l_before, g, begin, end, i);
   const VI ll = clipped_left_sum(in.ll_before, g, begin, end, i);
-  const VI r = clipped_right_sum(in.r_before, g, begin, end, i);
-  const VI rr = clipped_right_sum(in.rr_before, g, begin, end, i);
-  return {n,
-          l,
-          ll,
-          r,
-          rr,
-          lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, n)),
-          inverse_root<kCost, kDouble>(n, ll, l),
-          inverse_root<kCost, kDouble>(n, rr, r)};
+  Sums s = own_sums(in, x, i);
+  s.inverse_n = lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, n));
+  s.inverse_l = inverse_root<kCost, kDouble>(n, ll, l);
+  s.n = n;
+  s.l = l;
+  s.ll = ll;
+  // The right windows are clipped by their own image already, unless the left one cuts off more.
+  if (end - begin < 2 * g.half + 1) {
+    s.r = clipped_right_sum(in.r_before, g, begin, end, i);
+    s.rr = clipped_right_sum(in.rr_before, g, begin, end, i);
+    s.inverse_r = inverse_root<kCost, kDouble>(n, s.rr, s.r);
+  }
+  return s;
 }
 
-// ---------------------------------------------------------------------------------------------------------------
+// ----------------------------------------------------------------------------------------------------
 // Running sums
 
 /// By how much the columns of left pixel x change with this row, lanes i and on.

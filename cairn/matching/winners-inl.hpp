@@ -31,7 +31,7 @@ struct CostBlock {
   Scratch<Lane> costs;
   explicit CostBlock(int lanes_used) : stride(lanes_used + 2 * kMargin), costs(kBlock * stride) { clear(); }
   void clear() { std::fill_n(costs.data(), costs.size(), kNone<Lane>); }
-  [[nodiscard]] Lane* of(int pixel) const { return costs.data() + pixel * stride + kMargin; }
+  [[nodiscard]] Lane* of(std::ptrdiff_t pixel) const { return costs.data() + pixel * stride + kMargin; }
 };
 
 /// The winners of one right row, reversed like the row itself.
@@ -57,43 +57,54 @@ CAIRN_LANES_INLINE typename Width::Cost least_cost(const typename Width::Cost* c
 template <class Width>
 CAIRN_LANES_INLINE int first_lane_of(const typename Width::Cost* costs, int count,
                                      typename Width::Cost least) {
+  using Lane = typename Width::Cost;
   const typename Width::CostTag d;
   const auto wanted = lanes::Set(d, least);
-  std::uint32_t first = ~0U;
+  const auto step = lanes::Set(d, static_cast<Lane>(lane_count<Width>()));
+  const auto none = lanes::Set(d, kNone<Lane>);
+  auto lane = lanes::Iota(d, Lane{0});
+  auto first = none;
   for (int i = 0; i < count; i += lane_count<Width>()) {
-    // −1 where there is none; as an unsigned number it stays the greatest, whatever bits are added to it.
-    const auto lane =
-        static_cast<std::uint32_t>(lanes::FindFirstTrue(d, lanes::Eq(lanes::Load(d, costs + i), wanted)));
-    first = std::min(first, lane | static_cast<std::uint32_t>(i));
+    const auto found = lanes::Eq(lanes::Load(d, costs + i), wanted);
+    first = lanes::Min(first, lanes::IfThenElse(found, lane, none));
+    lane = lanes::Add(lane, step);
   }
-  return static_cast<int>(first);
+  return static_cast<int>(lanes::LeastLane(d, first));
 }
 
-/// The sum of the costs, in sixteen partial sums.
-template <class Width>
-CAIRN_LANES_INLINE float sum_of_costs(const typename Width::Cost* costs, int count) {
-  alignas(64) float partial[pixel_math::kPartialSums];
-  for (int residue = 0; residue < pixel_math::kPartialSums; residue += lane_count<Wide>()) {
-    if constexpr (std::is_same_v<Width, Wide>) {
-      const F f;
-      VF sum = lanes::Zero(f);
-      for (int i = residue; i < count; i += pixel_math::kPartialSums) {
-        const VF cost = lanes::Load(f, costs + i);
-        sum = lanes::Add(sum, lanes::IfThenZeroElse(lanes::Eq(cost, lanes::Set(f, kNoCost)), cost));
-      }
-      lanes::Store(sum, f, partial + residue);
-    } else {
-      // Each partial sum is below 2^24: exact as an integer and as a float.
-      const I i32;
-      VI sum = lanes::Zero(i32);
-      for (int i = residue; i < count; i += pixel_math::kPartialSums) {
-        const VI cost = lanes::Add(lanes::LoadWidened(i32, costs + i), lanes::Set(i32, 32768));
-        sum = lanes::Add(sum, lanes::IfThenZeroElse(lanes::Eq(cost, lanes::Set(i32, 65535)), cost));
-      }
-      lanes::Store(lanes::ConvertTo(F(), sum), F(), partial + residue);
-    }
+/// The costs number k, k + 16, … of a pixel for as many k from `residue` on as there are lanes; none counts
+/// 0.
+CAIRN_LANES_INLINE VF partial_sums(const float* costs, int count, int residue) {
+  const F f;
+  VF sum = lanes::Zero(f);
+  for (int i = residue; i < count; i += pixel_math::kPartialSums) {
+    const VF cost = lanes::Load(f, costs + i);
+    sum = lanes::Add(sum, lanes::IfThenZeroElse(lanes::Eq(cost, lanes::Set(f, kNoCost)), cost));
   }
-  return pixel_math::sum_of_partials(partial);
+  return sum;
+}
+/// As integers; each is below 2^24, so that as floats they would have been exact too.
+CAIRN_LANES_INLINE VF partial_sums(const std::int16_t* costs, int count, int residue) {
+  const I i32;
+  VI sum = lanes::Zero(i32);
+  for (int i = residue; i < count; i += pixel_math::kPartialSums) {
+    const VI cost = lanes::Add(lanes::LoadWidened(i32, costs + i), lanes::Set(i32, 32768));
+    sum = lanes::Add(sum, lanes::IfThenZeroElse(lanes::Eq(cost, lanes::Set(i32, 65535)), cost));
+  }
+  return lanes::ConvertTo(F(), sum);
+}
+
+/// pixel_math::sum_of_partials() of them all: the same halvings, vectors first, then lanes.
+template <class Lane>
+CAIRN_LANES_INLINE float sum_of_costs(const Lane* costs, int count) {
+  constexpr int kLanes = static_cast<int>(lanes::MaxLanes(F()));
+  constexpr int kVectors = pixel_math::kPartialSums / kLanes;
+  VF sums[kVectors];
+  for (int v = 0; v < kVectors; ++v) sums[v] = partial_sums(costs, count, v * kLanes);
+  for (int half = kVectors / 2; half > 0; half /= 2) {
+    for (int v = 0; v < half; ++v) sums[v] = lanes::Add(sums[v], sums[v + half]);
+  }
+  return lanes::SumByHalves(F(), sums[0]);
 }
 
 /// Hands a block's costs to the right pixels that they are about. A right pixel meets its left pixels from
