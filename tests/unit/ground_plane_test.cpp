@@ -149,14 +149,24 @@ TEST(GroundAutomatic, FindsATableSeenFromAbove) {
 TEST(GroundAutomatic, ABoxsLidIsNoFloorWhenThereIsOneBelow) {
   const GroundPlane floor{0.0F, 0.057F, 60.0F};
   DisparityMap map = matches_of({.floor = floor, .wall_px = 0});
-  for (int y = 60; y < 200; ++y) {
-    for (int x = 40; x < 280; ++x) {  // a parallel surface, a fifth nearer, with half of all matches
-      if (!std::isnan(map.disparity_px(x, y))) map.disparity_px(x, y) *= 1.2F;
+  for (int y = 20; y < 210; ++y) {
+    for (int x = 10; x < 310;
+         ++x) {  // a parallel surface, a fifth nearer, with three quarters of all matches
+      map.disparity_px(x, y) *= 1.2F;
     }
   }
   const Ground ground = fit_ground(map, std::nullopt, {}, {});
   ASSERT_TRUE(ground.plane);
   EXPECT_LT(error(ground, {.floor = floor}), 0.5F);
+}
+
+TEST(GroundAutomatic, ASlantedBoardWithMoreBehindItThanOnItIsNoFloor) {
+  DisparityMap map = matches_of({.floor = {}, .wall_px = 2, .wrong = 0.02});
+  for (int y = 70; y < 200; ++y) {
+    for (int x = 60; x < 270; ++x) map.disparity_px(x, y) += 6 + 0.08F * static_cast<float>(y);
+  }
+  const Ground ground = fit_ground(map, std::nullopt, {}, {});
+  EXPECT_FALSE(ground.plane) << ground.plane->a << " " << ground.plane->b;
 }
 
 TEST(GroundAutomatic, SupportAndResidualAreThoseOfTheMatches) {
