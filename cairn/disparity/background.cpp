@@ -224,15 +224,17 @@ float Background::disparity_px(float x, float y) const {
   return d;
 }
 
-Background fit_background(const DisparityMap& disparity, View<const std::uint8_t> evidence,
-                          const Ground& ground, const std::optional<StereoRig>& rig,
-                          const BackgroundConfig& config, const Exec&) {
-  const Size size = disparity.disparity_px.size();
+Background fit_background(View<const float> evidence_px, const Ground& ground,
+                          const std::optional<StereoRig>& rig, const BackgroundConfig& config, const Exec&) {
+  const Size size = evidence_px.size();
+  const float tolerance = config.tolerance * 0.001F * static_cast<float>(size.width);
   std::vector<Point3> points;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
-      if (evidence(x, y) == 0) continue;
-      points.push_back({static_cast<float>(x), static_cast<float>(y), disparity.disparity_px(x, y)});
+      const Point3 point{static_cast<float>(x), static_cast<float>(y), evidence_px(x, y)};
+      // What a glossy floor mirrors lies behind every wall and would speak against each.
+      const bool mirrored = ground.plane && point.d < at(*ground.plane, point) - tolerance;
+      if (!std::isnan(point.d) && !mirrored) points.push_back(point);
     }
   }
   std::vector<GroundPlane> planes;

@@ -34,10 +34,9 @@ struct Background {
 
 /// Finds walls: planes upright on the floor, through much of the evidence that stands before the background
 /// found so far, with hardly any evidence behind them; that tells a wall from a box's side. Deterministic.
-/// Without a ground the planes may lean as they like. `evidence` as find_evidence() marks it. (beyond the
+/// Without a ground the planes may lean as they like. `evidence_px` as find_evidence() gives it. (beyond the
 /// paper)
-Background fit_background(const DisparityMap& disparity, View<const std::uint8_t> evidence,
-                          const Ground& ground, const std::optional<StereoRig>& rig,
+Background fit_background(View<const float> evidence_px, const Ground& ground, const std::optional<StereoRig>& rig,
                           const BackgroundConfig& config, const Exec& exec);
 
 }  // namespace cairn

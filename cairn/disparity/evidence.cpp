@@ -6,6 +6,7 @@
 #include <cairn/disparity/evidence.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace cairn {
 namespace {
@@ -89,13 +90,13 @@ float noise_sigma(View<const Gray> image) {
   return static_cast<float>((static_cast<double>(median) + share - 0.5) / (6 * 0.6745));
 }
 
-Image<std::uint8_t> find_evidence(View<const Gray> left, const DisparityMap& disparity, float noise,
-                                  const EvidenceConfig& config, const Exec& exec) {
+Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, const EvidenceConfig& config,
+                           const Exec& exec) {
   const Size size = left.size();
   const Image<std::uint8_t> candidates =
-      textured(left, disparity, config.noise_factor * noise + config.gradient_min, exec);
+      textured(left, disparity, config.noise_factor * noise_sigma(left) + config.gradient_min, exec);
   const float agreement = config.agreement * 0.001F * static_cast<float>(size.width);
-  Image<std::uint8_t> evidence(size, 0, exec.pool);
+  Image<float> evidence(size, std::numeric_limits<float>::quiet_NaN(), exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       for (int x = 0; x < size.width; ++x) {
@@ -109,7 +110,7 @@ Image<std::uint8_t> find_evidence(View<const Gray> left, const DisparityMap& dis
             friends += static_cast<int>(candidate[u] != 0 && std::abs(other[u] - d) <= agreement);
           }
         }
-        if (friends >= kFriends) evidence(x, y) = 255;
+        if (friends >= kFriends) evidence(x, y) = d;
       }
     }
   });

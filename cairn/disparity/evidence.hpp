@@ -28,12 +28,11 @@ void fields(EvidenceConfig& c, V&& v) {
 /// (0). (beyond the paper)
 float noise_sigma(View<const Gray> image);
 
-/// 255 where a disparity rests on the pixel's own texture: it is valid, the horizontal gradient there stands
-/// out of the noise and is no mere grazing edge (|gx| > |gy|/2), and at least three pixels of its 5×5
-/// neighbourhood that pass the same test agree with it. Elsewhere 0: there a matcher can only have carried
-/// disparity over from its surroundings, which is how near objects grow over their borders. (beyond the
-/// paper)
-Image<std::uint8_t> find_evidence(View<const Gray> left, const DisparityMap& disparity, float noise,
-                                  const EvidenceConfig& config, const Exec& exec);
+/// The disparities that rest on the pixel's own texture, NaN elsewhere: valid ones where the horizontal
+/// gradient stands out of the noise and is no mere grazing edge (|gx| > |gy|/2), and at least three pixels of
+/// the 5×5 neighbourhood that pass the same test agree. Elsewhere a matcher can only have carried disparity
+/// over from the surroundings, which is how near objects grow over their borders. (beyond the paper)
+Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, const EvidenceConfig& config,
+                           const Exec& exec);
 
 }  // namespace cairn

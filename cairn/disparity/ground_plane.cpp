@@ -110,9 +110,14 @@ Ground ground_from_points(const std::vector<PointPair>& points) {
 
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec) {
+  return fit_ground(disparity.disparity_px, rig, config, exec);
+}
+
+Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>& rig,
+                  const GroundConfig& config, const Exec& exec) {
   switch (config.source) {
     case GroundSource::automatic:
-      return find_floor(disparity.disparity_px, rig, exec);
+      return find_floor(disparity_px, rig, exec);
     case GroundSource::points:
       return ground_from_points(config.points);
     case GroundSource::pose:

@@ -12,9 +12,10 @@
 namespace cairn {
 
 enum class GroundSource : std::uint8_t { off, automatic, points, pose };
-inline constexpr std::array kGroundSources{
-    Choice<GroundSource>{"off", GroundSource::off}, Choice<GroundSource>{"automatic", GroundSource::automatic},
-    Choice<GroundSource>{"points", GroundSource::points}, Choice<GroundSource>{"pose", GroundSource::pose}};
+inline constexpr std::array kGroundSources{Choice<GroundSource>{"off", GroundSource::off},
+                                           Choice<GroundSource>{"automatic", GroundSource::automatic},
+                                           Choice<GroundSource>{"points", GroundSource::points},
+                                           Choice<GroundSource>{"pose", GroundSource::pose}};
 
 struct GroundConfig {
   GroundSource source = GroundSource::automatic;
@@ -27,13 +28,17 @@ struct GroundConfig {
 };
 template <class V>
 void fields(GroundConfig& c, V&& v) {
-  v("source", c.source, "", "where the floor comes from: fitted to each frame, hand-given points, the camera's pose, nowhere",
+  v("source", c.source, "",
+    "where the floor comes from: fitted to each frame, hand-given points, the camera's pose, nowhere",
     kGroundSources);
-  v("points", c.points, "px", "floor points as x_left,y_left,x_right,y_right; at least four, separated by ;", Any{});
+  v("points", c.points, "px", "floor points as x_left,y_left,x_right,y_right; at least four, separated by ;",
+    Any{});
   v("height", c.height, "m", "height of the left camera above the floor (source pose)", range(0.01F, 100.0F));
   v("pitch", c.pitch, "degrees", "camera pitch, positive looks down (source pose)", range(-89.0F, 89.0F));
-  v("roll", c.roll, "degrees", "camera roll, positive lowers the camera's right side (source pose)", range(-89.0F, 89.0F));
-  v("margin", c.margin, "px", "how far a disparity may lie from the floor's and still be floor", range(0.0F, 64.0F));
+  v("roll", c.roll, "degrees", "camera roll, positive lowers the camera's right side (source pose)",
+    range(-89.0F, 89.0F));
+  v("margin", c.margin, "px", "how far a disparity may lie from the floor's and still be floor",
+    range(0.0F, 64.0F));
   v("label_floor", c.label_floor, "", "label matches on the floor; the floor is no object", Any{});
 }
 
@@ -48,38 +53,48 @@ struct GroundPlane {
 /// Why there is no ground.
 enum class Refusal : std::uint8_t { none, off, no_rig, too_few_matches, no_plane, implausible };
 inline constexpr std::array kRefusals{
-    Choice<Refusal>{"none", Refusal::none},       Choice<Refusal>{"switched off", Refusal::off},
+    Choice<Refusal>{"none", Refusal::none},
+    Choice<Refusal>{"switched off", Refusal::off},
     Choice<Refusal>{"no calibration", Refusal::no_rig},
     Choice<Refusal>{"too few matches", Refusal::too_few_matches},
     Choice<Refusal>{"no plane has enough support", Refusal::no_plane},
-    Choice<Refusal>{"the best plane is no floor (it does not rise towards the camera)", Refusal::implausible}};
+    Choice<Refusal>{"the best plane is no floor (it does not rise towards the camera)",
+                    Refusal::implausible}};
 
 struct Ground {
   std::optional<GroundPlane> plane;
-  float support = 0;      // 0 … 1: share of the valid pixels under the horizon that lie on the plane (given grounds: 1)
+  float support =
+      0;  // 0 … 1: share of the valid pixels under the horizon that lie on the plane (given grounds: 1)
   float residual_px = 0;  // root mean square distance of the supporting evidence from the plane
   Refusal refusal = Refusal::none;
 };
 
-/// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason when no
-/// plane has enough support. points: the homography that the pairs induce (normalised DLT, RANSAC beyond four), reduced
-/// to (a, b, c) by least squares over its points. pose: from height, pitch and roll; needs a rig.
-/// (METHOD §3; paper, "ground plane")
-Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig, const GroundConfig& config,
-                  const Exec& exec);
+/// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
+/// when no plane has enough support. points: the homography that the pairs induce (normalised DLT, RANSAC
+/// beyond four), reduced to (a, b, c) by least squares over its points. pose: from height, pitch and roll;
+/// needs a rig. (METHOD §3; paper, "ground plane")
+Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
+                  const GroundConfig& config, const Exec& exec);
+
+/// The same from bare disparities, NaN for holes: from those alone that deserve trust, for instance.
+Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>& rig,
+                  const GroundConfig& config, const Exec& exec);
 
 /// The plane through hand-given pairs. Throws Error for fewer than four, or where all lie on one line.
 /// Called by validate(Config), so that fit_ground cannot fail.
 Ground ground_from_points(const std::vector<PointPair>& points);
 
-/// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground. Nothing is
-/// above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground: nothing happens.
-/// (METHOD §3; paper)
-DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground, const std::optional<StereoRig>& rig,
-                                 const GroundConfig& config, const Exec& exec);
+/// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground.
+/// Nothing is above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground:
+/// nothing happens. (METHOD §3; paper)
+DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
+                                 const std::optional<StereoRig>& rig, const GroundConfig& config,
+                                 const Exec& exec);
 
-/// 255 where |d − d_ground| ≤ margin under the horizon, else 0. Empty where there is no ground or label_floor is off.
+/// 255 where |d − d_ground| ≤ margin under the horizon, else 0. Empty where there is no ground or label_floor
+/// is off.
 Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& ground,
-                                const std::optional<StereoRig>& rig, const GroundConfig& config, const Exec& exec);
+                                const std::optional<StereoRig>& rig, const GroundConfig& config,
+                                const Exec& exec);
 
 }  // namespace cairn

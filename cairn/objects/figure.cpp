@@ -70,9 +70,9 @@ void vote_in_row(const RegionId* facet, int width, const std::vector<Seen>& seen
 
 }  // namespace
 
-std::vector<std::int32_t> separate_figure(const Facets& facets, const DisparityMap& disparity,
-                                          View<const std::uint8_t> evidence, const Background& background,
-                                          const FigureConfig& config, const Exec&) {
+std::vector<std::int32_t> separate_figure(const Facets& facets, View<const float> evidence_px,
+                                          const Background& background, const FigureConfig& config,
+                                          const Exec&) {
   const Size size = facets.labels.size();
   const auto per_mille = 0.001F * static_cast<float>(size.width);
   const Scales scales{config.margin * per_mille, config.agreement * per_mille,
@@ -82,8 +82,8 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, const DisparityM
   for (int y = 0; y < size.height; ++y) {
     seen.clear();
     for (int x = 0; x < size.width; ++x) {
-      if (evidence(x, y) == 0) continue;
-      const float d = disparity.disparity_px(x, y);
+      const float d = evidence_px(x, y);
+      if (std::isnan(d)) continue;
       seen.push_back({x, d, d - background.disparity_px(static_cast<float>(x), static_cast<float>(y))});
     }
     vote_in_row(facets.labels.row(y), size.width, seen, scales, votes);

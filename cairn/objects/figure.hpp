@@ -5,7 +5,6 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
 #include <cairn/disparity/background.hpp>
-#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cstdint>
 #include <vector>
@@ -40,8 +39,8 @@ void fields(FigureConfig& c, V&& v) {
 /// and says nothing where those lie in different depths. A stretch that runs out of the image is ground, at
 /// half weight: what the picture cuts off is mostly background. The facet's pixels vote; facets of which too
 /// little is known follow the neighbour across their weakest border. (METHOD §6, beyond the paper)
-std::vector<std::int32_t> separate_figure(const Facets& facets, const DisparityMap& disparity,
-                                          View<const std::uint8_t> evidence, const Background& background,
-                                          const FigureConfig& config, const Exec& exec);
+std::vector<std::int32_t> separate_figure(const Facets& facets, View<const float> evidence_px,
+                                          const Background& background, const FigureConfig& config,
+                                          const Exec& exec);
 
 }  // namespace cairn

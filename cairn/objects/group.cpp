@@ -97,7 +97,7 @@ bool beside_border(View<const RegionId> labels, int x, int y) {
 }
 
 std::vector<Plane> facet_planes(const Facets& facets, const std::vector<std::int32_t>& figure,
-                                const DisparityMap& disparity, View<const std::uint8_t> evidence,
+                                const DisparityMap& disparity, View<const float> evidence_px,
                                 const Background& background, float least_before_px) {
   std::vector<Plane> planes(slot(facets.count));
   const View<const RegionId> labels = facets.labels;
@@ -107,8 +107,8 @@ std::vector<Plane> facet_planes(const Facets& facets, const std::vector<std::int
       const float d = disparity.disparity_px(x, y);
       const float behind = background.disparity_px(static_cast<float>(x), static_cast<float>(y));
       if (!(d - behind > least_before_px)) continue;
-      const double weight =
-          (beside_border(labels, x, y) ? kBorderWeight : 1.0) * (evidence(x, y) != 0 ? kEvidenceWeight : 1.0);
+      const double weight = (beside_border(labels, x, y) ? kBorderWeight : 1.0) *
+                            (std::isnan(evidence_px(x, y)) ? 1.0 : kEvidenceWeight);
       planes[index(labels(x, y))].add(x, y, d, weight);
     }
   }
@@ -238,14 +238,14 @@ void join_small(std::vector<std::int32_t>& groups, const Facets& facets, const G
 }  // namespace
 
 Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,
-                          const DisparityMap& disparity, View<const std::uint8_t> evidence,
+                          const DisparityMap& disparity, View<const float> evidence_px,
                           const Background& background, const FigureConfig& figure_config,
                           const GroupConfig& config, const Exec& exec) {
   const Size size = facets.labels.size();
   const float per_mille = 0.001F * static_cast<float>(size.width);
   const double scale = static_cast<double>(size.width) / 320.0;
-  const std::vector<Plane> planes =
-      facet_planes(facets, figure, disparity, evidence, background, 0.3F * figure_config.margin * per_mille);
+  const std::vector<Plane> planes = facet_planes(facets, figure, disparity, evidence_px, background,
+                                                 0.3F * figure_config.margin * per_mille);
   const Growing growing(facets, figure, planes, config.step * per_mille, config.deviation * per_mille,
                         kFlatness * scale * scale);
 

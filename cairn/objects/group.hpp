@@ -11,8 +11,8 @@ namespace cairn {
 
 struct GroupConfig {
   float step = 2.8F;
-  float deviation = 4.7F;
-  float min_area = 0.15F;
+  float deviation = 7.0F;
+  float min_area = 0.3F;
 };
 template <class V>
 void fields(GroupConfig& c, V&& v) {
@@ -36,7 +36,7 @@ void fields(GroupConfig& c, V&& v) {
 ///
 /// Result: region 0 is the background (is_floor), the others are groups. Means in px.
 Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,
-                          const DisparityMap& disparity, View<const std::uint8_t> evidence,
+                          const DisparityMap& disparity, View<const float> evidence_px,
                           const Background& background, const FigureConfig& figure_config,
                           const GroupConfig& config, const Exec& exec);
 

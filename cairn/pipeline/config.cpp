@@ -256,8 +256,17 @@ Config Config::preset(std::string_view name) {
 
 Config Config::paper() {
   Config c;
+  c.match = {};
+  c.subpixel = {};
+  c.left_right = {};
+  c.uniqueness = {.ratio = 5.0F};
+  c.flatness = {};
+  c.texture = {.threshold = 1.0F};
   c.ground.label_floor = false;
   c.speckle.size = -1;
+  c.disparity.mean_difference_max = 0.75F;
+  c.fusion = {};
+  c.objects = {};
   return c;
 }
 

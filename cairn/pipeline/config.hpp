@@ -28,24 +28,25 @@ namespace cairn {
 
 /// What is computed: one section per stage. A default-constructed Config is the preset `default`.
 struct Config {
-  MatchConfig match;
+  MatchConfig match{.method = MatchMethod::semi_global};
   SemiGlobalConfig semi_global;
-  SubpixelConfig subpixel;
-  LeftRightConfig left_right;
-  UniquenessConfig uniqueness;
-  FlatnessConfig flatness;
-  TextureConfig texture;
+  SubpixelConfig subpixel{.method = SubpixelMethod::equiangular};
+  LeftRightConfig left_right{.max_diff = 2.0F};
+  UniquenessConfig uniqueness{.ratio =
+                                  -1.0F};  // the three are the window's checks: semi-global sums are smooth,
+  FlatnessConfig flatness{.threshold = -1.0F};  // and evidence asks for texture itself
+  TextureConfig texture{.threshold = -1.0F};
   GroundConfig ground;
   SpeckleConfig speckle;
   EvidenceConfig evidence;
   BackgroundConfig background;
   IntensityConfig intensity;
   DisparityConfig disparity;
-  FusionConfig fusion;
+  FusionConfig fusion{.method = FusionMethod::evidence};
   FacetsConfig facets;
   FigureConfig figure;
   GroupConfig group;
-  ObjectsConfig objects;
+  ObjectsConfig objects{.min_area = 0.25F};
 
   /// Only what the paper describes. (METHOD, "Two presets")
   static Config paper();
@@ -88,13 +89,14 @@ struct OptionInfo {
 
 /// Every option of `config`, in order.
 std::vector<OptionInfo> options(const Config& config);
-/// Sets one option from its text. Throws Error: unknown name (names the nearest known one), not of its type, out of range
-/// (names the range).
+/// Sets one option from its text. Throws Error: unknown name (names the nearest known one), not of its type,
+/// out of range (names the range).
 void set(Config& config, std::string_view name, std::string_view value);
 /// The names of the presets.
 std::vector<std::string> preset_names();
-/// Throws Error where a value lies outside its range or options contradict each other (a check that needs evidence which
-/// match.evidence=winner does not keep; a ground from fewer than four points or from points on a line).
+/// Throws Error where a value lies outside its range or options contradict each other (a check that needs
+/// evidence which match.evidence=winner does not keep; a ground from fewer than four points or from points on
+/// a line).
 void validate(const Config& config);
 /// The same, and against an image: the window must fit, a disparity must be possible, a pose needs a rig.
 void validate(const Config& config, Size image, bool has_rig);

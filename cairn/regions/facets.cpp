@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/disparity/evidence.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cairn/regions/gradient.hpp>
 #include <cairn/regions/watershed.hpp>
@@ -117,14 +118,14 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
   return borders;
 }
 
-Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, float noise, const FacetsConfig& config,
+Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
                       const Exec& exec) {
   const Image<std::uint16_t> edges = edge_strength(gray, rgb, config.smoothing_sigma, exec);
   Basins basins = watershed(edges, exec);
   const auto count = slot(basins.count);
   std::vector<Border> borders = borders_of(basins.labels, edges);
   Sets sets(count);
-  const double limit = 4.0 * (config.edge_min + config.noise_factor * noise);
+  const double limit = 4.0 * (config.edge_min + config.noise_factor * noise_sigma(gray));
   for (int round = 0; round < kRounds && fuse_across_weak_borders(borders, sets, count, limit); ++round) {
   }
 
