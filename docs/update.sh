@@ -2,17 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# update.sh [--check] BUILD_DIR: writes the generated parts of the pages anew, or with --check only says which are stale.
+# update.sh [--check|--pictures] BUILD_DIR: writes the generated parts of the pages anew, or with --check only says which
+# are stale.
 #   docs/options.md                         `cairn config --markdown`
 #   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]`
 #   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout
-# Each marker is followed by a fenced block, which is what is replaced. Pictures (docs/images) are made without --check.
+# Each marker is followed by a fenced block, which is what is replaced. docs/images is made with --pictures only: every new
+# picture stays in the repository's history for ever.
 set -euo pipefail
-check=no
-if [[ $1 == --check ]]; then
-  check=yes
-  shift
-fi
+check=no pictures=no
+case $1 in
+  --check) check=yes; shift ;;
+  --pictures) pictures=yes; shift ;;
+esac
 build_dir=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -93,11 +95,16 @@ while read -r page; do
   put "$page" <<<"$contents"
 done < <(find . -name '*.md' -not -path './build/*' | xargs grep -lE '^<!-- (code|output): ' | sort)
 
-if [[ $check == no ]]; then
-  pictures=$build_dir/docs_pictures
-  for name in four_in_a_row overlap; do
-    "$build_dir/cairn" segment "samples/$name" -o "$pictures/$name" >/dev/null
-    cp "$pictures/$name/overlay.png" "docs/images/$name.png"
+if [[ $pictures == yes ]]; then
+  scratch=$(mktemp -d)
+  trap 'rm -rf "$scratch"' EXIT
+  "$build_dir/cairn" segment samples/four_in_a_row -o "$scratch" >/dev/null
+  mkdir -p docs/images
+  for kind in overlay disparity_view; do
+    cp "$scratch/$kind.png" "docs/images/$kind.png"
+    # 256 colours are enough for a page, and a third of the bytes.
+    if command -v pngquant >/dev/null; then pngquant --force --ext .png 256 "docs/images/$kind.png"; fi
+    echo "wrote docs/images/$kind.png"
   done
 fi
 [[ $stale == 0 ]]

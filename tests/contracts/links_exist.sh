@@ -27,7 +27,8 @@ while read -r page; do
       echo "$page: $target: no such heading"
       bad=1
     fi
-  done < <(awk '/^```/ { code = !code } !code' "$page" | sed -E 's/`[^`]*`//g' | grep -oE '\]\([^) ]+\)' | sed -E 's/^\]\(//; s/\)$//')
+  done < <(awk '/^```/ { code = !code } !code' "$page" | sed -E 's/`[^`]*`//g' |
+    grep -oE '(\]\([^) ]+\)|src="[^"]+")' | sed -E 's/^(\]\(|src=")//; s/[)"]$//')
 done < <(find . -name '*.md' -not -path './build/*' -not -path './.git/*' | sort)
 echo "$links links"
 [[ $links -gt 0 && $bad == 0 ]]

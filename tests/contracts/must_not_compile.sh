@@ -25,6 +25,7 @@ while IFS=$'\t' read -r name expected; do
     printf '%s fails for another reason than "%s":\n%s\n' "$name" "$expected" "$message"
     bad=1
   fi
-done < <(sed -nE 's/.*defined\((CASE_[a-z_]+)\)[[:space:]]*\/\/ expect: (.*)/\1\t\2/p' "$file")
+done < <(sed -nE 'N; s/.*defined\((CASE_[a-z_]+)\)\n *\/\/ expect: (.*)/\1\t\2/p; D' "$file")
 echo "$cases cases"
-[[ $cases -gt 0 && $bad == 0 ]]
+# Every case has its expectation, or it would never be tried.
+[[ $cases == $(grep -c 'defined(CASE_' "$file") && $cases -gt 0 && $bad == 0 ]]
