@@ -16,6 +16,7 @@ struct FigureConfig {
   float agreement = 4.7F;
   float longest_bridge = 30.0F;
   float least_known = 20.0F;
+  float colour_reach = 20.0F;
 };
 template <class V>
 void fields(FigureConfig& c, V&& v) {
@@ -29,6 +30,8 @@ void fields(FigureConfig& c, V&& v) {
     range(0.0F, 100.0F));
   v("least_known", c.least_known, "% of a facet", "a facet of which less is known is left to its neighbours",
     range(0.0F, 100.0F));
+  v("colour_reach", c.colour_reach, "grey levels",
+    "how alike the colours of a bridge and of the ground must be for it to be ground", off_or(0.0F, 255.0F));
 }
 
 /// For each facet: is it figure (1: before the background) or ground (0)?
@@ -39,8 +42,8 @@ void fields(FigureConfig& c, V&& v) {
 /// and says nothing where those lie in different depths. A stretch that runs out of the image is ground, at
 /// half weight: what the picture cuts off is mostly background. The facet's pixels vote; facets of which too
 /// little is known follow the neighbour across their weakest border. (METHOD §6, beyond the paper)
-std::vector<std::int32_t> separate_figure(const Facets& facets, View<const float> evidence_px,
-                                          const Background& background, const FigureConfig& config,
-                                          const Exec& exec);
+std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
+                                          View<const float> evidence_px, const Background& background,
+                                          const FigureConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -56,7 +56,7 @@ void unite_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, View<con
   const Background background = fit_background(evidence_px, frame.ground, rig, config.background, exec);
   const Facets facets = segment_facets(left, left_rgb, config.facets, exec);
   frame.by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
-  const auto figure = separate_figure(facets, evidence_px, background, config.figure, exec);
+  const auto figure = separate_figure(facets, left, left_rgb, evidence_px, background, config.figure, exec);
   frame.by_disparity = stage("group_facets", group_facets(facets, figure, frame.disparity, evidence_px,
                                                           background, config.figure, config.group, exec));
 }
