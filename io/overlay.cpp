@@ -143,6 +143,8 @@ constexpr std::array kReasons{
     Reason{Reject::left_right, "left-right", {205, 205, 205}},
 };
 
+static_assert(kReasons.size() == kRejects.size());
+
 const Reason& shown_reason(Reject reject) {
   const auto found =
       std::find_if(kReasons.begin(), kReasons.end(), [&](const Reason& r) { return has(reject, r.bit); });
