@@ -91,16 +91,21 @@ std::string description(Size size, const MatchConfig& c, Target target, int thre
          std::to_string(threads) + " threads";
 }
 
+void expect_equal_to_reference(const StereoPair& pair, const MatchConfig& config,
+                               const std::vector<int>& thread_counts = {1}) {
+  const Matches expected = reference::match(pair, config);
+  for (const Target target : supported_targets()) {
+    for (const int threads : thread_counts) {
+      const Matches got = match(pair, config, Exec::with_threads(threads, target));
+      EXPECT_EQ(first_difference(expected, got), "") << description(pair.size(), config, target, threads);
+    }
+  }
+}
+
 void expect_equal_to_reference(Size size, const MatchConfig& config,
                                const std::vector<int>& thread_counts = {1}) {
   const Pictures pictures(size, static_cast<unsigned>(size.width * 31 + config.window_size));
-  const Matches expected = reference::match(pictures.pair(), config);
-  for (const Target target : supported_targets()) {
-    for (const int threads : thread_counts) {
-      const Matches got = match(pictures.pair(), config, Exec::with_threads(threads, target));
-      EXPECT_EQ(first_difference(expected, got), "") << description(size, config, target, threads);
-    }
-  }
+  expect_equal_to_reference(pictures.pair(), config, thread_counts);
 }
 
 class MatchEquivalence : public testing::TestWithParam<Cost> {
@@ -167,6 +172,26 @@ TEST_P(MatchEquivalence, HoldsForPrefilteredImages) {
       filtered.prefilter_cap = cap;
       expect_equal_to_reference({38, 7}, filtered);
     }
+  }
+}
+
+TEST_P(MatchEquivalence, HoldsForTheLargestSumsThatAWindowCanHave) {
+  // Black and white in equal parts, like and unlike, and all white against all black.
+  const Size size{40, 36};
+  Image<Gray> halves(size);
+  Image<Gray> inverted(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      halves(x, y) = x < size.width / 2 ? 0 : 255;
+      inverted(x, y) = static_cast<Gray>(255 - halves(x, y));
+    }
+  }
+  const Image<Gray> white(size, Gray{255}, Pool{});
+  const Image<Gray> black(size, Gray{0}, Pool{});
+  for (const int window : {13, 15, 17, 19, 21, 31}) {
+    expect_equal_to_reference(StereoPair::from(halves, halves), config(window, 0, 2));
+    expect_equal_to_reference(StereoPair::from(halves, inverted), config(window, 0, 2));
+    expect_equal_to_reference(StereoPair::from(white, black), config(window, 0, 2));
   }
 }
 
