@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "reference/evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cairn/pipeline/segment.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <random>
+
+#include "support/grids.hpp"
+
+namespace cairn {
+namespace {
+
+using grids::numbers;
+using grids::random_image;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+Exec threads(int count) {
+  Exec exec = Exec::with_threads(count);
+  exec.pool = Pool::make();
+  return exec;
+}
+
+std::vector<Size> sizes() {
+  return {{1, 1}, {1, 37}, {41, 1}, {2, 2}, {3, 3}, {5, 19}, {16, 33}, {67, 53}};
+}
+
+/// Blocks of random brightness, of which some are textured: edges, plain surfaces and texture.
+Image<Gray> random_picture(Size size, std::uint32_t seed) {
+  const Image<int> blocks = random_image<int>({size.width / 9 + 1, size.height / 7 + 1}, 20, 200, seed);
+  const Image<int> noise = random_image<int>(size, -20, 20, seed + 1);
+  Image<Gray> image(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int block = blocks(x / 9, y / 7);
+      image(x, y) = static_cast<Gray>(block + (block % 3 == 0 ? noise(x, y) : noise(x, y) / 10));
+    }
+  }
+  return image;
+}
+
+Image<Rgb> random_colours(Size size, std::uint32_t seed) {
+  const Image<Gray> r = random_picture(size, seed);
+  const Image<Gray> g = random_picture(size, seed + 7);
+  const Image<Gray> b = random_picture(size, seed + 13);
+  Image<Rgb> rgb(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) rgb(x, y) = {r(x, y), g(x, y), b(x, y)};
+  }
+  return rgb;
+}
+
+/// Blocks of like disparity with outliers and holes. A negative `tenths` of holes: none.
+DisparityMap random_map(Size size, std::uint32_t seed, int tenths_of_holes = 2) {
+  const Image<int> blocks = random_image<int>({size.width / 8 + 1, size.height / 6 + 1}, 0, 6, seed);
+  const Image<int> noise = random_image<int>(size, 0, 99, seed + 1);
+  DisparityMap map{Image<float>(size), Image<Reject>(size)};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int n = noise(x, y);
+      const bool hole = n < 10 * tenths_of_holes;
+      const float d = static_cast<float>(5 * blocks(x / 8, y / 6)) + 0.003F * static_cast<float>(n % 13);
+      map.disparity_px(x, y) = hole ? kNaN : n == 99 ? 40.0F : d;
+      map.reject(x, y) = hole ? Reject::no_data : Reject::none;
+    }
+  }
+  return map;
+}
+
+std::vector<std::uint32_t> bits(const Image<float>& image) {
+  std::vector<std::uint32_t> all;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      all.push_back(std::isnan(image(x, y)) ? 0xFFFFFFFFU : std::bit_cast<std::uint32_t>(image(x, y)));
+    }
+  }
+  return all;
+}
+
+void expect_equal(const std::vector<Border>& a, const std::vector<Border>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].a, b[i].a) << i;
+    EXPECT_EQ(a[i].b, b[i].b) << i;
+    EXPECT_EQ(a[i].length, b[i].length) << i;
+    EXPECT_EQ(a[i].edge_sum, b[i].edge_sum) << i;
+    EXPECT_EQ(a[i].x2_sum, b[i].x2_sum) << i;
+    EXPECT_EQ(a[i].y2_sum, b[i].y2_sum) << i;
+  }
+}
+
+/// Facets that are anything: connected or not.
+Facets random_facets(Size size, int count, std::uint32_t seed) {
+  Facets facets{random_image<RegionId>(size, 0, count - 1, seed), count, {}};
+  const Image<std::uint16_t> edges = random_image<std::uint16_t>(size, 0, 60, seed + 1);
+  facets.borders = borders_of(facets.labels, edges);
+  return facets;
+}
+
+TEST(NoiseSigma, IsThatOfItsDefinition) {
+  for (const Size size : sizes()) {
+    for (const int highest : {0, 1, 5, 255}) {
+      const Image<Gray> image = random_image<Gray>(size, 0, highest, 3);
+      EXPECT_EQ(noise_sigma(image), reference::noise_sigma(image)) << text(size) << ' ' << highest;
+    }
+    const Image<Gray> image = random_picture(size, 5);
+    EXPECT_EQ(noise_sigma(image), reference::noise_sigma(image)) << text(size);
+  }
+}
+
+TEST(FindEvidence, IsThatOfItsDefinitionOnAnyNumberOfThreads) {
+  int found = 0;
+  for (const Size size : sizes()) {
+    for (const std::uint32_t seed : {1U, 2U}) {
+      const Image<Gray> image = random_picture(size, seed);
+      const DisparityMap map = random_map(size, seed);
+      EvidenceConfig config;
+      if (seed == 2) config = {0.3F, 0.5F, 40.0F};
+      const auto expected = bits(reference::find_evidence(image, map, config));
+      for (const std::uint32_t b : expected) found += b != 0xFFFFFFFFU ? 1 : 0;
+      for (const int count : {1, 2, 3}) {
+        EXPECT_EQ(bits(find_evidence(image, map, config, threads(count))), expected) << text(size);
+      }
+    }
+  }
+  EXPECT_GT(found, 500);  // else there would be nothing to compare
+}
+
+TEST(EdgeStrength, IsThatOfItsDefinitionWithAndWithoutColour) {
+  for (const Size size : sizes()) {
+    const Image<Gray> grey = random_picture(size, 1);
+    const Image<Rgb> rgb = random_colours(size, 2);
+    for (const float sigma : {0.0F, 0.7F, 2.0F}) {
+      const auto plain = numbers(reference::edge_strength(grey, {}, sigma));
+      const auto coloured = numbers(reference::edge_strength(grey, rgb, sigma));
+      for (const int count : {1, 3}) {
+        EXPECT_EQ(numbers(edge_strength(grey, {}, sigma, threads(count))), plain)
+            << text(size) << ' ' << sigma;
+        EXPECT_EQ(numbers(edge_strength(grey, rgb, sigma, threads(count))), coloured)
+            << text(size) << ' ' << sigma;
+      }
+    }
+  }
+}
+
+TEST(BordersOf, IsThatOfItsDefinition) {
+  for (const Size size : sizes()) {
+    for (const int highest : {0, 1, 9, 200}) {
+      const auto labels = random_image<RegionId>(size, 0, highest, 1);
+      const auto edges = random_image<std::uint16_t>(size, 0, 1500, 2);
+      expect_equal(borders_of(labels, edges), reference::borders_of(labels, edges));
+    }
+  }
+}
+
+TEST(Flooded, IsThatOfItsDefinition) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    const int count = 2 + static_cast<int>(random() % 40);
+    const auto edges_apart = static_cast<int>(1 + random() % 8);  // few heights make ties
+    const Facets facets{random_image<RegionId>({9, 7}, 0, count - 1, seed), count, {}};
+    const auto edges = random_image<std::uint16_t>({9, 7}, 0, edges_apart, seed);
+    const std::vector<Border> borders = borders_of(facets.labels, edges);
+    std::vector<std::int32_t> labels;
+    for (int i = 0; i < count; ++i) labels.push_back(static_cast<std::int32_t>(random() % 9) - 6);
+    for (std::int32_t& label : labels) label = std::max(label, -1);
+    EXPECT_EQ(flooded(labels, borders, 99), reference::flooded(labels, borders, 99)) << seed;
+  }
+}
+
+TEST(SeparateFigure, IsThatOfItsDefinition) {
+  int figures = 0;
+  const Background background{{{0.01F, 0.1F, 3}, {-0.05F, 0, 9}}};
+  for (const Size size : sizes()) {
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      for (const int tenths_of_holes : {3, 8, 9}) {
+        const Facets facets = random_facets(size, 1 + static_cast<int>(seed) * 3, seed);
+        const DisparityMap map = random_map(size, seed, tenths_of_holes);
+        FigureConfig config;
+        if (seed % 2 == 0) config.longest_bridge = 5;
+        if (seed % 3 == 0) config.agreement = 40;
+        if (seed % 4 == 0) config.colour_reach = -1;
+        const Image<Gray> grey = random_image<Gray>(size, 0, 255, seed);
+        const Image<Rgb> coloured = random_colours(size, seed);
+        const View<const Rgb> rgb = seed > 3 ? coloured.view() : View<const Rgb>{};
+        const auto expected =
+            reference::separate_figure(facets, grey, rgb, map.disparity_px, background, config);
+        for (const std::int32_t f : expected) figures += f;
+        EXPECT_EQ(separate_figure(facets, grey, rgb, map.disparity_px, background, config, {}), expected)
+            << text(size) << ' ' << seed << ' ' << tenths_of_holes;
+      }
+    }
+  }
+  EXPECT_GT(figures, 50);
+}
+
+TEST(SegmentFacets, GivesTheSameOnAnyNumberOfThreads) {
+  for (const Size size : sizes()) {
+    const Image<Gray> grey = random_picture(size, 4);
+    const Image<Rgb> rgb = random_colours(size, 4);
+    for (const bool colour : {false, true}) {
+      const View<const Rgb> colours = colour ? rgb.view() : View<const Rgb>{};
+      const Facets expected = segment_facets(grey, colours, {}, {});
+      for (const int count : {2, 3}) {
+        const Facets facets = segment_facets(grey, colours, {}, threads(count));
+        EXPECT_EQ(facets.count, expected.count);
+        EXPECT_EQ(numbers(facets.labels), numbers(expected.labels)) << text(size);
+        expect_equal(facets.borders, expected.borders);
+      }
+    }
+  }
+}
+
+/// Every pixel in exactly one region, and each region's statistics those of its pixels.
+void expect_partition(const Segmentation& segmentation, const DisparityMap& map) {
+  const auto count = static_cast<std::int32_t>(segmentation.regions.size());
+  std::map<std::int32_t, std::pair<int, double>> seen;  // valid pixels, sum
+  std::vector<int> pixels(segmentation.regions.size());
+  for (int y = 0; y < segmentation.labels.height(); ++y) {
+    for (int x = 0; x < segmentation.labels.width(); ++x) {
+      const std::int32_t id = number(segmentation.labels(x, y));
+      ASSERT_GE(id, 0);
+      ASSERT_LT(id, count);
+      ++pixels[static_cast<std::size_t>(id)];
+      if (map.reject(x, y) != Reject::none) continue;
+      ++seen[id].first;
+      seen[id].second += map.disparity_px(x, y);
+    }
+  }
+  for (std::int32_t id = 0; id < count; ++id) {
+    const Region& region = segmentation.regions[static_cast<std::size_t>(id)];
+    const auto [valid, sum] = seen[id];
+    EXPECT_EQ(region.pixel_count, pixels[static_cast<std::size_t>(id)]);
+    EXPECT_EQ(region.valid_count, valid);
+    EXPECT_NEAR(region.mean, valid > 0 ? sum / valid : 0.0, 1e-6);
+    EXPECT_GE(region.variance, 0);
+    EXPECT_EQ(region.is_floor, id == 0);
+  }
+}
+
+Config by_evidence() {
+  Config config;
+  config.fusion.method = FusionMethod::evidence;
+  return config;
+}
+
+/// Runs the way from a picture and a map to objects on one and on three threads and looks at what it gives.
+void run_and_check(View<const Gray> grey, View<const Rgb> rgb, const DisparityMap& map,
+                   const std::optional<StereoRig>& rig, const Config& config) {
+  const auto run = [&](int count) {
+    const Exec exec = threads(count);
+    return segment(grey, rgb, {map.disparity_px.clone(), map.reject.clone()}, rig, config, exec);
+  };
+  const Frame frame = run(1);
+  expect_partition(frame.by_disparity, frame.disparity);
+  EXPECT_EQ(frame.fusion.labels.size(), grey.size());
+  const Frame again = run(3);
+  EXPECT_EQ(numbers(again.by_intensity.labels), numbers(frame.by_intensity.labels));
+  EXPECT_EQ(numbers(again.by_disparity.labels), numbers(frame.by_disparity.labels));
+  EXPECT_EQ(numbers(again.fusion.labels), numbers(frame.fusion.labels));
+}
+
+constexpr StereoRig kRig{60, 30, 25, 0.1F, 0};
+
+TEST(WayByEvidence, PartitionsAnyPictureWithAnyDisparities) {
+  for (const Size size : sizes()) {
+    for (const int tenths_of_holes : {0, 3, 10}) {
+      const Image<Gray> grey = random_picture(size, 8);
+      const Image<Rgb> rgb = random_colours(size, 8);
+      const DisparityMap map = random_map(size, 9, tenths_of_holes);
+      run_and_check(grey, {}, map, std::nullopt, by_evidence());
+      run_and_check(grey, rgb, map, kRig, by_evidence());
+    }
+  }
+}
+
+TEST(WayByEvidence, ManagesNoiseForAPictureAndForDisparities) {
+  const Size size{67, 53};
+  const Image<Gray> grey = random_image<Gray>(size, 0, 255, 1);
+  const Image<int> noise = random_image<int>(size, -200, 2000, 2);
+  DisparityMap map = random_map(size, 3, 5);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if (map.reject(x, y) == Reject::none) map.disparity_px(x, y) = static_cast<float>(noise(x, y));
+    }
+  }
+  run_and_check(grey, {}, map, kRig, by_evidence());
+}
+
+TEST(WayByEvidence, ManagesPlainPicturesWithoutAnyEvidence) {
+  for (const Size size : sizes()) {
+    const Image<Gray> grey(size, Gray{128}, {});
+    run_and_check(grey, {}, random_map(size, 4, 2), kRig, by_evidence());
+  }
+}
+
+TEST(WayByEvidence, ManagesAMissingGround) {
+  const Size size{67, 53};
+  Config config = by_evidence();
+  config.ground.source = GroundSource::off;
+  const Image<Gray> grey = random_picture(size, 1);
+  run_and_check(grey, {}, random_map(size, 1), kRig, config);
+  run_and_check(grey, {}, random_map(size, 1), std::nullopt, config);
+}
+
+TEST(WayByEvidence, ManagesOptionsAtTheEndsOfTheirRanges) {
+  const Size size{41, 29};
+  const Image<Gray> grey = random_picture(size, 2);
+  const Image<Rgb> rgb = random_colours(size, 2);
+  const DisparityMap map = random_map(size, 2);
+  for (const bool most : {false, true}) {
+    Config config = by_evidence();
+    const auto end = [most](float least, float greatest) { return most ? greatest : least; };
+    config.evidence = {end(0, 100), end(0, 255), end(0, 100)};
+    run_and_check(grey, rgb, map, kRig, config);
+    config.evidence = {0, 0, 100};
+    config.background = {most ? 8 : 0, end(0, 100), 0, 100};
+    run_and_check(grey, rgb, map, kRig, config);
+    config.facets = {end(0, 5), end(0, 255), end(0, 100)};
+    run_and_check(grey, rgb, map, kRig, config);
+    config.facets = {};
+    config.figure = {0, end(0, 100), end(0, 100), end(0, 100), end(-1, 255)};
+    config.group = {end(0, 1000), end(0, 1000), end(0, 100)};
+    run_and_check(grey, rgb, map, kRig, config);
+  }
+}
+
+TEST(WayByEvidence, GoesAllTheWayFromSmallPairs) {
+  Config config = by_evidence();
+  config.match.window_size = 3;
+  config.texture.window_size = 3;
+  config.match.num_disparities = 2;
+  for (const Size size : {Size{3, 3}, Size{3, 20}, Size{24, 3}, Size{31, 23}}) {
+    const Image<Gray> left = random_picture(size, 1);
+    const Image<Gray> right = random_picture(size, 2);
+    const Frame frame = segment(StereoPair::from(left, right), std::nullopt, config, {});
+    expect_partition(frame.by_disparity, frame.disparity);
+  }
+}
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/disparity/background.hpp>
+#include <cmath>
+#include <limits>
+
+#include "support/noise.hpp"
+
+namespace cairn {
+namespace {
+
+using support::Noise;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr Size kSize{320, 240};
+constexpr StereoRig kRig{300, 160, 120, 0.2F, 0};
+constexpr double kPitch = 0.35;  // rad; the camera looks down
+
+/// The disparity of the plane n·X = distance in the camera's frame: d = B/distance · n·(x − cx, y − cy, f).
+GroundPlane plane_at(const Vec3& normal, float distance_m) {
+  const float k = kRig.baseline_m / distance_m;
+  return {k * normal.x, k * normal.y,
+          k * (normal.z * kRig.focal_px - normal.x * kRig.cx_px - normal.y * kRig.cy_px) - kRig.doffs_px};
+}
+
+const GroundPlane kFloor =
+    plane_at({0, static_cast<float>(std::cos(kPitch)), static_cast<float>(std::sin(kPitch))}, 1.0F);
+
+/// An upright wall, `turn` radians from facing the camera.
+GroundPlane wall_at(double turn, float distance_m) {
+  return plane_at({static_cast<float>(std::sin(turn)), static_cast<float>(-std::cos(turn) * std::sin(kPitch)),
+                   static_cast<float>(std::cos(turn) * std::cos(kPitch))},
+                  distance_m);
+}
+
+/// Evidence as a picture of the planes gives it: some pixels, a little noise; `more` changes a pixel's
+/// disparity.
+template <class More>
+Image<float> evidence_of(const Background& truth, double share, float noise_px, More more) {
+  Noise noise(11);
+  Image<float> evidence(kSize);
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const float d = more(x, y, truth.disparity_px(static_cast<float>(x), static_cast<float>(y)));
+      const auto wrong = static_cast<float>(noise.gaussian(noise_px));
+      evidence(x, y) = noise.uniform() < share ? d + wrong : kNaN;
+    }
+  }
+  return evidence;
+}
+Image<float> evidence_of(const Background& truth) {
+  return evidence_of(truth, 0.3, 0.1F, [](int, int, float d) { return d; });
+}
+
+float largest_difference(const Background& a, const Background& b) {
+  float largest = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const auto u = static_cast<float>(x);
+      const auto v = static_cast<float>(y);
+      largest = std::max(largest, std::abs(a.disparity_px(u, v) - b.disparity_px(u, v)));
+    }
+  }
+  return largest;
+}
+
+Ground ground_of(const GroundPlane& plane) {
+  Ground ground;
+  ground.plane = plane;
+  ground.support = 1;
+  return ground;
+}
+
+Background background_of(const Image<float>& evidence, const Ground& ground,
+                         const std::optional<StereoRig>& rig, const BackgroundConfig& config = {}) {
+  return fit_background(evidence, ground, rig, config, {});
+}
+
+const Background kRoom{{kFloor, wall_at(-0.6, 3.2F), wall_at(0.7, 3.5F)}};
+
+TEST(Background, IsTheNearestOfItsPlanesAndNeverBehindInfinity) {
+  const Background background{{{0, 0, 3}, {1, 0, 0}, {0, 0, -5}}};
+  EXPECT_EQ(background.disparity_px(1, 0), 3);
+  EXPECT_EQ(background.disparity_px(7, 0), 7);
+  EXPECT_EQ((Background{{{0, 0, -5}}}.disparity_px(0, 0)), 0);
+  EXPECT_EQ(Background{}.disparity_px(10, 10), 0);
+}
+
+TEST(Background, OfARoomIsItsFloorAndItsTwoWalls) {
+  const Background found = background_of(evidence_of(kRoom), ground_of(kFloor), kRig);
+  EXPECT_EQ(found.planes.size(), 3U);
+  EXPECT_LT(largest_difference(found, kRoom), 0.1F);
+}
+
+TEST(Background, FindsTheWallsWithoutACalibrationToo) {
+  const Background found = background_of(evidence_of(kRoom), ground_of(kFloor), std::nullopt);
+  EXPECT_EQ(found.planes.size(), 3U);
+  EXPECT_LT(largest_difference(found, kRoom), 0.15F);
+}
+
+TEST(Background, HasWallsUprightOnTheFloor) {
+  const Background found = background_of(evidence_of(kRoom), ground_of(kFloor), kRig);
+  const auto normal = [](const GroundPlane& p) {
+    const float f = kRig.focal_px;
+    return Vec3{p.a * f, p.b * f, p.a * kRig.cx_px + p.b * kRig.cy_px + p.c + kRig.doffs_px};
+  };
+  const auto dot = [](Vec3 u, Vec3 v) { return u.x * v.x + u.y * v.y + u.z * v.z; };
+  const Vec3 up = normal(kFloor);
+  ASSERT_GE(found.planes.size(), 2U);
+  for (std::size_t i = 1; i < found.planes.size(); ++i) {
+    const Vec3 n = normal(found.planes[i]);
+    EXPECT_LT(std::abs(dot(n, up)) / std::sqrt(dot(n, n) * dot(up, up)), 1e-3F) << i;
+  }
+}
+
+TEST(Background, DoesNotTakeABoxInFrontForAWall) {
+  const auto box = [](int x, int y, float d) {
+    return x >= 110 && x < 200 && y >= 50 && y < 170 ? 32.0F : d;
+  };
+  const Image<float> evidence = evidence_of(kRoom, 0.3, 0.1F, box);
+  const Background found = background_of(evidence, ground_of(kFloor), kRig);
+  EXPECT_EQ(found.planes.size(), 3U);
+  EXPECT_LT(largest_difference(found, kRoom), 0.1F);
+}
+
+TEST(Background, IsTheFloorAloneWhereABoxIsAllThatStandsOnIt) {
+  const Background floor{{kFloor}};
+  const auto box = [](int x, int y, float d) { return x >= 60 && x < 120 && y >= 60 && y < 160 ? 30.0F : d; };
+  const Image<float> evidence = evidence_of(floor, 0.3, 0.1F, box);
+  EXPECT_EQ(background_of(evidence, ground_of(kFloor), kRig).planes.size(), 1U);
+}
+
+TEST(Background, IsNotMisledByReflectionsBelowTheFloor) {
+  Noise noise(5);
+  const auto mirrored = [&](int, int y, float d) {
+    return y >= 150 && noise.uniform() < 0.5 ? d - 4 - static_cast<float>(6 * noise.uniform()) : d;
+  };
+  const Image<float> evidence = evidence_of(kRoom, 0.3, 0.1F, mirrored);
+  const Background found = background_of(evidence, ground_of(kFloor), kRig);
+  EXPECT_EQ(found.planes.size(), 3U);
+  EXPECT_LT(largest_difference(found, kRoom), 0.1F);
+}
+
+TEST(Background, HasAWallThoughNoFloorIsSeen) {
+  const Background wall{{{0.01F, 0, 8}}};
+  const Background found = background_of(evidence_of(wall), {}, kRig);
+  ASSERT_GE(found.planes.size(), 1U);
+  EXPECT_LT(largest_difference(found, wall), 0.1F);
+}
+
+TEST(Background, HasAtMostAsManyWallsAsAskedFor) {
+  for (int walls = 0; walls <= 3; ++walls) {
+    BackgroundConfig config;
+    config.max_walls = walls;
+    const Background found = background_of(evidence_of(kRoom), ground_of(kFloor), kRig, config);
+    EXPECT_EQ(found.planes.size(), 1U + static_cast<std::size_t>(std::min(walls, 2))) << walls;
+  }
+}
+
+TEST(Background, IsTheFloorOrNothingWhereThereIsNoEvidence) {
+  const Image<float> none(kSize, kNaN, {});
+  EXPECT_TRUE(background_of(none, {}, kRig).planes.empty());
+  EXPECT_EQ(background_of(none, ground_of(kFloor), kRig).planes.size(), 1U);
+}
+
+}  // namespace
+}  // namespace cairn

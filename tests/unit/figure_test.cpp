@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cairn/objects/figure.hpp>
+#include <limits>
+
+namespace cairn {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr Size kSize{100, 20};
+constexpr float kBehind = 2;  // the background's disparity
+using Labels = std::vector<std::int32_t>;
+
+Gray grey_of(int facet) {
+  return static_cast<Gray>(30 + 50 * facet);
+}
+
+/// A row of upright bands, each of its own grey, and what is known of their disparity.
+struct Stage {
+  Image<Gray> grey{kSize, grey_of(0), {}};
+  Image<Rgb> rgb{};
+  Image<RegionId> labels{kSize, RegionId{0}, {}};
+  Image<std::uint16_t> edges{kSize, 0, {}};
+  Image<float> evidence{kSize, kNaN, {}};
+
+  /// Facet `id` from column `first` up to `last`, over the rows from `top` on.
+  void facet(int id, int first, int last, int top = 0) {
+    for (int y = top; y < kSize.height; ++y) {
+      for (int x = first; x < last; ++x) {
+        labels(x, y) = RegionId{id};
+        grey(x, y) = grey_of(id);
+      }
+    }
+  }
+  void see(int first, int last, float disparity_px, int top = 0, int bottom = kSize.height) {
+    for (int y = top; y < bottom; ++y) {
+      for (int x = first; x < last; ++x) evidence(x, y) = disparity_px;
+    }
+  }
+  [[nodiscard]] Labels figure(int facets, const FigureConfig& config = {}) const {
+    return separate_figure({labels.clone(), facets, borders_of(labels, edges)}, grey, rgb, evidence,
+                           Background{{{0, 0, kBehind}}}, config, {});
+  }
+};
+
+TEST(Figure, IsWhatEvidenceShowsBeforeTheBackground) {
+  Stage stage;
+  stage.facet(1, 30, 60);
+  stage.see(0, 30, kBehind);
+  stage.see(30, 60, 10);
+  stage.see(60, 100, kBehind);
+  EXPECT_EQ(stage.figure(2), (Labels{0, 1}));
+}
+
+TEST(Figure, IsNotWhatStandsWithinTheMargin) {
+  for (const float before : {0.5F, 2.0F}) {  // in margins
+    Stage stage;
+    stage.facet(1, 30, 60);
+    stage.see(0, 100, kBehind);
+    FigureConfig config;
+    stage.see(30, 60, kBehind + before * config.margin * 0.001F * kSize.width);
+    EXPECT_EQ(stage.figure(2, config)[1], before > 1 ? 1 : 0) << before;
+  }
+}
+
+TEST(Figure, TakesInThePlainInteriorBetweenEdgesOfEqualDepth) {
+  Stage stage;
+  stage.facet(1, 35, 37);  // the board's left edge, its face, its right edge
+  stage.facet(2, 37, 53);
+  stage.facet(3, 53, 55);
+  stage.facet(4, 55, 100);
+  stage.see(10, 30, kBehind);
+  stage.see(35, 37, 10);
+  stage.see(53, 55, 10);
+  stage.see(60, 90, kBehind);
+  EXPECT_EQ(stage.figure(5), (Labels{0, 1, 1, 1, 0}));
+}
+
+TEST(Figure, LeavesThePlainStretchBetweenFigureAndGroundToTheGround) {
+  Stage stage;  // plain wall from 40 to 60 between a board's edge and the next mark on the wall
+  stage.facet(1, 20, 40);
+  stage.facet(2, 40, 60);
+  stage.facet(3, 60, 100);
+  stage.see(0, 20, kBehind);
+  stage.see(20, 40, 10);
+  stage.see(60, 100, kBehind);
+  EXPECT_EQ(stage.figure(4), (Labels{0, 1, 0, 0}));
+}
+
+/// Two boards with a plain stretch between them (facet 2), ground above; what the stretch becomes when its
+/// border to the boards or that to the ground is the weaker.
+Labels between_boards(float left_px, float right_px, bool open_to_the_ground) {
+  Stage stage;
+  stage.facet(1, 20, 40, 5);
+  stage.facet(2, 40, 60, 5);
+  stage.facet(3, 60, 80, 5);
+  stage.see(0, 100, kBehind, 0, 5);
+  stage.see(0, 20, kBehind);
+  stage.see(20, 40, left_px, 5);
+  stage.see(60, 80, right_px, 5);
+  stage.see(80, 100, kBehind);
+  for (int x = 0; x < kSize.width; ++x) {
+    stage.edges(x, 4) = stage.edges(x, 5) = open_to_the_ground ? 5 : 50;
+  }
+  for (int y = 6; y < kSize.height; ++y) {
+    for (const int x : {39, 40, 59, 60}) stage.edges(x, y) = 20;
+  }
+  return stage.figure(4);
+}
+
+TEST(Figure, IsSaidNothingOfBetweenObjectsInDifferentDepth) {
+  EXPECT_EQ(between_boards(10, 16, true), (Labels{0, 1, 0, 1}));
+  EXPECT_EQ(between_boards(10, 16, false), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, IsWhatLiesBetweenObjectsOfOneDepthWhateverItsBorders) {
+  EXPECT_EQ(between_boards(10, 10, true), (Labels{0, 1, 1, 1}));
+  EXPECT_EQ(between_boards(10, 10, false), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, DoesNotReachFromAnObjectToTheImagesBorder) {
+  Stage stage;
+  stage.facet(1, 40, 60);
+  stage.facet(2, 60, 100);
+  stage.see(40, 60, 10);
+  EXPECT_EQ(stage.figure(3), (Labels{0, 1, 0}));
+}
+
+TEST(Figure, IsLeftToItsNeighboursAcrossAStretchLongerThanABridge) {
+  const auto with_bridge = [](float longest_bridge) {
+    Stage stage;  // a plain stretch of 40 columns whose only weak border is that to the ground above it
+    stage.facet(1, 25, 30, 5);
+    stage.facet(2, 30, 70, 5);
+    stage.facet(3, 70, 75, 5);
+    stage.see(0, 100, kBehind, 0, 5);
+    stage.see(0, 25, kBehind);
+    stage.see(25, 30, 10, 5);
+    stage.see(70, 75, 10, 5);
+    stage.see(75, 100, kBehind);
+    for (int y = 6; y < kSize.height; ++y) {
+      for (const int x : {29, 30, 69, 70}) stage.edges(x, y) = 20;
+    }
+    FigureConfig config;
+    config.longest_bridge = longest_bridge;
+    return stage.figure(4, config);
+  };
+  EXPECT_EQ(with_bridge(50), (Labels{0, 1, 1, 1}));
+  EXPECT_EQ(with_bridge(30), (Labels{0, 1, 0, 1}));
+}
+
+/// A gap between two boards of one depth, painted like the ground or like the boards.
+Stage with_gap(Gray painted) {
+  Stage stage;
+  stage.facet(1, 20, 40);
+  stage.facet(2, 40, 60);
+  stage.facet(3, 60, 80);
+  stage.see(0, 20, kBehind);
+  stage.see(20, 40, 10);
+  stage.see(60, 80, 10);
+  stage.see(80, 100, kBehind);
+  for (int y = 0; y < kSize.height; ++y) std::fill_n(stage.grey.row(y) + 40, 20, painted);
+  return stage;
+}
+
+TEST(Figure, IsNotAGapOfTheGroundsColourBetweenObjectsOfOneDepth) {
+  EXPECT_EQ(with_gap(grey_of(0)).figure(4), (Labels{0, 1, 0, 1}));
+  EXPECT_EQ(with_gap(grey_of(0) + 10).figure(4), (Labels{0, 1, 0, 1}));
+  EXPECT_EQ(with_gap(grey_of(1)).figure(4), (Labels{0, 1, 1, 1}));
+  EXPECT_EQ(with_gap(grey_of(4)).figure(4), (Labels{0, 1, 1, 1}));  // nobody's colour
+}
+
+TEST(Figure, KeepsAGapWhereColourIsNotAsked) {
+  FigureConfig config;
+  config.colour_reach = -1;
+  EXPECT_EQ(with_gap(grey_of(0)).figure(4, config), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, JudgesGapsByColourWhereThereIsColour) {
+  Stage stage = with_gap(grey_of(0));  // like the ground in grey, but not in colour
+  stage.rgb = Image<Rgb>(kSize);
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const Gray g = stage.grey(x, y);
+      stage.rgb(x, y) = x >= 40 && x < 60 ? Rgb{120, 0, 30} : Rgb{g, g, g};
+    }
+  }
+  EXPECT_EQ(stage.figure(4), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, OfItsOwnTextureIsFigureInTheGroundsColourToo) {
+  Stage stage = with_gap(grey_of(0));
+  stage.see(45, 50, 10);
+  EXPECT_EQ(stage.figure(4), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, OutvotesAFewWrongDisparities) {
+  Stage stage;
+  stage.facet(1, 30, 60);
+  stage.see(0, 100, kBehind);
+  stage.see(30, 60, 10);
+  stage.see(40, 44, kBehind, 3, 9);
+  stage.see(5, 9, 12, 3, 9);
+  EXPECT_EQ(stage.figure(2), (Labels{0, 1}));
+}
+
+TEST(Figure, IsNothingWithoutEvidence) {
+  Stage stage;
+  stage.facet(1, 30, 60);
+  EXPECT_EQ(stage.figure(2), (Labels{0, 0}));
+}
+
+}  // namespace
+}  // namespace cairn
