@@ -74,9 +74,10 @@ void vote_in_row(const RegionId* facet, int width, const std::vector<Seen>& seen
   vote_to_border(facet, seen.back().x + 1, width, &seen.back(), scales, votes);
 }
 
-/// The mean colour of each facet; three times the grey where there is no colour.
+/// The mean colour of a facet; its grey three times where there is no colour. Sums of large facets need a
+/// double.
 struct Colour {
-  float r = 0, g = 0, b = 0;
+  double r = 0, g = 0, b = 0;
   [[nodiscard]] bool like(const Colour& o, float reach) const {
     return std::abs(r - o.r) <= reach && std::abs(g - o.g) <= reach && std::abs(b - o.b) <= reach;
   }
@@ -95,7 +96,7 @@ std::vector<Colour> mean_colours(const Facets& facets, View<const Gray> gray, Vi
     }
   }
   for (std::size_t i = 0; i < colours.size(); ++i) {
-    const auto count = static_cast<float>(pixels[i]);
+    const auto count = static_cast<double>(pixels[i]);
     colours[i] = {colours[i].r / count, colours[i].g / count, colours[i].b / count};
   }
   return colours;
