@@ -2,19 +2,25 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+// The order of the includes is that of the stages.
+// clang-format off
+
 /// The library, stage by stage, in the order in which data flows.
 #include <cairn/core/error.hpp>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/matching/match.hpp>              // match
+#include <cairn/matching/semi_global.hpp>        // match_semi_global
 #include <cairn/matching/subpixel.hpp>           // refine_subpixel
 #include <cairn/disparity/left_right.hpp>        // reject_inconsistent
 #include <cairn/disparity/uniqueness.hpp>        // reject_ambiguous
 #include <cairn/disparity/flatness.hpp>          // reject_flat
 #include <cairn/disparity/texture.hpp>           // reject_textureless
 #include <cairn/disparity/disparity_map.hpp>     // combine, external_disparity
+#include <cairn/disparity/evidence.hpp>          // find_evidence
 #include <cairn/disparity/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
 #include <cairn/disparity/speckle.hpp>           // reject_speckles
+#include <cairn/disparity/background.hpp>        // fit_background
 #include <cairn/regions/gradient.hpp>            // gradient
 #include <cairn/regions/watershed.hpp>           // watershed
 #include <cairn/regions/region_graph.hpp>        // build_graph, apply_merges
@@ -22,6 +28,9 @@
 #include <cairn/regions/grow_near_to_far.hpp>    // grow_near_to_far
 #include <cairn/regions/segment_intensity.hpp>   // segment_intensity
 #include <cairn/regions/segment_disparity.hpp>   // segment_disparity
+#include <cairn/regions/facets.hpp>              // segment_facets
+#include <cairn/objects/figure.hpp>              // separate_figure
+#include <cairn/objects/group.hpp>               // group_facets
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/pipeline/config.hpp>             // Config, presets, options

@@ -19,8 +19,8 @@ namespace cairn::io {
 ///   left_right.max_diff: -1  # or flat
 ///
 /// Throws Error with one line that names file, line, key and the nearest known one, or the range; `config` is
-/// then as it was. `from_preset` makes what a `preset:` line starts from (the command adds there what a calibration
-/// says).
+/// then as it was. `from_preset` makes what a `preset:` line starts from (the command adds there what a
+/// calibration says).
 void load_config(const std::filesystem::path& path, Config& config,
                  const std::function<Config(std::string_view)>& from_preset = Config::preset);
 

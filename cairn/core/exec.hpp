@@ -34,8 +34,8 @@ enum class Target : std::uint8_t { best, scalar, sse4, avx2, avx512, neon };
 
 class Workers;  // persistent threads; parallel.cpp
 
-/// How the work is done: threads, instruction set, where images live, who watches. Never what comes out (tested law).
-/// Exec{} is one thread, the best target, images from the heap, nobody watching.
+/// How the work is done: threads, instruction set, where images live, who watches. Never what comes out
+/// (tested law). Exec{} is one thread, the best target, images from the heap, nobody watching.
 struct Exec {
   Target target = Target::best;
   Pool pool;

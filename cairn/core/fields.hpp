@@ -13,8 +13,8 @@
 ///     v("max_diff", c.max_diff, "px", "largest left-right disagreement", off_or(0.0F, 64.0F));
 ///   }
 ///
-/// and everything else that knows about options (command line, config file, validation, reference page, Python)
-/// visits it. Field types: bool, int, float, an enum with choices(), std::vector<PointPair>.
+/// and everything else that knows about options (command line, config file, validation, reference page,
+/// Python) visits it. Field types: bool, int, float, an enum with choices(), std::vector<PointPair>.
 namespace cairn {
 
 /// What values a number may take: [lowest, highest], or −1 where that switches the stage off.
@@ -35,7 +35,9 @@ template <class T>
 constexpr Range<T> off_or(T lowest, T highest) {
   return {lowest, highest, true, false};
 }
-constexpr Range<int> odd_range(int lowest, int highest) { return {lowest, highest, false, true}; }
+constexpr Range<int> odd_range(int lowest, int highest) {
+  return {lowest, highest, false, true};
+}
 
 /// One name of an enum's value, as users write it.
 template <class E>

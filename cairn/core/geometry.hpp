@@ -16,7 +16,9 @@ struct Size {
 };
 
 /// "640x480", as every message writes it.
-inline std::string text(Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
+inline std::string text(Size size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
 
 struct Point {
   int x = 0;

@@ -13,8 +13,14 @@ enum class RegionId : std::int32_t {};
 /// An object of one frame: 1 = the nearest, counting up with distance; none = no object here.
 enum class ObjectId : std::int32_t { none = 0 };
 
-constexpr std::size_t index(RegionId id) { return static_cast<std::size_t>(id); }
-constexpr std::int32_t number(RegionId id) { return static_cast<std::int32_t>(id); }
-constexpr std::int32_t number(ObjectId id) { return static_cast<std::int32_t>(id); }
+constexpr std::size_t index(RegionId id) {
+  return static_cast<std::size_t>(id);
+}
+constexpr std::int32_t number(RegionId id) {
+  return static_cast<std::int32_t>(id);
+}
+constexpr std::int32_t number(ObjectId id) {
+  return static_cast<std::int32_t>(id);
+}
 
 }  // namespace cairn

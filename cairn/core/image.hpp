@@ -20,8 +20,9 @@ struct Rgb {
   friend constexpr bool operator==(Rgb, Rgb) = default;
 };
 
-/// Owns pixels. Move-only: a copy is always written out as clone(). Every row starts at a multiple of 64 bytes, so that
-/// a vector load at a row's start never crosses a cache line. The buffer returns to the pool that it came from.
+/// Owns pixels. Move-only: a copy is always written out as clone(). Every row starts at a multiple of 64
+/// bytes, so that a vector load at a row's start never crosses a cache line. The buffer returns to the pool
+/// that it came from.
 ///
 /// Fresh pixels are undefined; whoever makes an image writes every one.
 template <class T>

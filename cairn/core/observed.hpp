@@ -8,8 +8,8 @@
 
 namespace cairn {
 
-/// Reports each stage's result to exec.observe: stage("match", match(...)) hands the value through. A stage's time runs
-/// from the end of the one before. Without an observer it does nothing.
+/// Reports each stage's result to exec.observe: stage("match", match(...)) hands the value through. A stage's
+/// time runs from the end of the one before. Without an observer it does nothing.
 class Observed {
  public:
   explicit Observed(const Exec& exec) : observe_(exec.observe) { restart(); }

@@ -22,11 +22,14 @@ class Workers {
 #endif
   {
   }
-  [[nodiscard]] int threads() const { return threads_; }
+  [[nodiscard]] int threads() const {
+    return threads_;
+  }
 
   void run(int count, int grain, const std::function<void(int, int)>& body) {
 #if CAIRN_WITH_TBB
-    // As many equal parts as threads × 4: enough to even out the load, few enough that per-range set-up stays cheap.
+    // As many equal parts as threads × 4: enough to even out the load, few enough that per-range set-up stays
+    // cheap.
     const int part = std::max(grain, (count + threads_ * 4 - 1) / (threads_ * 4));
     const int parts = (count + part - 1) / part;
     arena_.execute([&] {
@@ -55,7 +58,9 @@ Exec Exec::with_threads(int threads, Target target) {
   return exec;
 }
 
-int Exec::threads() const { return workers ? workers->threads() : 1; }
+int Exec::threads() const {
+  return workers ? workers->threads() : 1;
+}
 
 void parallel_for(const Exec& exec, int count, int grain, const std::function<void(int, int)>& body) {
   if (count <= 0) return;

@@ -15,7 +15,9 @@ constexpr std::align_val_t kAlignment{64};
 std::byte* allocate(std::size_t bytes) {
   return static_cast<std::byte*>(::operator new(bytes, kAlignment));
 }
-void deallocate(std::byte* data) noexcept { ::operator delete(data, kAlignment); }
+void deallocate(std::byte* data) noexcept {
+  ::operator delete(data, kAlignment);
+}
 
 }  // namespace
 
@@ -51,7 +53,9 @@ Pool::Buffer& Pool::Buffer::operator=(Buffer&& other) noexcept {
   return *this;
 }
 
-Pool::Buffer::~Buffer() { release(); }
+Pool::Buffer::~Buffer() {
+  release();
+}
 
 void Pool::Buffer::release() noexcept {
   if (data_ == nullptr) return;

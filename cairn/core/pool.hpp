@@ -13,7 +13,8 @@ namespace cairn {
 /// Thread-safe.
 class Pool {
  public:
-  /// What an image holds: `bytes` at `data`, aligned to 64, and the store that it returns to (none = the heap).
+  /// What an image holds: `bytes` at `data`, aligned to 64, and the store that it returns to (none = the
+  /// heap).
   class Buffer {
    public:
     Buffer() = default;

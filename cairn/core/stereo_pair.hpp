@@ -7,10 +7,12 @@
 
 namespace cairn {
 
-/// A rectified pair: a point of the left image at (x, y) stands in the right image at (x - d, y). Borrows its images.
+/// A rectified pair: a point of the left image at (x, y) stands in the right image at (x - d, y). Borrows its
+/// images.
 class StereoPair {
  public:
-  /// Throws Error where the sizes differ or an image is empty. `left_rgb` (optional) is the colour of the left image.
+  /// Throws Error where the sizes differ or an image is empty. `left_rgb` (optional) is the colour of the
+  /// left image.
   static StereoPair from(View<const Gray> left, View<const Gray> right, View<const Rgb> left_rgb = {});
 
   [[nodiscard]] View<const Gray> left() const { return left_; }
@@ -37,8 +39,8 @@ struct StereoRig {
 
   /// Throws Error (naming `source`) unless every number is finite and focal length and baseline are positive.
   void validate(const char* source = "rig") const;
-  /// The point that pixel (x, y) with this disparity shows, in the left camera's frame (x right, y down, z forward);
-  /// nullopt where d + doffs ≤ 0: at or beyond infinity.
+  /// The point that pixel (x, y) with this disparity shows, in the left camera's frame (x right, y down, z
+  /// forward); nullopt where d + doffs ≤ 0: at or beyond infinity.
   [[nodiscard]] std::optional<Vec3> point_in_camera_m(float x, float y, float disparity_px) const;
 };
 

@@ -19,8 +19,8 @@ class View {
   constexpr View() = default;
   constexpr View(T* data, Size size, std::ptrdiff_t stride) : data_(data), size_(size), stride_(stride) {}
   template <class U>
-    requires(std::is_const_v<T> && std::is_same_v<const U, T>)
-  constexpr View(View<U> other)  // NOLINT(google-explicit-constructor): adding const is always safe
+  requires(std::is_const_v<T>&& std::is_same_v<const U, T>) constexpr View(
+      View<U> other)  // NOLINT(google-explicit-constructor): adding const is always safe
       : data_(other.data()), size_(other.size()), stride_(other.stride()) {}
 
   [[nodiscard]] constexpr T* data() const { return data_; }
@@ -43,7 +43,8 @@ class View {
   }
   /// The part of this view that `rect` covers; `rect` must lie inside.
   [[nodiscard]] constexpr View sub(Rect rect) const {
-    assert(rect.x >= 0 && rect.y >= 0 && rect.x + rect.width <= size_.width && rect.y + rect.height <= size_.height);
+    assert(rect.x >= 0 && rect.y >= 0 && rect.x + rect.width <= size_.width &&
+           rect.y + rect.height <= size_.height);
     return {data_ + rect.y * stride_ + rect.x, {rect.width, rect.height}, stride_};
   }
 

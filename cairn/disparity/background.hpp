@@ -36,7 +36,8 @@ struct Background {
 /// found so far, with hardly any evidence behind them; that tells a wall from a box's side. Deterministic.
 /// Without a ground the planes may lean as they like. `evidence_px` as find_evidence() gives it. (beyond the
 /// paper)
-Background fit_background(View<const float> evidence_px, const Ground& ground, const std::optional<StereoRig>& rig,
-                          const BackgroundConfig& config, const Exec& exec);
+Background fit_background(View<const float> evidence_px, const Ground& ground,
+                          const std::optional<StereoRig>& rig, const BackgroundConfig& config,
+                          const Exec& exec);
 
 }  // namespace cairn

@@ -9,7 +9,8 @@
 
 namespace cairn {
 
-/// Disparity per left pixel, and for every pixel without one the reason. Hole ⇔ reject ≠ none ⇔ disparity is NaN.
+/// Disparity per left pixel, and for every pixel without one the reason. Hole ⇔ reject ≠ none ⇔ disparity is
+/// NaN.
 struct DisparityMap {
   Image<float> disparity_px;
   Image<Reject> reject;
@@ -20,7 +21,8 @@ inline constexpr float kMaxDisparity = 2047.0F;
 
 /// Unites the checks' verdicts: a pixel keeps every bit that it got, NaN adds Reject::border. (METHOD §2)
 /// All views have the size of `refined_px`.
-DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts, const Exec& exec);
+DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts,
+                     const Exec& exec);
 
 /// A map from outside (depth camera, learned matcher): NaN and ±inf become holes with Reject::no_data.
 /// Throws Error where the map is empty, has no value at all, or one beyond ±kMaxDisparity.

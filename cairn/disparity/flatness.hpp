@@ -12,11 +12,12 @@ struct FlatnessConfig {
 };
 template <class V>
 void fields(FlatnessConfig& c, V&& v) {
-  v("threshold", c.threshold, "share", "least depth of the best cost below the mean cost", off_or(0.0F, 1.0F));
+  v("threshold", c.threshold, "share", "least depth of the best cost below the mean cost",
+    off_or(0.0F, 1.0F));
 }
 
-/// Marks pixels with "a constant correlation function": (mean − best) / mean < threshold → Reject::flat; a mean of 0
-/// is flat. Pixels without match are left to Reject::border. (METHOD §2; paper)
+/// Marks pixels with "a constant correlation function": (mean − best) / mean < threshold → Reject::flat; a
+/// mean of 0 is flat. Pixels without match are left to Reject::border. (METHOD §2; paper)
 Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config, const Exec& exec);
 
 }  // namespace cairn

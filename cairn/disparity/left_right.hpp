@@ -20,14 +20,16 @@ template <class V>
 void fields(LeftRightConfig& c, V&& v) {
   v("max_diff", c.max_diff, "px", "largest left-right disagreement still accepted", off_or(0.0F, 64.0F));
   v("method", c.method, "",
-    "true: the right image's own winner over all candidates; vote: the right pixel takes the best left winner (OpenCV)",
+    "true: the right image's own winner over all candidates; vote: the right pixel takes the best left "
+    "winner (OpenCV)",
     kLeftRightMethods);
 }
 
-/// Marks pixels whose match, followed back from the right image, does not return to them: mostly half-occluded ones,
-/// seen by one camera only. |best(x, y) − best_right(x − best, y + row)| ≤ max_diff, else Reject::left_right.
-/// With vote, the right pixel's disparity is that of the left pixel of least cost that claims it (ties: the smallest
-/// disparity). Pixels without match are left to Reject::border. (METHOD §2; paper, "right-left consistency check")
+/// Marks pixels whose match, followed back from the right image, does not return to them: mostly
+/// half-occluded ones, seen by one camera only. |best(x, y) − best_right(x − best, y + row)| ≤ max_diff, else
+/// Reject::left_right. With vote, the right pixel's disparity is that of the left pixel of least cost that
+/// claims it (ties: the smallest disparity). Pixels without match are left to Reject::border. (METHOD §2;
+/// paper, "right-left consistency check")
 Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config, const Exec& exec);
 
 }  // namespace cairn

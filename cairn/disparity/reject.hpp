@@ -8,7 +8,8 @@
 
 namespace cairn {
 
-/// Why a pixel has no disparity: a bit set, since the per-pixel checks are independent and each leaves its own bit.
+/// Why a pixel has no disparity: a bit set, since the per-pixel checks are independent and each leaves its
+/// own bit.
 enum class Reject : std::uint8_t {
   none = 0,
   border = 1,         // no candidate lay inside the right image
@@ -33,7 +34,11 @@ constexpr Reject operator|(Reject a, Reject b) {
 constexpr Reject operator&(Reject a, Reject b) {
   return static_cast<Reject>(static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(b));
 }
-constexpr Reject& operator|=(Reject& a, Reject b) { return a = a | b; }
-constexpr bool has(Reject set, Reject bit) { return (set & bit) != Reject::none; }
+constexpr Reject& operator|=(Reject& a, Reject b) {
+  return a = a | b;
+}
+constexpr bool has(Reject set, Reject bit) {
+  return (set & bit) != Reject::none;
+}
 
 }  // namespace cairn

@@ -7,17 +7,18 @@
 namespace cairn {
 
 struct SpeckleConfig {
-  int size = 50;        // px; −1 = off
-  float range = 1.0F;   // px of disparity
+  int size = 50;       // px; −1 = off
+  float range = 1.0F;  // px of disparity
 };
 template <class V>
 void fields(SpeckleConfig& c, V&& v) {
-  v("size", c.size, "px", "islands of up to this many pixels are rejected (OpenCV's speckleWindowSize)", off_or(0, 1000000));
+  v("size", c.size, "px", "islands of up to this many pixels are rejected (OpenCV's speckleWindowSize)",
+    off_or(0, 1000000));
   v("range", c.range, "px", "largest step of disparity between neighbours of one island", range(0.0F, 64.0F));
 }
 
-/// Rejects small islands: 4-connected pixels whose neighbours differ by at most `range`, `size` pixels or fewer →
-/// Reject::speckle. (METHOD §2, beyond the paper; OpenCV's filterSpeckles)
+/// Rejects small islands: 4-connected pixels whose neighbours differ by at most `range`, `size` pixels or
+/// fewer → Reject::speckle. (METHOD §2, beyond the paper; OpenCV's filterSpeckles)
 DisparityMap reject_speckles(DisparityMap disparity, const SpeckleConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -9,8 +9,8 @@
 namespace cairn {
 
 struct TextureConfig {
-  int window_size = 9;      // px
-  float threshold = 4.0F;   // grey levels²; −1 = off
+  int window_size = 9;     // px
+  float threshold = 4.0F;  // grey levels²; −1 = off
 };
 template <class V>
 void fields(TextureConfig& c, V&& v) {
@@ -19,9 +19,10 @@ void fields(TextureConfig& c, V&& v) {
     off_or(0.0F, 65025.0F));
 }
 
-/// Marks pixels without enough texture: the Moravec operator, the least over the shifts s = (1,0), (0,1), (1,1), (1,−1)
-/// of the mean over the window of (I(q) − I(q+s))², below the threshold → Reject::no_texture. Pairs of which either
-/// pixel lies outside the image do not count; no pair at all → no texture. (METHOD §2; paper, "Moravec operator")
+/// Marks pixels without enough texture: the Moravec operator, the least over the shifts s = (1,0), (0,1),
+/// (1,1), (1,−1) of the mean over the window of (I(q) − I(q+s))², below the threshold → Reject::no_texture.
+/// Pairs of which either pixel lies outside the image do not count; no pair at all → no texture. (METHOD §2;
+/// paper, "Moravec operator")
 Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -16,8 +16,8 @@ void fields(UniquenessConfig& c, V&& v) {
     off_or(0.0F, 100.0F));
 }
 
-/// Marks pixels with "more than one suitable minimum": runner_up·(100 − ratio) < cost·100 → Reject::not_unique.
-/// No runner-up (kNoCost): unique. (METHOD §2; paper; OpenCV's rule)
+/// Marks pixels with "more than one suitable minimum": runner_up·(100 − ratio) < cost·100 →
+/// Reject::not_unique. No runner-up (kNoCost): unique. (METHOD §2; paper; OpenCV's rule)
 Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -9,8 +9,9 @@
 
 namespace cairn {
 
-/// How regions become objects. overlap: the paper's, intensity regions by the disparity region that they overlap most.
-/// evidence: facets, parted into figure and ground by what texture proves, then grouped from near to far.
+/// How regions become objects. overlap: the paper's, intensity regions by the disparity region that they
+/// overlap most. evidence: facets, parted into figure and ground by what texture proves, then grouped from
+/// near to far.
 enum class FusionMethod : std::uint8_t { overlap, evidence };
 inline constexpr std::array kFusionMethods{Choice<FusionMethod>{"overlap", FusionMethod::overlap},
                                            Choice<FusionMethod>{"evidence", FusionMethod::evidence}};
@@ -20,8 +21,8 @@ struct FusionConfig {
 };
 template <class V>
 void fields(FusionConfig& c, V&& v) {
-  v("method", c.method, "", "overlap: the paper's two segmentations; evidence: facets that texture vouches for",
-    kFusionMethods);
+  v("method", c.method, "",
+    "overlap: the paper's two segmentations; evidence: facets that texture vouches for", kFusionMethods);
 }
 
 /// Which intensity regions make up each fused region: the candidates for objects.

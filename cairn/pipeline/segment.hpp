@@ -25,11 +25,12 @@ struct Frame {
 };
 
 /// The method's first half: a pair in, checked disparities out. Throws Error where validate() does.
-SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
-                                  const Exec& exec);
+SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
+                                  const Config& config, const Exec& exec);
 
 /// The whole method. Throws Error where validate() does; past that it cannot fail.
-Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config, const Exec& exec);
+Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
+              const Exec& exec);
 
 /// The method on a disparity map from elsewhere (depth camera, learned matcher): see external_disparity().
 /// Throws Error where sizes differ.

@@ -35,7 +35,8 @@ class TemporaryFolder {
   [[nodiscard]] std::filesystem::path with(const std::string& name, std::string_view bytes) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
-    std::filesystem::remove(file);  // some file systems flush a file that is written anew, and that takes long
+    std::filesystem::remove(
+        file);  // some file systems flush a file that is written anew, and that takes long
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return file;
   }
