@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The same as cairn::segment(), one stage at a time, with a look at what each one made.
+// What cairn::segment() does with the preset `paper`, one stage at a time, with a look at what each one made.
 //   02_stage_by_stage samples/glossy_floor
 #include <cairn/cairn.hpp>
 #include <cstdio>
