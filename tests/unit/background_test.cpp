@@ -132,6 +132,26 @@ TEST(Background, IsTheFloorAloneWhereABoxIsAllThatStandsOnIt) {
   EXPECT_EQ(background_of(evidence, ground_of(kFloor), kRig).planes.size(), 1U);
 }
 
+TEST(Background, HasTheWallsThoughABoxBeforeThemShowsMoreThanTheyDo) {
+  const auto box = [](int x, int y, float d) { return x >= 40 && x < 280 && y >= 30 && y < 200 ? 32.0F : d; };
+  const Image<float> evidence = evidence_of(kRoom, 0.3, 0.1F, box);
+  const Background found = background_of(evidence, ground_of(kFloor), kRig);
+  EXPECT_EQ(found.planes.size(), 3U);
+  EXPECT_LT(largest_difference(found, kRoom), 0.15F);
+}
+
+TEST(Background, MayHaveAWallWithADoorwayWhereMaxBehindAllowsIt) {
+  const Background room{{kFloor, wall_at(0, 3)}};
+  const auto doorway = [](int x, int y, float d) { return x >= 100 && x < 160 && y < 90 ? d - 6 : d; };
+  const Image<float> evidence = evidence_of(room, 0.3, 0.1F, doorway);  // 7 % of the evidence
+  BackgroundConfig config;
+  config.max_walls = 1;
+  config.max_behind = 4;
+  EXPECT_GT(largest_difference(background_of(evidence, ground_of(kFloor), kRig, config), room), 1);
+  config.max_behind = 12;
+  EXPECT_LT(largest_difference(background_of(evidence, ground_of(kFloor), kRig, config), room), 0.1F);
+}
+
 TEST(Background, IsNotMisledByReflectionsBelowTheFloor) {
   Noise noise(5);
   const auto mirrored = [&](int, int y, float d) {

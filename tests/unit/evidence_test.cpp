@@ -135,6 +135,16 @@ TEST(Evidence, IsNotOnAHorizontalEdgeButOnAVerticalOne) {
   EXPECT_GE(evidence_count(evidence_of(diagonal, everywhere(10))), 2 * kSize.height);
 }
 
+TEST(Evidence, IsNotOnAnEdgeThatTheRowsOnlyGraze) {
+  const auto edge = [](double slope) {
+    return picture(kSize, 0, 0, [slope](int x, int y) { return 110 + 40 * std::tanh(y - 40 - slope * x); });
+  };
+  const Image<Gray> grazing = edge(0.25);  // |gx| is a quarter of |gy|
+  const Image<Gray> steep = edge(1.0);
+  EXPECT_LT(evidence_count(evidence_of(grazing, everywhere(10))), 5);
+  EXPECT_GT(evidence_count(evidence_of(steep, everywhere(10))), 100);
+}
+
 TEST(Evidence, NeedsNeighboursThatAgree) {
   const Image<Gray> dots = textured_patch({0, 0, 60, 60}, 1, 4);
   const DisparityMap with_outlier =

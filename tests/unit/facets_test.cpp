@@ -82,6 +82,14 @@ TEST(Facets, OfANoisyShadedSurfaceLieBetweenNoStrongBorders) {
   EXPECT_LE(facets.count, 3);
 }
 
+TEST(Facets, TakeTheNoiseOfThePictureIntoAccount) {
+  const Image<Gray> image = picture(kSize, 6, 3, [](int x, int) { return 60 + 1.0 * x; });
+  FacetsConfig deaf;
+  deaf.noise_factor = 0;
+  EXPECT_LE(segment_facets(image, {}, {}, {}).count, 10);
+  EXPECT_GT(segment_facets(image, {}, deaf, {}).count, 40);
+}
+
 TEST(Facets, StopAtAFaintOutline) {
   const Facets facets = facets_of(step(8));
   EXPECT_EQ(facets.count, 2);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/objects/group.hpp>
+#include <cstdlib>
 #include <limits>
 
 #include "support/noise.hpp"
@@ -74,6 +75,37 @@ TEST(Group, HoldsASlantedSurfaceTogether) {
   EXPECT_EQ(stage.group().regions.size(), 2U);
 }
 
+TEST(Group, HoldsASlantedSurfaceOfManySmallPiecesTogether) {
+  Stage stage;  // pieces so small that each is nearly level: only the group's own plane follows the slant
+  const auto slant = [](int x, int) { return 10 + 0.08F * static_cast<float>(x - 60); };
+  for (int i = 0; i < 128; ++i) stage.facet({60 + 10 * (i % 16), 20 + 10 * (i / 16), 10, 10}, slant);
+  EXPECT_EQ(stage.group().regions.size(), 2U);
+}
+
+TEST(Group, PartsAFoldThatIsDeeperThanTheDeviation) {
+  Stage stage;  // no step anywhere
+  const auto ridge = [](int x, int) { return 30 - 0.2F * static_cast<float>(std::abs(x - 160)); };
+  for (int i = 0; i < 8; ++i) stage.facet({80 + 20 * i, 20, 20, 80}, ridge);
+  GroupConfig loose;
+  loose.deviation = 1000;
+  EXPECT_GT(stage.group().regions.size(), 2U);
+  EXPECT_EQ(stage.group(loose).regions.size(), 2U);
+}
+
+TEST(Group, GivesANearObjectItsShareBeforeAFarOne) {
+  Stage stage;  // the middle piece could belong to either, but not both to it
+  stage.level({60, 60, 60, 50}, 12.5F);
+  stage.level({120, 60, 60, 50}, 12);
+  stage.level({120, 10, 60, 50}, 11.5F);
+  GroupConfig config;
+  config.step = 3.125F;       // 1 px
+  config.deviation = 1.625F;  // 0.52 px
+  const Segmentation result = stage.group(config);
+  ASSERT_EQ(result.regions.size(), 3U);
+  EXPECT_EQ(result.labels(150, 90), result.labels(80, 90));
+  EXPECT_NE(result.labels(150, 90), result.labels(150, 30));
+}
+
 TEST(Group, HoldsANoisySurfaceTogether) {
   Stage stage;
   support::Noise noise(4);
@@ -96,6 +128,17 @@ TEST(Group, PartsThemThoughTheMatcherBlendsTheirBorder) {
   stage.facet({60, 20, 60, 60}, [](int x, int) { return x == 119 ? 12.5F : 14.0F; });
   stage.facet({120, 20, 60, 60}, [](int x, int) { return x == 120 ? 11.5F : 10.0F; });
   EXPECT_EQ(stage.group().regions.size(), 3U);
+}
+
+TEST(Group, PartsThemThoughThinPiecesLieAlongTheirBlendedBorder) {
+  Stage stage;
+  stage.level({60, 20, 57, 60}, 12);
+  stage.facet({117, 20, 3, 60}, [](int x, int) { return x == 119 ? 11.35F : 12.0F; });
+  stage.facet({120, 20, 3, 60}, [](int x, int) { return x == 120 ? 11.35F : 10.7F; });
+  stage.level({123, 20, 57, 60}, 10.7F);
+  const Segmentation result = stage.group();
+  ASSERT_EQ(result.regions.size(), 3U);
+  EXPECT_NE(result.labels(118, 50), result.labels(121, 50));
 }
 
 TEST(Group, UnitesTouchingBoxesOfOneDepth) {
