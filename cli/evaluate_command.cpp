@@ -4,13 +4,18 @@
 #include <cairn/core/error.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cmath>
 #include <filesystem>
+#include <io/atomic_file.hpp>
 #include <io/dataset.hpp>
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
+#include <io/read_file.hpp>
 #include <io/results.hpp>
 #include <iostream>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "commands.hpp"
@@ -20,12 +25,14 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 struct EvaluateOptions {
   std::string result;
   std::string truth;
   ObjectErrorConfig objects;
   int skip_left = 0;
+  std::optional<std::string> json;
 };
 
 // ---- reading ----
@@ -90,7 +97,24 @@ struct FrameScore {
   std::optional<DisparityErrors> visible;  // non-occluded; all pixels with truth where nothing tells
   std::optional<DisparityErrors> all;
   bool knows_occlusion = false;
+  std::vector<io::StageTime> times;  // empty where there is no objects.json, and without --json
 };
+
+/// What objects.json says of the time of each stage.
+std::vector<io::StageTime> load_times(const fs::path& objects_json) {
+  constexpr std::size_t kMost = std::size_t{256} << 20;
+  const std::string text = io::read_file(objects_json, kMost);
+  try {
+    const Json whole = Json::parse(text);
+    const Json by_stage = whole.value("timings_ms", Json::object());
+    std::vector<io::StageTime> times;
+    for (const auto& [stage, milliseconds] : by_stage.items())
+      times.push_back({stage, milliseconds.get<double>()});
+    return times;
+  } catch (const nlohmann::json::exception&) {
+    throw Error(objects_json.string() + ": no objects.json of cairn, expected milliseconds in `timings_ms`");
+  }
+}
 
 void score_disparity(const fs::path& ours, const io::TruthFiles& truth, int skip_left, FrameScore& score) {
   const Image<float> disparity = io::load_disparity(ours);
@@ -129,6 +153,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
     throw Error(truth.folder.string() + ": has the truth of nothing that the result " + result.name +
                 " holds");
   }
+  if (options.json && result.json) score.times = load_times(*result.json);
   return score;
 }
 
@@ -259,14 +284,37 @@ std::string frames_text(int count) {
   return std::to_string(count) + (count == 1 ? " frame" : " frames");
 }
 
-std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOptions& options) {
+std::vector<FrameObjects> objects_of(const std::vector<FrameScore>& frames) {
   std::vector<FrameObjects> objects;
-  std::set<int> tolerances;
   for (const FrameScore& frame : frames) {
-    if (!frame.objects) continue;
-    objects.push_back(*frame.objects);
-    tolerances.insert(frame.objects->errors.boundary_tolerance_px);
+    if (frame.objects) objects.push_back(*frame.objects);
   }
+  return objects;
+}
+
+struct DisparityTotals {
+  DisparityErrors visible;
+  DisparityErrors all;
+  int frames = 0;
+  int with_occlusion = 0;
+};
+
+DisparityTotals disparity_totals(const std::vector<FrameScore>& frames) {
+  DisparityTotals sum;
+  for (const FrameScore& frame : frames) {
+    if (!frame.all) continue;
+    ++sum.frames;
+    sum.with_occlusion += frame.knows_occlusion ? 1 : 0;
+    sum.visible += *frame.visible;
+    sum.all += *frame.all;
+  }
+  return sum;
+}
+
+std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOptions& options) {
+  const std::vector<FrameObjects> objects = objects_of(frames);
+  std::set<int> tolerances;
+  for (const FrameObjects& frame : objects) tolerances.insert(frame.errors.boundary_tolerance_px);
   if (objects.empty()) return "objects             not compared: no truth, or none in the result\n";
   const ObjectSummary s = summarise(objects);
   std::string tolerance = std::to_string(*tolerances.begin());
@@ -322,17 +370,7 @@ std::string disparity_block(const char* title, const DisparityErrors& e, const s
 }
 
 std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left) {
-  DisparityErrors visible;
-  DisparityErrors everything;
-  int count = 0;
-  int with_occlusion = 0;
-  for (const FrameScore& frame : frames) {
-    if (!frame.all) continue;
-    ++count;
-    with_occlusion += frame.knows_occlusion ? 1 : 0;
-    visible += *frame.visible;
-    everything += *frame.all;
-  }
+  const auto [visible, everything, count, with_occlusion] = disparity_totals(frames);
   if (count == 0) return "disparity           not compared: no truth, or none in the result\n";
   const std::string skipped = skip_left > 0 ? ", columns from " + std::to_string(skip_left) + " on" : "";
   const std::string title = "disparity           " + frames_text(count) + ", ";
@@ -350,8 +388,184 @@ std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left
   return all;
 }
 
+// ---- the same as JSON ----
+
+/// JSON has neither NaN nor infinity: null.
+Json json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json json_if(bool known, int value) {
+  return known ? Json(value) : Json(nullptr);
+}
+
+/// The double that has the float's shortest text: 0.7, not 0.699999988.
+double shortest(float value) {
+  return std::stod(text_of("%.7g", static_cast<double>(value)));
+}
+
+Json json(const TrueObjectScore& score) {
+  return {{"id", number(score.id)},
+          {"area_px", score.pixel_count},
+          {"ours", json_if(score.found != ObjectId::none, number(score.found))},
+          {"iou", json(score.iou)},
+          {"error", json(score.error())},
+          {"boundary_f", json(score.boundary_f)},
+          {"over_segmented", score.over_segmented},
+          {"under_segmented", score.under_segmented}};
+}
+
+Json json(const FoundObjectScore& score, const std::map<ObjectId, double>& confidence) {
+  const auto known = confidence.find(score.id);
+  return {{"id", number(score.id)},
+          {"area_px", score.pixel_count},
+          {"true", json_if(score.best != TruthId::none, number(score.best))},
+          {"iou", json(score.iou)},
+          {"share_on_objects", json(score.share_on_objects)},
+          {"mostly_dont_care", score.mostly_dont_care},
+          {"phantom", score.phantom},
+          {"confidence", known == confidence.end() ? Json(nullptr) : json(known->second)}};
+}
+
+Json frame_objects_json(const FrameScore& frame) {
+  if (!frame.objects) return nullptr;
+  const auto& [errors, partial] = *frame.objects;
+  const ObjectSummary sum = summarise({*frame.objects});
+  Json j;
+  j["partial"] = partial;
+  j["boundary_tolerance_px"] = errors.boundary_tolerance_px;
+  j["counts"] = {{"scored", sum.true_objects},
+                 {"found_50", sum.found_50},
+                 {"found_75", sum.found_75},
+                 {"ours", errors.ours.size()},
+                 {"right_50", json_if(!partial, sum.right_50)},
+                 {"right_75", json_if(!partial, sum.right_75)},
+                 {"phantoms", json_if(!partial, sum.phantoms)}};
+  j["true"] = Json::array();
+  for (const TrueObjectScore& score : errors.truth) j["true"].push_back(json(score));
+  j["ours"] = Json::array();
+  for (const FoundObjectScore& score : errors.ours) j["ours"].push_back(json(score, frame.confidence));
+  return j;
+}
+
+Json json(const DisparityErrors& errors) {
+  Json j{{"known_px", errors.known}, {"matched_px", errors.matched}, {"density", json(errors.density())}};
+  for (std::size_t t = 0; t < kBadThresholdsPx.size(); ++t) {
+    const std::string threshold = text_of("%g", double(kBadThresholdsPx[t]));
+    j["bad_of_matched"][threshold] = json(errors.bad_of_matched(t));
+    j["bad_of_known"][threshold] = json(errors.bad_of_known(t));
+  }
+  j["mean_absolute_px"] = json(errors.mean_absolute_px());
+  j["root_mean_square_px"] = json(errors.root_mean_square_px());
+  return j;
+}
+
+Json frame_disparity_json(const FrameScore& frame) {
+  if (!frame.all) return nullptr;
+  return {{"both_cameras", frame.knows_occlusion ? json(*frame.visible) : Json(nullptr)},
+          {"all", json(*frame.all)}};
+}
+
+Json frame_json(const FrameScore& frame) {
+  Json times = nullptr;
+  for (const io::StageTime& time : frame.times) times[time.stage] = json(time.milliseconds);
+  return {{"name", frame.name},
+          {"objects", frame_objects_json(frame)},
+          {"disparity", frame_disparity_json(frame)},
+          {"timings_ms", times}};
+}
+
+Json summary_objects_json(const std::vector<FrameScore>& frames) {
+  const std::vector<FrameObjects> objects = objects_of(frames);
+  if (objects.empty()) return nullptr;
+  const ObjectSummary s = summarise(objects);
+  const bool complete = s.complete_frames > 0;
+  Json j{{"frames", s.frames},
+         {"complete_frames", s.complete_frames},
+         {"scored", s.true_objects},
+         {"found_50", s.found_50},
+         {"found_75", s.found_75},
+         {"recall_50", json(s.recall_50())},
+         {"recall_75", json(s.recall_75())},
+         {"ours", json_if(complete, s.our_objects)},
+         {"right_50", json_if(complete, s.right_50)},
+         {"right_75", json_if(complete, s.right_75)},
+         {"precision_50", json(s.precision_50())},
+         {"precision_75", json(s.precision_75())},
+         {"phantoms", json_if(complete, s.phantoms)},
+         {"phantoms_per_frame", json(s.phantoms_per_frame())},
+         {"mean_error", json(s.mean_error)},
+         {"median_error", json(s.median_error)},
+         {"error_cap", kErrorCap},
+         {"at_error_cap", s.missed},
+         {"mean_iou", json(s.mean_iou)},
+         {"mean_boundary_f", json(s.mean_boundary_f)},
+         {"mean_boundary_f_found", json(s.mean_boundary_f_found)},
+         {"over_segmented", s.over_segmented},
+         {"under_segmented", s.under_segmented},
+         {"confident", nullptr}};
+  if (const Confidence c = judge_confidence(frames); c.known) {
+    const double right = c.objects > 0 ? c.right / static_cast<double>(c.objects) : std::nan("");
+    j["confident"] = {
+        {"at_least", kConfident}, {"ours", c.objects}, {"right_50", c.right}, {"precision_50", json(right)}};
+  }
+  return j;
+}
+
+Json summary_disparity_json(const std::vector<FrameScore>& frames) {
+  const DisparityTotals sum = disparity_totals(frames);
+  if (sum.frames == 0) return nullptr;
+  return {{"frames", sum.frames},
+          {"frames_with_occlusion", sum.with_occlusion},
+          {"both_cameras", sum.with_occlusion > 0 ? json(sum.visible) : Json(nullptr)},
+          {"all", json(sum.all)}};
+}
+
+Json mean_and_median(const std::vector<double>& values) {
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return {{"mean", json(mean)}, {"median", json(median(values))}};
+}
+
+Json summary_times_json(const std::vector<FrameScore>& frames) {
+  std::vector<double> totals;
+  std::vector<std::string> stages;  // in the order of the work, which a map would lose
+  std::map<std::string, std::vector<double>> by_stage;
+  for (const FrameScore& frame : frames) {
+    if (frame.times.empty()) continue;
+    double total = 0;
+    for (const auto& [stage, milliseconds] : frame.times) {
+      total += milliseconds;
+      if (!by_stage.contains(stage)) stages.push_back(stage);
+      by_stage[stage].push_back(milliseconds);
+    }
+    totals.push_back(total);
+  }
+  if (totals.empty()) return nullptr;
+  Json j{{"frames", totals.size()}, {"total", mean_and_median(totals)}};
+  for (const std::string& stage : stages) j["stages"][stage] = mean_and_median(by_stage[stage]);
+  return j;
+}
+
+/// The content of --json's file (docs/evaluation.md).
+std::string evaluation_json(const Scores& scores, const EvaluateOptions& options) {
+  Json j;
+  j["cairn"] = CAIRN_VERSION;
+  j["options"] = {{"min_area_px", options.objects.min_area},
+                  {"boundary_tolerance_percent", shortest(options.objects.boundary_tolerance)},
+                  {"skip_left_px", options.skip_left}};
+  j["summary"] = {{"objects", summary_objects_json(scores.frames)},
+                  {"disparity", summary_disparity_json(scores.frames)},
+                  {"timings_ms", summary_times_json(scores.frames)}};
+  j["without_result"] = scores.without_result;
+  j["frames"] = Json::array();
+  for (const FrameScore& frame : scores.frames) j["frames"].push_back(frame_json(frame));
+  // A folder's name may be no UTF-8, which is no reason to fail.
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 int evaluate(const EvaluateOptions& options) {
   const Scores scores = score_all(options);
+  if (options.json) io::write_file(*options.json, evaluation_json(scores, options));
   std::cout << frame_table(scores.frames) << "\n"
             << object_lines(scores.frames, options) << disparity_lines(scores.frames, options.skip_left);
   if (!scores.without_result.empty()) {
@@ -389,6 +603,8 @@ Work declare_evaluate(CLI::App& app) {
       ->check(CLI::Range(0, 1 << 20).name(""))
       ->type_name("N")
       ->capture_default_str();
+  app.add_option("--json", options->json, "also write the whole evaluation into this file, as JSON")
+      ->type_name("FILE");
   app.footer(
       "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true objects found "
       "with\n"
