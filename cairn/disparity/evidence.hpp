@@ -11,7 +11,7 @@ namespace cairn {
 struct EvidenceConfig {
   float noise_factor = 1.0F;
   float gradient_min = 1.0F;
-  float agreement = 1.5F;
+  float agreement = 2.5F;
 };
 template <class V>
 void fields(EvidenceConfig& c, V&& v) {

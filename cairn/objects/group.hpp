@@ -12,7 +12,7 @@ namespace cairn {
 struct GroupConfig {
   float step = 2.8F;
   float deviation = 7.0F;
-  float min_area = 0.3F;
+  float min_area = 0.4F;
 };
 template <class V>
 void fields(GroupConfig& c, V&& v) {

@@ -8,16 +8,24 @@
 namespace cairn {
 namespace {
 
-/// Ground, reflections, speckles: what can be said of the disparities only once they are seen together.
-SceneDisparity check_against_scene(DisparityMap disparity, View<const float> ground_evidence_px,
-                                   const std::optional<StereoRig>& rig, const Config& config,
-                                   const Exec& exec, Observed& stage) {
-  Ground ground = stage("fit_ground", fit_ground(ground_evidence_px, rig, config.ground, exec));
+/// What can be said of the disparities only once they are seen together: the ground, and what is reflected in
+/// it …
+SceneDisparity check_against_ground(DisparityMap disparity, View<const float> trusted_px,
+                                    const std::optional<StereoRig>& rig, const Config& config,
+                                    const Exec& exec, Observed& stage) {
+  Ground ground = stage("fit_ground", fit_ground(trusted_px, rig, config.ground, exec));
   disparity = stage("reject_below_ground",
                     reject_below_ground(std::move(disparity), ground, rig, config.ground, exec));
-  disparity = stage("reject_speckles", reject_speckles(std::move(disparity), config.speckle, exec));
-  auto floor = stage("label_floor", label_floor(disparity, ground, rig, config.ground, exec));
-  return {std::move(disparity), ground, std::move(floor)};
+  return {std::move(disparity), ground, {}};
+}
+
+/// … then the islands, and what is floor.
+SceneDisparity clean_up(SceneDisparity scene, const std::optional<StereoRig>& rig, const Config& config,
+                        const Exec& exec, Observed& stage) {
+  scene.disparity =
+      stage("reject_speckles", reject_speckles(std::move(scene.disparity), config.speckle, exec));
+  scene.floor = stage("label_floor", label_floor(scene.disparity, scene.ground, rig, config.ground, exec));
+  return scene;
 }
 
 DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec,
@@ -41,24 +49,32 @@ Image<float> trusted(View<const Gray> left, const DisparityMap& disparity, const
   return stage("find_evidence", find_evidence(left, disparity, config.evidence, exec));
 }
 
-/// The paper's way: two segmentations, united where they overlap.
-void unite_by_overlap(View<const Gray> left, Frame& frame, const Config& config, const Exec& exec,
-                      Observed& stage) {
-  frame.by_intensity = stage("segment_intensity", segment_intensity(left, config.intensity, exec));
-  frame.by_disparity =
-      stage("segment_disparity", segment_disparity(frame.disparity, frame.floor, config.disparity, exec));
+/// A frame's two segmentations, which fuse() unites.
+struct Regions {
+  Segmentation by_intensity;
+  Segmentation by_disparity;
+};
+
+/// The paper's way: united where they overlap.
+Regions regions_by_overlap(View<const Gray> left, const SceneDisparity& scene, const Config& config,
+                           const Exec& exec, Observed& stage) {
+  auto by_intensity = stage("segment_intensity", segment_intensity(left, config.intensity, exec));
+  auto by_disparity =
+      stage("segment_disparity", segment_disparity(scene.disparity, scene.floor, config.disparity, exec));
+  return {std::move(by_intensity), std::move(by_disparity)};
 }
 
 /// What texture proves decides which facets stand before the background, and which of those belong together.
-void unite_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, View<const float> evidence_px,
-                       const std::optional<StereoRig>& rig, Frame& frame, const Config& config,
-                       const Exec& exec, Observed& stage) {
-  const Background background = fit_background(evidence_px, frame.ground, rig, config.background, exec);
+Regions regions_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, View<const float> evidence_px,
+                            const SceneDisparity& scene, const std::optional<StereoRig>& rig,
+                            const Config& config, const Exec& exec, Observed& stage) {
+  const Background background = fit_background(evidence_px, scene.ground, rig, config.background, exec);
   const Facets facets = segment_facets(left, left_rgb, config.facets, exec);
-  frame.by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
+  auto by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
   const auto figure = separate_figure(facets, left, left_rgb, evidence_px, background, config.figure, exec);
-  frame.by_disparity = stage("group_facets", group_facets(facets, figure, frame.disparity, evidence_px,
-                                                          background, config.figure, config.group, exec));
+  auto by_disparity = stage("group_facets", group_facets(facets, figure, scene.disparity, evidence_px,
+                                                         background, config.figure, config.group, exec));
+  return {std::move(by_intensity), std::move(by_disparity)};
 }
 
 /// From disparities that the per-pixel checks have passed to objects.
@@ -66,18 +82,24 @@ Frame find_objects(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap
                    const std::optional<StereoRig>& rig, const Config& config, const Exec& exec,
                    Observed& stage) {
   const bool by_evidence = config.fusion.method == FusionMethod::evidence;
-  const Image<float> evidence_px = trusted(left, disparity, config, exec, stage);
-  auto scene = check_against_scene(std::move(disparity), evidence_px, rig, config, exec, stage);
-  Frame frame{std::move(scene.disparity), scene.ground, std::move(scene.floor), {}, {}, {}, {}};
-  if (by_evidence) {
-    unite_by_evidence(left, left_rgb, evidence_px, rig, frame, config, exec, stage);
-  } else {
-    unite_by_overlap(left, frame, config, exec, stage);
-  }
-  frame.fusion = stage("fuse", fuse(frame.by_intensity, frame.by_disparity, exec));
-  frame.objects = stage("measure", measure(frame.fusion, frame.by_disparity, frame.disparity, left, left_rgb,
-                                           rig, config.objects, exec));
-  return frame;
+  const Image<float> trusted_px = trusted(left, disparity, config, exec, stage);
+  SceneDisparity scene = check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage);
+  Regions regions;
+  // Facets weigh small islands for themselves: thin legs and leaves are islands, too.
+  if (by_evidence) regions = regions_by_evidence(left, left_rgb, trusted_px, scene, rig, config, exec, stage);
+  scene = clean_up(std::move(scene), rig, config, exec, stage);
+  if (!by_evidence) regions = regions_by_overlap(left, scene, config, exec, stage);
+
+  Fusion fusion = stage("fuse", fuse(regions.by_intensity, regions.by_disparity, exec));
+  Objects objects = stage("measure", measure(fusion, regions.by_disparity, scene.disparity, left, left_rgb,
+                                             rig, config.objects, exec));
+  return {std::move(scene.disparity),
+          scene.ground,
+          std::move(scene.floor),
+          std::move(regions.by_intensity),
+          std::move(regions.by_disparity),
+          std::move(fusion),
+          std::move(objects)};
 }
 
 }  // namespace
@@ -88,7 +110,8 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
   Observed stage(exec);
   DisparityMap disparity = match_and_check(pair, config, exec, stage);
   const Image<float> trusted_px = trusted(pair.left(), disparity, config, exec, stage);
-  return check_against_scene(std::move(disparity), trusted_px, rig, config, exec, stage);
+  return clean_up(check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage), rig,
+                  config, exec, stage);
 }
 
 Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,

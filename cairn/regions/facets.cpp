@@ -11,7 +11,7 @@
 namespace cairn {
 namespace {
 
-constexpr int kRounds = 4;
+constexpr int kRounds = 16;
 
 std::size_t slot(std::int32_t i) {
   return static_cast<std::size_t>(i);

@@ -54,8 +54,9 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
 
 /// Watershed of the edges (in colour where there is colour), then each basin fuses with the neighbour across
 /// its weakest border where that border's mean edge is below edge_min + noise_factor·noise_sigma(gray);
-/// borders are recomputed and it is done again, four times at most. Unlike a comparison of means this follows
-/// shading across a plain surface and stops at faint outlines. (METHOD §4, beyond the paper)
+/// borders are recomputed and it is done again until nothing fuses, sixteen times at most. Unlike a
+/// comparison of means this follows shading across a plain surface and stops at faint outlines. (METHOD §4,
+/// beyond the paper)
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
                       const Exec& exec);
 
