@@ -248,6 +248,7 @@ void expect_partition(const Segmentation& segmentation, const DisparityMap& map)
 Config by_evidence() {
   Config config;
   config.fusion.method = FusionMethod::evidence;
+  config.speckle.size = -1;  // facets are grouped before islands go, so the frame's own map has to keep them
   return config;
 }
 
