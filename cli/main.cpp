@@ -35,6 +35,7 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
 std::string unknown_command(const std::vector<std::string>& words) {
   if (words.empty() || words.front().starts_with('-')) return {};
   std::vector<std::string> names;
+  names.reserve(kCommands.size());
   for (const Command& command : kCommands) names.emplace_back(command.name);
   if (std::find(names.begin(), names.end(), words.front()) != names.end()) return {};
   const std::string close = suggestion(words.front(), names);

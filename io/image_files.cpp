@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 /// How many bits the samples need; 8 for every 8-bit file.
 int depth_of(const Raster& raster) {
   if (raster.bytes_each == 1) return 8;
-  unsigned most = static_cast<unsigned>(raster.max_value);
+  auto most = static_cast<unsigned>(raster.max_value);
   if (!raster.declared) {
     most = 0;
     for (int y = 0; y < raster.size.height; ++y) {

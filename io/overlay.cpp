@@ -194,7 +194,7 @@ Rgb colour_of(float disparity, Span span, const std::array<Rgb, 256>& colours) {
 }
 
 std::string scale_text(float disparity, const std::optional<StereoRig>& rig) {
-  const std::string px = number_text("%.1f px", disparity);
+  std::string px = number_text("%.1f px", disparity);
   if (!rig) return px;
   const auto point = rig->point_in_camera_m(0, 0, disparity);
   return px + (point ? number_text("  %.2f m", point->z) : "");

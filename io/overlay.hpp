@@ -20,7 +20,7 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
 /// Disparity as colour, holes in a muted colour that tells the reason, and beside them a legend: the scale in
 /// px (with a rig: and m), and each reason's share of the pixels. Where a hole has several reasons the
 /// legend's order decides.
-Image<Rgb> draw_disparity(const DisparityMap& disparity, const std::optional<StereoRig>& rig);
+Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig);
 
 /// The colour that an object is drawn with: neighbouring ids differ strongly.
 Rgb object_colour(ObjectId id);

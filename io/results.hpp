@@ -43,6 +43,6 @@ struct ObjectConfidence {
   ObjectId id = ObjectId::none;
   double confidence = 0;
 };
-std::vector<ObjectConfidence> load_confidences(const std::filesystem::path& objects_json);
+std::vector<ObjectConfidence> load_confidences(const std::filesystem::path& path);
 
 }  // namespace cairn::io

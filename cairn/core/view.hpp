@@ -18,10 +18,12 @@ class View {
 
   constexpr View() = default;
   constexpr View(T* data, Size size, std::ptrdiff_t stride) : data_(data), size_(size), stride_(stride) {}
+  // clang-format off
   template <class U>
-  requires(std::is_const_v<T>&& std::is_same_v<const U, T>) constexpr View(
-      View<U> other)  // NOLINT(google-explicit-constructor): adding const is always safe
+    requires(std::is_const_v<T> && std::is_same_v<const U, T>)
+  constexpr View(View<U> other)  // NOLINT(google-explicit-constructor): adding const is always safe
       : data_(other.data()), size_(other.size()), stride_(other.stride()) {}
+  // clang-format on
 
   [[nodiscard]] constexpr T* data() const { return data_; }
   [[nodiscard]] constexpr Size size() const { return size_; }

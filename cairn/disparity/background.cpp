@@ -85,7 +85,7 @@ class WallSearch {
       : points_(std::move(points)),
         behind_(points_.size(), 0.0F),
         planes_(std::move(planes)),
-        upright_(std::move(upright)),
+        upright_(upright),
         least_distance_(0.06F * static_cast<float>(width)),
         tolerance_(config.tolerance * 0.001F * static_cast<float>(width)),
         min_share_(config.min_share * 0.01),

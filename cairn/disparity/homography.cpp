@@ -182,10 +182,13 @@ using Quadruple = std::array<std::size_t, 4>;
 std::vector<Quadruple> quadruples(std::size_t n, std::size_t most) {
   std::vector<Quadruple> chosen;
   if (n <= 10) {  // 210 quadruples
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = i + 1; j < n; ++j)
-        for (std::size_t k = j + 1; k < n; ++k)
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = i + 1; j < n; ++j) {
+        for (std::size_t k = j + 1; k < n; ++k) {
           for (std::size_t l = k + 1; l < n; ++l) chosen.push_back({i, j, k, l});
+        }
+      }
+    }
     return chosen;
   }
   std::uint64_t state = 1;

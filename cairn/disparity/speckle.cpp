@@ -103,10 +103,11 @@ class Islands {
         join(i, j);
         break;  // once is enough for two runs
       }
-      if (run(i).end == end)
+      if (run(i).end == end) {
         ++i;
-      else
+      } else {
         ++j;
+      }
     }
   }
 
