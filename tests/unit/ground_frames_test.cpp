@@ -41,7 +41,8 @@ Ground found_in(const std::filesystem::path& frame) {
   const auto pictures = io::load_pair(frame / "left.png", frame / "right.png");
   const auto calibration = io::load_calibration(frame / "calib.txt");
   Config config = Config::paper();
-  config.texture = {};  // checks as strict as the stages' own defaults: fewer matches, and fewer mirrored ones
+  config
+      .texture = {};  // checks as strict as the stages' own defaults: fewer matches, and fewer mirrored ones
   config.uniqueness = {};
   config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
   const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray);
