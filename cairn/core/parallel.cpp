@@ -6,6 +6,7 @@
 
 #if CAIRN_WITH_TBB
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -18,6 +19,10 @@ class Workers {
       : threads_(threads)
 #if CAIRN_WITH_TBB
         ,
+        limit_(oneapi::tbb::global_control::max_allowed_parallelism,
+               std::max(static_cast<std::size_t>(threads),
+                        oneapi::tbb::global_control::active_value(
+                            oneapi::tbb::global_control::max_allowed_parallelism))),
         arena_(threads)
 #endif
   {
@@ -46,6 +51,9 @@ class Workers {
  private:
   int threads_;
 #if CAIRN_WITH_TBB
+  // Asked for more threads than there are processors, oneTBB would print a warning and refuse. The limit only
+  // ever rises.
+  oneapi::tbb::global_control limit_;
   oneapi::tbb::task_arena arena_;
 #endif
 };
