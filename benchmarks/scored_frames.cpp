@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "scored_frames.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <io/calibration_files.hpp>
+#include <io/disparity_files.hpp>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+namespace cairn::report {
+namespace {
+
+Image<TruthId> load_objects(const std::filesystem::path& path) {
+  const io::Labels labels = io::load_labels(path);
+  const bool has_dont_care = labels.bits == 8;
+  Image<TruthId> ids(labels.ids.size());
+  for (int y = 0; y < ids.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y), [&](std::uint16_t id) {
+      return has_dont_care && id == 255 ? TruthId::dont_care : TruthId{id};
+    });
+  }
+  return ids;
+}
+
+Image<std::uint8_t> load_hidden(const std::filesystem::path& path) {
+  const io::Labels labels = io::load_labels(path);
+  Image<std::uint8_t> hidden(labels.ids.size());
+  for (int y = 0; y < hidden.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + hidden.width(), hidden.row(y),
+                   [](std::uint16_t id) { return static_cast<std::uint8_t>(id == 255 ? 1 : 0); });
+  }
+  return hidden;
+}
+
+template <class T>
+void require_size(const Image<T>& truth, const TrueFrame& frame) {
+  const Size size = frame.pictures.left.gray.size();
+  if (!truth.empty() && truth.size() != size)
+    throw Error(frame.name + ": the truth is " + text(truth.size()) + ", the pictures are " + text(size));
+}
+
+}  // namespace
+
+TrueFrame load_true_frame(const io::FrameFiles& files) {
+  if (!files.right) throw Error(files.left.string() + ": there is no right picture");
+  const io::TruthFiles truth = io::find_truth(files.folder);
+  TrueFrame frame;
+  frame.name = files.name;
+  frame.pictures = io::load_pair(files.left, *files.right);
+  if (files.calib) {
+    const io::Calibration calibration = io::load_calibration(*files.calib);
+    frame.rig = calibration.rig;
+    frame.num_disparities = calibration.num_disparities.value_or(frame.num_disparities);
+  }
+  frame.partial = truth.partial;
+  if (truth.objects) frame.objects = load_objects(*truth.objects);
+  if (truth.disparity) frame.truth_px = io::load_disparity(*truth.disparity);
+  if (truth.occlusion) frame.hidden = load_hidden(*truth.occlusion);
+  require_size(frame.objects, frame);
+  require_size(frame.truth_px, frame);
+  require_size(frame.hidden, frame);
+  return frame;
+}
+
+std::vector<TrueFrame> load_true_frames(const std::filesystem::path& folder) {
+  std::vector<TrueFrame> frames;
+  for (const io::FrameFiles& files : io::find_frames(folder)) frames.push_back(load_true_frame(files));
+  return frames;
+}
+
+Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec& exec) {
+  config.match.num_disparities = frame.num_disparities;
+  const auto& [left, right] = frame.pictures;
+  const View<const Rgb> colour = grey ? View<const Rgb>{} : left.rgb.view();
+  return segment(StereoPair::from(left.gray, right.gray, colour), frame.rig, config, exec);
+}
+
+Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec& exec) {
+  const double start = thread_milliseconds();
+  const Frame found = segment_frame(frame, config, grey, exec);
+  Score result;
+  result.milliseconds = thread_milliseconds() - start;
+  if (!frame.objects.empty())
+    result.objects = {object_errors(found.objects.labels, frame.objects, {}), frame.partial};
+  if (!frame.truth_px.empty())
+    result.disparity = disparity_errors(found.disparity.disparity_px, frame.truth_px, frame.hidden, 0);
+  return result;
+}
+
+std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config& config, bool grey,
+                             int threads) {
+  std::vector<Score> scores(frames.size());
+  for_each_index(frames.size(), threads,
+                 [&](std::size_t i, const Exec& exec) { scores[i] = score(frames[i], config, grey, exec); });
+  return scores;
+}
+
+void for_each_index(std::size_t count, int threads,
+                    const std::function<void(std::size_t index, const Exec& exec)>& body) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto work = [&] {
+    Exec exec;
+    exec.pool = Pool::make();
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        body(i, exec);
+      } catch (...) {
+        const std::lock_guard lock(failure_mutex);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+double thread_milliseconds() {
+  std::timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+double percentile(std::vector<double> values, double share) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  int count = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace cairn::report
