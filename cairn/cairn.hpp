@@ -9,6 +9,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
+#include <cairn/matching/epipolar_correction.hpp>  // correct_epipolar
 #include <cairn/matching/match.hpp>              // match
 #include <cairn/matching/semi_global.hpp>        // match_semi_global
 #include <cairn/matching/subpixel.hpp>           // refine_subpixel

@@ -250,6 +250,21 @@ std::size_t width_of(const std::string& text) {
 
 }  // namespace
 
+std::string describe(const EpipolarOffset& epipolar) {
+  if (epipolar.outcome == EpipolarOutcome::off) return {};
+  std::string words = "epipolar lines: ";
+  for (const auto& outcome : kEpipolarOutcomes) {
+    if (outcome.value == epipolar.outcome) words += outcome.name;
+  }
+  if (epipolar.outcome == EpipolarOutcome::aligned || epipolar.outcome == EpipolarOutcome::corrected) {
+    constexpr double kDegrees = 57.29577951308232;
+    words += ", the right image " + text_of("%+.2f", double(epipolar.rows)) + " rows lower, roll " +
+             text_of("%+.2f", std::atan(double(epipolar.rows_per_px)) * kDegrees) + " degrees";
+  }
+  return words + ", " + std::to_string(epipolar.agreeing) + " of " + std::to_string(epipolar.points) +
+         " points agree";
+}
+
 std::string Table::text() const {
   std::vector<std::size_t> widths(rows_.front().size(), 0);
   std::vector<bool> used(rows_.front().size(), false);

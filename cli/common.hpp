@@ -94,6 +94,9 @@ std::string text_of(const char* format, double value);
 /// "62.1 %" of 0.621; "-" for NaN.
 std::string percent(double share);
 
+/// What became of the epipolar correction, in words; "" where it is switched off.
+std::string describe(const EpipolarOffset& epipolar);
+
 /// Columns of text for the terminal: the first to the left, the others to the right; columns without any text
 /// are left out.
 class Table {

@@ -53,6 +53,7 @@ std::string describe(const SceneDisparity& scene, double milliseconds) {
     if (kRejects[i].value != Reject::no_data) table.add({std::string(kRejects[i].name), share(counts[i])});
   }
   all += table.text();
+  if (const std::string epipolar = cli::describe(scene.epipolar); !epipolar.empty()) all += epipolar + "\n";
   if (scene.ground.plane) {
     const GroundPlane p = *scene.ground.plane;
     all += "ground: d = " + text_of("%.6f", double(p.a)) + " x " + text_of("%+.6f", double(p.b)) + " y " +

@@ -94,6 +94,7 @@ Report work_on(const io::FrameFiles& files, const SegmentOptions& options, const
     return report;
   }
   report.out = files.name + ": " + summary(frame, watch.total_ms()) + "\n";
+  if (frame.epipolar.outcome == EpipolarOutcome::corrected) report.out += describe(frame.epipolar) + "\n";
   if (one_of_many && !folder.empty()) return report;
   if (!frame.objects.list.empty()) report.out += object_table(frame.objects.list);
   if (one_of_many) report.out += "\n";

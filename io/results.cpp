@@ -63,6 +63,17 @@ Json json(const Ground& ground) {
   return j;
 }
 
+Json json(const EpipolarOffset& epipolar) {
+  Json j{{"rows", json(epipolar.rows)},
+         {"rows_per_px", json(epipolar.rows_per_px)},
+         {"points", epipolar.points},
+         {"agreeing", epipolar.agreeing}};
+  for (const auto& outcome : kEpipolarOutcomes) {
+    if (outcome.value == epipolar.outcome) j["outcome"] = std::string(outcome.name);
+  }
+  return j;
+}
+
 Json json(const std::vector<PointPair>& points) {
   Json all = Json::array();
   for (const PointPair& p : points) {
@@ -222,6 +233,7 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   for (const StageTime& time : provenance.timings) {
     j["timings_ms"][time.stage] = std::round(time.milliseconds * 1000) / 1000;
   }
+  j["epipolar"] = json(frame.epipolar);
   j["ground"] = json(frame.ground);
   j["objects"] = Json::array();
   for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));

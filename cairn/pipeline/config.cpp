@@ -256,6 +256,7 @@ Config Config::preset(std::string_view name) {
 
 Config Config::paper() {
   Config c;
+  c.epipolar_correction = {};
   c.match = {};
   c.subpixel = {};
   c.left_right = {};

@@ -10,6 +10,7 @@
 #include <cairn/disparity/speckle.hpp>
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
+#include <cairn/matching/epipolar_correction.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/semi_global.hpp>
 #include <cairn/matching/subpixel.hpp>
@@ -28,6 +29,7 @@ namespace cairn {
 
 /// What is computed: one section per stage. A default-constructed Config is the preset `default`.
 struct Config {
+  EpipolarCorrectionConfig epipolar_correction{.max_rows = 4.0F};
   MatchConfig match{.method = MatchMethod::semi_global};
   SemiGlobalConfig semi_global;
   SubpixelConfig subpixel{.method = SubpixelMethod::equiangular};
@@ -57,6 +59,7 @@ struct Config {
 /// Calls visit("match", c.match), … for every section, in data-flow order.
 template <class C, class F>
 void for_each_section(C& c, F&& visit) {
+  visit("epipolar_correction", c.epipolar_correction);
   visit("match", c.match);
   visit("semi_global", c.semi_global);
   visit("subpixel", c.subpixel);

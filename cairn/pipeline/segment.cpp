@@ -28,8 +28,17 @@ SceneDisparity clean_up(SceneDisparity scene, const std::optional<StereoRig>& ri
   return scene;
 }
 
-DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec,
-                             Observed& stage) {
+EpipolarCorrection align(const StereoPair& pair, const Config& config, const Exec& exec, Observed& stage) {
+  if (config.epipolar_correction.max_rows < 0) return {};
+  EpipolarCorrection correction = correct_epipolar(pair, config.match, config.epipolar_correction, exec);
+  correction.right = stage("correct_epipolar", std::move(correction.right));
+  return correction;
+}
+
+DisparityMap match_and_check(const StereoPair& given, View<const Gray> aligned_right, const Config& config,
+                             const Exec& exec, Observed& stage) {
+  const auto pair =
+      StereoPair::from(given.left(), aligned_right.empty() ? given.right() : aligned_right, given.left_rgb());
   const Matches matches = stage("match", match(pair, config.match, config.semi_global, exec));
   auto refined = stage("refine_subpixel", refine_subpixel(matches, config.subpixel, exec));
 
@@ -108,18 +117,26 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
                                   const Config& config, const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
-  DisparityMap disparity = match_and_check(pair, config, exec, stage);
+  const EpipolarCorrection aligned = align(pair, config, exec, stage);
+  DisparityMap disparity = match_and_check(pair, aligned.right, config, exec, stage);
   const Image<float> trusted_px = trusted(pair.left(), disparity, config, exec, stage);
-  return clean_up(check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage), rig,
-                  config, exec, stage);
+  SceneDisparity scene =
+      clean_up(check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage), rig, config,
+               exec, stage);
+  scene.epipolar = aligned.offset;
+  return scene;
 }
 
 Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
               const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
-  return find_objects(pair.left(), pair.left_rgb(), match_and_check(pair, config, exec, stage), rig, config,
-                      exec, stage);
+  const EpipolarCorrection aligned = align(pair, config, exec, stage);
+  Frame frame =
+      find_objects(pair.left(), pair.left_rgb(), match_and_check(pair, aligned.right, config, exec, stage),
+                   rig, config, exec, stage);
+  frame.epipolar = aligned.offset;
+  return frame;
 }
 
 Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,

@@ -11,6 +11,7 @@ struct SceneDisparity {
   DisparityMap disparity;
   Ground ground;
   Image<std::uint8_t> floor;  // 255 = floor; empty where there is none
+  EpipolarOffset epipolar{};  // how far the right image's rows were off
 };
 
 /// All that is known of one pair.
@@ -22,6 +23,7 @@ struct Frame {
   Segmentation by_disparity;
   Fusion fusion;
   Objects objects;
+  EpipolarOffset epipolar{};
 };
 
 /// The method's first half: a pair in, checked disparities out. Throws Error where validate() does.

@@ -71,6 +71,8 @@ void expect_same_objects(const Objects& a, const Objects& b) {
 }
 
 void expect_same(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.epipolar.rows, b.epipolar.rows);
+  EXPECT_EQ(a.epipolar.agreeing, b.epipolar.agreeing);
   EXPECT_EQ(differing(a.disparity.disparity_px, b.disparity.disparity_px), 0);
   EXPECT_EQ(differing(a.disparity.reject, b.disparity.reject), 0);
   expect_same_ground(a.ground, b.ground);

@@ -51,6 +51,7 @@ Frame frame_with_one_object(bool with_floor) {
     frame.floor = Image<std::uint8_t>(kSize, 255, {});
     frame.ground.plane = GroundPlane{0.0F, 0.1F, -2.0F};
     frame.ground.support = 0.5F;
+    frame.epipolar = {.rows = 0.5F, .points = 40, .agreeing = 30, .outcome = EpipolarOutcome::corrected};
   } else {
     frame.ground.refusal = Refusal::no_plane;
   }
@@ -97,6 +98,9 @@ TEST(ObjectsJson, SaysWhatWasFoundAndHow) {
   EXPECT_EQ(j.at("timings_ms").at("match"), 3.25);
   EXPECT_EQ(j.at("ground").at("plane").at("b"), 0.1);
   EXPECT_EQ(j.at("ground").at("refusal"), "none");
+  EXPECT_EQ(j.at("epipolar").at("outcome"), "corrected");
+  EXPECT_EQ(j.at("epipolar").at("rows"), 0.5);
+  EXPECT_EQ(j.at("epipolar").at("agreeing"), 30);
   const Json& object = j.at("objects").at(0);
   EXPECT_EQ(object.at("id"), 1);
   EXPECT_EQ(object.at("bbox"), (Json{20, 10, 15, 12}));

@@ -1,0 +1,559 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/parallel.hpp>
+#include <cairn/matching/epipolar_correction.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+// Lengths are pixels of the halved images, but where a name says rows or px of the full ones.
+constexpr int kBlock = 4;            // side of the blocks that gradients are summed over
+constexpr int kWindow = 2 * kBlock;  // side of a point's window
+constexpr int kPatch = 3;            // blocks; the best point of each patch of so many squared is taken
+constexpr int kWindowArea = kWindow * kWindow;
+constexpr float kLeastTexture = 24.0F * kWindowArea;  // squared differences over two pixels, least direction
+constexpr float kRivalRatio = 1.25F;   // of the best match in rows further off to the best at all
+constexpr float kMostResidual = 0.5F;  // squared residual of a match, of the texture itself
+constexpr int kRefinements = 2;
+constexpr float kFurthest = 1.5F;  // that refinements may lead in each direction
+constexpr float kAgreeRows = 0.5F;
+constexpr int kLeastPoints = 16;
+constexpr std::size_t kLeastPointsForRoll = 24;
+constexpr std::size_t kMostPoints = 60;
+constexpr float kCertain = 4.0F;  // standard errors
+
+/// The weights of the four pixels around a place at 0 ≤ t < 1 between the second and the third.
+std::array<float, 4> cubic(float t) {
+  constexpr float kSlope = -0.75F;
+  const float s = 1 - t;
+  const float before = kSlope * t * s * s;
+  const float after = ((kSlope + 2) * s - (kSlope + 3)) * s * s + 1;
+  const float last = kSlope * t * t * s;
+  return {before, 1 - before - after - last, after, last};
+}
+
+/// Out of four rows, 1 3 3 1 of each column, behind and before a copy of the first and the last.
+void sum_columns(const std::array<const Gray*, 4>& rows, int width, std::int16_t* sums) {
+  const Gray* r0 = rows[0];
+  const Gray* r1 = rows[1];
+  const Gray* r2 = rows[2];
+  const Gray* r3 = rows[3];
+  for (int x = 0; x < width; ++x) {
+    sums[x + 1] = static_cast<std::int16_t>(r0[x] + r3[x] + 3 * (r1[x] + r2[x]));
+  }
+  sums[0] = sums[1];
+  sums[width + 1] = sums[width];
+}
+
+void sum_pairs(const std::int16_t* sums, int width, Gray* out) {
+  for (int x = 0; x < width; ++x) {
+    const int sum = sums[2 * x] + sums[2 * x + 3] + 3 * (sums[2 * x + 1] + sums[2 * x + 2]);
+    out[x] = static_cast<Gray>((sum + 32) >> 6);
+  }
+}
+
+/// Each pixel stands between four and weighs the rows around it, and the columns, one, three, three, one:
+/// what is too fine for half the pixels would pull sub-pixel positions.
+Image<Gray> halved(View<const Gray> image, const Exec& exec) {
+  const Size size{image.width() / 2, image.height() / 2};
+  Image<Gray> half(size, exec.pool);
+  parallel_for(exec, size.height, 32, [&](int first, int last) {
+    std::vector<std::int16_t> columns(static_cast<std::size_t>(2 * size.width + 2));
+    for (int y = first; y < last; ++y) {
+      std::array<const Gray*, 4> rows{};
+      for (int k = 0; k < 4; ++k) {
+        rows[static_cast<std::size_t>(k)] = image.row(std::clamp(2 * y + k - 1, 0, image.height() - 1));
+      }
+      sum_columns(rows, 2 * size.width, columns.data());
+      sum_pairs(columns.data(), size.width, half.row(y));
+    }
+  });
+  return half;
+}
+
+/// Sums of products of the gradient's two components.
+struct Tensor {
+  int xx = 0;
+  int xy = 0;
+  int yy = 0;
+  Tensor& operator+=(const Tensor& other) {
+    xx += other.xx;
+    xy += other.xy;
+    yy += other.yy;
+    return *this;
+  }
+  /// The texture in the direction that has least of it (the lesser eigenvalue; Shi & Tomasi 1994).
+  [[nodiscard]] float least() const {
+    const float mean = 0.5F * (static_cast<float>(xx) + static_cast<float>(yy));
+    const float half_difference = 0.5F * (static_cast<float>(xx) - static_cast<float>(yy));
+    const float mixed = static_cast<float>(xy);
+    return mean - std::sqrt(half_difference * half_difference + mixed * mixed);
+  }
+};
+
+/// Every block's tensor. The image's outermost pixels have no gradient, and no block.
+Image<Tensor> block_tensors(View<const Gray> image, const Exec& exec) {
+  const Size blocks{std::max(0, (image.width() - 2) / kBlock), std::max(0, (image.height() - 2) / kBlock)};
+  Image<Tensor> tensors(blocks, Tensor{}, exec.pool);
+  parallel_for(exec, blocks.height, 8, [&](int first, int last) {
+    for (int y = first * kBlock; y < last * kBlock; ++y) {
+      const Gray* above = image.row(y);
+      const Gray* here = image.row(y + 1);
+      const Gray* below = image.row(y + 2);
+      Tensor* out = tensors.row(y / kBlock);
+      for (int x = 0; x < blocks.width * kBlock; ++x) {
+        const int along = here[x + 2] - here[x];
+        const int down = below[x + 1] - above[x + 1];
+        out[x / kBlock] += Tensor{along * along, along * down, down * down};
+      }
+    }
+  });
+  return tensors;
+}
+
+/// Not more than enough, all over the image.
+std::vector<Point> thinned(const std::vector<Point>& points) {
+  if (points.size() <= kMostPoints) return points;
+  std::vector<Point> some;
+  for (std::size_t i = 0; i < kMostPoints; ++i) some.push_back(points[i * points.size() / kMostPoints]);
+  return some;
+}
+
+/// In each patch the corner of the window that has most texture in its weaker direction; raster order.
+std::vector<Point> textured_points(View<const Gray> image, const Exec& exec) {
+  const Image<Tensor> tensors = block_tensors(image, exec);
+  std::vector<Point> points;
+  const auto best_of_patch = [&](int i0, int j0) {
+    std::optional<Point> best;
+    float most = kLeastTexture;
+    for (int j = j0; j < std::min(j0 + kPatch, tensors.height() - 1); ++j) {
+      for (int i = i0; i < std::min(i0 + kPatch, tensors.width() - 1); ++i) {
+        Tensor window = tensors(i, j);
+        window += tensors(i + 1, j);
+        window += tensors(i, j + 1);
+        window += tensors(i + 1, j + 1);
+        if (const float texture = window.least(); texture > most) {
+          most = texture;
+          best = Point{1 + i * kBlock, 1 + j * kBlock};
+        }
+      }
+    }
+    return best;
+  };
+  for (int j = 0; j < tensors.height() - 1; j += kPatch) {
+    for (int i = 0; i < tensors.width() - 1; i += kPatch) {
+      if (const auto best = best_of_patch(i, j)) points.push_back(*best);
+    }
+  }
+  return thinned(points);
+}
+
+/// Squared difference of two windows less the square of their mean difference (ZSSD), times their area.
+int difference(View<const Gray> left, Point a, View<const Gray> right, Point b) {
+  int sum = 0;
+  int squares = 0;
+  for (int y = 0; y < kWindow; ++y) {
+    const Gray* l = left.row(a.y + y) + a.x;
+    const Gray* r = right.row(b.y + y) + b.x;
+    for (int x = 0; x < kWindow; ++x) {
+      const auto step = static_cast<std::int16_t>(l[x] - r[x]);
+      sum += step;
+      squares += step * step;
+    }
+  }
+  return kWindowArea * squares - sum * sum;
+}
+
+struct Search {
+  int first_px = 0;  // disparities
+  int last_px = 0;
+  int rows = 0;  // up and down
+};
+
+struct Candidate {
+  Point at;
+  int cost = std::numeric_limits<int>::max();
+};
+
+/// The window that is most alike; nullopt where one in other rows is nearly as much so, or there is none.
+std::optional<Candidate> find(View<const Gray> left, Point p, View<const Gray> right, const Search& search) {
+  std::vector<Candidate> best_of_row;
+  for (int y = p.y - search.rows; y <= p.y + search.rows; ++y) {
+    Candidate best;
+    if (y >= 0 && y + kWindow <= right.height()) {
+      const int last = std::min(p.x - search.first_px, right.width() - kWindow);
+      for (int x = std::max(p.x - search.last_px, 0); x <= last; ++x) {
+        if (const int cost = difference(left, p, right, {x, y}); cost < best.cost) best = {{x, y}, cost};
+      }
+    }
+    best_of_row.push_back(best);
+  }
+  const auto less = [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; };
+  const Candidate best = *std::min_element(best_of_row.begin(), best_of_row.end(), less);
+  if (best.cost == std::numeric_limits<int>::max()) return std::nullopt;
+  for (const Candidate& other : best_of_row) {
+    const bool near = std::abs(other.at.y - best.at.y) <= 1;
+    if (!near && static_cast<float>(other.cost) < kRivalRatio * static_cast<float>(best.cost)) {
+      return std::nullopt;
+    }
+  }
+  return best;
+}
+
+using Window = std::array<float, kWindowArea>;
+
+/// Column by column, so that the order of the additions is that of vectors.
+float sum_of_products(const Window& a, const Window& b) {
+  std::array<float, kWindow> columns{};
+  for (std::size_t k = 0; k < kWindowArea; k += kWindow) {
+    for (std::size_t i = 0; i < kWindow; ++i) columns[i] += a[k + i] * b[k + i];
+  }
+  float sum = 0;
+  for (const float column : columns) sum += column;
+  return sum;
+}
+
+void remove_mean(Window& values) {
+  std::array<float, kWindow> columns{};
+  for (std::size_t k = 0; k < kWindowArea; k += kWindow) {
+    for (std::size_t i = 0; i < kWindow; ++i) columns[i] += values[k + i];
+  }
+  float sum = 0;
+  for (const float column : columns) sum += column;
+  const float mean = sum / kWindowArea;
+  for (float& v : values) v -= mean;
+}
+
+/// A point of the left image's, and what is needed to move its window.
+struct Template {
+  Window grey{};
+  Window along{};
+  Window down{};
+  float xx = 0;
+  float xy = 0;
+  float yy = 0;
+  float energy = 0;  // squared grey levels; they are less their mean
+};
+
+Template template_at(View<const Gray> image, Point p) {
+  Template t;
+  for (int y = 0; y < kWindow; ++y) {
+    const Gray* above = image.row(p.y + y - 1) + p.x;
+    const Gray* here = image.row(p.y + y) + p.x;
+    const Gray* below = image.row(p.y + y + 1) + p.x;
+    for (int x = 0; x < kWindow; ++x) {
+      const auto k = static_cast<std::size_t>(y * kWindow + x);
+      t.grey[k] = here[x];
+      t.along[k] = 0.5F * static_cast<float>(here[x + 1] - here[x - 1]);
+      t.down[k] = 0.5F * static_cast<float>(below[x] - above[x]);
+    }
+  }
+  remove_mean(t.grey);
+  remove_mean(t.along);  // so that a difference in brightness moves nothing
+  remove_mean(t.down);
+  t.xx = sum_of_products(t.along, t.along);
+  t.xy = sum_of_products(t.along, t.down);
+  t.yy = sum_of_products(t.down, t.down);
+  t.energy = sum_of_products(t.grey, t.grey);
+  return t;
+}
+
+/// Where a window's top left pixel comes to lie.
+struct Place {
+  float x = 0;
+  float y = 0;
+};
+
+/// The window at a place between pixels; nullopt beyond the border. Down the columns by the cubic: a linear
+/// step would favour half rows.
+std::optional<Window> window_at(View<const Gray> image, Place place) {
+  const int x = static_cast<int>(std::floor(place.x));
+  const int y = static_cast<int>(std::floor(place.y));
+  if (x < 0 || y < 1 || x + kWindow >= image.width() || y + kWindow + 1 >= image.height())
+    return std::nullopt;
+  const float u = place.x - static_cast<float>(x);
+  const std::array<float, 4> w = cubic(place.y - static_cast<float>(y));
+  Window values{};
+  for (int j = 0; j < kWindow; ++j) {
+    const Gray* r0 = image.row(y + j - 1) + x;
+    const Gray* r1 = image.row(y + j) + x;
+    const Gray* r2 = image.row(y + j + 1) + x;
+    const Gray* r3 = image.row(y + j + 2) + x;
+    std::array<float, kWindow + 1> row{};
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      row[i] = w[0] * static_cast<float>(r0[i]) + w[1] * static_cast<float>(r1[i]) +
+               w[2] * static_cast<float>(r2[i]) + w[3] * static_cast<float>(r3[i]);
+    }
+    float* out = values.data() + j * kWindow;
+    for (std::size_t i = 0; i < kWindow; ++i) out[i] = row[i] + u * (row[i + 1] - row[i]);
+  }
+  remove_mean(values);
+  return values;
+}
+
+/// The least squared difference near `start`, by Newton's steps; nullopt where they lead away, or to what
+/// looks different.
+std::optional<Place> refine(View<const Gray> left, Point p, View<const Gray> right, Place start) {
+  const Template t = template_at(left, p);
+  const float determinant = t.xx * t.yy - t.xy * t.xy;
+  Place place = start;
+  float residual = 0;
+  for (int i = 0; i < kRefinements; ++i) {
+    auto error = window_at(right, place);
+    if (!error || !(determinant > 0)) return std::nullopt;
+    for (std::size_t k = 0; k < kWindowArea; ++k) (*error)[k] -= t.grey[k];
+    const float along = sum_of_products(t.along, *error);
+    const float down = sum_of_products(t.down, *error);
+    residual = sum_of_products(*error, *error);
+    place.x -= (t.yy * along - t.xy * down) / determinant;
+    place.y -= (t.xx * down - t.xy * along) / determinant;
+    const bool near = std::abs(place.x - start.x) <= kFurthest && std::abs(place.y - start.y) <= kFurthest;
+    if (!near) return std::nullopt;
+  }
+  if (residual > kMostResidual * t.energy) return std::nullopt;
+  return place;
+}
+
+/// A point found again: the column of the right image, and how many rows it is off.
+struct Sighting {
+  float x_px = 0;
+  float rows = 0;
+};
+
+/// A pair at its full size, and halved.
+struct Pyramid {
+  View<const Gray> left;
+  View<const Gray> right;
+  View<const Gray> left_half;
+  View<const Gray> right_half;
+};
+
+/// The middle of what the halved images' window shows is looked at again in the full ones, where sub-pixel
+/// places are finer, and are read as shift_rows() will write them.
+std::optional<Sighting> sight(const Pyramid& pyramid, Point p, const Search& search) {
+  const auto match = find(pyramid.left_half, p, pyramid.right_half, search);
+  if (!match) return std::nullopt;
+  const Place start{static_cast<float>(match->at.x), static_cast<float>(match->at.y)};
+  const auto coarse = refine(pyramid.left_half, p, pyramid.right_half, start);
+  if (!coarse) return std::nullopt;
+  constexpr int kMiddle = kWindow / 2;
+  const Point full{2 * p.x + kMiddle, 2 * p.y + kMiddle};
+  const auto fine =
+      refine(pyramid.left, full, pyramid.right, {2 * coarse->x + kMiddle, 2 * coarse->y + kMiddle});
+  if (!fine) return std::nullopt;
+  return Sighting{fine->x + 0.5F * (kWindow - 1), fine->y - static_cast<float>(full.y)};
+}
+
+std::vector<Sighting> sight_all(const Pyramid& pyramid, const Search& search, const Exec& exec) {
+  const std::vector<Point> points = textured_points(pyramid.left_half, exec);
+  std::vector<std::optional<Sighting>> found(points.size());
+  parallel_for(exec, static_cast<int>(points.size()), 16, [&](int first, int last) {
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
+      found[i] = sight(pyramid, points[i], search);
+    }
+  });
+  std::vector<Sighting> sightings;
+  for (const auto& sighting : found) {
+    if (sighting) sightings.push_back(*sighting);
+  }
+  return sightings;
+}
+
+// ---- from sightings to a line ----
+
+float median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Line {
+  float rows = 0;  // at column `middle_px`
+  float slope = 0;
+  float middle_px = 0;
+  [[nodiscard]] float at(float x_px) const { return rows + slope * (x_px - middle_px); }
+};
+
+std::vector<Sighting> within(const std::vector<Sighting>& all, const Line& line, float rows) {
+  std::vector<Sighting> near;
+  for (const Sighting& s : all) {
+    if (std::abs(s.rows - line.at(s.x_px)) <= rows) near.push_back(s);
+  }
+  return near;
+}
+
+/// The line that a quarter of the sightings cannot pull away. Pairs that lie half of them apart give the
+/// slope (Theil 1950, Sen 1968).
+Line line_by_medians(std::vector<Sighting> all, float middle_px) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Sighting& a, const Sighting& b) { return a.x_px < b.x_px; });
+  const std::size_t half = all.size() / 2;
+  std::vector<float> slopes;
+  for (std::size_t i = 0; i < half; ++i) {
+    const float apart = all[i + half].x_px - all[i].x_px;
+    if (apart > 0) slopes.push_back((all[i + half].rows - all[i].rows) / apart);
+  }
+  Line line{0, slopes.empty() ? 0.0F : median(slopes), middle_px};
+  std::vector<float> rows;
+  for (const Sighting& s : all) rows.push_back(s.rows - line.slope * (s.x_px - middle_px));
+  line.rows = median(rows);
+  return line;
+}
+
+/// The line by least squares; level unless its slope is certain and moves the image's ends apart visibly.
+Line line_by_squares(const std::vector<Sighting>& all, float middle_px) {
+  const auto count = static_cast<double>(all.size());
+  double mean_x = 0;
+  double mean_rows = 0;
+  for (const Sighting& s : all) {
+    mean_x += static_cast<double>(s.x_px) / count;
+    mean_rows += static_cast<double>(s.rows) / count;
+  }
+  double xx = 0;
+  double xr = 0;
+  double rr = 0;
+  for (const Sighting& s : all) {
+    const double x = static_cast<double>(s.x_px) - mean_x;
+    const double rows = static_cast<double>(s.rows) - mean_rows;
+    xx += x * x;
+    xr += x * rows;
+    rr += rows * rows;
+  }
+  const double slope = xx > 0 ? xr / xx : 0;
+  const double error = xx > 0 ? std::sqrt(std::max(0.0, rr - slope * xr) / (count * xx)) : 0;
+  const bool certain =
+      all.size() >= kLeastPointsForRoll && std::abs(slope) > static_cast<double>(kCertain) * error &&
+      std::abs(slope) * static_cast<double>(middle_px) > static_cast<double>(kEpipolarLeastRows);
+  if (!certain) return {static_cast<float>(mean_rows), 0, middle_px};
+  return {static_cast<float>(mean_rows + slope * (static_cast<double>(middle_px) - mean_x)),
+          static_cast<float>(slope), middle_px};
+}
+
+EpipolarOffset judge(const std::vector<Sighting>& all, float max_rows, int width) {
+  EpipolarOffset offset;
+  offset.points = static_cast<int>(all.size());
+  offset.outcome = EpipolarOutcome::few_points;
+  if (offset.points < kLeastPoints) return offset;
+
+  const float middle_px = 0.5F * static_cast<float>(width - 1);
+  Line line = line_by_medians(all, middle_px);
+  for (int i = 0; i < 2; ++i) {
+    const std::vector<Sighting> agreeing = within(all, line, kAgreeRows);
+    if (!agreeing.empty()) line = line_by_squares(agreeing, middle_px);
+  }
+  offset.agreeing = static_cast<int>(within(all, line, kAgreeRows).size());
+  const float ends = std::abs(line.slope) * middle_px;
+  offset.outcome = EpipolarOutcome::no_agreement;
+  if (offset.agreeing < kLeastPoints || 2 * offset.agreeing < offset.points) return offset;
+  if (std::abs(line.rows) + ends > max_rows + kAgreeRows) return offset;
+
+  offset.rows = line.rows;
+  offset.rows_per_px = line.slope;
+  offset.outcome =
+      std::abs(line.rows) + ends < kEpipolarLeastRows ? EpipolarOutcome::aligned : EpipolarOutcome::corrected;
+  return offset;
+}
+
+// ---- moving rows ----
+
+constexpr int kSteps = 64;    // of a row
+constexpr int kWeights = 64;  // what the four add up to: 16 bits hold any sum of theirs
+
+using Taps = std::array<std::vector<std::int16_t>, 4>;
+
+/// Columns first … last − 1 all start from the same row.
+struct Run {
+  int first = 0;
+  int last = 0;
+  int row = 0;  // of the second of the four, minus y
+};
+
+std::array<std::int16_t, 4> whole_weights(int step) {
+  const std::array<float, 4> w = cubic(static_cast<float>(step) / kSteps);
+  const auto whole = [](float weight) { return static_cast<std::int16_t>(std::lround(kWeights * weight)); };
+  const int others = whole(w[0]) + whole(w[2]) + whole(w[3]);
+  return {whole(w[0]), static_cast<std::int16_t>(kWeights - others), whole(w[2]), whole(w[3])};
+}
+
+/// A short loop on copies of all that it needs, so that compilers turn it into vectors.
+void blend(const std::array<const Gray*, 4>& rows, const Taps& taps, Run run, Gray* out) {
+  const Gray* r0 = rows[0];
+  const Gray* r1 = rows[1];
+  const Gray* r2 = rows[2];
+  const Gray* r3 = rows[3];
+  const std::int16_t* w0 = taps[0].data();
+  const std::int16_t* w1 = taps[1].data();
+  const std::int16_t* w2 = taps[2].data();
+  const std::int16_t* w3 = taps[3].data();
+  constexpr std::int16_t kBlack = 0;
+  constexpr std::int16_t kWhite = 255;
+  const int last = run.last;
+  for (int x = run.first; x < last; ++x) {
+    const auto a = static_cast<std::int16_t>(w0[x] * r0[x] + w1[x] * r1[x]);
+    const auto b = static_cast<std::int16_t>(w2[x] * r2[x] + w3[x] * r3[x]);
+    const auto grey = static_cast<std::int16_t>(static_cast<std::int16_t>(a + b + kWeights / 2) >> 6);
+    out[x] = static_cast<Gray>(std::clamp(grey, kBlack, kWhite));
+  }
+}
+
+}  // namespace
+
+EpipolarOffset find_epipolar_offset(const StereoPair& pair, const MatchConfig& range,
+                                    const EpipolarCorrectionConfig& config, const Exec& exec) {
+  if (config.max_rows < 0) return {};
+  const Image<Gray> left = halved(pair.left(), exec);
+  const Image<Gray> right = halved(pair.right(), exec);
+  const int last = range.min_disparity + range.num_disparities - 1;
+  const Search search{range.min_disparity >> 1, (last + 1) >> 1,
+                      static_cast<int>(std::ceil(0.5F * config.max_rows))};
+  return judge(sight_all({pair.left(), pair.right(), left, right}, search, exec), config.max_rows,
+               pair.size().width);
+}
+
+Image<Gray> shift_rows(View<const Gray> right, const EpipolarOffset& offset, const Exec& exec) {
+  const Size size = right.size();
+  Taps taps;
+  for (auto& tap : taps) tap.resize(static_cast<std::size_t>(size.width));
+  std::vector<Run> runs;
+  const float middle_px = 0.5F * static_cast<float>(size.width - 1);
+  for (int x = 0; x < size.width; ++x) {
+    const float rows = offset.rows + offset.rows_per_px * (static_cast<float>(x) - middle_px);
+    const int steps = static_cast<int>(std::lround(kSteps * rows));
+    const int row = steps >> 6;  // rounds down
+    const auto weights = whole_weights(steps - kSteps * row);
+    for (std::size_t k = 0; k < 4; ++k) taps[k][static_cast<std::size_t>(x)] = weights[k];
+    if (runs.empty() || runs.back().row != row) runs.push_back({x, x, row});
+    runs.back().last = x + 1;
+  }
+  Image<Gray> moved(size, exec.pool);
+  parallel_for(exec, size.height, 32, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      for (const Run& run : runs) {
+        std::array<const Gray*, 4> rows{};
+        for (int k = 0; k < 4; ++k) {
+          rows[static_cast<std::size_t>(k)] = right.row(std::clamp(y + run.row + k - 1, 0, size.height - 1));
+        }
+        blend(rows, taps, run, moved.row(y));
+      }
+    }
+  });
+  return moved;
+}
+
+EpipolarCorrection correct_epipolar(const StereoPair& pair, const MatchConfig& range,
+                                    const EpipolarCorrectionConfig& config, const Exec& exec) {
+  EpipolarCorrection correction{find_epipolar_offset(pair, range, config, exec), {}};
+  if (correction.offset.outcome == EpipolarOutcome::corrected) {
+    correction.right = shift_rows(pair.right(), correction.offset, exec);
+  }
+  return correction;
+}
+
+}  // namespace cairn
