@@ -122,7 +122,7 @@ inline std::string line(double x1, double y1, double x2, double y2, std::string_
                           {"stroke", std::string(colour)}});
 }
 
-inline constexpr double kPanelWidth = 230;  // px, its margins counted
+inline constexpr double kPanelWidth = 250;  // px, its margins counted
 inline constexpr double kHeight = 225;
 inline constexpr double kLeft = 38;  // margins around a panel's axes
 inline constexpr double kRight = 12;

@@ -54,8 +54,8 @@ Plot two_values(double second) {
 
 TEST(SvgPlot, DrawsEachValueWhereTheAxesSay) {
   const std::string svg = svg_of(two_values(0));
-  // The panel is 230 wide with margins of 38 and 12, 225 high with margins of 46 and 42.
-  EXPECT_NE(svg.find("d=\"M38.0 46.0L218.0 183.0\""), std::string::npos) << svg;
+  // The panel is 250 wide with margins of 38 and 12, 225 high with margins of 46 and 42.
+  EXPECT_NE(svg.find("d=\"M38.0 46.0L238.0 183.0\""), std::string::npos) << svg;
   EXPECT_EQ(count_of("<circle", svg), 2);
   EXPECT_NE(svg.find(">noise</text>"), std::string::npos);
 }
