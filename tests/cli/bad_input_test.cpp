@@ -20,7 +20,7 @@ TEST_F(BadInput, PicturesThatAreNone) {
   write(at("header.png"), png.substr(0, 20));
   write(at("cut.pgm"), "P5\n96 72\n255\nabc");
   write(at("huge.pgm"), "P5\n2000000000 2000000000\n255\nabc");
-  write(at("cut.jpg"), "\xff\xd8\xff\xe0\x00\x10JFIF");
+  write(at("cut.jpg"), std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10));  // NOLINT: JPEG begins so
   for (const char* bad :
        {"missing.png", "empty.png", "text.png", "cut.png", "header.png", "cut.pgm", "huge.pgm", "cut.jpg"}) {
     refuses({"segment", good[0], path(bad)}, {bad});

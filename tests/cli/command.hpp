@@ -21,8 +21,6 @@
 #include <utility>
 #include <vector>
 
-extern char** environ;
-
 /// The command as others run it: a process with arguments, an exit code, and what it wrote.
 namespace cairn::command {
 
@@ -79,6 +77,7 @@ class CommandTest : public testing::Test {
     std::vector<std::string> words{CAIRN_COMMAND};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     pid_t child = 0;

@@ -168,9 +168,8 @@ TEST(Flooded, IsThatOfItsDefinition) {
     const Facets facets{random_image<RegionId>({9, 7}, 0, count - 1, seed), count, {}};
     const auto edges = random_image<std::uint16_t>({9, 7}, 0, edges_apart, seed);
     const std::vector<Border> borders = borders_of(facets.labels, edges);
-    std::vector<std::int32_t> labels;
-    for (int i = 0; i < count; ++i) labels.push_back(static_cast<std::int32_t>(random() % 9) - 6);
-    for (std::int32_t& label : labels) label = std::max(label, -1);
+    std::vector<std::int32_t> labels(static_cast<std::size_t>(count));
+    for (std::int32_t& label : labels) label = std::max(static_cast<std::int32_t>(random() % 9) - 6, -1);
     EXPECT_EQ(flooded(labels, borders, 99), reference::flooded(labels, borders, 99)) << seed;
   }
 }

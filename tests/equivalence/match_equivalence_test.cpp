@@ -5,12 +5,12 @@
 #include <cairn/core/target.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/prefilter.hpp>
-#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "reference/match.hpp"
+#include "support/first_difference.hpp"
 
 namespace {
 
@@ -52,36 +52,6 @@ struct Pictures {
     }
   }
 };
-
-template <class T>
-std::string first_difference(const Image<T>& expected, const Image<T>& got) {
-  if (expected.size() != got.size()) return "sizes " + text(expected.size()) + " and " + text(got.size());
-  for (int y = 0; y < expected.height(); ++y) {
-    for (int x = 0; x < expected.width(); ++x) {
-      if (std::memcmp(&expected(x, y), &got(x, y), sizeof(T)) == 0) continue;
-      return "(" + std::to_string(x) + ", " + std::to_string(y) + "): expected " +
-             std::to_string(expected(x, y)) + ", got " + std::to_string(got(x, y));
-    }
-  }
-  return {};
-}
-
-std::string first_difference(const Matches& expected, const Matches& got) {
-  std::string report;
-  const auto compare = [&](const char* map, const auto& a, const auto& b) {
-    const std::string difference = first_difference(a, b);
-    if (!difference.empty()) report += std::string(map) + " at " + difference + "\n";
-  };
-  compare("best", expected.best, got.best);
-  compare("best_right", expected.best_right, got.best_right);
-  compare("row_offset", expected.row_offset, got.row_offset);
-  compare("cost", expected.cost, got.cost);
-  compare("runner_up", expected.runner_up, got.runner_up);
-  compare("mean_cost", expected.mean_cost, got.mean_cost);
-  compare("cost_before", expected.cost_before, got.cost_before);
-  compare("cost_after", expected.cost_after, got.cost_after);
-  return report;
-}
 
 std::string description(Size size, const MatchConfig& c, Target target, int threads) {
   return text(size) + " " + std::string(kCosts[static_cast<std::size_t>(c.cost)].name) + " window " +

@@ -4,12 +4,12 @@
 
 #include <cairn/core/target.hpp>
 #include <cairn/matching/semi_global.hpp>
-#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "reference/semi_global.hpp"
+#include "support/first_difference.hpp"
 
 namespace {
 
@@ -53,32 +53,6 @@ struct Pictures {
     }
   }
 };
-
-template <class T>
-std::string first_difference(const char* map, const Image<T>& expected, const Image<T>& got) {
-  if (expected.size() != got.size()) {
-    return std::string(map) + ": sizes " + text(expected.size()) + " and " + text(got.size()) + "\n";
-  }
-  for (int y = 0; y < expected.height(); ++y) {
-    for (int x = 0; x < expected.width(); ++x) {
-      if (std::memcmp(&expected(x, y), &got(x, y), sizeof(T)) == 0) continue;
-      return std::string(map) + " at (" + std::to_string(x) + ", " + std::to_string(y) + "): expected " +
-             std::to_string(expected(x, y)) + ", got " + std::to_string(got(x, y)) + "\n";
-    }
-  }
-  return {};
-}
-
-std::string first_difference(const Matches& expected, const Matches& got) {
-  return first_difference("best", expected.best, got.best) +
-         first_difference("best_right", expected.best_right, got.best_right) +
-         first_difference("row_offset", expected.row_offset, got.row_offset) +
-         first_difference("cost", expected.cost, got.cost) +
-         first_difference("runner_up", expected.runner_up, got.runner_up) +
-         first_difference("mean_cost", expected.mean_cost, got.mean_cost) +
-         first_difference("cost_before", expected.cost_before, got.cost_before) +
-         first_difference("cost_after", expected.cost_after, got.cost_after);
-}
 
 MatchConfig search(int first, int count, Evidence evidence = Evidence::full) {
   return {.method = MatchMethod::semi_global,

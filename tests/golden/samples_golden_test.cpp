@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kIouTolerance = 0.03;
-constexpr double kPositionTolerance_m = 0.05;
+constexpr double kPositionToleranceMetres = 0.05;
 constexpr double kShareTolerance = 0.01;  // of density and of bad pixels
 constexpr int kCountTolerance = 1;        // objects found
 
@@ -107,7 +107,7 @@ void expect_near(const Json& now, const Json& then) {
     ASSERT_TRUE(a.contains("position_m"));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(a.at("position_m").at(axis).get<double>(), b.at("position_m").at(axis).get<double>(),
-                  kPositionTolerance_m);
+                  kPositionToleranceMetres);
     }
   }
 }

@@ -218,6 +218,7 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
     }
   }
   std::vector<Border> sorted;
+  sorted.reserve(borders.size());
   for (const auto& [ends, border] : borders) sorted.push_back(border);
   return sorted;
 }

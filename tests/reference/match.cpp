@@ -140,12 +140,13 @@ Image<std::int16_t> remove_mean(View<const Gray> image, int window_size) {
   const int half = window_size / 2;
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) {
-      int sum = 0, count = 0;
+      int sum = 0, count = 0;  // the pixel itself always counts
       for (int v = y - half; v <= y + half; ++v) {
         for (int u = x - half; u <= x + half; ++u) {
           if (image.contains(u, v)) sum += image(u, v), ++count;
         }
       }
+      count = std::max(count, 1);
       out(x, y) = static_cast<std::int16_t>(16 * image(x, y) - (16 * sum + count / 2) / count);
     }
   }

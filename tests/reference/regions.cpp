@@ -436,7 +436,8 @@ Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity) 
   }
   std::map<RegionId, std::vector<RegionId>> parts;
   std::map<RegionId, RegionId> chosen;
-  for (const auto& [i, areas] : overlap) {
+  for (const auto& [i, overlapped] : overlap) {
+    const auto& areas = overlapped;
     const auto rank = [&](RegionId d) {
       return std::tuple(areas.at(d), by_disparity.regions[index(d)].mean, -number(d));
     };

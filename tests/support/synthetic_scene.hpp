@@ -52,8 +52,8 @@ inline Scene make_scene(const Layout& layout) {
               Image<std::uint8_t>(size), Image<std::uint16_t>(size)};
   const int steps = std::max(1, size.height - 1);
   for (int y = 0; y < size.height; ++y) {
-    const auto background =
-        static_cast<float>(layout.background_px + (2 * layout.rise_px * y + steps) / (2 * steps));
+    const int rise = (2 * layout.rise_px * y + steps) / (2 * steps);  // whole pixels, rounded
+    const auto background = static_cast<float>(layout.background_px + rise);
     std::fill_n(scene.disparity_px.row(y), size.width, background);
     std::fill_n(scene.objects.row(y), size.width, std::uint16_t{0});
   }

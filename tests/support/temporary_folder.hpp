@@ -33,7 +33,7 @@ class TemporaryFolder {
 
   /// Writes `bytes` into this folder under `name` (folders on the way are made) and returns where.
   [[nodiscard]] std::filesystem::path with(const std::string& name, std::string_view bytes) const {
-    const std::filesystem::path file = path_ / name;
+    std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
     std::filesystem::remove(
         file);  // some file systems flush a file that is written anew, and that takes long
@@ -56,7 +56,7 @@ inline std::string refusal(const std::function<void()>& work) {
   try {
     work();
   } catch (const Error& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     return message;
   } catch (const std::exception& other) {

@@ -88,6 +88,7 @@ TEST(AtomicFile, WritesToADeviceWithoutReplacingIt) {
 TEST(AtomicFile, ManyWritersOfOneFileLeaveOneWholeFile) {
   const TemporaryFolder folder;
   std::vector<std::thread> writers;
+  writers.reserve(4);
   for (int i = 0; i < 4; ++i) {
     writers.emplace_back([&, i] {
       for (int k = 0; k < 20; ++k)
