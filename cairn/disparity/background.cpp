@@ -40,13 +40,13 @@ struct Condition {
   double value = 0;
 };
 
-/// Upright on the floor: a plane d = a·x + b·y + c has the normal (a·f, b·f, a·cx + b·cy + c + doffs) in the
-/// camera's frame (from 1/Z), and two planes are upright on each other where their normals are.
-Condition upright(const GroundPlane& floor, const StereoRig& rig) {
+/// Square on `other`: a plane d = a·x + b·y + c has the normal (a·f, b·f, a·cx + b·cy + c + doffs) in the
+/// camera's frame (from 1/Z), and two planes are square on each other where their normals are.
+Condition square(const GroundPlane& other, const StereoRig& rig) {
   const double f = rig.focal_px;
-  const double nx = floor.a * f;
-  const double ny = floor.b * f;
-  const double nz = floor.a * rig.cx_px + floor.b * rig.cy_px + floor.c + rig.doffs_px;
+  const double nx = other.a * f;
+  const double ny = other.b * f;
+  const double nz = other.a * rig.cx_px + other.b * rig.cy_px + other.c + rig.doffs_px;
   const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
   return {{(f * nx + rig.cx_px * nz) / length, (f * ny + rig.cy_px * nz) / length, nz / length},
           -rig.doffs_px * nz / length};
@@ -80,41 +80,73 @@ Condition through(const Point3& p) {
 /// Looks for walls among points; keeps what was found so far.
 class WallSearch {
  public:
-  WallSearch(std::vector<Point3> points, std::vector<GroundPlane> planes, std::optional<Condition> upright,
+  /// `rig`: given where the first of `planes` is a floor that walls stand upright on.
+  WallSearch(std::vector<Point3> points, std::vector<GroundPlane> planes, std::optional<StereoRig> rig,
              int width, const BackgroundConfig& config)
       : points_(std::move(points)),
         behind_(points_.size(), 0.0F),
         planes_(std::move(planes)),
-        upright_(upright),
+        rig_(rig),
         least_distance_(0.06F * static_cast<float>(width)),
         tolerance_(config.tolerance * 0.001F * static_cast<float>(width)),
         min_share_(config.min_share * 0.01),
+        min_share_square_(config.min_share_square * 0.01),
         max_behind_(config.max_behind * 0.01) {
     for (const GroundPlane& plane : planes_) put_behind(plane);
+    if (rig_) conditions_.push_back(square(planes_.front(), *rig_));
   }
 
   /// Adds the best wall; false where none is good enough.
   bool find_next() {
-    std::vector<std::size_t> before;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (points_[i].d - behind_[i] > tolerance_) before.push_back(i);
-    }
-    if (static_cast<double>(before.size()) < min_share_ * static_cast<double>(points_.size()) ||
-        before.size() < 8) {
-      return false;
-    }
-    const std::optional<GroundPlane> guess = best_guess(before);
-    if (!guess) return false;
-    const std::optional<GroundPlane> wall = refined(*guess, before);
-    if (!wall || !good_enough(*wall)) return false;
-    planes_.push_back(*wall);
-    put_behind(*wall);
+    const std::vector<std::size_t> before = in_front();
+    const std::optional<GroundPlane> wall = found_among(before, min_share_);
+    if (!wall) return false;
+    add(*wall);
     return true;
+  }
+
+  /// Adds the best wall square on the first one. One point tells where such a wall is, so less evidence will
+  /// do. For a wall that hardly shows any: a side wall with a window.
+  bool find_next_square() {
+    if (!rig_ || planes_.size() < 2) return false;
+    conditions_.push_back(square(planes_[1], *rig_));
+    const bool found = [&] {
+      const std::vector<std::size_t> before = in_front();
+      const std::optional<GroundPlane> wall = found_among(before, min_share_square_);
+      if (wall) add(*wall);
+      return wall.has_value();
+    }();
+    conditions_.pop_back();
+    return found;
   }
 
   [[nodiscard]] std::vector<GroundPlane> planes() && { return std::move(planes_); }
 
  private:
+  [[nodiscard]] std::vector<std::size_t> in_front() const {
+    std::vector<std::size_t> before;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (points_[i].d - behind_[i] > tolerance_) before.push_back(i);
+    }
+    return before;
+  }
+
+  std::optional<GroundPlane> found_among(const std::vector<std::size_t>& before, double min_share) {
+    if (static_cast<double>(before.size()) < min_share * static_cast<double>(points_.size()) ||
+        before.size() < 8) {
+      return std::nullopt;
+    }
+    const std::optional<GroundPlane> guess = best_guess(before);
+    if (!guess) return std::nullopt;
+    std::optional<GroundPlane> wall = refined(*guess, before);
+    return wall && good_enough(*wall, min_share) ? wall : std::nullopt;
+  }
+
+  void add(const GroundPlane& wall) {
+    planes_.push_back(wall);
+    put_behind(wall);
+  }
+
   void put_behind(const GroundPlane& plane) {
     for (std::size_t i = 0; i < points_.size(); ++i) behind_[i] = std::max(behind_[i], at(plane, points_[i]));
   }
@@ -126,12 +158,20 @@ class WallSearch {
     return drawn;
   }
 
+  /// Through as many points as the conditions leave free.
   std::optional<GroundPlane> hypothesis(const std::vector<std::size_t>& before) {
-    const Point3& p = points_[before[draw_.below(before.size())]];
-    const Point3& q = points_[before[draw_.below(before.size())]];
-    if (std::abs(p.x - q.x) < least_distance_) return std::nullopt;
-    if (upright_) return solve({through(p), through(q), *upright_});
-    return solve({through(p), through(q), through(points_[before[draw_.below(before.size())]])});
+    std::array<Condition, 3> all{};
+    std::copy(conditions_.begin(), conditions_.end(), all.begin());
+    std::array<float, 3> columns{};
+    for (std::size_t i = conditions_.size(); i < all.size(); ++i) {
+      const Point3& point = points_[before[draw_.below(before.size())]];
+      all.at(i) = through(point);
+      columns.at(i) = point.x;
+      if (i == conditions_.size() + 1 && std::abs(columns.at(i) - columns.at(i - 1)) < least_distance_) {
+        return std::nullopt;
+      }
+    }
+    return solve(all);
   }
 
   std::optional<GroundPlane> best_guess(const std::vector<std::size_t>& before) {
@@ -179,11 +219,11 @@ class WallSearch {
         weight += 1;
       }
       if (weight < 3) return plane;
-      if (upright_) {  // as an observation so heavy that nothing moves it
+      for (const Condition& condition : conditions_) {  // as an observation so heavy that nothing moves it
         const double heavy = 1e6 * weight;
         for (std::size_t r = 0; r < 3; ++r) {
-          for (std::size_t c = 0; c < 3; ++c) normal[r].k[c] += heavy * upright_->k[r] * upright_->k[c];
-          normal[r].value += heavy * upright_->k[r] * upright_->value;
+          for (std::size_t c = 0; c < 3; ++c) normal[r].k[c] += heavy * condition.k[r] * condition.k[c];
+          normal[r].value += heavy * condition.k[r] * condition.value;
         }
       }
       const std::optional<GroundPlane> better = solve(normal);
@@ -193,7 +233,7 @@ class WallSearch {
     return plane;
   }
 
-  [[nodiscard]] bool good_enough(const GroundPlane& wall) const {
+  [[nodiscard]] bool good_enough(const GroundPlane& wall, double min_share) const {
     std::size_t on = 0;
     std::size_t beyond = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -202,16 +242,19 @@ class WallSearch {
       if (points_[i].d - std::max(behind_[i], d) < -tolerance_) ++beyond;
     }
     const auto all = static_cast<double>(points_.size());
-    return static_cast<double>(on) >= min_share_ * all && static_cast<double>(beyond) <= max_behind_ * all;
+    return static_cast<double>(on) >= min_share * all &&
+           static_cast<double>(beyond) <= max_behind_ * static_cast<double>(on);
   }
 
   std::vector<Point3> points_;
   std::vector<float> behind_;  // the background's disparity at each point
   std::vector<GroundPlane> planes_;
-  std::optional<Condition> upright_;
+  std::optional<StereoRig> rig_;
+  std::vector<Condition> conditions_;  // that every wall keeps
   float least_distance_;
   float tolerance_;
   double min_share_;
+  double min_share_square_;
   double max_behind_;
   Draw draw_;
 };
@@ -238,13 +281,10 @@ Background fit_background(View<const float> evidence_px, const Ground& ground,
     }
   }
   std::vector<GroundPlane> planes;
-  std::optional<Condition> condition;
-  if (ground.plane) {
-    planes.push_back(*ground.plane);
-    if (rig) condition = upright(*ground.plane, *rig);
-  }
-  WallSearch search(std::move(points), std::move(planes), condition, size.width, config);
-  for (int i = 0; i < config.max_walls && search.find_next(); ++i) {
+  if (ground.plane) planes.push_back(*ground.plane);
+  WallSearch search(std::move(points), std::move(planes), ground.plane ? rig : std::nullopt, size.width,
+                    config);
+  for (int i = 0; i < config.max_walls && (search.find_next() || search.find_next_square()); ++i) {
   }
   return {std::move(search).planes()};
 }

@@ -12,7 +12,8 @@ struct BackgroundConfig {
   int max_walls = 3;
   float tolerance = 2.3F;
   float min_share = 1.5F;
-  float max_behind = 3.0F;
+  float min_share_square = 0.4F;
+  float max_behind = 20.0F;
 };
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
@@ -20,7 +21,10 @@ void fields(BackgroundConfig& c, V&& v) {
   v("tolerance", c.tolerance, "‰ of the width",
     "how far a disparity may lie from a wall's and still support it", range(0.0F, 100.0F));
   v("min_share", c.min_share, "% of the evidence", "least support of a wall", range(0.0F, 100.0F));
-  v("max_behind", c.max_behind, "% of the evidence", "most that may lie behind a wall", range(0.0F, 100.0F));
+  v("min_share_square", c.min_share_square, "% of the evidence", "the same of a wall square on the first one",
+    range(0.0F, 100.0F));
+  v("max_behind", c.max_behind, "% of the support", "most evidence that may lie behind a wall",
+    range(0.0F, 100.0F));
 }
 
 /// The planes that bound the scene from behind: the floor, if there is one, and walls. A room seen from

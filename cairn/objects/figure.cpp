@@ -1,19 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
+#include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/figure.hpp>
+#include <cairn/regions/minimum_cut.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <utility>
 
 namespace cairn {
 namespace {
 
-// Votes in tenths: what is seen counts double what is concluded, and a conclusion over too long a stretch
-// next to nothing.
+// Votes in twentieths of a pixel of evidence: what is seen counts double what is concluded, and a conclusion
+// over too long a stretch next to nothing. In doubt, ground.
 constexpr int kSeen = 20;
 constexpr int kConcluded = 10;
 constexpr int kCutOff = 5;
 constexpr int kTooLong = 1;
+constexpr int kInDoubt = 1;
+
+constexpr int kRounds = 3;
+constexpr double kUnit = 320;  // costs are whole numbers, of 1/320 pixel of evidence
+
+// An edge of this strength weighs 1/e: once and a half what makes facets fuse.
+constexpr double kEdge = 3.0;        // grey levels …
+constexpr double kEdgeNoise = 4.5;   // … plus deviations of the image noise
+constexpr double kSeenShare = 0.25;  // of a facet's pixels: above it the facet is figure by what is seen
 
 struct Votes {
   std::vector<std::int64_t> figure, ground, pixels, seen_figure;
@@ -74,73 +88,145 @@ void vote_in_row(const RegionId* facet, int width, const std::vector<Seen>& seen
   vote_to_border(facet, seen.back().x + 1, width, &seen.back(), scales, votes);
 }
 
-/// The mean colour of a facet; its grey three times where there is no colour. Sums of large facets need a
-/// double.
-struct Colour {
-  double r = 0, g = 0, b = 0;
-  [[nodiscard]] bool like(const Colour& o, float reach) const {
-    return std::abs(r - o.r) <= reach && std::abs(g - o.g) <= reach && std::abs(b - o.b) <= reach;
-  }
+using Colour = std::array<double, 3>;
+
+/// Mean square difference of the channels.
+double difference(const Colour& p, const Colour& q) {
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) sum += (p[c] - q[c]) * (p[c] - q[c]);
+  return sum / 3;
+}
+
+/// A facet as the colour models see it.
+struct Look {
+  Colour colour{};  // mean; its grey three times where there is no colour
+  Rect box;
+  double pixels = 0;
+  bool seen = false;  // to be figure
 };
 
-std::vector<Colour> mean_colours(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
-                                 const std::vector<std::int64_t>& pixels) {
-  std::vector<Colour> colours(pixels.size());
+std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
+                           const Votes& votes) {
+  std::vector<Look> looks(votes.pixels.size());
   for (int y = 0; y < gray.height(); ++y) {
     for (int x = 0; x < gray.width(); ++x) {
-      Colour& sum = colours[index(facets.labels(x, y))];
+      Look& look = looks[index(facets.labels(x, y))];
       const Rgb colour = rgb.empty() ? Rgb{gray(x, y), gray(x, y), gray(x, y)} : rgb(x, y);
-      sum.r += colour.r;
-      sum.g += colour.g;
-      sum.b += colour.b;
+      look.colour[0] += colour.r;
+      look.colour[1] += colour.g;
+      look.colour[2] += colour.b;
+      look.box = look.pixels > 0 ? united(look.box, {x, y, 1, 1}) : Rect{x, y, 1, 1};
+      look.pixels += 1;
     }
   }
-  for (std::size_t i = 0; i < colours.size(); ++i) {
-    const auto count = static_cast<double>(pixels[i]);
-    colours[i] = {colours[i].r / count, colours[i].g / count, colours[i].b / count};
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    for (double& channel : looks[i].colour) channel /= looks[i].pixels;
+    looks[i].seen = static_cast<double>(votes.seen_figure[i]) > kSeenShare * looks[i].pixels;
   }
-  return colours;
+  return looks;
 }
 
-constexpr double kSeenShare = 0.15;  // of a facet's pixels: above it the facet is figure by what is seen
-constexpr double kCommonShare =
-    0.02;  // of the ground's pixels: a colour that makes up so much of it is the ground's
-constexpr double kRatherGround = 3.0;  // times more common in the ground than in the seen figure
+/// How common colours are in the ground and in the figure that is seen. Colours are gathered in cells of the
+/// colour cube, each with its own mean.
+class ColourModel {
+ public:
+  ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure) {
+    std::map<int, Cell> cells;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      if (figure[i] != 0 && !looks[i].seen) continue;
+      int key = 0;
+      for (const double channel : looks[i].colour) key = 16 * key + static_cast<int>(channel / 16);
+      Cell& cell = cells[key];
+      const double before = cell.pixels[0] + cell.pixels[1];
+      for (std::size_t c = 0; c < 3; ++c) {
+        cell.mean[c] += (looks[i].colour[c] - cell.mean[c]) * looks[i].pixels / (before + looks[i].pixels);
+      }
+      cell.pixels.at(figure[i] != 0 ? 1 : 0) += looks[i].pixels;
+      total_.at(figure[i] != 0 ? 1 : 0) += looks[i].pixels;
+    }
+    for (const auto& [key, cell] : cells) cells_.push_back(cell);
+  }
 
-/// Turns bridges between objects that have the ground's colour into ground.
-void open_gaps(std::vector<std::int32_t>& labels, const Votes& votes, const std::vector<Colour>& colours,
-               float reach) {
-  const auto is_seen = [&](std::size_t i) {
-    return static_cast<double>(votes.seen_figure[i]) > kSeenShare * static_cast<double>(votes.pixels[i]);
+  /// Logarithm of how many times as common a colour is in the ground as in the figure, −2 … 2.
+  [[nodiscard]] double ground_over_figure(const Colour& colour) const {
+    std::array<double, 2> near{};
+    for (const Cell& cell : cells_) {
+      const double like = std::exp(-difference(colour, cell.mean) / (2 * kSpread * kSpread));
+      for (std::size_t side = 0; side < 2; ++side) near.at(side) += like * cell.pixels.at(side);
+    }
+    const auto share = [&](std::size_t side) {
+      return near.at(side) / std::max(total_.at(side), 1.0) + kUnknown;
+    };
+    return std::clamp(std::log(share(0) / share(1)), -kMost, kMost);
+  }
+
+ private:
+  static constexpr double kSpread = 12;      // grey levels
+  static constexpr double kUnknown = 0.001;  // colours that nothing has are nobody's
+  static constexpr double kMost = 2;
+  struct Cell {
+    Colour mean{};
+    std::array<double, 2> pixels{};  // of ground, of figure
   };
-  double ground = 0;
-  double figure = 0;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] == 0) ground += static_cast<double>(votes.pixels[i]);
-    if (labels[i] == 1 && is_seen(i)) figure += static_cast<double>(votes.pixels[i]);
-  }
-  std::vector<std::size_t> gaps;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] != 1 || is_seen(i)) continue;
-    double in_ground = 0;
-    double in_figure = 0;
-    for (std::size_t j = 0; j < labels.size(); ++j) {
-      if (labels[j] < 0 || j == i || !colours[i].like(colours[j], reach)) continue;
-      if (labels[j] == 0) in_ground += static_cast<double>(votes.pixels[j]);
-      if (labels[j] == 1 && is_seen(j)) in_figure += static_cast<double>(votes.pixels[j]);
-    }
-    const double common = in_ground / std::max(ground, 1.0);
-    if (common > kCommonShare && common > kRatherGround * in_figure / std::max(figure, 1.0))
-      gaps.push_back(i);
-  }
-  for (const std::size_t i : gaps) labels[i] = 0;
+  std::vector<Cell> cells_;
+  std::array<double, 2> total_{};
+};
+
+/// How far two boxes are apart along one axis; 0 where they overlap.
+int apart(int first, int length, int other_first, int other_length) {
+  return std::max({first - other_first - other_length, other_first - first - length, 0});
 }
 
-}  // namespace
+/// Whether the ground goes on in the colour of facet i, 0 … 1: how much ground of that colour lies beside it,
+/// more than there is seen figure of that colour, compared with its own size.
+double goes_on(std::size_t i, const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+               int width) {
+  constexpr double kSpread = 6;     // grey levels
+  constexpr double kAcross = 0.15;  // of the width
+  constexpr double kDown = 0.03;    // of the width: floor and wall change fast along a column
+  constexpr double kFarthest = 9;   // squared deviations
+  const Look& here = looks[i];
+  std::array<double, 2> near{};
+  for (std::size_t j = 0; j < looks.size(); ++j) {
+    const Look& there = looks[j];
+    // Facets come in the order of their first row.
+    const double dy = apart(here.box.y, here.box.height, there.box.y, there.box.height) / (kDown * width);
+    if (dy * dy > kFarthest && there.box.y > here.box.y) break;
+    if (dy * dy > kFarthest || i == j || (figure[j] != 0 && !there.seen)) continue;
+    const double dx = apart(here.box.x, here.box.width, there.box.x, there.box.width) / (kAcross * width);
+    const double dc = difference(here.colour, there.colour) / (kSpread * kSpread);
+    if (dx * dx > kFarthest || dc > kFarthest) continue;
+    near.at(figure[j] != 0 ? 1 : 0) += there.pixels * std::exp(-(dc + dx * dx + dy * dy) / 2);
+  }
+  return std::max(std::min(near[0] / here.pixels, 1.0) - std::min(near[1] / here.pixels, 1.0), 0.0);
+}
 
-std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
-                                          View<const float> evidence_px, const Background& background,
-                                          const FigureConfig& config, const Exec&) {
+std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, double noise) {
+  const double edge = 4 * (kEdge + kEdgeNoise * noise);  // borders measure in quarters
+  std::vector<Tie> ties(borders.size());
+  std::transform(borders.begin(), borders.end(), ties.begin(), [&](const Border& border) {
+    const double cost =
+        smoothness * static_cast<double>(border.length) * std::exp(-border.mean_edge() / edge);
+    return Tie{border.a, border.b, std::llround(kUnit * cost)};
+  });
+  return ties;
+}
+
+/// Figure, and what touches it: there colour is asked.
+std::vector<bool> around(const std::vector<std::int32_t>& figure, const std::vector<Border>& borders) {
+  std::vector<bool> near(figure.size());
+  for (std::size_t i = 0; i < figure.size(); ++i) near[i] = figure[i] != 0;
+  for (const Border& border : borders) {
+    const auto a = static_cast<std::size_t>(border.a);
+    const auto b = static_cast<std::size_t>(border.b);
+    if (figure[a] != 0) near[b] = true;
+    if (figure[b] != 0) near[a] = true;
+  }
+  return near;
+}
+
+Votes votes_of(const Facets& facets, View<const float> evidence_px, const Background& background,
+               const FigureConfig& config) {
   const Size size = facets.labels.size();
   const auto per_mille = 0.001F * static_cast<float>(size.width);
   const Scales scales{config.margin * per_mille, config.agreement * per_mille,
@@ -157,17 +243,40 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     vote_in_row(facets.labels.row(y), size.width, seen, scales, votes);
     for (int x = 0; x < size.width; ++x) ++votes.pixels[index(facets.labels(x, y))];
   }
+  return votes;
+}
 
-  std::vector<std::int32_t> labels(votes.pixels.size());
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const auto known = static_cast<double>(votes.figure[i] + votes.ground[i]);
-    const bool enough = known > 0.01 * config.least_known * kConcluded * static_cast<double>(votes.pixels[i]);
-    labels[i] = enough ? static_cast<std::int32_t>(votes.figure[i] > votes.ground[i]) : -1;
+}  // namespace
+
+std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
+                                          View<const float> evidence_px, const Background& background,
+                                          const FigureConfig& config, const Exec&) {
+  const Votes votes = votes_of(facets, evidence_px, background, config);
+  const std::vector<Look> looks = looks_of(facets, gray, rgb, votes);
+  const std::vector<Tie> ties = ties_of(facets.borders, config.smoothness, noise_sigma(gray));
+  constexpr auto kVote = static_cast<std::int64_t>(kUnit) / kSeen;
+  std::vector<std::int64_t> ground_costs(looks.size());
+  std::vector<std::int64_t> figure_costs(looks.size());
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    ground_costs[i] = kVote * votes.figure[i];
+    figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * votes.pixels[i]);
   }
-  if (config.colour_reach >= 0) {
-    open_gaps(labels, votes, mean_colours(facets, gray, rgb, votes.pixels), config.colour_reach);
+  std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
+  for (int round = 1; round < kRounds; ++round) {
+    std::vector<std::int64_t> with_colour_ground = ground_costs;
+    std::vector<std::int64_t> with_colour_figure = figure_costs;
+    const ColourModel model(looks, figure);
+    const std::vector<bool> asked = around(figure, facets.borders);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      if (!asked[i] || looks[i].seen) continue;
+      const double colour = config.colour_weight * model.ground_over_figure(looks[i].colour);
+      const double on = config.continuation_weight * goes_on(i, looks, figure, gray.width());
+      with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
+      with_colour_figure[i] += std::llround(kUnit * looks[i].pixels * (std::max(colour, 0.0) + on));
+    }
+    figure = minimum_cut(with_colour_ground, with_colour_figure, ties);
   }
-  return flooded(std::move(labels), facets.borders, 0);
+  return figure;
 }
 
 }  // namespace cairn

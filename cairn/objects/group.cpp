@@ -4,18 +4,22 @@
 #include <cairn/objects/group.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <queue>
 #include <tuple>
+#include <utility>
 
 namespace cairn {
 namespace {
 
 constexpr double kBorderWeight = 0.1;    // of a pixel beside the facet's border
 constexpr double kEvidenceWeight = 2.0;  // of a pixel with evidence, next to one without
-constexpr double kLeastWeight = 0.6;     // below it a facet's plane is anybody's guess
-constexpr double kFlatness = 1000.0;     // px², at 320 px of width: spread below which slopes are damped
+constexpr float kLeastBefore = 0.3F;  // of the margin that figure needs: a surface may lean towards the floor
+constexpr double kLeastWeight = 0.6;  // below it a facet's plane is anybody's guess
+constexpr double kFlatness = 1000.0;  // px², at 320 px of width: spread below which slopes are damped
 constexpr int kJoinRounds = 4;
+constexpr double kEvidenceShare = 0.03;  // of a facet's pixels: with less it shows none of its own
 
 std::size_t slot(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -96,30 +100,69 @@ bool beside_border(View<const RegionId> labels, int x, int y) {
   return false;
 }
 
-std::vector<Plane> facet_planes(const Facets& facets, const std::vector<std::int32_t>& figure,
-                                const DisparityMap& disparity, View<const float> evidence_px,
-                                const Background& background, float least_before_px) {
-  std::vector<Plane> planes(slot(facets.count));
+/// What the facets show of themselves.
+struct Shown {
+  std::vector<Plane> planes;
+  std::vector<std::int64_t> pixels;
+  std::vector<std::int64_t> evidence;  // pixels with evidence before the background
+};
+
+Shown shown_by(const Facets& facets, const std::vector<std::int32_t>& figure, const DisparityMap& disparity,
+               View<const float> evidence_px, const Background& background, float margin_px) {
+  Shown shown{std::vector<Plane>(slot(facets.count)), std::vector<std::int64_t>(slot(facets.count)),
+              std::vector<std::int64_t>(slot(facets.count))};
   const View<const RegionId> labels = facets.labels;
   for (int y = 0; y < labels.height(); ++y) {
     for (int x = 0; x < labels.width(); ++x) {
-      if (figure[index(labels(x, y))] == 0 || disparity.reject(x, y) != Reject::none) continue;
-      const float d = disparity.disparity_px(x, y);
+      const std::size_t facet = index(labels(x, y));
+      ++shown.pixels[facet];
+      if (figure[facet] == 0) continue;
       const float behind = background.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      if (!(d - behind > least_before_px)) continue;
+      if (evidence_px(x, y) - behind > margin_px) ++shown.evidence[facet];
+      const float d = disparity.disparity_px(x, y);
+      if (disparity.reject(x, y) != Reject::none || !(d - behind > kLeastBefore * margin_px)) continue;
       const double weight = (beside_border(labels, x, y) ? kBorderWeight : 1.0) *
                             (std::isnan(evidence_px(x, y)) ? 1.0 : kEvidenceWeight);
-      planes[index(labels(x, y))].add(x, y, d, weight);
+      shown.planes[facet].add(x, y, d, weight);
     }
   }
-  return planes;
+  return shown;
 }
+
+/// Facets that may be nothing but what is seen between two objects.
+std::vector<bool> gaps(const Facets& facets, const std::vector<std::int32_t>& figure, const Shown& shown,
+                       double share) {
+  std::vector<std::int64_t> around(figure.size());
+  std::vector<std::int64_t> at_ground(figure.size());
+  for (const Border& border : facets.borders) {
+    for (const auto& [here, there] : {std::pair{border.a, border.b}, std::pair{border.b, border.a}}) {
+      around[slot(here)] += border.length;
+      if (figure[slot(there)] == 0) at_ground[slot(here)] += border.length;
+    }
+  }
+  std::vector<bool> gap(figure.size());
+  for (std::size_t i = 0; i < figure.size(); ++i) {
+    const bool has_evidence =
+        shown.evidence[i] >= 2 &&
+        static_cast<double>(shown.evidence[i]) >= kEvidenceShare * static_cast<double>(shown.pixels[i]);
+    gap[i] = !has_evidence && static_cast<double>(at_ground[i]) > share * static_cast<double>(around[i]);
+  }
+  return gap;
+}
+
+/// How far two disparities may differ within one surface at disparity d.
+struct Tolerance {
+  double least_px = 0;
+  double share = 0;
+  double doffs_px = 0;
+  [[nodiscard]] double at(double d) const { return std::max(least_px, share * (d + doffs_px)); }
+};
 
 /// Grows groups from near to far.
 class Growing {
  public:
   Growing(const Facets& facets, const std::vector<std::int32_t>& figure, const std::vector<Plane>& planes,
-          double step, double deviation, double flatness)
+          const std::vector<bool>& gap, const Tolerance& step, const Tolerance& deviation, double flatness)
       : facets_(facets),
         planes_(planes),
         neighbours_(facets, figure),
@@ -129,7 +172,8 @@ class Growing {
         group_(figure.size(), -1) {
     std::vector<std::int32_t> order;
     for (std::size_t i = 0; i < figure.size(); ++i) {
-      if (figure[i] != 0 && planes[i].weight >= kLeastWeight) order.push_back(static_cast<std::int32_t>(i));
+      if (figure[i] != 0 && !gap[i] && planes[i].weight >= kLeastWeight)
+        order.push_back(static_cast<std::int32_t>(i));
     }
     usable_.assign(figure.size(), false);
     for (const std::int32_t i : order) usable_[slot(i)] = true;
@@ -159,7 +203,7 @@ class Growing {
         const Arc arc = neighbours_.arcs[slot(i)];
         if (group_[slot(arc.to)] >= 0 || !usable_[slot(arc.to)]) continue;
         const double step = step_across(arc.border);
-        if (step <= step_) candidates.emplace(step, arc.to, arc.border);
+        if (step <= step_.at(planes_[slot(arc.to)].d)) candidates.emplace(step, arc.to, arc.border);
       }
     };
     group_[slot(seed)] = seed;
@@ -170,8 +214,8 @@ class Growing {
       if (group_[slot(facet)] >= 0) continue;
       const Border& b = facets_.borders[slot(border)];
       const Plane& plane = planes_[slot(facet)];
-      if (std::abs(whole.at(b.x(), b.y(), flatness_) - plane.at(b.x(), b.y(), flatness_)) > deviation_)
-        continue;
+      const double off = std::abs(whole.at(b.x(), b.y(), flatness_) - plane.at(b.x(), b.y(), flatness_));
+      if (off > deviation_.at(plane.d)) continue;
       group_[slot(facet)] = seed;
       whole.join(plane);
       offer_neighbours_of(facet);
@@ -181,8 +225,8 @@ class Growing {
   const Facets& facets_;
   const std::vector<Plane>& planes_;
   Neighbours neighbours_;
-  double step_;
-  double deviation_;
+  Tolerance step_;
+  Tolerance deviation_;
   double flatness_;
   std::vector<bool> usable_;
   std::vector<std::int32_t> group_;
@@ -235,31 +279,104 @@ void join_small(std::vector<std::int32_t>& groups, const Facets& facets, const G
   }
 }
 
+/// A group as its occluded other half sees it.
+struct Piece {
+  Plane plane;
+  Rect box;
+  std::int64_t pixels = 0;
+  std::vector<std::int32_t> touches;  // sorted
+};
+
+double distance(const Rect& p, const Rect& q) {
+  const int dx = std::max({p.x - q.x - q.width, q.x - p.x - p.width, 0});
+  const int dy = std::max({p.y - q.y - q.height, q.y - p.y - p.height, 0});
+  return std::hypot(dx, dy);
+}
+
+/// Unites groups of one depth that do not touch, but both touch one that is nearer, and are close: the halves
+/// of what that one parts. `groups`: per facet, 0 = background.
+void unite_occluded(std::vector<std::int32_t>& groups, const Facets& facets, const Shown& shown,
+                    const std::vector<Rect>& boxes, const Tolerance& tolerance, double gap_px) {
+  std::map<std::int32_t, Piece> pieces;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i] == 0) continue;
+    Piece& piece = pieces[groups[i]];
+    piece.plane.join(shown.planes[i]);
+    piece.box = piece.pixels > 0 ? united(piece.box, boxes[i]) : boxes[i];
+    piece.pixels += shown.pixels[i];
+  }
+  for (const Border& border : facets.borders) {
+    const std::int32_t p = groups[slot(border.a)];
+    const std::int32_t q = groups[slot(border.b)];
+    if (p == 0 || q == 0 || p == q) continue;
+    pieces[p].touches.push_back(q);
+    pieces[q].touches.push_back(p);
+  }
+  for (auto& [id, piece] : pieces) {
+    std::sort(piece.touches.begin(), piece.touches.end());
+    piece.touches.erase(std::unique(piece.touches.begin(), piece.touches.end()), piece.touches.end());
+  }
+  const auto nearer_between = [&](const Piece& p, const Piece& q, double slack) {
+    return std::any_of(p.touches.begin(), p.touches.end(), [&](std::int32_t id) {
+      return pieces[id].plane.d > std::max(p.plane.d, q.plane.d) + slack &&
+             std::binary_search(q.touches.begin(), q.touches.end(), id);
+    });
+  };
+  std::map<std::int32_t, std::int32_t> now;
+  for (const auto& [id, piece] : pieces) now[id] = id;
+  for (const auto& [p_id, p] : pieces) {
+    for (const auto& [q_id, q] : pieces) {
+      if (q_id <= p_id || std::binary_search(p.touches.begin(), p.touches.end(), q_id)) continue;
+      const double slack = tolerance.at(std::max(p.plane.d, q.plane.d));
+      if (std::abs(p.plane.d - q.plane.d) > slack || distance(p.box, q.box) >= gap_px) continue;
+      if (!nearer_between(p, q, slack)) continue;
+      const auto [from, to] = std::minmax(now[p_id], now[q_id]);
+      for (auto& [id, whole] : now) whole = whole == to ? from : whole;
+    }
+  }
+  for (std::int32_t& group : groups) group = group == 0 ? 0 : now[group];
+}
+
+std::vector<Rect> boxes_of(View<const RegionId> labels, std::size_t count) {
+  std::vector<Rect> boxes(count);
+  std::vector<bool> met(count);
+  for (int y = 0; y < labels.height(); ++y) {
+    for (int x = 0; x < labels.width(); ++x) {
+      const std::size_t i = index(labels(x, y));
+      boxes[i] = met[i] ? united(boxes[i], {x, y, 1, 1}) : Rect{x, y, 1, 1};
+      met[i] = true;
+    }
+  }
+  return boxes;
+}
+
 }  // namespace
 
 Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,
                           const DisparityMap& disparity, View<const float> evidence_px,
-                          const Background& background, const FigureConfig& figure_config,
-                          const GroupConfig& config, const Exec& exec) {
+                          const Background& background, const std::optional<StereoRig>& rig,
+                          const FigureConfig& figure_config, const GroupConfig& config, const Exec& exec) {
   const Size size = facets.labels.size();
   const float per_mille = 0.001F * static_cast<float>(size.width);
   const double scale = static_cast<double>(size.width) / 320.0;
-  const std::vector<Plane> planes = facet_planes(facets, figure, disparity, evidence_px, background,
-                                                 0.3F * figure_config.margin * per_mille);
-  const Growing growing(facets, figure, planes, config.step * per_mille, config.deviation * per_mille,
-                        kFlatness * scale * scale);
-
-  std::vector<std::int64_t> pixels(slot(facets.count));
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) ++pixels[index(facets.labels(x, y))];
-  }
+  const double doffs = rig ? rig->doffs_px : 0.0F;
+  const Tolerance step{config.step * per_mille, 0.01 * config.step_share, doffs};
+  const Tolerance deviation{config.deviation * per_mille, 0.01 * config.deviation_share, doffs};
+  const Shown shown =
+      shown_by(facets, figure, disparity, evidence_px, background, figure_config.margin * per_mille);
+  const std::vector<bool> gap = gaps(facets, figure, shown, 0.01 * config.gap_share);
+  const Growing growing(facets, figure, shown.planes, gap, step, deviation, kFlatness * scale * scale);
   std::vector<std::int32_t> groups = growing.groups();
-  join_small(groups, facets, growing, pixels, pixels_in(config.min_area, size));
+  join_small(groups, facets, growing, shown.pixels, pixels_in(config.min_area, size));
 
   // 0 = background; groups from 1; figure without disparity follows its weakest border.
   for (std::size_t i = 0; i < groups.size(); ++i)
     groups[i] = figure[i] == 0 ? 0 : groups[i] < 0 ? -1 : groups[i] + 1;
   groups = flooded(std::move(groups), facets.borders, 0);
+  if (config.occluded_gap > 0) {
+    unite_occluded(groups, facets, shown, boxes_of(facets.labels, groups.size()), step,
+                   0.01 * config.occluded_gap * size.width);
+  }
   std::vector<std::int32_t> renumbered(groups.size() + 1, -1);
   renumbered[0] = 0;
   std::int32_t count = 1;

@@ -6,21 +6,36 @@
 #include <cairn/core/fields.hpp>
 #include <cairn/objects/figure.hpp>
 #include <cairn/regions/region_graph.hpp>
+#include <optional>
 
 namespace cairn {
 
 struct GroupConfig {
-  float step = 2.8F;
-  float deviation = 7.0F;
-  float min_area = 0.4F;
+  float step = 2.0F;
+  float step_share = 6.0F;
+  float deviation = 4.0F;
+  float deviation_share = 12.0F;
+  float gap_share = 50.0F;
+  float min_area = 0.6F;
+  float occluded_gap = 10.0F;
 };
 template <class V>
 void fields(GroupConfig& c, V&& v) {
-  v("step", c.step, "‰ of the width", "largest step of disparity across a border within one object",
+  v("step", c.step, "‰ of the width", "largest step of disparity across a border within one object …",
     range(0.0F, 1000.0F));
+  v("step_share", c.step_share, "% of the disparity", "… or this share of the disparity, if that is more",
+    range(0.0F, 100.0F));
   v("deviation", c.deviation, "‰ of the width",
-    "how far a facet may lie off the plane of the object that it joins", range(0.0F, 1000.0F));
+    "how far a facet may lie off the plane of the object that it joins …", range(0.0F, 1000.0F));
+  v("deviation_share", c.deviation_share, "% of the disparity",
+    "… or this share of the disparity, if that is more", range(0.0F, 100.0F));
+  v("gap_share", c.gap_share, "% of its border",
+    "a facet without evidence that has more ground around it than this connects nothing",
+    range(0.0F, 100.0F));
   v("min_area", c.min_area, "% of the image", "smaller groups join a neighbour", range(0.0F, 100.0F));
+  v("occluded_gap", c.occluded_gap, "% of the width",
+    "groups of one depth this close to each other behind a common nearer one are one object; 0 = never",
+    range(0.0F, 100.0F));
 }
 
 /// Groups figure facets to objects: the paper's growing from near to far, on facets and with planes instead
@@ -30,14 +45,16 @@ void fields(GroupConfig& c, V&& v) {
 /// matcher blends two surfaces; slopes are damped, so that small facets are level). The nearest free facet
 /// begins a group; the group takes in neighbours, least step across the common border first, as long as the
 /// step is at most `step` and the neighbour there lies within `deviation` of the group's own plane, which is
-/// refitted each time. Then groups below min_area join the figure neighbour with the longest, smoothest
-/// common border, and facets without disparity follow their weakest border. (METHOD §5 c–g and "regions
-/// modelled as planes", beyond the paper)
+/// refitted each time. Both grow with disparity: a share of it is a share of the distance, near or far. A
+/// facet that shows no evidence of its own and mostly borders on ground may be what is seen between two
+/// objects, and connects nothing. Then groups below min_area join the figure neighbour with the longest,
+/// smoothest common border, facets without disparity follow their weakest border, and what a nearer object
+/// parts is put together again. (METHOD §5 c–g and "regions modelled as planes", beyond the paper)
 ///
 /// Result: region 0 is the background (is_floor), the others are groups. Means in px.
 Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,
                           const DisparityMap& disparity, View<const float> evidence_px,
-                          const Background& background, const FigureConfig& figure_config,
-                          const GroupConfig& config, const Exec& exec);
+                          const Background& background, const std::optional<StereoRig>& rig,
+                          const FigureConfig& figure_config, const GroupConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -82,7 +82,7 @@ Regions regions_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, Vie
   auto by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
   const auto figure = separate_figure(facets, left, left_rgb, evidence_px, background, config.figure, exec);
   auto by_disparity = stage("group_facets", group_facets(facets, figure, scene.disparity, evidence_px,
-                                                         background, config.figure, config.group, exec));
+                                                         background, rig, config.figure, config.group, exec));
   return {std::move(by_intensity), std::move(by_disparity)};
 }
 
