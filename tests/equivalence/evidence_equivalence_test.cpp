@@ -96,12 +96,61 @@ void expect_equal(const std::vector<Border>& a, const std::vector<Border>& b) {
   }
 }
 
-/// Facets that are anything: connected or not.
-Facets random_facets(Size size, int count, std::uint32_t seed) {
-  Facets facets{random_image<RegionId>(size, 0, count - 1, seed), count, {}};
-  const Image<std::uint16_t> edges = random_image<std::uint16_t>(size, 0, 60, seed + 1);
+/// `labels` anew as facets are numbered: 0, 1, … in raster order of their first pixels.
+Facets as_facets(const Image<RegionId>& labels, std::uint32_t seed) {
+  std::map<RegionId, RegionId> number_of;
+  Facets facets{Image<RegionId>(labels.size()), 0, {}};
+  for (int y = 0; y < labels.height(); ++y) {
+    for (int x = 0; x < labels.width(); ++x) {
+      facets.labels(x, y) = number_of.try_emplace(labels(x, y), RegionId{facets.count}).first->second;
+      facets.count = static_cast<int>(number_of.size());
+    }
+  }
+  const Image<std::uint16_t> edges = random_image<std::uint16_t>(labels.size(), 0, 60, seed);
   facets.borders = borders_of(facets.labels, edges);
   return facets;
+}
+
+/// Facets that are anything: connected or not.
+Facets random_facets(Size size, int count, std::uint32_t seed) {
+  return as_facets(random_image<RegionId>(size, 0, count - 1, seed), seed + 1);
+}
+
+/// Facets near and far: blocks, of which some hang together.
+Facets random_blocks(Size size, int count, std::uint32_t seed) {
+  const auto blocks = random_image<RegionId>({size.width / 7 + 1, size.height / 4 + 1}, 0, count - 1, seed);
+  Image<RegionId> labels(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      labels(x, y) = RegionId{number(blocks(x / 7, y / 4)) + count * (2 * y / size.height)};
+    }
+  }
+  return as_facets(labels, seed + 1);
+}
+
+/// Facets of few colours, each with some noise.
+Image<Rgb> painted(const Facets& facets, std::uint32_t seed) {
+  const Image<int> base = random_image<int>({3, facets.count}, 0, 4, seed);
+  const Image<int> noise = random_image<int>(facets.labels.size(), 0, 14, seed + 1);
+  Image<Rgb> rgb(facets.labels.size());
+  for (int y = 0; y < rgb.height(); ++y) {
+    for (int x = 0; x < rgb.width(); ++x) {
+      const int facet = number(facets.labels(x, y));
+      const auto channel = [&](int c) {
+        return static_cast<std::uint8_t>(60 + 11 * base(c == 0 ? 0 : 1, facet) + noise(x, y));
+      };
+      rgb(x, y) = {channel(0), channel(1), channel(2)};
+    }
+  }
+  return rgb;
+}
+
+Image<Gray> greens(const Image<Rgb>& rgb) {
+  Image<Gray> grey(rgb.size());
+  for (int y = 0; y < rgb.height(); ++y) {
+    for (int x = 0; x < rgb.width(); ++x) grey(x, y) = rgb(x, y).g;
+  }
+  return grey;
 }
 
 TEST(NoiseSigma, IsThatOfItsDefinition) {
@@ -174,30 +223,97 @@ TEST(Flooded, IsThatOfItsDefinition) {
   }
 }
 
+struct Network {
+  std::vector<std::int64_t> cost_0;
+  std::vector<std::int64_t> cost_1;
+  std::vector<Tie> ties;
+};
+
+/// Costs from 0 to `highest`: low ones make cuts of equal cost. Ties are also found twice, at one node, or
+/// not at all.
+Network random_network(int nodes, int ties, int highest, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](int n) { return static_cast<std::int32_t>(random() % static_cast<unsigned>(n)); };
+  Network network;
+  for (int i = 0; i < nodes; ++i) {
+    network.cost_0.push_back(below(highest + 1));
+    network.cost_1.push_back(below(highest + 1));
+  }
+  for (int i = 0; i < ties; ++i) network.ties.push_back({below(nodes), below(nodes), below(highest + 1)});
+  return network;
+}
+
+TEST(MinimumCut, IsThatOfItsDefinition) {
+  int ones = 0;
+  int labelled = 0;
+  for (const int nodes : {1, 2, 5, 20, 60}) {
+    for (const int ties_per_node : {0, 1, 2, 6}) {
+      for (const int highest : {0, 1, 3, 1000}) {
+        for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+          const Network net = random_network(nodes, nodes * ties_per_node, highest, seed);
+          const auto expected = reference::minimum_cut(net.cost_0, net.cost_1, net.ties);
+          for (const std::int32_t label : expected) ones += label;
+          labelled += nodes;
+          EXPECT_EQ(minimum_cut(net.cost_0, net.cost_1, net.ties), expected)
+              << nodes << ' ' << ties_per_node << ' ' << highest << ' ' << seed;
+        }
+      }
+    }
+  }
+  EXPECT_GT(ones, labelled / 10);
+  EXPECT_LT(ones, labelled * 9 / 10);
+}
+
+TEST(MinimumCut, IsThatOfItsDefinitionAlongLongPaths) {
+  for (std::uint32_t seed = 1; seed <= 10;
+       ++seed) {  // all that gives is at one end, all that takes at the other
+    Network net = random_network(80, 0, 9, seed);
+    for (std::size_t i = 0; i < 80; ++i) (i < 40 ? net.cost_1 : net.cost_0)[i] = 0;
+    std::mt19937 random(seed);
+    for (std::int32_t i = 0; i + 1 < 80; ++i) {
+      net.ties.push_back({i + 1, i, 20 + static_cast<std::int64_t>(random() % 60)});
+      if (i + 5 < 80) net.ties.push_back({i, i + 5, static_cast<std::int64_t>(random() % 9)});
+    }
+    EXPECT_EQ(minimum_cut(net.cost_0, net.cost_1, net.ties),
+              reference::minimum_cut(net.cost_0, net.cost_1, net.ties))
+        << seed;
+  }
+}
+
 TEST(SeparateFigure, IsThatOfItsDefinition) {
   int figures = 0;
+  int by_colour = 0;
   const Background background{{{0.01F, 0.1F, 3}, {-0.05F, 0, 9}}};
   for (const Size size : sizes()) {
-    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-      for (const int tenths_of_holes : {3, 8, 9}) {
-        const Facets facets = random_facets(size, 1 + static_cast<int>(seed) * 3, seed);
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      for (const int tenths_of_holes : {3, 8, 9, 10}) {
+        const int count = 1 + static_cast<int>(seed) * 3;
+        const Facets facets =
+            seed % 2 == 0 ? random_facets(size, count, seed) : random_blocks(size, count, seed);
         const DisparityMap map = random_map(size, seed, tenths_of_holes);
         FigureConfig config;
         if (seed % 2 == 0) config.longest_bridge = 5;
         if (seed % 3 == 0) config.agreement = 40;
-        if (seed % 4 == 0) config.colour_reach = -1;
-        const Image<Gray> grey = random_image<Gray>(size, 0, 255, seed);
-        const Image<Rgb> coloured = random_colours(size, seed);
+        if (seed % 4 == 0) config.smoothness = 0;
+        if (seed % 5 == 0) config.colour_weight = 3;
+        if (seed == 7) config.continuation_weight = 3;
+        const Image<Rgb> coloured = painted(facets, seed);
+        const Image<Gray> grey = greens(coloured);
         const View<const Rgb> rgb = seed > 3 ? coloured.view() : View<const Rgb>{};
+        const auto figure = [&] {
+          return separate_figure(facets, grey, rgb, map.disparity_px, background, config, {});
+        };
         const auto expected =
             reference::separate_figure(facets, grey, rgb, map.disparity_px, background, config);
         for (const std::int32_t f : expected) figures += f;
-        EXPECT_EQ(separate_figure(facets, grey, rgb, map.disparity_px, background, config, {}), expected)
-            << text(size) << ' ' << seed << ' ' << tenths_of_holes;
+        EXPECT_EQ(figure(), expected) << text(size) << ' ' << seed << ' ' << tenths_of_holes;
+        config.colour_weight = config.continuation_weight = 0;
+        by_colour += figure() != expected ? 1 : 0;
       }
     }
   }
   EXPECT_GT(figures, 50);
+  EXPECT_GT(by_colour, 5);
 }
 
 TEST(SegmentFacets, GivesTheSameOnAnyNumberOfThreads) {
@@ -321,13 +437,14 @@ TEST(WayByEvidence, ManagesOptionsAtTheEndsOfTheirRanges) {
     config.evidence = {end(0, 100), end(0, 255), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
     config.evidence = {0, 0, 100};
-    config.background = {most ? 8 : 0, end(0, 100), 0, 100};
+    config.background = {most ? 8 : 0, end(0, 100), 0, end(0, 100), 100};
     run_and_check(grey, rgb, map, kRig, config);
     config.facets = {end(0, 5), end(0, 255), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
     config.facets = {};
-    config.figure = {0, end(0, 100), end(0, 100), end(0, 100), end(-1, 255)};
-    config.group = {end(0, 1000), end(0, 1000), end(0, 100)};
+    config.figure = {0, end(0, 100), end(0, 100), end(0, 100), end(0, 10), end(0, 10)};
+    config.group = {end(0, 1000), end(0, 100), end(0, 1000), end(0, 100),
+                    end(0, 100),  end(0, 100), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
   }
 }

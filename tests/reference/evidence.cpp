@@ -3,6 +3,7 @@
 #include "reference/evidence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -62,7 +63,27 @@ std::optional<int> next_seen(View<const float> evidence_px, int x, int y, int st
   return std::nullopt;
 }
 
-/// What one pixel says: positive is figure, negative ground, in tenths of a vote; 0 = nothing.
+// The numbers of cairn/objects/figure.cpp.
+constexpr int kSeen = 20;
+constexpr int kConcluded = 10;
+constexpr int kCutOff = 5;
+constexpr int kTooLong = 1;
+constexpr int kInDoubt = 1;
+constexpr int kRounds = 3;
+constexpr double kUnit = 320;
+constexpr double kEdge = 3.0;
+constexpr double kEdgeNoise = 4.5;
+constexpr double kSeenShare = 0.25;
+constexpr int kCell = 16;
+constexpr double kModelSpread = 12;
+constexpr double kUnknown = 0.001;
+constexpr double kMost = 2;
+constexpr double kOnSpread = 6;
+constexpr double kAcross = 0.15;
+constexpr double kDown = 0.03;
+constexpr double kFarthest = 9;
+
+/// What one pixel says: positive is figure, negative ground, in twentieths of a pixel of evidence.
 int vote(View<const float> evidence_px, const Background& background, const FigureConfig& config, int x,
          int y) {
   const auto per_mille = 0.001F * static_cast<float>(evidence_px.width());
@@ -75,46 +96,115 @@ int vote(View<const float> evidence_px, const Background& background, const Figu
   };
   const std::optional<int> l = next_seen(evidence_px, x, y, -1);
   const std::optional<int> r = next_seen(evidence_px, x, y, 1);
-  if (l == x) return stands_before(x) ? 20 : -20;
-  if (!l && !r) return -5;
-  if (!l || !r) return stands_before(l ? *l : *r) ? -5 : -10;
-  if (!stands_before(*l) || !stands_before(*r)) return -10;
+  if (l == x) return stands_before(x) ? kSeen : -kSeen;
+  if (!l && !r) return -kCutOff;
+  if (!l || !r) return stands_before(l ? *l : *r) ? -kCutOff : -kConcluded;
+  if (!stands_before(*l) || !stands_before(*r)) return -kConcluded;
   if (std::abs(evidence_px(*l, y) - evidence_px(*r, y)) > config.agreement * per_mille) return 0;
-  return *r - *l > longest ? 1 : 10;
+  return *r - *l > longest ? kTooLong : kConcluded;
 }
 
-/// What is known of one facet; r, g, b are sums over its pixels.
-struct Tally {
-  std::int64_t sum = 0, known = 0, seen_figure = 0, pixels = 0;
-  double r = 0, g = 0, b = 0;
-  [[nodiscard]] bool is_seen() const {
-    return static_cast<double>(seen_figure) > 0.15 * static_cast<double>(pixels);
-  }
-  [[nodiscard]] bool like(const Tally& o, float reach) const {
-    const auto n = static_cast<double>(pixels);
-    const auto m = static_cast<double>(o.pixels);
-    return std::max({std::abs(r / n - o.r / m), std::abs(g / n - o.g / m), std::abs(b / n - o.b / m)}) <=
-           reach;
+/// All that is known of one facet.
+struct Patch {
+  std::int64_t for_figure = 0, for_ground = 0, seen_figure = 0;
+  double pixels = 0;
+  std::array<double, 3> colour{};  // mean
+  int left = std::numeric_limits<int>::max(), right = -1, top = std::numeric_limits<int>::max(), bottom = -1;
+  [[nodiscard]] bool is_seen() const { return static_cast<double>(seen_figure) > kSeenShare * pixels; }
+  [[nodiscard]] std::array<int, 3> cell() const {
+    const auto of = [](double channel) { return static_cast<int>(channel / kCell); };
+    return {of(colour[0]), of(colour[1]), of(colour[2])};
   }
 };
 
-/// Is figure facet i, concluded but not seen, of a colour that is the ground's rather than the figure's?
-bool is_gap(std::size_t i, const std::vector<Tally>& tally, const std::vector<std::int32_t>& figure,
-            float reach) {
-  if (reach < 0 || figure[i] != 1 || tally[i].is_seen()) return false;
-  double ground = 0, ground_alike = 0, seen = 0, seen_alike = 0;
-  for (std::size_t j = 0; j < tally.size(); ++j) {
-    const double alike = tally[i].like(tally[j], reach) ? static_cast<double>(tally[j].pixels) : 0.0;
-    if (figure[j] == 0) {
-      ground += static_cast<double>(tally[j].pixels);
-      ground_alike += alike;
-    } else if (figure[j] == 1 && tally[j].is_seen()) {
-      seen += static_cast<double>(tally[j].pixels);
-      seen_alike += alike;
+std::vector<Patch> patches_of(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
+                              View<const float> evidence_px, const Background& background,
+                              const FigureConfig& config) {
+  std::vector<Patch> patches(slot(facets.count));
+  for (int y = 0; y < gray.height(); ++y) {
+    for (int x = 0; x < gray.width(); ++x) {
+      Patch& p = patches[index(facets.labels(x, y))];
+      const int said = vote(evidence_px, background, config, x, y);
+      p.for_figure += std::max(said, 0);
+      p.for_ground += std::max(-said, 0);
+      p.seen_figure += said > 0 && !std::isnan(evidence_px(x, y)) ? 1 : 0;
+      p.pixels += 1;
+      const Rgb colour = rgb.empty() ? Rgb{gray(x, y), gray(x, y), gray(x, y)} : rgb(x, y);
+      p.colour = {p.colour[0] + colour.r, p.colour[1] + colour.g, p.colour[2] + colour.b};
+      p.left = std::min(p.left, x);
+      p.right = std::max(p.right, x);
+      p.top = std::min(p.top, y);
+      p.bottom = std::max(p.bottom, y);
     }
   }
-  const double common = ground_alike / std::max(ground, 1.0);
-  return common > 0.02 && common > 3 * seen_alike / std::max(seen, 1.0);
+  for (Patch& p : patches) {
+    for (double& channel : p.colour) channel /= p.pixels;
+  }
+  return patches;
+}
+
+double difference(const std::array<double, 3>& p, const std::array<double, 3>& q) {
+  return ((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2])) / 3;
+}
+
+/// Pixels of ground and of seen figure among patches, each counted as `weight` says.
+template <class Weight>
+std::array<double, 2> ground_and_figure(const std::vector<Patch>& patches,
+                                        const std::vector<std::int32_t>& figure, Weight weight) {
+  std::array<double, 2> sums{};
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (figure[i] == 0) sums[0] += patches[i].pixels * weight(i);
+    if (figure[i] != 0 && patches[i].is_seen()) sums[1] += patches[i].pixels * weight(i);
+  }
+  return sums;
+}
+
+/// Logarithm of how many times as common a colour is in the ground as in the figure that is seen; each patch
+/// stands for its cell of the colour cube with the mean colour of all that is known in that cell.
+double ground_over_figure(const Patch& patch, const std::vector<Patch>& patches,
+                          const std::vector<std::int32_t>& figure) {
+  const auto like = [&](std::size_t i) {
+    std::array<double, 3> mean{};
+    double pixels = 0;
+    for (std::size_t j = 0; j < patches.size(); ++j) {
+      if (patches[j].cell() != patches[i].cell() || (figure[j] != 0 && !patches[j].is_seen())) continue;
+      for (std::size_t c = 0; c < 3; ++c) mean.at(c) += patches[j].colour.at(c) * patches[j].pixels;
+      pixels += patches[j].pixels;
+    }
+    for (double& channel : mean) channel /= pixels;
+    return std::exp(-difference(patch.colour, mean) / (2 * kModelSpread * kModelSpread));
+  };
+  const auto near = ground_and_figure(patches, figure, like);
+  const auto all = ground_and_figure(patches, figure, [](std::size_t) { return 1.0; });
+  const auto share = [&](std::size_t side) { return near.at(side) / std::max(all.at(side), 1.0) + kUnknown; };
+  return std::clamp(std::log(share(0) / share(1)), -kMost, kMost);
+}
+
+/// How much more ground than seen figure of its colour lies beside patch i, in its own sizes, 0 … 1.
+double goes_on(std::size_t i, const std::vector<Patch>& patches, const std::vector<std::int32_t>& figure,
+               int width) {
+  const Patch& here = patches[i];
+  const auto beside = [&](std::size_t j) {
+    const Patch& there = patches[j];
+    const int apart_x = std::max({here.left - there.right - 1, there.left - here.right - 1, 0});
+    const int apart_y = std::max({here.top - there.bottom - 1, there.top - here.bottom - 1, 0});
+    const double dx = apart_x / (kAcross * width);
+    const double dy = apart_y / (kDown * width);
+    const double dc = difference(here.colour, there.colour) / (kOnSpread * kOnSpread);
+    const bool far = dx * dx > kFarthest || dy * dy > kFarthest || dc > kFarthest;
+    return i == j || far ? 0.0 : std::exp(-(dc + dx * dx + dy * dy) / 2);
+  };
+  const auto near = ground_and_figure(patches, figure, beside);
+  return std::max(std::min(near[0] / here.pixels, 1.0) - std::min(near[1] / here.pixels, 1.0), 0.0);
+}
+
+/// Is facet i figure, or does it touch figure?
+bool is_at_figure(std::int32_t i, const std::vector<std::int32_t>& figure,
+                  const std::vector<Border>& borders) {
+  const auto touches = [&](const Border& b) {
+    return (b.a == i && figure[slot(b.b)] != 0) || (b.b == i && figure[slot(b.a)] != 0);
+  };
+  return figure[slot(i)] != 0 || std::any_of(borders.begin(), borders.end(), touches);
 }
 
 }  // namespace
@@ -240,35 +330,72 @@ std::vector<std::int32_t> flooded(std::vector<std::int32_t> labels, const std::v
   return labels;
 }
 
+std::vector<std::int32_t> minimum_cut(const std::vector<std::int64_t>& cost_0,
+                                      const std::vector<std::int64_t>& cost_1, const std::vector<Tie>& ties) {
+  const std::size_t source = cost_0.size();
+  const std::size_t sink = source + 1;
+  std::vector<std::vector<std::int64_t>> left(sink + 1, std::vector<std::int64_t>(sink + 1));
+  for (std::size_t i = 0; i < source; ++i) {
+    left[source][i] = cost_0[i];
+    left[i][sink] = cost_1[i];
+  }
+  for (const Tie& tie : ties) {
+    left[slot(tie.a)][slot(tie.b)] += tie.cost;
+    left[slot(tie.b)][slot(tie.a)] += tie.cost;
+  }
+  // Edmonds and Karp: along a shortest path as much as it takes, until there is none.
+  for (;;) {
+    std::vector<std::optional<std::size_t>> from(sink + 1);
+    from[source] = source;
+    std::vector<std::size_t> queue{source};
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      for (std::size_t to = 0; to <= sink; ++to) {
+        if (from[to] || left[queue[head]][to] <= 0) continue;
+        from[to] = queue[head];
+        queue.push_back(to);
+      }
+    }
+    std::vector<std::int32_t> reached;
+    for (std::size_t i = 0; i < source; ++i) reached.push_back(from[i] ? 1 : 0);
+    if (!from[sink]) return reached;
+    std::int64_t amount = std::numeric_limits<std::int64_t>::max();
+    for (std::size_t i = sink; i != source; i = *from[i]) amount = std::min(amount, left[*from[i]][i]);
+    for (std::size_t i = sink; i != source; i = *from[i]) {
+      left[*from[i]][i] -= amount;
+      left[i][*from[i]] += amount;
+    }
+  }
+}
+
 std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                                           View<const float> evidence_px, const Background& background,
                                           const FigureConfig& config) {
-  std::vector<Tally> tally(slot(facets.count));
-  for (int y = 0; y < gray.height(); ++y) {
-    for (int x = 0; x < gray.width(); ++x) {
-      const int said = vote(evidence_px, background, config, x, y);
-      Tally& t = tally[index(facets.labels(x, y))];
-      t.sum += said;
-      t.known += std::abs(said);
-      t.seen_figure += said == 20 ? 1 : 0;
-      t.pixels += 1;
-      const Rgb colour = rgb.empty() ? Rgb{gray(x, y), gray(x, y), gray(x, y)} : rgb(x, y);
-      t.r += colour.r;
-      t.g += colour.g;
-      t.b += colour.b;
+  const std::vector<Patch> patches = patches_of(facets, gray, rgb, evidence_px, background, config);
+  const double edge = 4 * (kEdge + kEdgeNoise * reference::noise_sigma(gray));
+  std::vector<Tie> ties;
+  for (const Border& b : facets.borders) {
+    const double cost = config.smoothness * static_cast<double>(b.length) * std::exp(-b.mean_edge() / edge);
+    ties.push_back({b.a, b.b, std::llround(kUnit * cost)});
+  }
+  std::vector<std::int32_t> figure(patches.size());
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::int64_t> cost_0;
+    std::vector<std::int64_t> cost_1;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      const Patch& p = patches[i];
+      const auto pixels = static_cast<std::int64_t>(p.pixels);
+      cost_0.push_back(static_cast<std::int64_t>(kUnit) / kSeen * p.for_figure);
+      cost_1.push_back(static_cast<std::int64_t>(kUnit) / kSeen * (p.for_ground + kInDoubt * pixels));
+      const bool asked = is_at_figure(static_cast<std::int32_t>(i), figure, facets.borders) && !p.is_seen();
+      if (round == 0 || !asked) continue;
+      const double colour = config.colour_weight * ground_over_figure(p, patches, figure);
+      const double on = config.continuation_weight * goes_on(i, patches, figure, gray.width());
+      cost_0.back() += std::llround(kUnit * p.pixels * std::max(-colour, 0.0));
+      cost_1.back() += std::llround(kUnit * p.pixels * (std::max(colour, 0.0) + on));
     }
+    figure = reference::minimum_cut(cost_0, cost_1, ties);
   }
-  std::vector<std::int32_t> figure;
-  for (const Tally& t : tally) {
-    const bool enough =
-        static_cast<double>(t.known) > 0.01 * config.least_known * 10 * static_cast<double>(t.pixels);
-    figure.push_back(!enough ? -1 : t.sum > 0 ? 1 : 0);
-  }
-  std::vector<std::int32_t> opened = figure;
-  for (std::size_t i = 0; i < figure.size(); ++i) {
-    if (is_gap(i, tally, figure, config.colour_reach)) opened[i] = 0;
-  }
-  return reference::flooded(std::move(opened), facets.borders, 0);
+  return figure;
 }
 
 }  // namespace cairn::reference

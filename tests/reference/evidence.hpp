@@ -6,6 +6,7 @@
 #include <cairn/objects/figure.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cairn/regions/gradient.hpp>
+#include <cairn/regions/minimum_cut.hpp>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,8 @@ Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, f
 std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges);
 std::vector<std::int32_t> flooded(std::vector<std::int32_t> labels, const std::vector<Border>& borders,
                                   std::int32_t otherwise);
+std::vector<std::int32_t> minimum_cut(const std::vector<std::int64_t>& cost_0,
+                                      const std::vector<std::int64_t>& cost_1, const std::vector<Tie>& ties);
 std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                                           View<const float> evidence_px, const Background& background,
                                           const FigureConfig& config);
