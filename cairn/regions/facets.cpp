@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/parallel.hpp>
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cairn/regions/gradient.hpp>
+#include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <numeric>
 #include <utility>
@@ -11,140 +13,258 @@
 namespace cairn {
 namespace {
 
+constexpr int kGrain = 16;  // rows
 constexpr int kRounds = 16;
 
 std::size_t slot(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Disjoint sets; the smaller number is the root.
+std::ptrdiff_t signed_slot(std::size_t i) {
+  return static_cast<std::ptrdiff_t>(i);
+}
+
+/// Disjoint sets; the smallest number is the root.
 class Sets {
  public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit Sets(std::size_t count, const Pool& pool = {}) : pool_(pool), parent_(count, pool) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
   std::int32_t root(std::int32_t i) {
-    while (parent_[slot(i)] != i) {
-      parent_[slot(i)] = parent_[slot(parent_[slot(i)])];
-      i = parent_[slot(i)];
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
     }
     return i;
   }
   void unite(std::int32_t a, std::int32_t b) {
     a = root(a);
     b = root(b);
-    parent_[slot(std::max(a, b))] = std::min(a, b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+  /// Numbers the sets in the order of their roots: each element's set.
+  [[nodiscard]] Scratch<std::int32_t> numbers() {
+    Scratch<std::int32_t> number(parent_.size(), pool_);
+    count_ = 0;
+    // A parent is smaller than its children and has its number already.
+    for (std::ptrdiff_t i = 0; i < signed_slot(parent_.size()); ++i)
+      number[i] = parent_[i] == i ? count_++ : number[parent_[i]];
+    return number;
+  }
+  /// How many sets numbers() has found.
+  [[nodiscard]] std::int32_t count() const { return count_; }
+
+ private:
+  Pool pool_;
+  Scratch<std::int32_t> parent_;
+  std::int32_t count_ = 0;
+};
+
+/// One addend of a border. It hangs in the list of its larger region `b`, which the list knows.
+struct Contact {
+  std::int32_t next = 0;  // in the list; −1 = the last
+  std::int32_t a = 0;
+  std::int32_t edge = 0;
+  std::int32_t x2 = 0;
+  std::int32_t y2 = 0;
+};
+
+/// The same for borders that meet when regions fuse.
+struct Part {
+  std::int32_t next = 0;
+  std::int32_t a = 0;
+  Border border;
+};
+
+void add_to(Border& sum, const Contact& contact) {
+  ++sum.length;
+  sum.edge_sum += contact.edge;
+  sum.x2_sum += contact.x2;
+  sum.y2_sum += contact.y2;
+}
+
+void add_to(Border& sum, const Part& part) {
+  sum.length += part.border.length;
+  sum.edge_sum += part.border.edge_sum;
+  sum.x2_sum += part.border.x2_sum;
+  sum.y2_sum += part.border.y2_sum;
+}
+
+/// Sums addends to borders, sorted by (a, b). `first`: where the list of each region b begins, −1 = nowhere.
+/// Nothing is compared: the lists come in the order of b, one array finds the sum for each a of a list, and
+/// then counting sorts by a.
+template <class Addend>
+void sum_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& addends,
+            ScratchList<Border>& borders, const Exec& exec) {
+  const std::size_t count = first.size();
+  Scratch<std::int32_t> place(count, -1, exec.pool);     // in `sums`, of the border with a
+  Scratch<std::int32_t> start(count + 1, 0, exec.pool);  // in `borders`, of those with a
+  ScratchList<Border> sums(std::max<std::size_t>(addends.size() / 2, 1), exec.pool);
+  const Addend* const addend = addends.begin();
+  for (std::size_t b = 0; b < count; ++b) {
+    const auto begin = static_cast<std::int32_t>(sums.size());
+    for (std::int32_t i = first[signed_slot(b)]; i >= 0; i = addend[i].next) {
+      const std::int32_t a = addend[i].a;
+      if (place[a] < begin) {
+        place[a] = static_cast<std::int32_t>(sums.size());
+        sums.push_back({a, static_cast<std::int32_t>(b), 0, 0, 0, 0});
+        ++start[a + 1];
+      }
+      add_to(sums.data()[place[a]], addend[i]);
+    }
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  borders.clear();
+  Border* const sorted = borders.room_for(sums.size());
+  for (const Border& sum : sums) sorted[start[sum.a]++] = sum;
+  borders.grown(sums.size());
+}
+
+/// The places where neighbouring pixels belong to different regions, `count` of them at most.
+class Contacts {
+ public:
+  Contacts(View<const RegionId> labels, View<const std::uint16_t> edges, std::size_t count, const Exec& exec)
+      : labels_(labels),
+        edges_(edges),
+        first_(count, -1, exec.pool),
+        contacts_(static_cast<std::size_t>(labels.size().area()) / 4 * 3 + 1, exec.pool) {
+    std::vector<std::int32_t> columns(static_cast<std::size_t>(labels.width()));
+    for (int y = 0; y < labels.height(); ++y) {
+      meet(y, y, 1, labels.width() - 1, columns);
+      if (y + 1 < labels.height()) meet(y, y + 1, 0, labels.width(), columns);
+    }
+  }
+  void sum_up(ScratchList<Border>& borders, const Exec& exec) const {
+    cairn::sum_up(first_, contacts_, borders, exec);
   }
 
  private:
-  std::vector<std::int32_t> parent_;
+  /// Each of the first `width` pixels of row y with the one `right` of it in row v.
+  void meet(int y, int v, int right, int width, std::vector<std::int32_t>& columns) {
+    const RegionId* const here = labels_.row(y);
+    const RegionId* const there = labels_.row(v) + right;
+    // Borders come irregularly: gathered without a branch.
+    std::size_t found = 0;
+    for (int x = 0; x < width; ++x) {
+      columns[found] = x;
+      found += here[x] != there[x] ? 1 : 0;
+    }
+    const std::uint16_t* const edge_here = edges_.row(y);
+    const std::uint16_t* const edge_there = edges_.row(v) + right;
+    auto next = static_cast<std::int32_t>(contacts_.size());
+    Contact* contact = contacts_.room_for(found);
+    for (std::size_t i = 0; i < found; ++i) {
+      const std::int32_t x = columns[i];
+      const auto [a, b] = std::minmax({number(here[x]), number(there[x])});
+      *contact++ = {first_[b], a, std::max(edge_here[x], edge_there[x]), 2 * x + right, y + v};
+      first_[b] = next++;
+    }
+    contacts_.grown(found);
+  }
+
+  View<const RegionId> labels_;
+  View<const std::uint16_t> edges_;
+  Scratch<std::int32_t> first_;
+  ScratchList<Contact> contacts_;
 };
 
-void sort_and_sum(std::vector<Border>& borders) {
-  std::sort(borders.begin(), borders.end(),
-            [](const Border& p, const Border& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < borders.size(); ++i) {
-    if (kept > 0 && borders[kept - 1].a == borders[i].a && borders[kept - 1].b == borders[i].b) {
-      Border& sum = borders[kept - 1];
-      sum.length += borders[i].length;
-      sum.edge_sum += borders[i].edge_sum;
-      sum.x2_sum += borders[i].x2_sum;
-      sum.y2_sum += borders[i].y2_sum;
-    } else {
-      borders[kept++] = borders[i];
-    }
+/// Regions that fuse, round by round, numbered anew each time so that all stays small; their order is kept.
+class Fusing {
+ public:
+  Fusing(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
+      : exec_(exec), count_(slot(basins.count)), facets_(count_, exec.pool), borders_(0, exec.pool) {
+    std::iota(facets_.begin(), facets_.end(), 0);
+    Contacts(basins.labels, edges, count_, exec).sum_up(borders_, exec);
   }
-  borders.resize(kept);
-}
 
-/// A region's border of least mean edge; −1 = it has none. Ties: the first in (a, b) order.
-std::vector<std::int32_t> weakest_border(const std::vector<Border>& borders, std::size_t count) {
-  std::vector<std::int32_t> weakest(count, -1);
-  for (std::size_t i = 0; i < borders.size(); ++i) {
-    for (const std::int32_t end : {borders[i].a, borders[i].b}) {
-      std::int32_t& best = weakest[slot(end)];
-      if (best < 0 || borders[i].mean_edge() < borders[slot(best)].mean_edge())
-        best = static_cast<std::int32_t>(i);
+  /// Each region fuses across its border of least mean edge, where that is below `limit` (ties: the first in
+  /// (a, b) order); false where none is.
+  bool fuse_across_weak_borders(double limit) {
+    const Scratch<std::int32_t> weakest = weak_borders(limit);
+    Sets sets(count_, exec_.pool);
+    bool fused = false;
+    for (const std::int32_t i : weakest) {
+      if (i < 0) continue;
+      sets.unite(borders_.begin()[i].a, borders_.begin()[i].b);
+      fused = true;
     }
+    if (fused) renumber(sets);
+    return fused;
   }
-  return weakest;
-}
 
-/// One round of fusions; false where there was none.
-bool fuse_across_weak_borders(std::vector<Border>& borders, Sets& sets, std::size_t count, double limit) {
-  bool fused = false;
-  for (const std::int32_t i : weakest_border(borders, count)) {
-    if (i < 0 || !(borders[slot(i)].mean_edge() < limit)) continue;
-    sets.unite(borders[slot(i)].a, borders[slot(i)].b);
-    fused = true;
+  [[nodiscard]] int count() const { return static_cast<int>(count_); }
+  /// The facet of each basin.
+  [[nodiscard]] const Scratch<std::int32_t>& facets() const { return facets_; }
+  [[nodiscard]] std::vector<Border> borders() const { return {borders_.begin(), borders_.end()}; }
+
+ private:
+  /// Per region its weakest border; −1 = that is not weak, or there is none.
+  [[nodiscard]] Scratch<std::int32_t> weak_borders(double limit) const {
+    Scratch<double> least(count_, limit, exec_.pool);
+    Scratch<std::int32_t> weakest(count_, -1, exec_.pool);
+    for (std::size_t i = 0; i < borders_.size(); ++i) {
+      const Border& border = borders_.begin()[i];
+      const double edge = border.mean_edge();
+      for (const std::int32_t end : {border.a, border.b}) {
+        const bool weaker = edge < least[end];
+        least[end] = weaker ? edge : least[end];
+        weakest[end] = weaker ? static_cast<std::int32_t>(i) : weakest[end];
+      }
+    }
+    return weakest;
   }
-  for (Border& border : borders) {
-    const std::int32_t a = sets.root(border.a);
-    const std::int32_t b = sets.root(border.b);
-    border.a = std::min(a, b);
-    border.b = std::max(a, b);
+
+  void renumber(Sets& sets) {
+    const Scratch<std::int32_t> numbers = sets.numbers();
+    Scratch<std::int32_t> first(static_cast<std::size_t>(sets.count()), -1, exec_.pool);
+    ScratchList<Part> parts(borders_.size(), exec_.pool);
+    for (const Border& border : borders_) {
+      const auto [a, b] = std::minmax({numbers[border.a], numbers[border.b]});
+      if (a == b) continue;
+      const auto i = static_cast<std::int32_t>(parts.size());
+      parts.push_back({first[b], a, border});
+      first[b] = i;
+    }
+    sum_up(first, parts, borders_, exec_);
+    count_ = first.size();
+    for (std::int32_t& facet : facets_) facet = numbers[facet];
   }
-  std::erase_if(borders, [](const Border& border) { return border.a == border.b; });
-  sort_and_sum(borders);
-  return fused;
-}
+
+  const Exec& exec_;
+  std::size_t count_;
+  Scratch<std::int32_t> facets_;
+  ScratchList<Border> borders_;
+};
 
 }  // namespace
 
 std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges) {
-  const int width = labels.width();
-  const int height = labels.height();
-  std::vector<Border> borders;
-  const auto meet = [&](int x, int y, int u, int v) {
-    const std::int32_t p = number(labels(x, y));
-    const std::int32_t q = number(labels(u, v));
-    if (p == q) return;
-    const std::int64_t edge = std::max(edges(x, y), edges(u, v));
-    // Neighbouring pairs often belong to the same border: joining them here keeps the list short.
-    if (!borders.empty() && borders.back().a == std::min(p, q) && borders.back().b == std::max(p, q)) {
-      Border& last = borders.back();
-      ++last.length;
-      last.edge_sum += edge;
-      last.x2_sum += x + u;
-      last.y2_sum += y + v;
-    } else {
-      borders.push_back({std::min(p, q), std::max(p, q), 1, edge, x + u, y + v});
-    }
-  };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x + 1 < width; ++x) meet(x, y, x + 1, y);
-    for (int x = 0; x < width && y + 1 < height; ++x) meet(x, y, x, y + 1);
+  std::int32_t last = -1;
+  for (int y = 0; y < labels.height(); ++y) {
+    for (int x = 0; x < labels.width(); ++x) last = std::max(last, number(labels(x, y)));
   }
-  sort_and_sum(borders);
-  return borders;
+  const Exec exec;
+  ScratchList<Border> borders(0, exec.pool);
+  Contacts(labels, edges, slot(last + 1), exec).sum_up(borders, exec);
+  return {borders.begin(), borders.end()};
 }
 
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
                       const Exec& exec) {
   const Image<std::uint16_t> edges = edge_strength(gray, rgb, config.smoothing_sigma, exec);
   Basins basins = watershed(edges, exec);
-  const auto count = slot(basins.count);
-  std::vector<Border> borders = borders_of(basins.labels, edges);
-  Sets sets(count);
+  Fusing fusing(basins, edges, exec);
   const double limit = 4.0 * (config.edge_min + config.noise_factor * noise_sigma(gray));
-  for (int round = 0; round < kRounds && fuse_across_weak_borders(borders, sets, count, limit); ++round) {
+  for (int round = 0; round < kRounds && fusing.fuse_across_weak_borders(limit); ++round) {
   }
-
-  std::vector<std::int32_t> renumbered(count, -1);
-  int kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {  // roots are the smallest number, so raster order is kept
-    const std::int32_t root = sets.root(static_cast<std::int32_t>(i));
-    if (renumbered[slot(root)] < 0) renumbered[slot(root)] = kept++;
-    renumbered[i] = renumbered[slot(root)];
-  }
-  for (Border& border : borders) {
-    border.a = renumbered[slot(border.a)];
-    border.b = renumbered[slot(border.b)];
-  }
-  for (int y = 0; y < gray.height(); ++y) {
-    RegionId* const row = basins.labels.row(y);
-    for (int x = 0; x < gray.width(); ++x) row[x] = RegionId{renumbered[index(row[x])]};
-  }
-  return {std::move(basins.labels), kept, std::move(borders)};
+  const Scratch<std::int32_t>& facets = fusing.facets();
+  parallel_for(exec, gray.height(), kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      RegionId* const row = basins.labels.row(y);
+      for (int x = 0; x < gray.width(); ++x) row[x] = RegionId{facets[number(row[x])]};
+    }
+  });
+  return {std::move(basins.labels), fusing.count(), fusing.borders()};
 }
 
 Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const Exec& exec) {
@@ -155,13 +275,23 @@ Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const 
   std::vector<Sums> sums(slot(facets.count));
   Segmentation result{facets.labels.clone(exec.pool), std::vector<Region>(sums.size())};
   for (int y = 0; y < gray.height(); ++y) {
-    for (int x = 0; x < gray.width(); ++x) {
-      const std::size_t i = index(facets.labels(x, y));
-      const int value = gray(x, y);
-      sums[i].sum += value;
-      sums[i].squares += value * value;
-      ++result.regions[i].pixel_count;
-      result.regions[i].box = united(result.regions[i].box, {x, y, 1, 1});
+    const RegionId* const label = facets.labels.row(y);
+    const Gray* const grey = gray.row(y);
+    for (int x = 0; x < gray.width();) {
+      // A run of one facet at a time: what is known of it is fetched once for all of it.
+      const int start = x;
+      Sums run;
+      do {
+        run.sum += grey[x];
+        run.squares += grey[x] * grey[x];
+        ++x;
+      } while (x < gray.width() && label[x] == label[start]);
+      const std::size_t i = index(label[start]);
+      sums[i].sum += run.sum;
+      sums[i].squares += run.squares;
+      Region& region = result.regions[i];
+      region.pixel_count += x - start;
+      region.box = united(region.box, {start, y, x - start, 1});
     }
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
