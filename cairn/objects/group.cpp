@@ -330,8 +330,9 @@ void unite_occluded(std::vector<std::int32_t>& groups, const Facets& facets, con
       const double slack = tolerance.at(std::max(p.plane.d, q.plane.d));
       if (std::abs(p.plane.d - q.plane.d) > slack || distance(p.box, q.box) >= gap_px) continue;
       if (!nearer_between(p, q, slack)) continue;
-      const auto [from, to] = std::minmax(now[p_id], now[q_id]);
-      for (auto& [id, whole] : now) whole = whole == to ? from : whole;
+      const std::int32_t kept = std::min(now[p_id], now[q_id]);
+      const std::int32_t given_up = std::max(now[p_id], now[q_id]);
+      for (auto& [id, whole] : now) whole = whole == given_up ? kept : whole;
     }
   }
   for (std::int32_t& group : groups) group = group == 0 ? 0 : now[group];
