@@ -143,12 +143,12 @@ TEST(Background, HasTheWallsThoughABoxBeforeThemShowsMoreThanTheyDo) {
 TEST(Background, MayHaveAWallWithADoorwayWhereMaxBehindAllowsIt) {
   const Background room{{kFloor, wall_at(0, 3)}};
   const auto doorway = [](int x, int y, float d) { return x >= 100 && x < 160 && y < 90 ? d - 6 : d; };
-  const Image<float> evidence = evidence_of(room, 0.3, 0.1F, doorway);  // 7 % of the evidence
+  const Image<float> evidence = evidence_of(room, 0.3, 0.1F, doorway);  // 18 % of the wall's own
   BackgroundConfig config;
   config.max_walls = 1;
-  config.max_behind = 4;
+  config.max_behind = 9;
   EXPECT_GT(largest_difference(background_of(evidence, ground_of(kFloor), kRig, config), room), 1);
-  config.max_behind = 12;
+  config.max_behind = 36;
   EXPECT_LT(largest_difference(background_of(evidence, ground_of(kFloor), kRig, config), room), 0.1F);
 }
 
@@ -161,6 +161,74 @@ TEST(Background, IsNotMisledByReflectionsBelowTheFloor) {
   const Background found = background_of(evidence, ground_of(kFloor), kRig);
   EXPECT_EQ(found.planes.size(), 3U);
   EXPECT_LT(largest_difference(found, kRoom), 0.1F);
+}
+
+/// A room of floor, front wall, and on the left a wall square on that, of which only few pixels show.
+struct SideWall {
+  Background room{{kFloor, wall_at(0.3, 3.2F), wall_at(0.3 - 1.5707963, 1.6F)}};
+  Image<float> evidence;
+  explicit SideWall(double share) {
+    Noise noise(3);
+    evidence = evidence_of(room, 0.3, 0.1F, [&](int x, int y, float d) {
+      const bool on_side = room.planes[2].disparity_px(static_cast<float>(x), static_cast<float>(y)) >= d;
+      return on_side && noise.uniform() >= share ? kNaN : d;
+    });
+  }
+  [[nodiscard]] double share_of_evidence() const {
+    int all = 0;
+    int on = 0;
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        const auto u = static_cast<float>(x);
+        const auto v = static_cast<float>(y);
+        if (std::isnan(evidence(x, y))) continue;
+        ++all;
+        on += room.planes[2].disparity_px(u, v) >= room.disparity_px(u, v) ? 1 : 0;
+      }
+    }
+    return static_cast<double>(on) / all;
+  }
+};
+
+TEST(Background, HasASideWallOfLittleEvidenceWhereItIsSquareOnTheFirst) {
+  const SideWall side(0.03);
+  BackgroundConfig config;
+  config.min_share = 3;
+  config.min_share_square = 0.4F;
+  ASSERT_GT(side.share_of_evidence(), 0.006);
+  ASSERT_LT(side.share_of_evidence(), 0.02);
+  const Background found = background_of(side.evidence, ground_of(kFloor), kRig, config);
+  EXPECT_EQ(found.planes.size(), 3U);
+  EXPECT_LT(largest_difference(found, side.room), 0.2F);
+  config.min_share_square = 100;
+  EXPECT_EQ(background_of(side.evidence, ground_of(kFloor), kRig, config).planes.size(), 2U);
+}
+
+TEST(Background, HasNoWallOfLittleEvidenceThatIsNotSquareOnTheFirst) {
+  SideWall side(0.03);
+  const Background skew{{kFloor, side.room.planes[1], wall_at(0.3 - 1.0, 1.9F)}};
+  side.room = skew;
+  Noise noise(3);
+  side.evidence = evidence_of(skew, 0.3, 0.1F, [&](int x, int y, float d) {
+    const bool on_side = skew.planes[2].disparity_px(static_cast<float>(x), static_cast<float>(y)) >= d;
+    return on_side && noise.uniform() >= 0.03 ? kNaN : d;
+  });
+  BackgroundConfig config;
+  config.min_share = 3;
+  config.min_share_square = 0.4F;
+  EXPECT_EQ(background_of(side.evidence, ground_of(kFloor), kRig, config).planes.size(), 2U);
+}
+
+TEST(Background, HasAStrongWallThoughSomeFalseEvidenceLiesBehindIt) {
+  const Background room{{kFloor, wall_at(0, 3)}};
+  Noise noise(9);
+  const auto mismatched = [&](int, int y, float d) {
+    return y < 120 && noise.uniform() < 0.06 ? static_cast<float>(noise.uniform()) * (d - 2) : d;
+  };
+  const Image<float> evidence = evidence_of(room, 0.3, 0.1F, mismatched);
+  const Background found = background_of(evidence, ground_of(kFloor), kRig);
+  EXPECT_EQ(found.planes.size(), 2U);
+  EXPECT_LT(largest_difference(found, room), 0.1F);
 }
 
 TEST(Background, HasAWallThoughNoFloorIsSeen) {

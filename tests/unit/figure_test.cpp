@@ -90,6 +90,14 @@ TEST(Figure, LeavesThePlainStretchBetweenFigureAndGroundToTheGround) {
   EXPECT_EQ(stage.figure(4), (Labels{0, 1, 0, 0}));
 }
 
+/// Figure by what is seen and by borders alone.
+FigureConfig cut_only() {
+  FigureConfig config;
+  config.smoothness = 2;
+  config.colour_weight = config.continuation_weight = 0;
+  return config;
+}
+
 /// Two boards with a plain stretch between them (facet 2), ground above; what the stretch becomes when its
 /// border to the boards or that to the ground is the weaker.
 Labels between_boards(float left_px, float right_px, bool open_to_the_ground) {
@@ -106,14 +114,29 @@ Labels between_boards(float left_px, float right_px, bool open_to_the_ground) {
     stage.edges(x, 4) = stage.edges(x, 5) = open_to_the_ground ? 5 : 50;
   }
   for (int y = 6; y < kSize.height; ++y) {
-    for (const int x : {39, 40, 59, 60}) stage.edges(x, y) = 20;
+    for (const int x : {39, 40, 59, 60}) stage.edges(x, y) = 10;
   }
-  return stage.figure(4);
+  return stage.figure(4, cut_only());
 }
 
 TEST(Figure, IsSaidNothingOfBetweenObjectsInDifferentDepth) {
   EXPECT_EQ(between_boards(10, 16, true), (Labels{0, 1, 0, 1}));
   EXPECT_EQ(between_boards(10, 16, false), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, IsNotTakenAlongAcrossABorderThatCostsNothing) {
+  Stage stage;
+  stage.facet(1, 20, 40);
+  stage.facet(2, 40, 60);  // between objects in different depth: nothing is said of it
+  stage.facet(3, 60, 80);
+  stage.see(0, 20, kBehind);
+  stage.see(20, 40, 10);
+  stage.see(60, 80, 16);
+  stage.see(80, 100, kBehind);
+  FigureConfig config = cut_only();
+  EXPECT_EQ(stage.figure(4, config), (Labels{0, 1, 1, 1}));
+  config.smoothness = 0;
+  EXPECT_EQ(stage.figure(4, config), (Labels{0, 1, 0, 1}));
 }
 
 TEST(Figure, IsWhatLiesBetweenObjectsOfOneDepthWhateverItsBorders) {
@@ -165,16 +188,74 @@ Stage with_gap(Gray painted) {
   return stage;
 }
 
-TEST(Figure, IsNotAGapOfTheGroundsColourBetweenObjectsOfOneDepth) {
+TEST(Figure, IsNotAGapPaintedLikeTheGroundBetweenObjectsOfOneDepth) {
   EXPECT_EQ(with_gap(grey_of(0)).figure(4), (Labels{0, 1, 0, 1}));
   EXPECT_EQ(with_gap(grey_of(0) + 10).figure(4), (Labels{0, 1, 0, 1}));
+}
+
+TEST(Figure, KeepsAStripeOfAnObjectInItsOwnColour) {
   EXPECT_EQ(with_gap(grey_of(1)).figure(4), (Labels{0, 1, 1, 1}));
-  EXPECT_EQ(with_gap(grey_of(4)).figure(4), (Labels{0, 1, 1, 1}));  // nobody's colour
+}
+
+TEST(Figure, KeepsAStripeOfAnObjectInNobodysColour) {
+  EXPECT_EQ(with_gap(grey_of(4)).figure(4), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, IsWhatTheImagesBorderCutsOffInAnObjectsColour) {
+  for (const bool alike : {true, false}) {
+    Stage stage;
+    stage.facet(1, 50, 70);
+    stage.facet(2, 70, 100);
+    stage.see(0, 50, kBehind);
+    stage.see(50, 70, 10);
+    for (int y = 0; y < kSize.height; ++y) {
+      std::fill_n(stage.grey.row(y) + 70, 30, alike ? grey_of(1) : grey_of(4));
+    }
+    EXPECT_EQ(stage.figure(3), (Labels{0, 1, alike ? 1 : 0}));
+  }
+}
+
+/// Two boards with a plain gap between them in the wall's colour and clear edges all around, and far away a
+/// third that is painted alike, so that this colour is as common in the figure as in the ground.
+Labels beside_a_wall(bool boards_alike, float continuation_weight) {
+  const Gray wall = grey_of(0);
+  Stage stage;
+  stage.facet(1, 22, 30);
+  stage.facet(2, 30, 36);
+  stage.facet(3, 36, 44);
+  stage.facet(4, 92, 100);
+  stage.edges.fill(60);
+  stage.see(0, 22, kBehind);
+  stage.see(22, 30, 10);
+  stage.see(36, 44, 10);
+  stage.see(44, 92, kBehind);
+  stage.see(92, 100, 10);
+  for (int y = 0; y < kSize.height; ++y) {
+    std::fill_n(stage.grey.row(y) + 30, 6, wall);
+    std::fill_n(stage.grey.row(y) + 92, 8, wall);
+    if (!boards_alike) continue;
+    std::fill_n(stage.grey.row(y) + 22, 8, wall);
+    std::fill_n(stage.grey.row(y) + 36, 8, wall);
+  }
+  FigureConfig config;
+  config.smoothness = 2;
+  config.colour_weight = 0;
+  config.continuation_weight = continuation_weight;
+  return stage.figure(5, config);
+}
+
+TEST(Figure, IsNotAStripOfWallThatGoesOnBesideTheObjects) {
+  EXPECT_EQ(beside_a_wall(false, 1), (Labels{0, 1, 0, 1, 1}));
+  EXPECT_EQ(beside_a_wall(false, 0), (Labels{0, 1, 1, 1, 1}));
+}
+
+TEST(Figure, KeepsAStripInTheWallsColourWhereTheObjectsBesideItHaveThatToo) {
+  EXPECT_EQ(beside_a_wall(true, 1), (Labels{0, 1, 1, 1, 1}));
 }
 
 TEST(Figure, KeepsAGapWhereColourIsNotAsked) {
   FigureConfig config;
-  config.colour_reach = -1;
+  config.colour_weight = config.continuation_weight = 0;
   EXPECT_EQ(with_gap(grey_of(0)).figure(4, config), (Labels{0, 1, 1, 1}));
 }
 
@@ -192,7 +273,7 @@ TEST(Figure, JudgesGapsByColourWhereThereIsColour) {
 
 TEST(Figure, OfItsOwnTextureIsFigureInTheGroundsColourToo) {
   Stage stage = with_gap(grey_of(0));
-  stage.see(45, 50, 10);
+  stage.see(45, 53, 10);
   EXPECT_EQ(stage.figure(4), (Labels{0, 1, 1, 1}));
 }
 

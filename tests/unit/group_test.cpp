@@ -2,9 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cairn/objects/group.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 
 #include "support/noise.hpp"
 
@@ -23,7 +27,7 @@ struct Stage {
   DisparityMap map{Image<float>(kSize, kBehind, {}), Image<Reject>(kSize, Reject::none, {})};
   std::vector<std::int32_t> figure{0};
 
-  /// A new figure facet with a disparity for each pixel, NaN = none. Gives its number.
+  /// A new figure facet with a disparity for each pixel, NaN = none, that is evidence too. Gives its number.
   template <class Disparity>
   int facet(Rect rect, Disparity disparity) {
     const int id = static_cast<int>(figure.size());
@@ -31,7 +35,7 @@ struct Stage {
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
       for (int x = rect.x; x < rect.x + rect.width; ++x) {
         labels(x, y) = RegionId{id};
-        map.disparity_px(x, y) = disparity(x, y);
+        evidence(x, y) = map.disparity_px(x, y) = disparity(x, y);
         map.reject(x, y) = std::isnan(map.disparity_px(x, y)) ? Reject::no_texture : Reject::none;
       }
     }
@@ -40,9 +44,18 @@ struct Stage {
   int level(Rect rect, float d) {
     return facet(rect, [d](int, int) { return d; });
   }
-  [[nodiscard]] Segmentation group(const GroupConfig& config = {}) const {
+  /// The same without any evidence.
+  int plain(Rect rect, float d) {
+    const int id = level(rect, d);
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+      for (int x = rect.x; x < rect.x + rect.width; ++x) evidence(x, y) = kNaN;
+    }
+    return id;
+  }
+  [[nodiscard]] Segmentation group(const GroupConfig& config = {},
+                                   const std::optional<StereoRig>& rig = std::nullopt) const {
     const Facets facets{labels.clone(), static_cast<int>(figure.size()), borders_of(labels, edges)};
-    return group_facets(facets, figure, map, evidence, Background{{{0, 0, kBehind}}}, {}, config, {});
+    return group_facets(facets, figure, map, evidence, Background{{{0, 0, kBehind}}}, rig, {}, config, {});
   }
 };
 
@@ -100,6 +113,7 @@ TEST(Group, GivesANearObjectItsShareBeforeAFarOne) {
   GroupConfig config;
   config.step = 3.125F;       // 1 px
   config.deviation = 1.625F;  // 0.52 px
+  config.step_share = config.deviation_share = 0;
   const Segmentation result = stage.group(config);
   ASSERT_EQ(result.regions.size(), 3U);
   EXPECT_EQ(result.labels(150, 90), result.labels(80, 90));
@@ -205,8 +219,117 @@ TEST(Group, PartsMoreAsTheAllowedStepFalls) {
   for (int i = 0; i < 4; ++i) stage.level({40 + 50 * i, 20, 50, 60}, 12 + 0.5F * static_cast<float>(i));
   GroupConfig strict;
   strict.step = 0.3F;  // 0.1 px
+  strict.step_share = 0;
   EXPECT_EQ(stage.group().regions.size(), 2U);
   EXPECT_EQ(stage.group(strict).regions.size(), 5U);
+}
+
+/// Two facets that touch, the second a step farther, grouped by shares of the disparity.
+std::size_t groups_across_a_step(float d, float step_px, const std::optional<StereoRig>& rig = std::nullopt) {
+  Stage stage;
+  stage.level({60, 20, 60, 60}, d);
+  stage.level({120, 20, 60, 60}, d - step_px);
+  GroupConfig config;
+  config.step = 2;  // 0.64 px
+  config.step_share = 6;
+  config.deviation = 4;
+  config.deviation_share = 12;
+  return stage.group(config, rig).regions.size() - 1;
+}
+
+TEST(Group, PartsAtAStepThatIsALargeShareOfTheDisparityAndJoinsAtASmallOne) {
+  EXPECT_EQ(groups_across_a_step(14, 1.5F), 2U);
+  EXPECT_EQ(groups_across_a_step(40, 1.5F), 1U);
+  EXPECT_EQ(groups_across_a_step(40, 3), 2U);
+  EXPECT_EQ(groups_across_a_step(7, 0.6F), 1U);  // more than the share, but less than the least step
+}
+
+TEST(Group, TakesSharesOfTheDisparityFromInfinityOn) {
+  const StereoRig rig{300, 160, 60, 0.2F, 26};  // disparity 14 is 40 from infinity
+  EXPECT_EQ(groups_across_a_step(14, 1.5F, rig), 1U);
+  EXPECT_EQ(groups_across_a_step(14, 3, rig), 2U);
+}
+
+TEST(Group, LetsADeepFoldBeAShareOfTheDisparity) {
+  Stage stage;  // no step anywhere; 4 px lower at its ends than in the middle
+  const auto ridge = [](int x, int) { return 40 - 0.05F * static_cast<float>(std::abs(x - 160)); };
+  for (int i = 0; i < 8; ++i) stage.facet({80 + 20 * i, 20, 20, 80}, ridge);
+  GroupConfig config;
+  config.deviation = 4;
+  config.deviation_share = 12;
+  EXPECT_EQ(stage.group(config).regions.size(), 2U);
+  config.deviation_share = 0;
+  EXPECT_GT(stage.group(config).regions.size(), 2U);
+}
+
+/// Two objects of 60 rows, and between their upper ends a facet of their depth.
+std::size_t groups_across_a_bar(bool with_evidence, int bar_height, float gap_share) {
+  Stage stage;
+  stage.level({60, 20, 60, 60}, 12);
+  stage.level({160, 20, 60, 60}, 12);
+  const Rect bar{120, 20, 40, bar_height};
+  if (with_evidence) {
+    stage.level(bar, 12);
+  } else {
+    stage.plain(bar, 12);
+  }
+  GroupConfig config;
+  config.gap_share = gap_share;
+  return stage.group(config).regions.size() - 1;
+}
+
+TEST(Group, IsNotConnectedByAFacetWithoutEvidenceThatMostlyBordersOnGround) {
+  EXPECT_EQ(groups_across_a_bar(false, 10, 50), 2U);  // 80 of 100 px of its border
+  EXPECT_EQ(groups_across_a_bar(true, 10, 50), 1U);
+  EXPECT_EQ(groups_across_a_bar(false, 60, 50), 1U);  // 80 of 200
+  EXPECT_EQ(groups_across_a_bar(false, 60, 30), 2U);
+  EXPECT_EQ(groups_across_a_bar(false, 10, 100), 1U);
+}
+
+/// The groups where a thing of `middle` px lies between two halves, `wide` apart.
+std::size_t groups_around(float left, float middle, float right, int wide = 20, float occluded_gap = 10) {
+  Stage stage;
+  stage.level({60, 20, 40, 60}, left);
+  stage.level({100, 10, wide, 80}, middle);
+  stage.level({100 + wide, 20, 40, 60}, right);
+  GroupConfig config;
+  config.occluded_gap = occluded_gap;
+  return stage.group(config).regions.size() - 1;
+}
+
+TEST(Group, UnitesWhatANearerObjectParts) {
+  EXPECT_EQ(groups_around(12, 20, 12), 2U);
+  EXPECT_EQ(groups_around(12, 20, 12, 20, 0), 3U);
+}
+
+TEST(Group, KeepsApartWhatANearerObjectPartsButDepthToo) {
+  EXPECT_EQ(groups_around(12, 20, 14), 3U);
+}
+
+TEST(Group, KeepsApartWhatIsFarFromEachOtherBehindANearerObject) {
+  EXPECT_EQ(groups_around(12, 20, 12, 40), 3U);  // 32 px are allowed
+  EXPECT_EQ(groups_around(12, 20, 12, 40, 20), 2U);
+}
+
+TEST(Group, KeepsApartWhatNothingNearerParts) {
+  EXPECT_EQ(groups_around(12, 8, 12), 3U);  // something farther does
+  Stage stage;
+  stage.level({60, 20, 40, 60}, 12);
+  stage.level({120, 20, 40, 60}, 12);
+  stage.level({60, 90, 40, 20}, 20);  // something nearer touches neither
+  EXPECT_EQ(stage.group().regions.size(), 4U);
+}
+
+TEST(Group, UnitesAllPiecesOfWhatSeveralNearerObjectsPart) {
+  // A bar behind three posts. Every order of the pieces, for they are united pair by pair.
+  std::array<int, 4> order{0, 1, 2, 3};
+  do {
+    Stage stage;
+    for (const int place : order) stage.level({20 + 60 * place, 40, 40, 40}, 12);
+    for (int post = 0; post < 3; ++post) stage.level({60 + 60 * post, 10, 20, 100}, 20);
+    const Segmentation result = stage.group();
+    EXPECT_EQ(result.regions.size(), 5U) << order[0] << order[1] << order[2] << order[3];
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 }  // namespace
