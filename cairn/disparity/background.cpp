@@ -286,7 +286,7 @@ Background fit_background(View<const float> evidence_px, const Ground& ground,
                     config);
   for (int i = 0; i < config.max_walls && (search.find_next() || search.find_next_square()); ++i) {
   }
-  return {std::move(search).planes()};
+  return {std::move(search).planes(), ground.plane.has_value()};
 }
 
 }  // namespace cairn

@@ -32,6 +32,7 @@ void fields(BackgroundConfig& c, V&& v) {
 /// it.
 struct Background {
   std::vector<GroundPlane> planes;
+  bool has_floor = false;  // it is the first of them
   /// At least 0: infinitely far away is behind everything.
   [[nodiscard]] float disparity_px(float x, float y) const;
 };

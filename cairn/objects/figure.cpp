@@ -212,6 +212,38 @@ std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, 
   return ties;
 }
 
+/// Facets along the foot of a wall that hardly show evidence of figure.
+std::vector<bool> skirting(const Facets& facets, const Background& background, const Votes& votes,
+                           float above_percent) {
+  constexpr float kBelow = 0.2F;        // of what is above
+  constexpr double kShare = 0.8;        // of a facet's pixels
+  constexpr double kHardlySeen = 0.05;  // of its pixels
+  std::vector<bool> result(votes.pixels.size());
+  if (!background.has_floor || background.planes.size() < 2 || above_percent <= 0) return result;
+  const View<const RegionId> labels = facets.labels;
+  const float above = 0.01F * above_percent * static_cast<float>(labels.width());
+  std::vector<std::int64_t> within(result.size());
+  for (int x = 0; x < labels.width(); ++x) {
+    int foot = 0;  // the first row where the floor is nearer than the walls
+    const auto at_floor = [&](int y) {
+      const auto u = static_cast<float>(x);
+      const auto v = static_cast<float>(y);
+      return background.planes.front().disparity_px(u, v) >= background.disparity_px(u, v);
+    };
+    while (foot < labels.height() && !at_floor(foot)) ++foot;
+    if (foot == labels.height()) continue;
+    const int first = std::max(static_cast<int>(std::ceil(static_cast<float>(foot) - above)), 0);
+    const int last = static_cast<int>(std::ceil(static_cast<float>(foot) + kBelow * above));
+    for (int y = first; y < std::min(last, labels.height()); ++y) ++within[index(labels(x, y))];
+  }
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto pixels = static_cast<double>(votes.pixels[i]);
+    result[i] = static_cast<double>(within[i]) > kShare * pixels &&
+                static_cast<double>(votes.seen_figure[i]) <= kHardlySeen * pixels;
+  }
+  return result;
+}
+
 /// Figure, and what touches it: there colour is asked.
 std::vector<bool> around(const std::vector<std::int32_t>& figure, const std::vector<Border>& borders) {
   std::vector<bool> near(figure.size());
@@ -254,11 +286,12 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
   const Votes votes = votes_of(facets, evidence_px, background, config);
   const std::vector<Look> looks = looks_of(facets, gray, rgb, votes);
   const std::vector<Tie> ties = ties_of(facets.borders, config.smoothness, noise_sigma(gray));
+  const std::vector<bool> at_foot = skirting(facets, background, votes, config.skirting);
   constexpr auto kVote = static_cast<std::int64_t>(kUnit) / kSeen;
   std::vector<std::int64_t> ground_costs(looks.size());
   std::vector<std::int64_t> figure_costs(looks.size());
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    ground_costs[i] = kVote * votes.figure[i];
+    ground_costs[i] = kVote * (at_foot[i] ? kSeen * votes.seen_figure[i] : votes.figure[i]);
     figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * votes.pixels[i]);
   }
   std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
@@ -271,7 +304,8 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
       if (!asked[i] || looks[i].seen) continue;
       const double colour = config.colour_weight * model.ground_over_figure(looks[i].colour);
       const double on = config.continuation_weight * goes_on(i, looks, figure, gray.width());
-      with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
+      if (!at_foot[i])
+        with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
       with_colour_figure[i] += std::llround(kUnit * looks[i].pixels * (std::max(colour, 0.0) + on));
     }
     figure = minimum_cut(with_colour_ground, with_colour_figure, ties);

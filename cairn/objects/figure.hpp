@@ -15,6 +15,7 @@ struct FigureConfig {
   float margin = 1.6F;
   float agreement = 4.7F;
   float longest_bridge = 30.0F;
+  float skirting = 2.5F;
   float smoothness = 2.0F;
   float colour_weight = 0.4F;
   float continuation_weight = 0.5F;
@@ -28,6 +29,9 @@ void fields(FigureConfig& c, V&& v) {
     "surface",
     range(0.0F, 100.0F));
   v("longest_bridge", c.longest_bridge, "% of the width", "plain stretches longer than this hardly count",
+    range(0.0F, 100.0F));
+  v("skirting", c.skirting, "% of the width",
+    "a plain facet within this above the foot of a wall is figure only where that is seen; 0 = anywhere",
     range(0.0F, 100.0F));
   v("smoothness", c.smoothness, "px of evidence",
     "what it costs, for each pixel of a border without an edge, to part figure and ground there",
@@ -46,7 +50,8 @@ void fields(FigureConfig& c, V&& v) {
 /// margin before the background. A plain stretch between two pieces of evidence belongs to the farther of its
 /// ends, since an edge belongs to the nearer of the surfaces that it parts: it is figure where both ends are,
 /// and says nothing where those lie in different depths. A stretch that runs out of the image is ground, at
-/// half weight: what the picture cuts off is mostly background.
+/// half weight: what the picture cuts off is mostly background. No conclusion is drawn along the foot of a
+/// wall: a skirting board has no upright edges, and would join all that stands before it.
 ///
 /// These votes are the costs of a facet's two labels; parting two neighbours costs the more the longer and
 /// the weaker their common border. The labelling of least cost is exact: a minimum cut. It is found three
