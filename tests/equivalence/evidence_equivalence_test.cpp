@@ -106,7 +106,7 @@ Facets as_facets(const Image<RegionId>& labels, std::uint32_t seed) {
       facets.count = static_cast<int>(number_of.size());
     }
   }
-  const Image<std::uint16_t> edges = random_image<std::uint16_t>(labels.size(), 0, 60, seed);
+  const Image<std::uint16_t> edges = random_image<std::uint16_t>(labels.size(), 0, 120, seed);
   facets.borders = borders_of(facets.labels, edges);
   return facets;
 }
@@ -116,28 +116,32 @@ Facets random_facets(Size size, int count, std::uint32_t seed) {
   return as_facets(random_image<RegionId>(size, 0, count - 1, seed), seed + 1);
 }
 
-/// Facets near and far: blocks, of which some hang together.
-Facets random_blocks(Size size, int count, std::uint32_t seed) {
-  const auto blocks = random_image<RegionId>({size.width / 7 + 1, size.height / 4 + 1}, 0, count - 1, seed);
+/// Facets of blocks, each block its own or one of `count` kinds that hang together in each half of the image.
+Facets random_blocks(Size size, std::optional<int> count, std::uint32_t seed) {
+  const Size blocks{size.width / 7 + 1, size.height / 4 + 1};
+  const auto kinds = random_image<RegionId>(blocks, 0, count.value_or(1) - 1, seed);
   Image<RegionId> labels(size);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
-      labels(x, y) = RegionId{number(blocks(x / 7, y / 4)) + count * (2 * y / size.height)};
+      const int own = y / 4 * blocks.width + x / 7;
+      const int kind = number(kinds(x / 7, y / 4)) + count.value_or(0) * (2 * y / size.height);
+      labels(x, y) = RegionId{count ? kind : own};
     }
   }
   return as_facets(labels, seed + 1);
 }
 
-/// Facets of few colours, each with some noise.
+/// Facets in colours like and unlike each other, each with some noise.
 Image<Rgb> painted(const Facets& facets, std::uint32_t seed) {
   const Image<int> base = random_image<int>({3, facets.count}, 0, 4, seed);
-  const Image<int> noise = random_image<int>(facets.labels.size(), 0, 14, seed + 1);
+  const Image<int> noise = random_image<int>(facets.labels.size(), 0, 5, seed + 1);
   Image<Rgb> rgb(facets.labels.size());
   for (int y = 0; y < rgb.height(); ++y) {
     for (int x = 0; x < rgb.width(); ++x) {
       const int facet = number(facets.labels(x, y));
       const auto channel = [&](int c) {
-        return static_cast<std::uint8_t>(60 + 11 * base(c == 0 ? 0 : 1, facet) + noise(x, y));
+        const int shade = base(c == 0 ? 0 : 1, facet);
+        return static_cast<std::uint8_t>(60 + 7 * shade * shade + noise(x, y));
       };
       rgb(x, y) = {channel(0), channel(1), channel(2)};
     }
@@ -283,37 +287,48 @@ TEST(MinimumCut, IsThatOfItsDefinitionAlongLongPaths) {
 TEST(SeparateFigure, IsThatOfItsDefinition) {
   int figures = 0;
   int by_colour = 0;
-  const Background background{{{0.01F, 0.1F, 3}, {-0.05F, 0, 9}}};
-  for (const Size size : sizes()) {
-    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+  int by_skirting = 0;
+  std::vector<Size> all_sizes = sizes();
+  all_sizes.push_back({84, 40});
+  for (const Size size : all_sizes) {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
       for (const int tenths_of_holes : {3, 8, 9, 10}) {
         const int count = 1 + static_cast<int>(seed) * 3;
-        const Facets facets =
-            seed % 2 == 0 ? random_facets(size, count, seed) : random_blocks(size, count, seed);
+        const Facets facets = seed > 6        ? random_blocks(size, std::nullopt, seed)
+                              : seed % 2 == 0 ? random_blocks(size, count, seed)
+                                              : random_facets(size, count, seed);
         const DisparityMap map = random_map(size, seed, tenths_of_holes);
+        const Background background{{{0.01F, 0.2F, 3}, {-0.05F, 0, 9}}, seed != 3};
         FigureConfig config;
+        if (seed > 4) config.skirting = 30;
         if (seed % 2 == 0) config.longest_bridge = 5;
         if (seed % 3 == 0) config.agreement = 40;
+        if (seed > 7) config.agreement = 100;
         if (seed % 4 == 0) config.smoothness = 0;
         if (seed % 5 == 0) config.colour_weight = 3;
         if (seed == 7) config.continuation_weight = 3;
         const Image<Rgb> coloured = painted(facets, seed);
         const Image<Gray> grey = greens(coloured);
         const View<const Rgb> rgb = seed > 3 ? coloured.view() : View<const Rgb>{};
-        const auto figure = [&] {
-          return separate_figure(facets, grey, rgb, map.disparity_px, background, config, {});
+        const auto figure = [&](const FigureConfig& with) {
+          return separate_figure(facets, grey, rgb, map.disparity_px, background, with, {});
         };
         const auto expected =
             reference::separate_figure(facets, grey, rgb, map.disparity_px, background, config);
         for (const std::int32_t f : expected) figures += f;
-        EXPECT_EQ(figure(), expected) << text(size) << ' ' << seed << ' ' << tenths_of_holes;
-        config.colour_weight = config.continuation_weight = 0;
-        by_colour += figure() != expected ? 1 : 0;
+        EXPECT_EQ(figure(config), expected) << text(size) << ' ' << seed << ' ' << tenths_of_holes;
+        FigureConfig plain = config;
+        plain.colour_weight = plain.continuation_weight = 0;
+        by_colour += figure(plain) != expected ? 1 : 0;
+        plain = config;
+        plain.skirting = 0;
+        by_skirting += figure(plain) != expected ? 1 : 0;
       }
     }
   }
   EXPECT_GT(figures, 50);
   EXPECT_GT(by_colour, 5);
+  EXPECT_GT(by_skirting, 3);
 }
 
 TEST(SegmentFacets, GivesTheSameOnAnyNumberOfThreads) {
@@ -442,7 +457,7 @@ TEST(WayByEvidence, ManagesOptionsAtTheEndsOfTheirRanges) {
     config.facets = {end(0, 5), end(0, 255), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
     config.facets = {};
-    config.figure = {0, end(0, 100), end(0, 100), end(0, 100), end(0, 10), end(0, 10)};
+    config.figure = {0, end(0, 100), end(0, 100), end(0, 100), end(0, 100), end(0, 10), end(0, 10)};
     config.group = {end(0, 1000), end(0, 100), end(0, 1000), end(0, 100),
                     end(0, 100),  end(0, 100), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);

@@ -82,6 +82,9 @@ constexpr double kOnSpread = 6;
 constexpr double kAcross = 0.15;
 constexpr double kDown = 0.03;
 constexpr double kFarthest = 9;
+constexpr float kBelow = 0.2F;
+constexpr double kFootShare = 0.8;
+constexpr double kHardlySeen = 0.05;
 
 /// What one pixel says: positive is figure, negative ground, in twentieths of a pixel of evidence.
 int vote(View<const float> evidence_px, const Background& background, const FigureConfig& config, int x,
@@ -104,13 +107,32 @@ int vote(View<const float> evidence_px, const Background& background, const Figu
   return *r - *l > longest ? kTooLong : kConcluded;
 }
 
+/// Is this pixel at the foot of a wall: about the first row of its column where the floor is the background?
+bool is_at_foot(const Background& background, Size size, const FigureConfig& config, int x, int y) {
+  if (!background.has_floor || background.planes.size() < 2 || config.skirting <= 0) return false;
+  const auto is_floor = [&](int v) {
+    const auto column = static_cast<float>(x);
+    const auto row = static_cast<float>(v);
+    return background.planes[0].disparity_px(column, row) >= background.disparity_px(column, row);
+  };
+  int foot = 0;
+  while (foot < size.height && !is_floor(foot)) ++foot;
+  const float above = 0.01F * config.skirting * static_cast<float>(size.width);
+  return foot < size.height && static_cast<float>(y) >= static_cast<float>(foot) - above &&
+         static_cast<float>(y) < static_cast<float>(foot) + kBelow * above;
+}
+
 /// All that is known of one facet.
 struct Patch {
-  std::int64_t for_figure = 0, for_ground = 0, seen_figure = 0;
+  std::int64_t for_figure = 0, for_ground = 0, seen_figure = 0, at_foot = 0;
   double pixels = 0;
   std::array<double, 3> colour{};  // mean
   int left = std::numeric_limits<int>::max(), right = -1, top = std::numeric_limits<int>::max(), bottom = -1;
   [[nodiscard]] bool is_seen() const { return static_cast<double>(seen_figure) > kSeenShare * pixels; }
+  [[nodiscard]] bool is_skirting() const {
+    return static_cast<double>(at_foot) > kFootShare * pixels &&
+           static_cast<double>(seen_figure) <= kHardlySeen * pixels;
+  }
   [[nodiscard]] std::array<int, 3> cell() const {
     const auto of = [](double channel) { return static_cast<int>(channel / kCell); };
     return {of(colour[0]), of(colour[1]), of(colour[2])};
@@ -128,6 +150,7 @@ std::vector<Patch> patches_of(const Facets& facets, View<const Gray> gray, View<
       p.for_figure += std::max(said, 0);
       p.for_ground += std::max(-said, 0);
       p.seen_figure += said > 0 && !std::isnan(evidence_px(x, y)) ? 1 : 0;
+      p.at_foot += is_at_foot(background, gray.size(), config, x, y) ? 1 : 0;
       p.pixels += 1;
       const Rgb colour = rgb.empty() ? Rgb{gray(x, y), gray(x, y), gray(x, y)} : rgb(x, y);
       p.colour = {p.colour[0] + colour.r, p.colour[1] + colour.g, p.colour[2] + colour.b};
@@ -384,13 +407,14 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     for (std::size_t i = 0; i < patches.size(); ++i) {
       const Patch& p = patches[i];
       const auto pixels = static_cast<std::int64_t>(p.pixels);
-      cost_0.push_back(static_cast<std::int64_t>(kUnit) / kSeen * p.for_figure);
+      const std::int64_t for_figure = p.is_skirting() ? kSeen * p.seen_figure : p.for_figure;
+      cost_0.push_back(static_cast<std::int64_t>(kUnit) / kSeen * for_figure);
       cost_1.push_back(static_cast<std::int64_t>(kUnit) / kSeen * (p.for_ground + kInDoubt * pixels));
       const bool asked = is_at_figure(static_cast<std::int32_t>(i), figure, facets.borders) && !p.is_seen();
       if (round == 0 || !asked) continue;
       const double colour = config.colour_weight * ground_over_figure(p, patches, figure);
       const double on = config.continuation_weight * goes_on(i, patches, figure, gray.width());
-      cost_0.back() += std::llround(kUnit * p.pixels * std::max(-colour, 0.0));
+      if (!p.is_skirting()) cost_0.back() += std::llround(kUnit * p.pixels * std::max(-colour, 0.0));
       cost_1.back() += std::llround(kUnit * p.pixels * (std::max(colour, 0.0) + on));
     }
     figure = reference::minimum_cut(cost_0, cost_1, ties);

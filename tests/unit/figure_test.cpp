@@ -277,6 +277,48 @@ TEST(Figure, OfItsOwnTextureIsFigureInTheGroundsColourToo) {
   EXPECT_EQ(stage.figure(4), (Labels{0, 1, 1, 1}));
 }
 
+/// Two boxes that stand before a wall, and between them its skirting board: facet 2, `height` rows of it
+/// above the floor, which begins at row 15.
+Labels before_a_skirting_board(int height, float skirting, bool has_floor = true, bool textured = false) {
+  const Background room{{{0, 1, kBehind - 14.5F}, {0, 0, kBehind}}, has_floor};
+  Stage stage;
+  stage.facet(1, 20, 40);
+  stage.facet(2, 40, 60, 15 - height);
+  stage.facet(3, 60, 80);
+  for (int y = 15; y < kSize.height; ++y) {
+    for (int x = 40; x < 60; ++x) {
+      stage.labels(x, y) = RegionId{0};
+      stage.grey(x, y) = grey_of(0);
+    }
+  }
+  stage.edges.fill(200);
+  for (int y = 0; y < kSize.height; ++y) {
+    stage.see(0, 100, room.disparity_px(0, static_cast<float>(y)), y, y + 1);
+  }
+  stage.see(20, 40, 10);
+  stage.see(60, 80, 10);
+  stage.see(40, 60, textured ? 10 : kNaN, 15 - height, 15);
+  FigureConfig config = cut_only();
+  config.skirting = skirting;
+  return separate_figure({stage.labels.clone(), 4, borders_of(stage.labels, stage.edges)}, stage.grey, {},
+                         stage.evidence, room, config, {});
+}
+
+TEST(Figure, IsNotConcludedAlongTheFootOfAWall) {
+  EXPECT_EQ(before_a_skirting_board(4, 5), (Labels{0, 1, 0, 1}));
+  EXPECT_EQ(before_a_skirting_board(4, 0), (Labels{0, 1, 1, 1}));
+  EXPECT_EQ(before_a_skirting_board(4, 2), (Labels{0, 1, 1, 1}));  // higher than that
+  EXPECT_EQ(before_a_skirting_board(12, 5), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, IsSeenAlongTheFootOfAWallAsAnywhere) {
+  EXPECT_EQ(before_a_skirting_board(4, 5, true, true), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, KnowsOfNoFootOfAWallWithoutAFloor) {
+  EXPECT_EQ(before_a_skirting_board(4, 5, false), (Labels{0, 1, 1, 1}));
+}
+
 TEST(Figure, OutvotesAFewWrongDisparities) {
   Stage stage;
   stage.facet(1, 30, 60);
