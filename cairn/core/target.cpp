@@ -23,7 +23,9 @@ constexpr std::array kNames{std::pair{Target::best, std::string_view("best")},
 bool runs_here(Target target) {
   if (target == Target::scalar) return true;
 #if CAIRN_WITH_HWY
-  const auto has = [supported = hwy::SupportedTargets()](std::int64_t bit) { return (supported & bit) != 0; };
+  // Asked once: in a virtual machine the processor's answer takes as long as some rows of an image.
+  static const std::int64_t supported = hwy::SupportedTargets();
+  const auto has = [](std::int64_t bit) { return (supported & bit) != 0; };
 #if HWY_ARCH_X86
   if (target == Target::sse4) return has(HWY_SSE4);
   if (target == Target::avx2) return has(HWY_AVX2);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/regions/gradient.hpp>
 #include <cmath>
 #include <vector>
@@ -211,53 +212,67 @@ Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smooth
 
 namespace {
 
-Image<Gray> channel(View<const Rgb> rgb, std::uint8_t Rgb::*member, const Exec& exec) {
-  Image<Gray> plane(rgb.size(), exec.pool);
-  for (int y = 0; y < rgb.height(); ++y) {
-    const Rgb* const in = rgb.row(y);
-    Gray* const out = plane.row(y);
-    for (int x = 0; x < rgb.width(); ++x) out[x] = in[x].*member;
+/// What edge_strength() needs for a band of rows: the last three rows, smoothed, and working memory.
+class EdgeBand {
+ public:
+  EdgeBand(const kernels::RowKernels& run, const Kernel& kernel, int width, int channels)
+      : run_(run),
+        kernel_(kernel),
+        width_(width),
+        channels_(channels),
+        padded_(static_cast<std::size_t>((width + 2 * kernel.radius) * channels)),
+        sums_(static_cast<std::size_t>(width * channels)) {
+    for (auto& row : smooth_) row.resize(sums_.size());
   }
-  return plane;
-}
 
-/// Raises `strength` to the magnitude of one smoothed channel (1/16 levels) where that is larger.
-void raise_to_edges(View<const std::int16_t> smooth, View<std::uint16_t> strength, const Exec& exec) {
-  const int width = smooth.width();
-  const int height = smooth.height();
-  parallel_for(exec, height, kGrain, [&](int first, int last) {
+  /// Writes the rows first … last − 1. `row_at(y)` gives the samples of a row of the picture, `height` of
+  /// them.
+  template <class RowAt>
+  void run(RowAt row_at, int height, int first, int last, View<std::uint16_t> strength) {
+    const auto smooth_row = [&](int y) {
+      std::array<const std::uint8_t*, 2 * kMaxRadius + 1> rows{};
+      for (int i = 0; i <= 2 * kernel_.radius; ++i)
+        rows.at(static_cast<std::size_t>(i)) = row_at(std::clamp(y + i - kernel_.radius, 0, height - 1));
+      run_.smooth(rows.data(), width_, channels_, {kernel_.weights.data(), kernel_.radius}, padded_.data(),
+                  sums_.data(), smoothed_row(y));
+    };
+    for (int y = std::max(first - 1, 0); y <= first; ++y) smooth_row(y);
     for (int y = first; y < last; ++y) {
-      const std::int16_t* const up = smooth.row(std::max(y - 1, 0));
-      const std::int16_t* const here = smooth.row(y);
-      const std::int16_t* const down = smooth.row(std::min(y + 1, height - 1));
-      std::uint16_t* const out = strength.row(y);
-      for (int x = 0; x < width; ++x) {
-        const int gx = here[std::min(x + 1, width - 1)] - here[std::max(x - 1, 0)];
-        const int gy = down[x] - up[x];
-        const float magnitude =
-            std::sqrt(static_cast<float>(gx * gx + gy * gy)) * 0.125F;  // 1/32 → 1/4 level
-        out[x] = std::max(out[x], static_cast<std::uint16_t>(magnitude + 0.5F));
-      }
+      if (y + 1 < height) smooth_row(y + 1);
+      run_.edges(smoothed_row(std::max(y - 1, 0)), smoothed_row(y), smoothed_row(std::min(y + 1, height - 1)),
+                 width_, channels_, sums_.data(), strength.row(y));
     }
-  });
-}
+  }
+
+ private:
+  std::int16_t* smoothed_row(int y) { return smooth_.at(static_cast<std::size_t>(y % 3)).data(); }
+
+  const kernels::RowKernels& run_;
+  const Kernel& kernel_;
+  int width_;
+  int channels_;
+  std::vector<std::uint16_t> padded_;
+  std::vector<std::uint32_t> sums_;
+  std::array<std::vector<std::int16_t>, 3> smooth_;
+};
 
 }  // namespace
 
 Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, float smoothing_sigma,
                                    const Exec& exec) {
   const Kernel kernel = gaussian(smoothing_sigma);
-  Image<std::uint16_t> strength(gray.size(), 0, exec.pool);
-  if (rgb.empty()) {
-    const Image<std::int16_t> smooth = smoothed(gray, kernel, exec);
-    raise_to_edges(smooth, strength, exec);
-    return strength;
-  }
-  for (const auto member : {&Rgb::r, &Rgb::g, &Rgb::b}) {
-    const Image<Gray> plane = channel(rgb, member, exec);
-    const Image<std::int16_t> smooth = smoothed(plane.view(), kernel, exec);
-    raise_to_edges(smooth, strength, exec);
-  }
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  Image<std::uint16_t> strength(gray.size(), exec.pool);
+  const int height = gray.height();
+  parallel_for(exec, height, kGrain, [&](int first, int last) {
+    EdgeBand band(run, kernel, gray.width(), rgb.empty() ? 1 : 3);
+    if (rgb.empty()) {
+      band.run([&](int y) { return gray.row(y); }, height, first, last, strength);
+    } else {
+      band.run([&](int y) { return reinterpret_cast<const std::uint8_t*>(rgb.row(y)); }, height, first, last,
+               strength);
+    }
+  });
   return strength;
 }
 

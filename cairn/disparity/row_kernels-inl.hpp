@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// Included once for each instruction set, by row_kernels.cpp, so without a guard.
+namespace cairn::kernels::CAIRN_KERNEL_TARGET {
+namespace {
+
+/// Repeats the first and the last sample of a row `radius` times around it.
+inline void replicate_ends(std::uint16_t* row, int width, int channels, int radius) {
+  const int last = (width - 1) * channels;
+  for (int i = 1; i <= radius; ++i) {
+    for (int c = 0; c < channels; ++c) {
+      row[c - i * channels] = row[c];
+      row[last + c + i * channels] = row[last + c];
+    }
+  }
+}
+
+void smooth(const std::uint8_t* const* rows, int width, int channels, RowWeights kernel,
+            std::uint16_t* CAIRN_RESTRICT padded, std::uint32_t* CAIRN_RESTRICT sum,
+            std::int16_t* CAIRN_RESTRICT out) {
+  const int r = kernel.radius;
+  const int length = width * channels;
+  std::uint16_t* const column = padded + r * channels;  // 8.8 bits
+  const auto centre_weight = static_cast<std::uint16_t>(kernel.weights[0]);
+  for (int x = 0; x < length; ++x) column[x] = static_cast<std::uint16_t>(rows[r][x] * centre_weight);
+  for (int i = 1; i <= r; ++i) {
+    const std::uint8_t* const up = rows[r - i];
+    const std::uint8_t* const down = rows[r + i];
+    const auto w = static_cast<std::uint16_t>(kernel.weights[i]);
+    for (int x = 0; x < length; ++x)
+      column[x] = static_cast<std::uint16_t>(column[x] + w * (up[x] + down[x]));
+  }
+  replicate_ends(column, width, channels, r);
+
+  // 8.16 bits.
+  for (int x = 0; x < length; ++x) sum[x] = std::uint32_t{column[x]} * centre_weight + (1U << 11U);
+  for (int i = 1; i <= r; ++i) {
+    const auto w = static_cast<std::uint32_t>(kernel.weights[i]);
+    const std::uint16_t* const left = column - i * channels;
+    const std::uint16_t* const right = column + i * channels;
+    for (int x = 0; x < length; ++x) sum[x] += w * (std::uint32_t{left[x]} + right[x]);
+  }
+  for (int x = 0; x < length; ++x) out[x] = static_cast<std::int16_t>(sum[x] >> 12U);
+}
+
+void edges(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
+           int channels, std::uint32_t* CAIRN_RESTRICT squares, std::uint16_t* CAIRN_RESTRICT out) {
+  const int length = width * channels;
+  const auto square = [&](int x, int left, int right) {
+    const int gx = here[right] - here[left];
+    const int gy = down[x] - up[x];
+    squares[x] = static_cast<std::uint32_t>(gx * gx + gy * gy);
+  };
+  const int inner_end = length - channels;
+  for (int x = channels; x < inner_end; ++x) {
+    const int gx = here[x + channels] - here[x - channels];
+    const int gy = down[x] - up[x];
+    squares[x] = static_cast<std::uint32_t>(gx * gx + gy * gy);
+  }
+  for (int c = 0; c < channels; ++c) {
+    square(c, c, width > 1 ? c + channels : c);
+    if (width > 1) square(inner_end + c, inner_end + c - channels, inner_end + c);
+  }
+  // The root of the largest square is the largest root, rounded or not.
+  if (channels == 3) {
+    for (int x = 0; x < width; ++x)
+      squares[x] = std::max(std::max(squares[3 * x], squares[3 * x + 1]), squares[3 * x + 2]);
+  }
+  for (int x = 0; x < width; ++x) {
+    const float magnitude = std::sqrt(static_cast<float>(static_cast<int>(squares[x]))) * 0.125F;
+    out[x] = static_cast<std::uint16_t>(static_cast<int>(magnitude + 0.5F));  // 1/32 → 1/4 level
+  }
+}
+
+void noise(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
+           std::uint16_t* CAIRN_RESTRICT out) {
+  for (int x = 1; x + 1 < width; ++x) {
+    const int corners = up[x - 1] + up[x + 1] + down[x - 1] + down[x + 1];
+    const int sides = up[x] + down[x] + here[x - 1] + here[x + 1];
+    const auto response = static_cast<std::int16_t>(corners - 2 * sides + 4 * here[x]);
+    out[x] = static_cast<std::uint16_t>(response < 0 ? -response : response);
+  }
+}
+
+void smooth_lightly(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
+                    std::int16_t* CAIRN_RESTRICT column, std::int16_t* CAIRN_RESTRICT out) {
+  for (int x = 0; x < width; ++x) column[x + 1] = static_cast<std::int16_t>(up[x] + 6 * here[x] + down[x]);
+  column[0] = column[1];
+  column[width + 1] = column[width];
+  for (int x = 0; x < width; ++x)
+    out[x] = static_cast<std::int16_t>(column[x] + 6 * column[x + 1] + column[x + 2]);
+}
+
+void textured(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+              const Reject* reject, const float* disparity_px, int width, int least,
+              float* CAIRN_RESTRICT out) {
+  const auto tested = [&](int x, int left, int right) {
+    const int across = std::abs(here[right] - here[left]);
+    const int along = std::abs(down[x] - up[x]);
+    const bool passes = (reject[x] == Reject::none) & (across > least) & (2 * across > along);
+    return passes ? disparity_px[x] : std::numeric_limits<float>::quiet_NaN();
+  };
+  const int end = width - 1;
+  out[0] = tested(0, 0, std::min(1, end));
+  for (int x = 1; x < end; ++x) out[x] = tested(x, x - 1, x + 1);
+  out[end] = tested(end, std::max(end - 1, 0), end);
+}
+
+void agreed(const float* const* rows, int width, float agreement, float* CAIRN_RESTRICT out) {
+  const float* const r0 = rows[0];
+  const float* const r1 = rows[1];
+  const float* const r2 = rows[2];
+  const float* const r3 = rows[3];
+  const float* const r4 = rows[4];
+  for (int x = 0; x < width; ++x) {
+    const float d = r2[x];
+    const auto near = [d, agreement](float other) { return std::abs(other - d) <= agreement ? 1 : 0; };
+    const auto near_in = [x, near](const float* row) {
+      return near(row[x - 2]) + near(row[x - 1]) + near(row[x]) + near(row[x + 1]) + near(row[x + 2]);
+    };
+    const int count = near_in(r0) + near_in(r1) + near_in(r2) + near_in(r3) + near_in(r4);
+    out[x] = count > 3 ? d : std::numeric_limits<float>::quiet_NaN();  // the pixel itself is met, too
+  }
+}
+
+int count_on(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  int count = 0;
+  for (int i = 0; i < at.count; ++i) {
+    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
+    count += std::abs(at.d[i] - d) < tolerance ? 1 : 0;
+  }
+  return count;
+}
+
+int count_beyond(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  int count = 0;
+  for (int i = 0; i < at.count; ++i) {
+    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
+    const float back = at.behind[i] < d ? d : at.behind[i];
+    count += at.d[i] - back < -tolerance ? 1 : 0;
+  }
+  return count;
+}
+
+constexpr RowKernels kRowKernels{smooth,   edges,  noise,    smooth_lightly,
+                                 textured, agreed, count_on, count_beyond};
+
+}  // namespace
+}  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/disparity/reject.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: what find_evidence(), edge_strength() and fit_background() do for each
+/// pixel of a row, and for each point of a sample. Private to the library.
+namespace cairn::kernels {
+
+/// One side of a symmetric smoothing kernel in 1/256: weights[i] stands at +i and −i.
+struct RowWeights {
+  const int* weights;
+  int radius;
+};
+
+/// Points, one array per coordinate.
+struct PointArrays {
+  const float* x;
+  const float* y;
+  const float* d;
+  const float* behind;  // the background's disparity there
+  int count;
+};
+
+/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
+/// rounds in another order than it is written in, so that each gives the same bits.
+struct RowKernels {
+  /// The rows −radius … +radius around a row, smoothed down and then across: `rows[i]` stands for row i −
+  /// radius, `width` samples of `channels` interleaved bytes each. Writes 1/16 levels. `padded`: width + 2 ·
+  /// radius samples, `sum`: width, working memory.
+  void (*smooth)(const std::uint8_t* const* rows, int width, int channels, RowWeights kernel,
+                 std::uint16_t* padded, std::uint32_t* sum, std::int16_t* out);
+  /// Magnitude in 1/4 level, of the channel where it is largest, of the gradient of a row that smooth() made
+  /// and those above and below. `squares`: width samples, working memory.
+  void (*edges)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
+                int channels, std::uint32_t* squares, std::uint16_t* out);
+  /// |(1 −2 1; −2 4 −2; 1 −2 1)| of the samples 1 … width − 2.
+  void (*noise)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
+                std::uint16_t* out);
+  /// (1 6 1)/8 both ways, in 1/64 level. `column`: width + 2 samples, working memory.
+  void (*smooth_lightly)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down,
+                         int width, std::int16_t* column, std::int16_t* out);
+  /// The disparities of valid pixels whose difference across is above `least` and above half of that down;
+  /// NaN elsewhere.
+  void (*textured)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+                   const Reject* reject, const float* disparity_px, int width, int least, float* out);
+  /// Keeps those of rows[2] to which at least three others of the 5×5 neighbours are as near as `agreement`;
+  /// NaN elsewhere. All rows go on for two NaN at either end.
+  void (*agreed)(const float* const* rows, int width, float agreement, float* out);
+  /// How many points lie nearer to the plane than `tolerance`.
+  int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// How many points lie farther than `tolerance` behind the plane and the background.
+  int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const RowKernels* row_kernels(Target target);
+/// Those for the target that `exec` gets.
+const RowKernels& row_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels
