@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace cairn {
@@ -109,14 +110,23 @@ std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<con
                            const Votes& votes) {
   std::vector<Look> looks(votes.pixels.size());
   for (int y = 0; y < gray.height(); ++y) {
-    for (int x = 0; x < gray.width(); ++x) {
-      Look& look = looks[index(facets.labels(x, y))];
-      const Rgb colour = rgb.empty() ? Rgb{gray(x, y), gray(x, y), gray(x, y)} : rgb(x, y);
-      look.colour[0] += colour.r;
-      look.colour[1] += colour.g;
-      look.colour[2] += colour.b;
-      look.box = look.pixels > 0 ? united(look.box, {x, y, 1, 1}) : Rect{x, y, 1, 1};
-      look.pixels += 1;
+    const RegionId* const facet = facets.labels.row(y);
+    const Gray* const grey = gray.row(y);
+    const Rgb* const colour = rgb.empty() ? nullptr : rgb.row(y);
+    for (int x = 0; x < gray.width();) {
+      // A run of one facet at a time: its look is fetched once for all of it. Sums are whole numbers.
+      const int start = x;
+      std::array<int, 3> sum{};
+      do {
+        sum[0] += colour != nullptr ? colour[x].r : grey[x];
+        sum[1] += colour != nullptr ? colour[x].g : grey[x];
+        sum[2] += colour != nullptr ? colour[x].b : grey[x];
+        ++x;
+      } while (x < gray.width() && facet[x] == facet[start]);
+      Look& look = looks[index(facet[start])];
+      for (std::size_t c = 0; c < 3; ++c) look.colour[c] += sum[c];
+      look.box = united(look.box, {start, y, x - start, 1});
+      look.pixels += x - start;
     }
   }
   for (std::size_t i = 0; i < looks.size(); ++i) {
@@ -177,29 +187,100 @@ int apart(int first, int length, int other_first, int other_length) {
   return std::max({first - other_first - other_length, other_first - first - length, 0});
 }
 
-/// Whether the ground goes on in the colour of facet i, 0 … 1: how much ground of that colour lies beside it,
-/// more than there is seen figure of that colour, compared with its own size.
-double goes_on(std::size_t i, const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
-               int width) {
-  constexpr double kSpread = 6;     // grey levels
-  constexpr double kAcross = 0.15;  // of the width
-  constexpr double kDown = 0.03;    // of the width: floor and wall change fast along a column
-  constexpr double kFarthest = 9;   // squared deviations
-  const Look& here = looks[i];
-  std::array<double, 2> near{};
-  for (std::size_t j = 0; j < looks.size(); ++j) {
-    const Look& there = looks[j];
-    // Facets come in the order of their first row.
-    const double dy = apart(here.box.y, here.box.height, there.box.y, there.box.height) / (kDown * width);
-    if (dy * dy > kFarthest && there.box.y > here.box.y) break;
-    if (dy * dy > kFarthest || i == j || (figure[j] != 0 && !there.seen)) continue;
-    const double dx = apart(here.box.x, here.box.width, there.box.x, there.box.width) / (kAcross * width);
-    const double dc = difference(here.colour, there.colour) / (kSpread * kSpread);
-    if (dx * dx > kFarthest || dc > kFarthest) continue;
-    near.at(figure[j] != 0 ? 1 : 0) += there.pixels * std::exp(-(dc + dx * dx + dy * dy) / 2);
+/// Whether ground goes on beside a facet in the facet's colour.
+class Continuation {
+ public:
+  Continuation(const std::vector<Look>& looks, int width)
+      : looks_(looks),
+        across_(kAcross * width),
+        down_(kDown * width),
+        pairs_of_(looks.size()),
+        most_across_(farthest(across_)),
+        most_down_(farthest(down_)) {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      if (looks[i].box.height > most_down_) tall_.push_back(i);
+      in_order_ = in_order_ && (i == 0 || looks[i - 1].box.y <= looks[i].box.y);
+    }
   }
-  return std::max(std::min(near[0] / here.pixels, 1.0) - std::min(near[1] / here.pixels, 1.0), 0.0);
-}
+
+  /// 0 … 1: how much ground of its colour lies beside facet i, more than there is seen figure of that colour,
+  /// compared with its own size.
+  double operator()(std::size_t i, const std::vector<std::int32_t>& figure) {
+    std::array<double, 2> near{};
+    for (const Pair& pair : pairs_of(i)) {
+      if (figure[pair.other] != 0 && !looks_[pair.other].seen) continue;
+      near.at(figure[pair.other] != 0 ? 1 : 0) += pair.weight;
+    }
+    const double pixels = looks_[i].pixels;
+    return std::max(std::min(near[0] / pixels, 1.0) - std::min(near[1] / pixels, 1.0), 0.0);
+  }
+
+ private:
+  static constexpr double kSpread = 6;     // grey levels
+  static constexpr double kAcross = 0.15;  // of the width
+  static constexpr double kDown = 0.03;    // of the width: floor and wall change fast along a column
+  static constexpr double kFarthest = 9;   // squared deviations
+
+  struct Pair {
+    std::size_t other;
+    double weight;  // pixels that count
+  };
+
+  static double squared(double value) { return value * value; }
+
+  /// The most pixels that are within kFarthest for this deviation.
+  static int farthest(double deviation) {
+    int pixels = 0;
+    while (squared((pixels + 1) / deviation) <= kFarthest) ++pixels;
+    return pixels;
+  }
+
+  /// The facets that i resembles and is near to, in their order. The same in every round, so found once.
+  const std::vector<Pair>& pairs_of(std::size_t i) {
+    std::optional<std::vector<Pair>>& pairs = pairs_of_[i];
+    if (pairs) return *pairs;
+    pairs.emplace();
+    const Rect& box = looks_[i].box;
+    // Facets come in the order of their first row. Those that end far above are passed over, and among those
+    // that begin far above only tall ones reach down.
+    const auto first = in_order_ ? first_from(box.y - 2 * most_down_) : looks_.begin();
+    const auto last = in_order_ ? first_from(box.y + box.height + most_down_ + 1) : looks_.end();
+    const auto begin = static_cast<std::size_t>(first - looks_.begin());
+    for (const std::size_t j : tall_) {
+      if (j >= begin) break;
+      consider(i, j, *pairs);
+    }
+    for (auto j = begin; j < static_cast<std::size_t>(last - looks_.begin()); ++j) consider(i, j, *pairs);
+    return *pairs;
+  }
+
+  [[nodiscard]] std::vector<Look>::const_iterator first_from(int row) const {
+    return std::partition_point(looks_.begin(), looks_.end(),
+                                [row](const Look& look) { return look.box.y < row; });
+  }
+
+  void consider(std::size_t i, std::size_t j, std::vector<Pair>& pairs) const {
+    const Look& here = looks_[i];
+    const Look& there = looks_[j];
+    const int rows = apart(here.box.y, here.box.height, there.box.y, there.box.height);
+    const int columns = apart(here.box.x, here.box.width, there.box.x, there.box.width);
+    if (rows > most_down_ || columns > most_across_ || i == j) return;
+    const double dc = difference(here.colour, there.colour) / (kSpread * kSpread);
+    if (dc > kFarthest) return;
+    const double dx = columns / across_;
+    const double dy = rows / down_;
+    pairs.push_back({j, there.pixels * std::exp(-(dc + dx * dx + dy * dy) / 2)});
+  }
+
+  const std::vector<Look>& looks_;
+  double across_;  // px
+  double down_;    // px
+  std::vector<std::optional<std::vector<Pair>>> pairs_of_;
+  int most_across_;
+  int most_down_;
+  std::vector<std::size_t> tall_;
+  bool in_order_ = true;
+};
 
 std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, double noise) {
   const double edge = 4 * (kEdge + kEdgeNoise * noise);  // borders measure in quarters
@@ -295,6 +376,7 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * votes.pixels[i]);
   }
   std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
+  Continuation goes_on(looks, gray.width());
   for (int round = 1; round < kRounds; ++round) {
     std::vector<std::int64_t> with_colour_ground = ground_costs;
     std::vector<std::int64_t> with_colour_figure = figure_costs;
@@ -303,7 +385,7 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     for (std::size_t i = 0; i < looks.size(); ++i) {
       if (!asked[i] || looks[i].seen) continue;
       const double colour = config.colour_weight * model.ground_over_figure(looks[i].colour);
-      const double on = config.continuation_weight * goes_on(i, looks, figure, gray.width());
+      const double on = config.continuation_weight * goes_on(i, figure);
       if (!at_foot[i])
         with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
       with_colour_figure[i] += std::llround(kUnit * looks[i].pixels * (std::max(colour, 0.0) + on));
