@@ -118,6 +118,8 @@ Json json(const Object& object, View<const ObjectId> labels) {
   j["extent_m"] = json(object.extent_in_camera_m);
   j["mean_colour"] = {object.mean_colour.r, object.mean_colour.g, object.mean_colour.b};
   j["valid_share"] = json(object.valid_share);
+  j["edge_share"] = json(object.edge_share);
+  j["cut_share"] = json(object.cut_share);
   j["confidence"] = json(object.confidence);
   return j;
 }

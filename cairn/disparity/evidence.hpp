@@ -9,7 +9,7 @@
 namespace cairn {
 
 struct EvidenceConfig {
-  float noise_factor = 1.0F;
+  float noise_factor = 0.7F;
   float gradient_min = 1.0F;
   float agreement = 2.5F;
 };

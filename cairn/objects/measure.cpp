@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cmath>
+#include <cstdlib>
 #include <numeric>
 
 namespace cairn {
@@ -26,7 +29,11 @@ struct Inputs {
   View<const Gray> left;
   View<const Rgb> left_rgb;
   const std::optional<StereoRig>& rig;
+  int edge_min;  // grey levels: what differs by more across an outline is an edge
 };
+
+constexpr float kEdgeMin = 4.0F;          // grey levels …
+constexpr float kEdgeNoiseFactor = 3.0F;  // … plus deviations of the image noise
 
 std::vector<Outline> outlines(const Inputs& in) {
   const Size size = in.fusion.labels.size();
@@ -115,6 +122,50 @@ void place(Object& object, std::array<std::vector<float>, 3>& points) {
   object.extent_in_camera_m = Vec3{span[0], span[1], span[2]};
 }
 
+/// How an object's outline looks, in steps from a pixel of it to a 4-neighbour that is not.
+struct Rim {
+  std::int64_t length = 0;
+  std::int64_t at_edge = 0;
+  std::int64_t cut = 0;
+};
+
+Rim rim(const Inputs& in, RegionId region, Rect box) {
+  const View<const RegionId> labels = in.fusion.labels;
+  const auto step = [&](int x, int y, int u, int v) {
+    if (in.left_rgb.empty()) return std::abs(in.left(x, y) - in.left(u, v));
+    const Rgb p = in.left_rgb(x, y);
+    const Rgb q = in.left_rgb(u, v);
+    return std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)});
+  };
+  Rim result;
+  const auto look = [&](int x, int y, int u, int v) {
+    if (!labels.contains(u, v)) {
+      ++result.length;
+      ++result.cut;
+    } else if (labels(u, v) != region) {
+      ++result.length;
+      result.at_edge += step(x, y, u, v) > in.edge_min ? 1 : 0;
+    }
+  };
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    for (int x = box.x; x < box.x + box.width; ++x) {
+      if (labels(x, y) != region) continue;
+      look(x, y, x - 1, y);
+      look(x, y, x + 1, y);
+      look(x, y, x, y - 1);
+      look(x, y, x, y + 1);
+    }
+  }
+  return result;
+}
+
+float confidence_of(const Object& object, Size image) {
+  const double size = std::log(static_cast<double>(object.pixel_count) / static_cast<double>(image.area()));
+  const double sum = 1.75 * size + 9.81 * object.edge_share - 4.92 * object.cut_share + 0.63;
+  const double supported = std::min(2.0 * object.valid_share, 1.0);
+  return static_cast<float>(supported / (1.0 + std::exp(-sum)));
+}
+
 Object measured(const Inputs& in, RegionId region, const Outline& outline) {
   std::vector<float> disparities;
   disparities.reserve(static_cast<std::size_t>(outline.valid_count));
@@ -143,7 +194,13 @@ Object measured(const Inputs& in, RegionId region, const Outline& outline) {
   object.valid_share = static_cast<float>(outline.valid_count) / static_cast<float>(outline.pixel_count);
   object.mean_colour = mean_colour(outline);
   place(object, points);
-  object.confidence = object.valid_share;
+  const Rim outer = rim(in, region, box);
+  const auto share = [&](std::int64_t part) {
+    return static_cast<float>(part) / static_cast<float>(std::max<std::int64_t>(outer.length, 1));
+  };
+  object.edge_share = share(outer.at_edge);
+  object.cut_share = share(outer.cut);
+  object.confidence = confidence_of(object, in.left.size());
   return object;
 }
 
@@ -152,7 +209,8 @@ Object measured(const Inputs& in, RegionId region, const Outline& outline) {
 Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
                 View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
                 const ObjectsConfig& config, const Exec& exec) {
-  const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig};
+  const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma(left));
+  const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig, edge_min};
   const Size size = fusion.labels.size();
   const std::vector<Outline> outline = outlines(in);
 

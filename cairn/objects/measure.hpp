@@ -33,7 +33,9 @@ struct Object {
       position_in_camera_m;  // mean of its valid points; needs a rig and a point before infinity
   std::optional<Vec3>
       extent_in_camera_m;  // size of the box around its points, 2nd to 98th percentile per axis
-  float confidence = 0;    // 0 … 1; for now valid_share: the share of the mask that has a disparity
+  float edge_share = 0;    // 0 … 1: of its outline, where the picture shows an edge
+  float cut_share = 0;     // 0 … 1: of its outline, what lies at the image's border
+  float confidence = 0;    // 0 … 1: how likely it covers a true object by more than half (IoU ≥ 0.5)
 };
 
 /// The objects of a frame. labels: ObjectId per pixel, none = no object. list[i].id = i + 1, nearest first
@@ -46,6 +48,10 @@ struct Objects {
 /// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image
 /// or touches three of its borders (background); what is smaller than min_area; what has no valid pixel.
 /// (METHOD §7)
+///
+/// Confidence is a logistic function of the logarithm of the mask's share of the image, of edge_share and of
+/// cut_share; below a valid_share of one half it falls with that, too: what has no disparity is a guess. Its
+/// four numbers were fitted on objects found with the default preset; see docs/stages/objects.md.
 Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
                 View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
                 const ObjectsConfig& config, const Exec& exec);

@@ -15,7 +15,7 @@ namespace cairn {
 struct FacetsConfig {
   float smoothing_sigma = 0.7F;
   float edge_min = 2.0F;
-  float noise_factor = 3.0F;
+  float noise_factor = 4.0F;
 };
 template <class V>
 void fields(FacetsConfig& c, V&& v) {
