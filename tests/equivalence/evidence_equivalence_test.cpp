@@ -131,6 +131,19 @@ Facets random_blocks(Size size, std::optional<int> count, std::uint32_t seed) {
   return as_facets(labels, seed + 1);
 }
 
+/// The same facets numbered from the last to the first.
+Facets backwards(const Facets& facets, std::uint32_t seed) {
+  Facets result{Image<RegionId>(facets.labels.size()), facets.count, {}};
+  for (int y = 0; y < facets.labels.height(); ++y) {
+    for (int x = 0; x < facets.labels.width(); ++x) {
+      result.labels(x, y) = RegionId{facets.count - 1 - number(facets.labels(x, y))};
+    }
+  }
+  const Image<std::uint16_t> edges = random_image<std::uint16_t>(facets.labels.size(), 0, 120, seed);
+  result.borders = borders_of(result.labels, edges);
+  return result;
+}
+
 /// Facets in colours like and unlike each other, each with some noise.
 Image<Rgb> painted(const Facets& facets, std::uint32_t seed) {
   const Image<int> base = random_image<int>({3, facets.count}, 0, 4, seed);
@@ -294,9 +307,10 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
       for (const int tenths_of_holes : {3, 8, 9, 10}) {
         const int count = 1 + static_cast<int>(seed) * 3;
-        const Facets facets = seed > 6        ? random_blocks(size, std::nullopt, seed)
-                              : seed % 2 == 0 ? random_blocks(size, count, seed)
-                                              : random_facets(size, count, seed);
+        Facets facets = seed > 6        ? random_blocks(size, std::nullopt, seed)
+                        : seed % 2 == 0 ? random_blocks(size, count, seed)
+                                        : random_facets(size, count, seed);
+        if (seed == 9) facets = backwards(facets, seed);
         const DisparityMap map = random_map(size, seed, tenths_of_holes);
         const Background background{{{0.01F, 0.2F, 3}, {-0.05F, 0, 9}}, seed != 3};
         FigureConfig config;

@@ -29,7 +29,7 @@ Labels best_of_all(const Costs& cost_0, const Costs& cost_1, const std::vector<T
     Labels labels;
     int ones = 0;
     for (std::size_t i = 0; i < cost_0.size(); ++i) {
-      labels.push_back(static_cast<std::int32_t>(bits >> i & 1U));
+      labels.push_back(static_cast<std::int32_t>((bits >> i) & 1U));
       ones += labels.back();
     }
     const std::pair now{cost_of(labels, cost_0, cost_1, ties), ones};
