@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/disparity/background.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 namespace cairn {
@@ -77,13 +79,35 @@ Condition through(const Point3& p) {
   return {{p.x, p.y, 1}, p.d};
 }
 
+/// Some of the points, one array per coordinate, so that several are judged at once.
+class Sample {
+ public:
+  Sample(const std::vector<std::size_t>& chosen, const std::vector<Point3>& points,
+         const std::vector<float>& behind) {
+    for (const std::size_t i : chosen) {
+      x_.push_back(points[i].x);
+      y_.push_back(points[i].y);
+      d_.push_back(points[i].d);
+      behind_.push_back(behind[i]);
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return x_.size(); }
+  [[nodiscard]] kernels::PointArrays arrays() const {
+    return {x_.data(), y_.data(), d_.data(), behind_.data(), static_cast<int>(size())};
+  }
+
+ private:
+  std::vector<float> x_, y_, d_, behind_;
+};
+
 /// Looks for walls among points; keeps what was found so far.
 class WallSearch {
  public:
   /// `rig`: given where the first of `planes` is a floor that walls stand upright on.
   WallSearch(std::vector<Point3> points, std::vector<GroundPlane> planes, std::optional<StereoRig> rig,
-             int width, const BackgroundConfig& config)
-      : points_(std::move(points)),
+             int width, const BackgroundConfig& config, const Exec& exec)
+      : run_(kernels::row_kernels(exec)),
+        points_(std::move(points)),
         behind_(points_.size(), 0.0F),
         planes_(std::move(planes)),
         rig_(rig),
@@ -176,24 +200,21 @@ class WallSearch {
 
   std::optional<GroundPlane> best_guess(const std::vector<std::size_t>& before) {
     std::vector<std::size_t> everything(points_.size());
-    for (std::size_t i = 0; i < everything.size(); ++i) everything[i] = i;
-    const std::vector<std::size_t> all = sample(everything);
-    const std::vector<std::size_t> front = sample(before);
+    std::iota(everything.begin(), everything.end(), std::size_t{0});
+    const Sample all(sample(everything), points_, behind_);
+    const Sample front(sample(before), points_, behind_);
     const double front_share = static_cast<double>(before.size()) / static_cast<double>(points_.size());
     std::optional<GroundPlane> best;
     double best_score = 0;
     for (int trial = 0; trial < kTrials; ++trial) {
       const std::optional<GroundPlane> plane = hypothesis(before);
       if (!plane) continue;
-      std::size_t on = 0;
-      for (const std::size_t i : front)
-        on += std::abs(points_[i].d - at(*plane, points_[i])) < 0.7F * tolerance_ ? 1 : 0;
-      std::size_t beyond = 0;
-      for (const std::size_t i : all) {
-        beyond += points_[i].d - std::max(behind_[i], at(*plane, points_[i])) < -tolerance_ ? 1 : 0;
-      }
-      const double score = front_share * static_cast<double>(on) / static_cast<double>(front.size()) -
-                           kBehindWeight * static_cast<double>(beyond) / static_cast<double>(all.size());
+      const int on = run_.count_on(front.arrays(), *plane, 0.7F * tolerance_);
+      const double most = front_share * static_cast<double>(on) / static_cast<double>(front.size());
+      if (!(most > best_score)) continue;  // what lies beyond can only speak against it
+      const int beyond = run_.count_beyond(all.arrays(), *plane, tolerance_);
+      const double score =
+          most - kBehindWeight * static_cast<double>(beyond) / static_cast<double>(all.size());
       if (score > best_score) {
         best_score = score;
         best = plane;
@@ -246,6 +267,7 @@ class WallSearch {
            static_cast<double>(beyond) <= max_behind_ * static_cast<double>(on);
   }
 
+  const kernels::RowKernels& run_;
   std::vector<Point3> points_;
   std::vector<float> behind_;  // the background's disparity at each point
   std::vector<GroundPlane> planes_;
@@ -268,7 +290,8 @@ float Background::disparity_px(float x, float y) const {
 }
 
 Background fit_background(View<const float> evidence_px, const Ground& ground,
-                          const std::optional<StereoRig>& rig, const BackgroundConfig& config, const Exec&) {
+                          const std::optional<StereoRig>& rig, const BackgroundConfig& config,
+                          const Exec& exec) {
   const Size size = evidence_px.size();
   const float tolerance = config.tolerance * 0.001F * static_cast<float>(size.width);
   std::vector<Point3> points;
@@ -283,7 +306,7 @@ Background fit_background(View<const float> evidence_px, const Ground& ground,
   std::vector<GroundPlane> planes;
   if (ground.plane) planes.push_back(*ground.plane);
   WallSearch search(std::move(points), std::move(planes), ground.plane ? rig : std::nullopt, size.width,
-                    config);
+                    config, exec);
   for (int i = 0; i < config.max_walls && (search.find_next() || search.find_next_square()); ++i) {
   }
   return {std::move(search).planes(), ground.plane.has_value()};
