@@ -312,7 +312,10 @@ std::vector<bool> skirting(const Facets& facets, const Background& background, c
       return background.planes.front().disparity_px(u, v) >= background.disparity_px(u, v);
     };
     while (foot < labels.height() && !at_floor(foot)) ++foot;
-    if (foot == labels.height()) continue;
+    const bool below_a_wall =
+        foot > 0 && foot < labels.height() &&
+        background.disparity_px(static_cast<float>(x), static_cast<float>(foot - 1)) > 0;
+    if (!below_a_wall) continue;
     const int first = std::max(static_cast<int>(std::ceil(static_cast<float>(foot) - above)), 0);
     const int last = static_cast<int>(std::ceil(static_cast<float>(foot) + kBelow * above));
     for (int y = first; y < std::min(last, labels.height()); ++y) ++within[index(labels(x, y))];

@@ -161,7 +161,7 @@ Rim rim(const Inputs& in, RegionId region, Rect box) {
 
 float confidence_of(const Object& object, Size image) {
   const double size = std::log(static_cast<double>(object.pixel_count) / static_cast<double>(image.area()));
-  const double sum = 1.75 * size + 9.81 * object.edge_share - 4.92 * object.cut_share + 0.63;
+  const double sum = 1.53 * size + 11.72 * object.edge_share - 4.72 * object.cut_share - 2.41;
   const double supported = std::min(2.0 * object.valid_share, 1.0);
   return static_cast<float>(supported / (1.0 + std::exp(-sum)));
 }

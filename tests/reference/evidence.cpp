@@ -118,7 +118,9 @@ bool is_at_foot(const Background& background, Size size, const FigureConfig& con
   int foot = 0;
   while (foot < size.height && !is_floor(foot)) ++foot;
   const float above = 0.01F * config.skirting * static_cast<float>(size.width);
-  return foot < size.height && static_cast<float>(y) >= static_cast<float>(foot) - above &&
+  const bool below_a_wall = foot > 0 && foot < size.height &&
+                            background.disparity_px(static_cast<float>(x), static_cast<float>(foot - 1)) > 0;
+  return below_a_wall && static_cast<float>(y) >= static_cast<float>(foot) - above &&
          static_cast<float>(y) < static_cast<float>(foot) + kBelow * above;
 }
 

@@ -279,8 +279,9 @@ TEST(Figure, OfItsOwnTextureIsFigureInTheGroundsColourToo) {
 
 /// Two boxes that stand before a wall, and between them its skirting board: facet 2, `height` rows of it
 /// above the floor, which begins at row 15.
-Labels before_a_skirting_board(int height, float skirting, bool has_floor = true, bool textured = false) {
-  const Background room{{{0, 1, kBehind - 14.5F}, {0, 0, kBehind}}, has_floor};
+Labels before_a_skirting_board(int height, float skirting, bool has_floor = true, bool textured = false,
+                               float wall_px = kBehind) {
+  const Background room{{{0, 1, kBehind - 14.5F}, {0, 0, wall_px}}, has_floor};
   Stage stage;
   stage.facet(1, 20, 40);
   stage.facet(2, 40, 60, 15 - height);
@@ -317,6 +318,11 @@ TEST(Figure, IsSeenAlongTheFootOfAWallAsAnywhere) {
 
 TEST(Figure, KnowsOfNoFootOfAWallWithoutAFloor) {
   EXPECT_EQ(before_a_skirting_board(4, 5, false), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, KnowsOfNoFootOfAWallAlongTheHorizon) {
+  constexpr float kNowhere = -5;  // such a wall is nowhere the background
+  EXPECT_EQ(before_a_skirting_board(4, 10, true, false, kNowhere), (Labels{0, 1, 1, 1}));
 }
 
 TEST(Figure, OutvotesAFewWrongDisparities) {

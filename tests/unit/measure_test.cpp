@@ -104,10 +104,55 @@ TEST(Measure, TakesTheMedianOverValidPixels) {
   Objects objects = scene.measured();
   EXPECT_EQ(objects.list[0].disparity_px, 8);
   EXPECT_FLOAT_EQ(objects.list[0].valid_share, 0.75F);
-  EXPECT_EQ(objects.list[0].confidence, objects.list[0].valid_share);
   scene.disparity.disparity_px(3, 2) = 9;  // 8 8 9 100
   objects = scene.measured();
   EXPECT_EQ(objects.list[0].disparity_px, 8.5F);
+}
+
+TEST(Measure, CountsEdgesAlongTheOutline) {
+  Scene scene({40, 20}, {{{10, 5, 4, 4}, 8}});
+  const auto edges = [&] { return scene.measured().list[0].edge_share; };
+  scene.left = Image<Gray>(Size{40, 20}, 100, {});
+  EXPECT_EQ(edges(), 0);
+  for (int y = 0; y < 20; ++y) std::fill_n(scene.left.row(y), 10, Gray{140});  // an edge along its left side
+  EXPECT_EQ(edges(), 0.25F);
+  scene.left(20, 2) = 200;  // elsewhere
+  EXPECT_EQ(edges(), 0.25F);
+}
+
+TEST(Measure, FindsAnEdgeInColourThatGreyDoesNotShow) {
+  Scene scene({40, 20}, {{{10, 5, 4, 4}, 8}});
+  scene.left = Image<Gray>(Size{40, 20}, 100, {});
+  Image<Rgb> rgb(Size{40, 20}, Rgb{100, 100, 100}, {});
+  for (int y = 5; y < 9; ++y) std::fill_n(rgb.row(y) + 10, 4, Rgb{100, 60, 140});
+  const Objects objects =
+      measure(scene.fusion, scene.by_disparity, scene.disparity, scene.left, rgb, {}, {}, {});
+  EXPECT_EQ(objects.list[0].edge_share, 1);
+}
+
+TEST(Measure, SaysHowMuchOfAnOutlineThePictureCutsOff) {
+  const Objects objects = Scene({40, 20}, {{{0, 5, 4, 4}, 8}, {{10, 5, 4, 4}, 9}}).measured();
+  EXPECT_EQ(objects.list[0].cut_share, 0);
+  EXPECT_EQ(objects.list[1].cut_share, 0.25F);
+}
+
+TEST(Measure, IsMoreConfidentOfWhatIsLargeOutlinedAndWhole) {
+  const auto confidence = [](Rect box, bool outlined, int holes = 0) {
+    Scene scene({40, 20}, {{box, 8}});
+    scene.left = Image<Gray>(Size{40, 20}, 100, {});
+    for (int y = box.y; outlined && y < box.y + box.height; ++y)
+      std::fill_n(scene.left.row(y) + box.x, box.width, Gray{200});
+    for (int i = 0; i < holes; ++i) scene.disparity.disparity_px(box.x + i % 4, box.y + i / 4) = kNan;
+    return scene.measured({.min_area = 0, .max_area = 100}).list.at(0).confidence;
+  };
+  const float whole = confidence({10, 5, 4, 4}, true);
+  EXPECT_GT(whole, 0.8F);
+  EXPECT_LE(whole, 1);
+  EXPECT_LT(confidence({10, 5, 4, 4}, false), 0.01F);
+  EXPECT_LT(confidence({10, 5, 2, 2}, true), whole);
+  EXPECT_LT(confidence({0, 5, 4, 4}, true), whole);
+  EXPECT_EQ(confidence({10, 5, 4, 4}, true, 8), whole);
+  EXPECT_FLOAT_EQ(confidence({10, 5, 4, 4}, true, 12), whole / 2);
 }
 
 TEST(Measure, TakesTheMeanColourOfTheMask) {
