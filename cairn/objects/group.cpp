@@ -338,17 +338,60 @@ void unite_occluded(std::vector<std::int32_t>& groups, const Facets& facets, con
   for (std::int32_t& group : groups) group = group == 0 ? 0 : now[group];
 }
 
-std::vector<Rect> boxes_of(View<const RegionId> labels, std::size_t count) {
-  std::vector<Rect> boxes(count);
-  std::vector<bool> met(count);
+/// Calls run(label, y, first, last) for each stretch of a row with one label, in raster order.
+template <class Run>
+void for_each_run(View<const RegionId> labels, Run run) {
   for (int y = 0; y < labels.height(); ++y) {
-    for (int x = 0; x < labels.width(); ++x) {
-      const std::size_t i = index(labels(x, y));
-      boxes[i] = met[i] ? united(boxes[i], {x, y, 1, 1}) : Rect{x, y, 1, 1};
-      met[i] = true;
+    const RegionId* const label = labels.row(y);
+    for (int x = 0; x < labels.width();) {
+      const int first = x;
+      while (x < labels.width() && label[x] == label[first]) ++x;
+      run(label[first], y, first, x);
     }
   }
+}
+
+std::vector<Rect> boxes_of(View<const RegionId> labels, std::size_t count) {
+  std::vector<Rect> boxes(count);
+  for_each_run(labels, [&](RegionId label, int y, int first, int last) {
+    Rect& box = boxes[index(label)];
+    box = united(box, {first, y, last - first, 1});
+  });
   return boxes;
+}
+
+/// The groups as regions, with what is known of their disparities. `groups`: per facet, 0 = background.
+Segmentation regions_of(const std::vector<std::int32_t>& groups, const Facets& facets,
+                        const DisparityMap& disparity, const Exec& exec) {
+  std::vector<std::int32_t> renumbered(groups.size() + 1, -1);
+  renumbered[0] = 0;
+  std::int32_t count = 1;
+  Segmentation result{Image<RegionId>(facets.labels.size(), exec.pool), {}};
+  for_each_run(facets.labels, [&](RegionId facet, int y, int first, int last) {
+    std::int32_t& id = renumbered[slot(groups[index(facet)])];
+    if (id < 0) id = count++;
+    std::fill(result.labels.row(y) + first, result.labels.row(y) + last, RegionId{id});
+  });
+  result.regions.resize(slot(count));
+  result.regions[0].is_floor = true;
+  for_each_run(result.labels, [&](RegionId label, int y, int first, int last) {
+    Region region = result.regions[index(label)];
+    region.pixel_count += last - first;
+    region.box = united(region.box, {first, y, last - first, 1});
+    const Reject* const reject = disparity.reject.row(y);
+    const float* const disparity_px = disparity.disparity_px.row(y);
+    for (int x = first; x < last; ++x) {
+      if (reject[x] != Reject::none) continue;
+      const double d = disparity_px[x];
+      ++region.valid_count;
+      const double delta = d - region.mean;
+      region.mean += delta / region.valid_count;
+      region.variance += delta * (d - region.mean);
+    }
+    result.regions[index(label)] = region;
+  });
+  for (Region& region : result.regions) region.variance /= std::max(region.valid_count, 1);
+  return result;
 }
 
 }  // namespace
@@ -378,34 +421,7 @@ Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>&
     unite_occluded(groups, facets, shown, boxes_of(facets.labels, groups.size()), step,
                    0.01 * config.occluded_gap * size.width);
   }
-  std::vector<std::int32_t> renumbered(groups.size() + 1, -1);
-  renumbered[0] = 0;
-  std::int32_t count = 1;
-  Segmentation result{Image<RegionId>(size, exec.pool), {}};
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      std::int32_t& id = renumbered[slot(groups[index(facets.labels(x, y))])];
-      if (id < 0) id = count++;
-      result.labels(x, y) = RegionId{id};
-    }
-  }
-  result.regions.resize(slot(count));
-  result.regions[0].is_floor = true;
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      Region& region = result.regions[index(result.labels(x, y))];
-      ++region.pixel_count;
-      region.box = united(region.box, {x, y, 1, 1});
-      if (disparity.reject(x, y) != Reject::none) continue;
-      const double d = disparity.disparity_px(x, y);
-      ++region.valid_count;
-      const double delta = d - region.mean;
-      region.mean += delta / region.valid_count;
-      region.variance += delta * (d - region.mean);
-    }
-  }
-  for (Region& region : result.regions) region.variance /= std::max(region.valid_count, 1);
-  return result;
+  return regions_of(groups, facets, disparity, exec);
 }
 
 }  // namespace cairn
