@@ -21,6 +21,7 @@
 #include <cairn/disparity/evidence.hpp>          // find_evidence
 #include <cairn/disparity/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
 #include <cairn/disparity/speckle.hpp>           // reject_speckles
+#include <cairn/disparity/confidence.hpp>        // estimate_confidence
 #include <cairn/disparity/background.hpp>        // fit_background
 #include <cairn/regions/gradient.hpp>            // gradient
 #include <cairn/regions/watershed.hpp>           // watershed

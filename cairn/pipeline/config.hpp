@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/disparity/background.hpp>
+#include <cairn/disparity/confidence.hpp>
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/disparity/flatness.hpp>
 #include <cairn/disparity/ground_plane.hpp>
@@ -40,6 +41,7 @@ struct Config {
   TextureConfig texture{.threshold = -1.0F};
   GroundConfig ground;
   SpeckleConfig speckle;
+  ConfidenceConfig confidence;
   EvidenceConfig evidence;
   BackgroundConfig background;
   IntensityConfig intensity;
@@ -69,6 +71,7 @@ void for_each_section(C& c, F&& visit) {
   visit("texture", c.texture);
   visit("ground", c.ground);
   visit("speckle", c.speckle);
+  visit("confidence", c.confidence);
   visit("evidence", c.evidence);
   visit("background", c.background);
   visit("intensity", c.intensity);

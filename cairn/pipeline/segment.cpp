@@ -35,11 +35,17 @@ EpipolarCorrection align(const StereoPair& pair, const Config& config, const Exe
   return correction;
 }
 
-DisparityMap match_and_check(const StereoPair& given, View<const Gray> aligned_right, const Config& config,
-                             const Exec& exec, Observed& stage) {
+/// The disparities that the per-pixel checks have passed, and what they were judged by.
+struct Matched {
+  Matches matches;
+  DisparityMap disparity;
+};
+
+Matched match_and_check(const StereoPair& given, View<const Gray> aligned_right, const Config& config,
+                        const Exec& exec, Observed& stage) {
   const auto pair =
       StereoPair::from(given.left(), aligned_right.empty() ? given.right() : aligned_right, given.left_rgb());
-  const Matches matches = stage("match", match(pair, config.match, config.semi_global, exec));
+  Matches matches = stage("match", match(pair, config.match, config.semi_global, exec));
   auto refined = stage("refine_subpixel", refine_subpixel(matches, config.subpixel, exec));
 
   const auto inconsistent =
@@ -47,7 +53,17 @@ DisparityMap match_and_check(const StereoPair& given, View<const Gray> aligned_r
   const auto ambiguous = stage("reject_ambiguous", reject_ambiguous(matches, config.uniqueness, exec));
   const auto flat = stage("reject_flat", reject_flat(matches, config.flatness, exec));
   const auto textureless = stage("reject_textureless", reject_textureless(pair.left(), config.texture, exec));
-  return stage("combine", combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec));
+  DisparityMap disparity =
+      stage("combine", combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec));
+  return {std::move(matches), std::move(disparity)};
+}
+
+Image<float> confidence_of(const DisparityMap& disparity, const Matches& matches, const Config& config,
+                           const Exec& exec, Observed& stage) {
+  if (!config.confidence.enabled) return {};
+  return stage("estimate_confidence",
+               estimate_confidence(matches, disparity, confidence_model(config.match.method),
+                                   config.confidence, exec));
 }
 
 /// The disparities that ground and background are found from: with fusion.method=evidence those that texture
@@ -118,11 +134,12 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
-  DisparityMap disparity = match_and_check(pair, aligned.right, config, exec, stage);
-  const Image<float> trusted_px = trusted(pair.left(), disparity, config, exec, stage);
+  Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
+  const Image<float> trusted_px = trusted(pair.left(), matched.disparity, config, exec, stage);
   SceneDisparity scene =
-      clean_up(check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage), rig, config,
-               exec, stage);
+      clean_up(check_against_ground(std::move(matched.disparity), trusted_px, rig, config, exec, stage), rig,
+               config, exec, stage);
+  scene.confidence = confidence_of(scene.disparity, matched.matches, config, exec, stage);
   scene.epipolar = aligned.offset;
   return scene;
 }
@@ -132,9 +149,10 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
+  Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
   Frame frame =
-      find_objects(pair.left(), pair.left_rgb(), match_and_check(pair, aligned.right, config, exec, stage),
-                   rig, config, exec, stage);
+      find_objects(pair.left(), pair.left_rgb(), std::move(matched.disparity), rig, config, exec, stage);
+  frame.confidence = confidence_of(frame.disparity, matched.matches, config, exec, stage);
   frame.epipolar = aligned.offset;
   return frame;
 }

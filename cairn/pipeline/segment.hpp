@@ -12,6 +12,7 @@ struct SceneDisparity {
   Ground ground;
   Image<std::uint8_t> floor;  // 255 = floor; empty where there is none
   EpipolarOffset epipolar{};  // how far the right image's rows were off
+  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
 };
 
 /// All that is known of one pair.
@@ -24,6 +25,7 @@ struct Frame {
   Fusion fusion;
   Objects objects;
   EpipolarOffset epipolar{};
+  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
 };
 
 /// The method's first half: a pair in, checked disparities out. Throws Error where validate() does.

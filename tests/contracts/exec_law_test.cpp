@@ -75,6 +75,7 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(a.epipolar.agreeing, b.epipolar.agreeing);
   EXPECT_EQ(differing(a.disparity.disparity_px, b.disparity.disparity_px), 0);
   EXPECT_EQ(differing(a.disparity.reject, b.disparity.reject), 0);
+  EXPECT_EQ(differing(a.confidence, b.confidence), 0);
   expect_same_ground(a.ground, b.ground);
   EXPECT_EQ(differing(a.floor, b.floor), 0);
   expect_same_regions(a.by_intensity, b.by_intensity);
