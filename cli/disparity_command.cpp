@@ -17,6 +17,7 @@ struct DisparityOptions {
   InputOptions input;
   ExecOptions exec;
   std::string output;
+  std::string confidence;
 };
 
 /// Before any work: a name that cannot be written to should not cost the matching's time.
@@ -29,6 +30,16 @@ void check_output(const std::string& output, const MatchConfig& config) {
     throw Error(output + ": 16-bit PNG holds disparities from 0 to below 256, the search range is " +
                 std::to_string(config.min_disparity) + " to " +
                 std::to_string(config.min_disparity + config.num_disparities - 1) + "; write a .pfm");
+  }
+}
+
+void check_confidence(const std::string& output, const Config& config) {
+  if (std::filesystem::path(output).extension().string() != ".png") {
+    throw Error(output + ": the confidence is written as .png");
+  }
+  if (!config.confidence.enabled) throw Error("option confidence.enabled: --confidence needs it");
+  if (config.match.evidence == Evidence::winner) {
+    throw Error("option match.evidence: winner keeps no costs for --confidence; set match.evidence=full");
   }
 }
 
@@ -76,10 +87,12 @@ int estimate(const DisparityOptions& options) {
   Exec exec = make_exec(options.exec);
   const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
+  if (!options.confidence.empty()) check_confidence(options.confidence, loaded.config);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(
       StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
   if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
+  if (!options.confidence.empty()) io::save_confidence(options.confidence, scene.confidence);
   std::cout << describe(scene, watch.total_ms());
   return 0;
 }
@@ -92,6 +105,9 @@ Work declare_disparity(CLI::App& app) {
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
                  "file.png: 16 bits, disparity x 256, 0 = hole; file.pfm: float, inf = hole")
+      ->type_name("FILE");
+  app.add_option("--confidence", options->confidence,
+                 "file.png: 8 bits, how likely each disparity is within 1 px x 255, 0 = hole")
       ->type_name("FILE");
   return [options] { return estimate(*options); };
 }

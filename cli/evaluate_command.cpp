@@ -41,6 +41,7 @@ struct ResultFiles {
   std::string name;
   std::optional<fs::path> objects;
   std::optional<fs::path> disparity;
+  std::optional<fs::path> confidence;
   std::optional<fs::path> json;
 };
 
@@ -56,6 +57,7 @@ std::optional<ResultFiles> result_in(const fs::path& folder) {
   files.objects = file_in(folder, "objects.png");
   files.disparity = file_in(folder, "disparity.png");
   if (!files.disparity) files.disparity = file_in(folder, "disparity.pfm");
+  files.confidence = file_in(folder, "confidence.png");
   files.json = file_in(folder, "objects.json");
   if (!files.objects && !files.disparity) return std::nullopt;
   return files;
@@ -90,6 +92,22 @@ void require_equal_size(const fs::path& ours, Size our_size, const fs::path& the
 
 // ---- one frame ----
 
+constexpr double kConfident = 0.8;
+
+/// Of the disparities whose truth is known.
+struct ConfidentPixels {
+  std::int64_t matched = 0;
+  std::int64_t confident = 0;  // stated to be right with at least kConfident
+  std::int64_t right = 0;      // of those, off by 1 px at most
+
+  ConfidentPixels& operator+=(const ConfidentPixels& other) {
+    matched += other.matched;
+    confident += other.confident;
+    right += other.right;
+    return *this;
+  }
+};
+
 struct FrameScore {
   std::string name;
   std::optional<FrameObjects> objects;
@@ -97,7 +115,8 @@ struct FrameScore {
   std::optional<DisparityErrors> visible;  // non-occluded; all pixels with truth where nothing tells
   std::optional<DisparityErrors> all;
   bool knows_occlusion = false;
-  std::vector<io::StageTime> times;  // empty where there is no objects.json, and without --json
+  std::optional<ConfidentPixels> confident;  // nullopt where there is no confidence.png
+  std::vector<io::StageTime> times;          // empty where there is no objects.json, and without --json
 };
 
 /// What objects.json says of the time of each stage.
@@ -116,12 +135,35 @@ std::vector<io::StageTime> load_times(const fs::path& objects_json) {
   }
 }
 
-void score_disparity(const fs::path& ours, const io::TruthFiles& truth, int skip_left, FrameScore& score) {
+ConfidentPixels judge_pixels(View<const float> disparity_px, View<const float> truth_px,
+                             View<const std::uint16_t> confidence, int skip_left) {
+  ConfidentPixels sum;
+  for (int y = 0; y < truth_px.height(); ++y) {
+    for (int x = skip_left; x < truth_px.width(); ++x) {
+      const float off = std::abs(disparity_px(x, y) - truth_px(x, y));
+      if (std::isnan(off)) continue;
+      const bool confident = confidence(x, y) >= kConfident * 255;
+      ++sum.matched;
+      sum.confident += confident ? 1 : 0;
+      sum.right += confident && off <= 1 ? 1 : 0;
+    }
+  }
+  return sum;
+}
+
+void score_disparity(const ResultFiles& result, const io::TruthFiles& truth, int skip_left,
+                     FrameScore& score) {
+  const fs::path& ours = *result.disparity;
   const Image<float> disparity = io::load_disparity(ours);
   const Image<float> true_disparity = io::load_disparity(*truth.disparity);
   require_equal_size(ours, disparity.size(), *truth.disparity, true_disparity.size());
   score.all = disparity_errors(disparity, true_disparity, {}, skip_left);
   score.visible = score.all;
+  if (result.confidence) {
+    const io::Labels confidence = io::load_labels(*result.confidence);
+    require_equal_size(*result.confidence, confidence.ids.size(), *truth.disparity, true_disparity.size());
+    score.confident = judge_pixels(disparity, true_disparity, confidence.ids, skip_left);
+  }
   if (!truth.occlusion) return;
   const io::Labels occlusion = io::load_labels(*truth.occlusion);
   require_equal_size(*truth.occlusion, occlusion.ids.size(), *truth.disparity, true_disparity.size());
@@ -147,8 +189,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
         score.confidence[object.id] = object.confidence;
     }
   }
-  if (result.disparity && truth.disparity)
-    score_disparity(*result.disparity, truth, options.skip_left, score);
+  if (result.disparity && truth.disparity) score_disparity(result, truth, options.skip_left, score);
   if (!score.objects && !score.all) {
     throw Error(truth.folder.string() + ": has the truth of nothing that the result " + result.name +
                 " holds");
@@ -257,8 +298,6 @@ std::string frame_table(const std::vector<FrameScore>& frames) {
 
 // ---- the summary ----
 
-constexpr double kConfident = 0.8;
-
 struct Confidence {
   int objects = 0;
   int right = 0;
@@ -297,6 +336,7 @@ struct DisparityTotals {
   DisparityErrors all;
   int frames = 0;
   int with_occlusion = 0;
+  ConfidentPixels confident;  // of the frames that have a confidence.png
 };
 
 DisparityTotals disparity_totals(const std::vector<FrameScore>& frames) {
@@ -307,6 +347,7 @@ DisparityTotals disparity_totals(const std::vector<FrameScore>& frames) {
     sum.with_occlusion += frame.knows_occlusion ? 1 : 0;
     sum.visible += *frame.visible;
     sum.all += *frame.all;
+    if (frame.confident) sum.confident += *frame.confident;
   }
   return sum;
 }
@@ -370,7 +411,7 @@ std::string disparity_block(const char* title, const DisparityErrors& e, const s
 }
 
 std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left) {
-  const auto [visible, everything, count, with_occlusion] = disparity_totals(frames);
+  const auto [visible, everything, count, with_occlusion, confident] = disparity_totals(frames);
   if (count == 0) return "disparity           not compared: no truth, or none in the result\n";
   const std::string skipped = skip_left > 0 ? ", columns from " + std::to_string(skip_left) + " on" : "";
   const std::string title = "disparity           " + frames_text(count) + ", ";
@@ -384,6 +425,13 @@ std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left
     all += disparity_block(title.c_str(), everything, "all pixels with truth" + skipped);
   } else {
     all += disparity_block(title.c_str(), everything, "all pixels with truth (no occlusion.png)" + skipped);
+  }
+  if (confident.matched > 0) {
+    all += "confidence >= 0.8   " +
+           percent(static_cast<double>(confident.confident) / static_cast<double>(confident.matched)) +
+           " of the matched pixels with truth, " +
+           percent(static_cast<double>(confident.right) / static_cast<double>(confident.confident)) +
+           " of them within 1 px\n";
   }
   return all;
 }
@@ -460,6 +508,15 @@ Json json(const DisparityErrors& errors) {
   return j;
 }
 
+Json json(const ConfidentPixels& pixels) {
+  const double right = static_cast<double>(pixels.right) / static_cast<double>(pixels.confident);
+  return {{"at_least", kConfident},
+          {"matched_px", pixels.matched},
+          {"confident_px", pixels.confident},
+          {"right_1_px", pixels.right},
+          {"share_right_1", json(right)}};
+}
+
 Json frame_disparity_json(const FrameScore& frame) {
   if (!frame.all) return nullptr;
   return {{"both_cameras", frame.knows_occlusion ? json(*frame.visible) : Json(nullptr)},
@@ -518,7 +575,8 @@ Json summary_disparity_json(const std::vector<FrameScore>& frames) {
   return {{"frames", sum.frames},
           {"frames_with_occlusion", sum.with_occlusion},
           {"both_cameras", sum.with_occlusion > 0 ? json(sum.visible) : Json(nullptr)},
-          {"all", json(sum.all)}};
+          {"all", json(sum.all)},
+          {"confident", sum.confident.matched > 0 ? json(sum.confident) : Json(nullptr)}};
 }
 
 Json mean_and_median(const std::vector<double>& values) {

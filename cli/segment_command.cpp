@@ -139,10 +139,9 @@ Work declare_segment(CLI::App& app) {
                  "take this disparity map (.png, .pfm) instead of matching; RIGHT may be left out")
       ->type_name("FILE");
   add_exec_options(app, options->exec);
-  app.add_option(
-         "-o,--output", options->output,
-         "folder for disparity.png, reject.png, objects.png, floor.png, overlay.png, disparity_view.png and "
-         "objects.json")
+  app.add_option("-o,--output", options->output,
+                 "folder for disparity.png, reject.png, confidence.png, objects.png, floor.png, overlay.png, "
+                 "disparity_view.png and objects.json")
       ->type_name("DIR");
   app.add_flag("--json", options->json, "print the content of objects.json instead of a table");
   app.footer(

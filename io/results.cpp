@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
 #include <charconv>
@@ -126,8 +127,9 @@ Json json(const Object& object, View<const ObjectId> labels) {
 
 // ---- the folder ----
 
-constexpr std::array kResultFiles{"disparity.png", "disparity.pfm", "reject.png",         "objects.png",
-                                  "floor.png",     "overlay.png",   "disparity_view.png", "objects.json"};
+constexpr std::array kResultFiles{"disparity.png",  "disparity.pfm",      "reject.png",
+                                  "confidence.png", "objects.png",        "floor.png",
+                                  "overlay.png",    "disparity_view.png", "objects.json"};
 
 /// A folder that is gone with all that it holds unless it is kept.
 class TemporaryFolder {
@@ -198,6 +200,7 @@ void write_files(const fs::path& folder, View<const Gray> left, View<const Rgb> 
                  const Provenance& provenance) {
   save_disparity(folder / disparity_file_name(frame, provenance), frame.disparity.disparity_px);
   save_png(folder / "reject.png", View<const Reject>(frame.disparity.reject));
+  if (!frame.confidence.empty()) save_confidence(folder / "confidence.png", frame.confidence);
   const Image<std::uint16_t> ids = ids_of_16_bits(frame.objects.labels, folder);
   save_png(folder / "objects.png", View<const std::uint16_t>(ids));
   if (!frame.floor.empty()) save_png(folder / "floor.png", View<const std::uint8_t>(frame.floor));
@@ -248,6 +251,15 @@ std::string disparity_file_name(const Frame& frame, const Provenance& provenance
           ? png_can_hold(View<const float>(frame.disparity.disparity_px))
           : png_can_hold(provenance.config.match.min_disparity, provenance.config.match.num_disparities);
   return png ? "disparity.png" : "disparity.pfm";
+}
+
+void save_confidence(const fs::path& path, View<const float> confidence) {
+  Image<std::uint8_t> bytes(confidence.size());
+  for (int y = 0; y < bytes.height(); ++y) {
+    std::transform(confidence.row(y), confidence.row(y) + bytes.width(), bytes.row(y),
+                   [](float c) { return static_cast<std::uint8_t>(std::lround(255.0F * c)); });
+  }
+  save_png(path, View<const std::uint8_t>(bytes));
 }
 
 void write_result(const fs::path& given_folder, View<const Gray> left, View<const Rgb> left_rgb,

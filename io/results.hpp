@@ -31,10 +31,14 @@ std::string objects_json(const Frame& frame, const Provenance& provenance);
 /// (of a given disparity: its values).
 std::string disparity_file_name(const Frame& frame, const Provenance& provenance);
 
-/// Writes disparity.png (or .pfm), reject.png, objects.png, floor.png (where a floor was labelled),
-/// overlay.png, disparity_view.png and objects.json, whole or not at all: everything is written under a
-/// temporary name first. An older result in `folder` is replaced, files of it that the new one has not are
-/// removed, foreign files stay. `left_rgb` may be empty. Throws Error (names the folder).
+/// Writes how likely each disparity is right (0 … 1) as 8-bit PNG: round(255·confidence).
+void save_confidence(const std::filesystem::path& path, View<const float> confidence);
+
+/// Writes disparity.png (or .pfm), reject.png, confidence.png (where disparities were matched), objects.png,
+/// floor.png (where a floor was labelled), overlay.png, disparity_view.png and objects.json, whole or not at
+/// all: everything is written under a temporary name first. An older result in `folder` is replaced, files of
+/// it that the new one has not are removed, foreign files stay. `left_rgb` may be empty. Throws Error (names
+/// the folder).
 void write_result(const std::filesystem::path& folder, View<const Gray> left, View<const Rgb> left_rgb,
                   const Frame& frame, const Provenance& provenance);
 

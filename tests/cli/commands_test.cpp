@@ -59,8 +59,8 @@ TEST_F(Command, SegmentPrintsATableAndWritesNothingWithoutAFolder) {
 TEST_F(Command, SegmentWritesAResultThatEvaluateReads) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);
-  for (const char* name :
-       {"disparity.png", "reject.png", "objects.png", "overlay.png", "disparity_view.png", "objects.json"}) {
+  for (const char* name : {"disparity.png", "reject.png", "confidence.png", "objects.png", "overlay.png",
+                           "disparity_view.png", "objects.json"}) {
     EXPECT_TRUE(fs::exists(at("out") / name)) << name;
   }
   const Image<std::uint16_t> disparity({96, 72}, 6 * 256, {});
@@ -69,6 +69,27 @@ TEST_F(Command, SegmentWritesAResultThatEvaluateReads) {
   const Outcome outcome = run({"evaluate", path("out"), path("truth"), "--skip-left", "16"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("bad-1 0.0 %"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("matched pixels with truth, 100.0 % of them within 1 px"), std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(Command, DisparityWritesItsConfidenceOnlyWhereItIsKnown) {
+  const auto pair = pair_in("pair");
+  ASSERT_EQ(run(with("disparity", pair, {"--confidence", path("c.png")})).code, 0);
+  const io::Labels confidence = io::load_labels(at("c.png"));
+  EXPECT_EQ(confidence.bits, 8);
+  EXPECT_GT(confidence.ids(60, 36), 200);
+  EXPECT_EQ(confidence.ids(0, 36), 0);
+  EXPECT_NE(run(with("disparity", pair, {"--confidence", path("c.pfm")})).err.find(".png"),
+            std::string::npos);
+  for (const char* setting : {"confidence.enabled=false", "match.evidence=winner"}) {
+    const Outcome outcome =
+        run(with("disparity", pair,
+                 {"--confidence", path("none.png"), "--set", setting, "--set", "left_right.method=vote"}));
+    EXPECT_NE(outcome.code, 0) << setting;
+    EXPECT_NE(outcome.err.find("--confidence"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(at("none.png")));
+  }
 }
 
 TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {
@@ -138,6 +159,7 @@ TEST_F(Command, SegmentTakesADisparityMapInsteadOfTheRightPicture) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("disparity.pfm"), std::string::npos);  // said, since 16 bits hold no −9
     EXPECT_TRUE(fs::exists(at("out/disparity.pfm")));
+    EXPECT_FALSE(fs::exists(at("out/confidence.png")));
     EXPECT_TRUE(Json::parse(content(at("out/objects.json"))).at("external_disparity").get<bool>());
   }
 }
@@ -164,8 +186,8 @@ TEST_F(Command, ThreadsAndTargetsChangeNoBitOfAResult) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("segment", pair, {"-o", path("one"), "--threads", "1", "--target", "scalar"})).code, 0);
   ASSERT_EQ(run(with("segment", pair, {"-o", path("two"), "--threads", "3"})).code, 0);
-  for (const char* name :
-       {"disparity.png", "reject.png", "objects.png", "overlay.png", "disparity_view.png"}) {
+  for (const char* name : {"disparity.png", "reject.png", "confidence.png", "objects.png", "overlay.png",
+                           "disparity_view.png"}) {
     EXPECT_EQ(content(at("one") / name), content(at("two") / name)) << name;
   }
 }

@@ -47,6 +47,8 @@ Frame frame_with_one_object(bool with_floor) {
   frame.disparity.disparity_px(0, 0) = std::numeric_limits<float>::quiet_NaN();
   frame.disparity.reject(0, 0) = Reject::border | Reject::flat;
   frame.disparity.disparity_px(1, 0) = 0;
+  frame.confidence = Image<float>(kSize, 0.75F, {});
+  frame.confidence(0, 0) = 0;
   if (with_floor) {
     frame.floor = Image<std::uint8_t>(kSize, 255, {});
     frame.ground.plane = GroundPlane{0.0F, 0.1F, -2.0F};
@@ -149,8 +151,8 @@ TEST_F(ResultFolder, HoldsAllFilesOfAResultAndNoTemporaryOnes) {
   write(root_ / "out", frame_with_one_object(true), some_provenance());
   EXPECT_EQ(names(root_), std::set<std::string>{"out"});
   EXPECT_EQ(names(root_ / "out"),
-            (std::set<std::string>{"disparity.png", "reject.png", "objects.png", "floor.png", "overlay.png",
-                                   "disparity_view.png", "objects.json"}));
+            (std::set<std::string>{"disparity.png", "reject.png", "confidence.png", "objects.png",
+                                   "floor.png", "overlay.png", "disparity_view.png", "objects.json"}));
 }
 
 TEST_F(ResultFolder, ComesBackAsItWasWritten) {
@@ -167,6 +169,10 @@ TEST_F(ResultFolder, ComesBackAsItWasWritten) {
   const Labels reject = load_labels(root_ / "out" / "reject.png");
   EXPECT_EQ(reject.bits, 8);
   EXPECT_EQ(reject.ids(0, 0), 1 + 8);
+  const Labels confidence = load_labels(root_ / "out" / "confidence.png");
+  EXPECT_EQ(confidence.bits, 8);
+  EXPECT_EQ(confidence.ids(0, 0), 0);
+  EXPECT_EQ(confidence.ids(30, 30), 191);  // 255·0.75, rounded
   const auto confidences = load_confidences(root_ / "out" / "objects.json");
   ASSERT_EQ(confidences.size(), 1U);
   EXPECT_EQ(confidences[0].id, ObjectId{1});
@@ -189,8 +195,16 @@ TEST_F(ResultFolder, ReplacesAnOlderResultWhollyAndLeavesForeignFilesAlone) {
   provenance.config.match.min_disparity = -16;
   write(root_ / "out", frame_with_one_object(false), provenance);
   EXPECT_EQ(names(root_ / "out"),
-            (std::set<std::string>{"disparity.pfm", "reject.png", "objects.png", "overlay.png",
-                                   "disparity_view.png", "objects.json", "notes.txt"}));
+            (std::set<std::string>{"disparity.pfm", "reject.png", "confidence.png", "objects.png",
+                                   "overlay.png", "disparity_view.png", "objects.json", "notes.txt"}));
+}
+
+TEST_F(ResultFolder, HasNoConfidenceWhereThereIsNoneNotEvenAnOlderOne) {
+  write(root_ / "out", frame_with_one_object(true), some_provenance());
+  Frame frame = frame_with_one_object(true);
+  frame.confidence = {};
+  write(root_ / "out", frame, some_provenance());
+  EXPECT_FALSE(fs::exists(root_ / "out" / "confidence.png"));
 }
 
 TEST_F(ResultFolder, MakesMissingParentsAndTakesASlashAtTheEnd) {
