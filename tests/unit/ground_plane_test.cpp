@@ -68,10 +68,11 @@ DisparityMap matches_of(const Room& room) {
       }
       bool matched = uniform() < room.density;
       if (on_floor) matched = matched && uniform() < room.floor_density;
-      if (uniform() < room.wrong)
+      if (uniform() < room.wrong) {
         d = static_cast<float>(32 * uniform());
-      else
+      } else {
         d += room.noise_px * normal();
+      }
       map.disparity_px(x, y) = matched ? d : kNaN;
       map.reject(x, y) = matched ? Reject::none : Reject::flat;
     }

@@ -76,6 +76,7 @@ TEST(Homography, ManyPairsAverageTheirErrors) {
 TEST(Homography, NoneFromThreePairsOrFromALine) {
   EXPECT_FALSE(fit_homography(pairs(kFloor, 3)));
   std::vector<PointPair> line;
+  line.reserve(6);
   for (int i = 0; i < 6; ++i) line.push_back(pair_at(kFloor, 10 + 40 * i, 100 + 20 * i));
   EXPECT_FALSE(fit_homography(line));
   line.push_back(pair_at(kFloor, 30, 230));
@@ -131,6 +132,7 @@ TEST(GroundFromPoints, RefusesWhatDeterminesNoPlaneAndSaysWhy) {
   EXPECT_NE(complaint({}).find("ground.points"), std::string::npos);
 
   std::vector<PointPair> line;
+  line.reserve(6);
   for (int i = 0; i < 5; ++i) line.push_back(pair_at(kFloor, 10 + 40 * i, 100 + 20 * i));
   EXPECT_NE(complaint(line).find("line"), std::string::npos);
   EXPECT_NE(complaint(std::vector<PointPair>(6, pair_at(kFloor, 50, 200))).find("ground.points"),

@@ -30,6 +30,7 @@ std::vector<int> pixels(const Image<T>& image) {
 /// For the i-th of the 15 pixels of a small picture.
 std::vector<int> fifteen(const std::function<int(int)>& value) {
   std::vector<int> all;
+  all.reserve(15);
   for (int i = 0; i < 15; ++i) all.push_back(value(i));
   return all;
 }
@@ -151,10 +152,13 @@ TEST_F(ImageFiles, SixteenBitsLoseTheLowOnesWhereverTheSignalStands) {
 }
 
 TEST_F(ImageFiles, APairHasOneScaleSoThatADifferenceOfExposureStays) {
-  const fs::path bright = deep(folder_, "left", {0, 4095});
-  const fs::path dim = deep(folder_, "right", {0, 1000});
-  EXPECT_EQ(pixels(io::load_pair(bright, dim).right.gray), (std::vector<int>{0, 1000 >> 4}));
-  EXPECT_EQ(pixels(io::load_pair(dim, bright).left.gray), (std::vector<int>{0, 1000 >> 4}));
+  const fs::path bright = deep(folder_, "bright", {0, 4095});
+  const fs::path dim = deep(folder_, "dim", {0, 1000});
+  const auto left_and_right = [](const fs::path& one, const fs::path& other) {
+    return io::load_pair(one, other);
+  };
+  EXPECT_EQ(pixels(left_and_right(bright, dim).right.gray), (std::vector<int>{0, 1000 >> 4}));
+  EXPECT_EQ(pixels(left_and_right(dim, bright).left.gray), (std::vector<int>{0, 1000 >> 4}));
 }
 
 TEST_F(ImageFiles, ADeepPnmDeclaresItsScale) {
