@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Two studies that the paper's claims call for, on pairs with measured or exact truth:
+// Three studies that the paper's claims call for, on pairs with measured or exact truth:
 //   studies operators DATA     how each correlation operator bears noise, gain and offset (Middlebury cones,
 //   teddy, tsukuba) studies reflections DATA   what the ground check removes on floors of growing gloss, and
 //   what it costs
+//   studies confidence DATA    how far stated and measured confidence of disparities agree
 // DATA is the folder that holds real/ and rendered/.
 #include <algorithm>
 #include <array>
@@ -25,6 +26,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "confidence_study.hpp"
 
 namespace {
 
@@ -215,8 +218,10 @@ int main(int argc, char** argv) {
       operators(argv[2], exec);
     } else if (study == "reflections") {
       reflections(argv[2], exec);
+    } else if (study == "confidence") {
+      confidence_study(argv[2], exec);
     } else {
-      std::fprintf(stderr, "usage: studies operators|reflections DATA\n");
+      std::fprintf(stderr, "usage: studies operators|reflections|confidence DATA\n");
       return 2;
     }
     return 0;

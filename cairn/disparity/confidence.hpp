@@ -31,13 +31,13 @@ struct ConfidenceModel {
 /// confidence`).
 constexpr ConfidenceModel confidence_model(MatchMethod method) {
   return method == MatchMethod::semi_global
-             ? ConfidenceModel{.bias = 4.5F,
-                               .margin = 0.87F,
-                               .cost = -2.41F,
-                               .jumps = -6.26F,
-                               .holes = -3.91F}
+             ? ConfidenceModel{.bias = 4.55F,
+                               .margin = 0.82F,
+                               .cost = -2.58F,
+                               .jumps = -6.16F,
+                               .holes = -3.89F}
              : ConfidenceModel{
-                   .bias = 4.91F, .margin = 0.19F, .cost = 1.46F, .jumps = -9.79F, .holes = -5.66F};
+                   .bias = 4.94F, .margin = 0.04F, .cost = 1.51F, .jumps = -9.82F, .holes = -5.72F};
 }
 
 /// Side of the square window that jumps and holes are counted in, clipped at the image's border, px.
