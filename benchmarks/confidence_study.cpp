@@ -141,7 +141,7 @@ std::vector<Sample> samples_of(const std::vector<DataSet>& sets, const Config& p
                     }
                   });
     }
-    const double count = static_cast<double>(all.size() - first);
+    const auto count = static_cast<double>(all.size() - first);
     for (std::size_t i = first; i < all.size(); ++i) all[i].weight = 1 / count;
   }
   return all;
