@@ -13,7 +13,7 @@ struct BackgroundConfig {
   float tolerance = 2.3F;
   float min_share = 1.5F;
   float min_share_square = 0.4F;
-  float max_behind = 20.0F;
+  float max_behind = 33.0F;
 };
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
