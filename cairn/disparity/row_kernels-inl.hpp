@@ -16,9 +16,9 @@ inline void replicate_ends(std::uint16_t* row, int width, int channels, int radi
   }
 }
 
-void smooth(const std::uint8_t* const* rows, int width, int channels, RowWeights kernel,
-            std::uint16_t* CAIRN_RESTRICT padded, std::uint32_t* CAIRN_RESTRICT sum,
-            std::int16_t* CAIRN_RESTRICT out) {
+inline void smooth(const std::uint8_t* const* rows, int width, int channels, RowWeights kernel,
+                   std::uint16_t* CAIRN_RESTRICT padded, std::uint32_t* CAIRN_RESTRICT sum,
+                   std::int16_t* CAIRN_RESTRICT out) {
   const int r = kernel.radius;
   const int length = width * channels;
   std::uint16_t* const column = padded + r * channels;  // 8.8 bits
@@ -44,8 +44,8 @@ void smooth(const std::uint8_t* const* rows, int width, int channels, RowWeights
   for (int x = 0; x < length; ++x) out[x] = static_cast<std::int16_t>(sum[x] >> 12U);
 }
 
-void edges(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
-           int channels, std::uint32_t* CAIRN_RESTRICT squares, std::uint16_t* CAIRN_RESTRICT out) {
+inline void edges(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
+                  int channels, std::uint32_t* CAIRN_RESTRICT squares, std::uint16_t* CAIRN_RESTRICT out) {
   const int length = width * channels;
   const auto square = [&](int x, int left, int right) {
     const int gx = here[right] - here[left];
@@ -73,8 +73,8 @@ void edges(const std::int16_t* up, const std::int16_t* here, const std::int16_t*
   }
 }
 
-void noise(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
-           std::uint16_t* CAIRN_RESTRICT out) {
+inline void noise(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
+                  std::uint16_t* CAIRN_RESTRICT out) {
   for (int x = 1; x + 1 < width; ++x) {
     const int corners = up[x - 1] + up[x + 1] + down[x - 1] + down[x + 1];
     const int sides = up[x] + down[x] + here[x - 1] + here[x + 1];
@@ -83,8 +83,8 @@ void noise(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t*
   }
 }
 
-void smooth_lightly(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
-                    std::int16_t* CAIRN_RESTRICT column, std::int16_t* CAIRN_RESTRICT out) {
+inline void smooth_lightly(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down,
+                           int width, std::int16_t* CAIRN_RESTRICT column, std::int16_t* CAIRN_RESTRICT out) {
   for (int x = 0; x < width; ++x) column[x + 1] = static_cast<std::int16_t>(up[x] + 6 * here[x] + down[x]);
   column[0] = column[1];
   column[width + 1] = column[width];
@@ -92,9 +92,9 @@ void smooth_lightly(const std::uint8_t* up, const std::uint8_t* here, const std:
     out[x] = static_cast<std::int16_t>(column[x] + 6 * column[x + 1] + column[x + 2]);
 }
 
-void textured(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
-              const Reject* reject, const float* disparity_px, int width, int least,
-              float* CAIRN_RESTRICT out) {
+inline void textured(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+                     const Reject* reject, const float* disparity_px, int width, int least,
+                     float* CAIRN_RESTRICT out) {
   const auto tested = [&](int x, int left, int right) {
     const int across = std::abs(here[right] - here[left]);
     const int along = std::abs(down[x] - up[x]);
@@ -107,7 +107,7 @@ void textured(const std::int16_t* up, const std::int16_t* here, const std::int16
   out[end] = tested(end, std::max(end - 1, 0), end);
 }
 
-void agreed(const float* const* rows, int width, float agreement, float* CAIRN_RESTRICT out) {
+inline void agreed(const float* const* rows, int width, float agreement, float* CAIRN_RESTRICT out) {
   const float* const r0 = rows[0];
   const float* const r1 = rows[1];
   const float* const r2 = rows[2];
@@ -124,7 +124,7 @@ void agreed(const float* const* rows, int width, float agreement, float* CAIRN_R
   }
 }
 
-int count_on(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+inline int count_on(const PointArrays& points, const GroundPlane& plane, float tolerance) {
   const GroundPlane p = plane;
   const PointArrays at = points;
   int count = 0;
@@ -135,7 +135,7 @@ int count_on(const PointArrays& points, const GroundPlane& plane, float toleranc
   return count;
 }
 
-int count_beyond(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+inline int count_beyond(const PointArrays& points, const GroundPlane& plane, float tolerance) {
   const GroundPlane p = plane;
   const PointArrays at = points;
   int count = 0;
@@ -147,8 +147,8 @@ int count_beyond(const PointArrays& points, const GroundPlane& plane, float tole
   return count;
 }
 
-constexpr RowKernels kRowKernels{smooth,   edges,  noise,    smooth_lightly,
-                                 textured, agreed, count_on, count_beyond};
+inline constexpr RowKernels kRowKernels{smooth,   edges,  noise,    smooth_lightly,
+                                        textured, agreed, count_on, count_beyond};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET
