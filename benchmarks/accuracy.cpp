@@ -709,7 +709,8 @@ std::string head(const std::string& commit) {
 }
 
 constexpr std::string_view kNotHeldOut =
-    "**This is not held out.** The constants of `default` were chosen on `rendered/dev`, its sequences among it, and `rc_tabletop`, "
+    "**This is not held out.** The constants of `default` were chosen on `rendered/dev`, its sequences among "
+    "it, and `rc_tabletop`, "
     "the "
     "very frames of most tables below, so the figures flatter it there. "
     "What is rendered, the stress series among it, is of our own making.\n\n";
