@@ -9,8 +9,8 @@
 namespace cairn {
 
 struct EvidenceConfig {
-  float noise_factor = 0.7F;
-  float gradient_min = 1.0F;
+  float noise_factor = 1.0F;
+  float gradient_min = 0.65F;
   float agreement = 2.5F;
 };
 template <class V>
