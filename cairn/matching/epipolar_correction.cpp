@@ -93,7 +93,7 @@ struct Tensor {
   [[nodiscard]] float least() const {
     const float mean = 0.5F * (static_cast<float>(xx) + static_cast<float>(yy));
     const float half_difference = 0.5F * (static_cast<float>(xx) - static_cast<float>(yy));
-    const float mixed = static_cast<float>(xy);
+    const auto mixed = static_cast<float>(xy);
     return mean - std::sqrt(half_difference * half_difference + mixed * mixed);
   }
 };
@@ -402,6 +402,7 @@ Line line_by_medians(std::vector<Sighting> all, float middle_px) {
   }
   Line line{0, slopes.empty() ? 0.0F : median(slopes), middle_px};
   std::vector<float> rows;
+  rows.reserve(all.size());
   for (const Sighting& s : all) rows.push_back(s.rows - line.slope * (s.x_px - middle_px));
   line.rows = median(rows);
   return line;
