@@ -41,6 +41,7 @@ inline constexpr std::array kAblations{
     Ablation{"background.max_behind=100", "walls may have as much behind them as on them"},
     Ablation{"input=grey", "pictures without their colour"},
     Ablation{"facets.noise_factor=0", "edges are not measured against the noise"},
+    Ablation{"facets.contrast_share=0", "the limit does not follow the picture's contrast"},
     Ablation{"facets.edge_min=0", "only the noise says what an edge is"},
     Ablation{"figure.margin=0", "figure need not stand clear of the background"},
     Ablation{"figure.agreement=0", "plain stretches are bridged by nothing"},

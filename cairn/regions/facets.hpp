@@ -15,15 +15,18 @@ namespace cairn {
 struct FacetsConfig {
   float smoothing_sigma = 0.7F;
   float edge_min = 2.0F;
-  float noise_factor = 4.0F;
+  float noise_factor = 1.0F;
+  float contrast_share = 14.0F;
 };
 template <class V>
 void fields(FacetsConfig& c, V&& v) {
   v("smoothing_sigma", c.smoothing_sigma, "px", "Gaussian smoothing before the edges", range(0.0F, 5.0F));
   v("edge_min", c.edge_min, "grey levels", "basins fuse across borders whose mean edge is weaker than this …",
     range(0.0F, 255.0F));
-  v("noise_factor", c.noise_factor, "σ of the noise", "… plus this many deviations of the image noise",
+  v("noise_factor", c.noise_factor, "σ of the noise", "… plus this many deviations of the image noise …",
     range(0.0F, 100.0F));
+  v("contrast_share", c.contrast_share, "% of a clear edge",
+    "… plus this share of the edge that 2 % of the pixels exceed", range(0.0F, 100.0F));
 }
 
 /// The common border of two facets, a < b. Positions are those of the pixel pairs' midpoints, summed in half
@@ -53,7 +56,8 @@ struct Facets {
 std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges);
 
 /// Watershed of the edges (in colour where there is colour), then each basin fuses with the neighbour across
-/// its weakest border where that border's mean edge is below edge_min + noise_factor·noise_sigma(gray);
+/// its weakest border where that border's mean edge is below edge_min + noise_factor·noise_sigma(gray) +
+/// contrast_share·(the edge strength that one pixel in fifty exceeds);
 /// borders are recomputed and it is done again until nothing fuses, sixteen times at most. Unlike a
 /// comparison of means this follows shading across a plain surface and stops at faint outlines. (METHOD §4,
 /// beyond the paper)

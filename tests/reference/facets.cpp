@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "reference/facets.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "reference/evidence.hpp"
 #include "reference/regions.hpp"
@@ -37,7 +40,16 @@ int renumber(Image<RegionId>& labels) {
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config) {
   const Image<std::uint16_t> edges = reference::edge_strength(gray, rgb, config.smoothing_sigma);
   Image<RegionId> labels = reference::watershed(edges).labels;
-  const double limit = 4.0 * (config.edge_min + config.noise_factor * reference::noise_sigma(gray));
+  // The strongest edge that at least one pixel in fifty has or exceeds.
+  std::vector<int> strengths;
+  strengths.reserve(static_cast<std::size_t>(edges.size().area()));
+  for (int y = 0; y < edges.height(); ++y) {
+    for (int x = 0; x < edges.width(); ++x) strengths.push_back(edges(x, y));
+  }
+  std::sort(strengths.begin(), strengths.end(), std::greater<>());
+  const int clear_edge = strengths[strengths.size() / 50];
+  const double limit = 4.0 * (config.edge_min + config.noise_factor * reference::noise_sigma(gray)) +
+                       0.01 * config.contrast_share * clear_edge;
   for (int round = 0; round < 16; ++round) {
     std::map<std::int32_t, Border> weakest;  // of each region
     for (const Border& border : reference::borders_of(labels, edges)) {

@@ -212,5 +212,23 @@ TEST(Flooded, TellsTheOtherwiseWhereNothingIsDecidedWithinReach) {
   EXPECT_EQ(flooded({}, {}, 7), (Labels{}));
 }
 
+TEST(Facets, KeepFaintBordersOnlyAmongFaintOnes) {
+  const auto one_piece = [](bool strong_edges_elsewhere) {
+    Image<Gray> picture(Size{100, 60}, 100, {});
+    for (int y = 0; y < 60; ++y) {
+      for (int x = 50; x < 100; ++x) picture(x, y) = 110;
+      for (int x = 0; x < 100; ++x) {
+        if (strong_edges_elsewhere && y > 40 && x / 5 % 2 == 0) picture(x, y) = 250;
+      }
+    }
+    FacetsConfig config;
+    config.contrast_share = 14;
+    const Facets facets = segment_facets(picture, {}, config, {});
+    return facets.labels(20, 10) == facets.labels(80, 10);
+  };
+  EXPECT_FALSE(one_piece(false));
+  EXPECT_TRUE(one_piece(true));
+}
+
 }  // namespace
 }  // namespace cairn
