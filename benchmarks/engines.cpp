@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// Our stages against others', interleaved in one process, with the goals beside them.
+//   engines [DATA] [--repeats N] [--only TEXT] [--sections yes|no]
+// DATA is the folder that holds real/. Every engine of a scene runs once, then all of them once more, and so
+// on, so that whatever else the machine does hits all alike. Ratios are those of the least times. --only
+// keeps the rows and sections whose words contain TEXT. One thread each, but where threads are compared:
+// those rows go by the wall clock and want a quiet machine (chrt -f 10).
+#include "engines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <io/image_files.hpp>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "markdown_table.hpp"
+
+namespace cairn::engines {
+
+Registry& registry() {
+  static Registry all;
+  return all;
+}
+
+std::string Scene::extent() const {
+  return text(left.size()) + "x" + std::to_string(num_disparities);
+}
+
+double milliseconds(const Run& run, Clock clock) {
+  const auto now = [clock] {
+    timespec time{};
+    clock_gettime(clock == Clock::cpu ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  };
+  const double start = now();
+  run();
+  return now() - start;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+namespace {
+
+using report::MarkdownTable;
+using report::text_of;
+
+struct Settings {
+  std::filesystem::path data = "../shared/data";
+  int repeats = 15;
+  std::string only;
+  bool sections = true;
+};
+
+struct Extent {
+  Size size;
+  int num_disparities;
+};
+constexpr std::array kExtents{Extent{{320, 240}, 64}, Extent{{640, 480}, 64}, Extent{{1280, 720}, 128}};
+constexpr std::array kFolders{std::pair{"Motorcycle", "real/middlebury2014/Motorcycle"},
+                              std::pair{"KITTI", "real/kitti_pairs/kitti2012_train_000000_10"}};
+
+std::vector<Scene> load_scenes(const std::filesystem::path& data) {
+  std::vector<Scene> scenes;
+  for (const auto& [name, folder] : kFolders) {
+    const io::PicturePair pictures = io::load_pair(data / folder / "left.png", data / folder / "right.png");
+    for (const auto& [size, num_disparities] : kExtents) {
+      const Image<Rgb>& rgb = pictures.left.rgb;
+      scenes.push_back({name, num_disparities, resized(pictures.left.gray, size),
+                        resized(pictures.right.gray, size), rgb.empty() ? Image<Rgb>() : resized(rgb, size)});
+    }
+  }
+  return scenes;
+}
+
+const Engine& engine_named(std::string_view name) {
+  for (const Engine& engine : registry().engines) {
+    if (engine.name == name) return engine;
+  }
+  throw Error("no engine is called '" + std::string(name) + "'");
+}
+
+/// One engine's times on one scene.
+struct Trial {
+  Run run;
+  std::vector<double> times;
+  [[nodiscard]] double least() const { return *std::min_element(times.begin(), times.end()); }
+};
+using Trials = std::map<std::string_view, Trial>;
+
+Trials race(const Scene& scene, const std::set<std::string_view>& names, Clock clock, int repeats) {
+  Trials trials;
+  for (const std::string_view name : names) trials[name].run = engine_named(name).prepare(scene);
+  for (auto& [name, trial] : trials) trial.run();  // fills pools and caches
+  for (int i = 0; i < repeats; ++i) {
+    for (auto& [name, trial] : trials) trial.times.push_back(milliseconds(trial.run, clock));
+  }
+  return trials;
+}
+
+std::string text_of(const Goal& goal) {
+  std::string words;
+  if (goal.at_least > 0) words += "≥ " + text_of("%.2f", goal.at_least);
+  if (goal.at_most < std::numeric_limits<double>::infinity()) {
+    words += (words.empty() ? "≤ " : ", ≤ ") + text_of("%.2f", goal.at_most);
+  }
+  return words.empty() ? "–" : words;
+}
+
+void add_row(MarkdownTable& table, const Comparison& row, const Scene& scene, const Trials& trials) {
+  const Trial& ours = trials.at(row.ours);
+  const Trial& peer = trials.at(row.peer);
+  const double ratio = peer.least() / ours.least();
+  const bool aims = row.goal.at_least > 0 || row.goal.at_most < std::numeric_limits<double>::infinity();
+  const bool met = ratio >= row.goal.at_least && ratio <= row.goal.at_most;
+  table.add({std::string(row.what), scene.name + " " + scene.extent(), std::string(row.peer),
+             text_of("%.2f", peer.least()), text_of("%.2f", median(peer.times)),
+             text_of("%.2f", ours.least()), text_of("%.2f", median(ours.times)), text_of("%.2f", ratio),
+             text_of(row.goal), aims ? (met ? "yes" : "**no**") : "–"});
+}
+
+std::vector<Comparison> rows_for(const Scene& scene, Clock clock, const std::string& only) {
+  std::vector<Comparison> rows;
+  for (const Comparison& row : registry().comparisons) {
+    const bool wanted = std::string(row.what).find(only) != std::string::npos;
+    if (row.extent == scene.extent() && row.clock == clock && wanted) rows.push_back(row);
+  }
+  return rows;
+}
+
+void print_races(const std::vector<Scene>& scenes, const Settings& settings) {
+  MarkdownTable table(
+      {"", "on", "against", "theirs, least ms", "median", "ours, least ms", "median", "ratio", "goal", "met"},
+      3);
+  for (const Clock clock : {Clock::cpu, Clock::wall}) {
+    for (const Scene& scene : scenes) {
+      const std::vector<Comparison> rows = rows_for(scene, clock, settings.only);
+      std::set<std::string_view> names;
+      for (const Comparison& row : rows) names.insert({row.ours, row.peer});
+      const Trials trials = race(scene, names, clock, settings.repeats);
+      for (const Comparison& row : rows) add_row(table, row, scene, trials);
+    }
+  }
+  std::printf("%s", table.text().c_str());
+}
+
+int number_in(const std::string& word) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || value < 1) {
+    throw Error("found '" + word + "', expected a positive number");
+  }
+  return value;
+}
+
+Settings parse(const std::vector<std::string>& words) {
+  Settings settings;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!words[i].starts_with("--")) {
+      settings.data = words[i];
+      continue;
+    }
+    if (i + 1 == words.size()) throw Error("'" + words[i] + "' needs a value behind it");
+    const std::string& option = words[i++];
+    if (option == "--repeats") {
+      settings.repeats = number_in(words[i]);
+    } else if (option == "--only") {
+      settings.only = words[i];
+    } else if (option == "--sections") {
+      settings.sections = words[i] == "yes";
+    } else {
+      throw Error("unknown option '" + option + "'");
+    }
+  }
+  return settings;
+}
+
+void run(const Settings& settings) {
+  const std::vector<Scene> scenes = load_scenes(settings.data);
+  print_races(scenes, settings);
+  for (const Section& section : registry().sections) {
+    if (!settings.sections || std::string(section.title).find(settings.only) == std::string::npos) continue;
+    std::fflush(stdout);
+    std::printf("\n%s\n\n%s", std::string(section.title).c_str(),
+                section.write(settings.data, scenes).c_str());
+  }
+}
+
+}  // namespace
+}  // namespace cairn::engines
+
+int main(int argc, char** argv) try {
+  cairn::engines::run(cairn::engines::parse({argv + 1, argv + argc}));
+} catch (const cairn::Error& error) {
+  std::fprintf(stderr, "engines: %s\n", error.what());
+  return 2;
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// OpenCV's engines. One thread each, but where the name says two.
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "engines.hpp"
+
+namespace cairn::engines {
+namespace {
+
+// OpenCV has no matrix of constant pixels; its functions only read.
+cv::Mat matrix(View<const Gray> image) {
+  return {image.height(), image.width(), CV_8UC1, const_cast<Gray*>(image.row(0)),
+          static_cast<std::size_t>(image.stride())};
+}
+cv::Mat matrix(View<const Rgb> image) {
+  return {image.height(), image.width(), CV_8UC3, const_cast<Rgb*>(image.row(0)),
+          static_cast<std::size_t>(image.stride()) * sizeof(Rgb)};
+}
+
+template <class T>
+Image<T> resized_by_opencv(const Image<T>& image, Size size) {
+  Image<T> small(size);
+  cv::Mat out = matrix(View<const T>(small));
+  cv::resize(matrix(View<const T>(image)), out, out.size(), 0, 0, cv::INTER_LINEAR);
+  return small;
+}
+
+Run compute(cv::Ptr<cv::StereoMatcher> matcher, const Scene& scene, int threads) {
+  return [=, out = std::make_shared<cv::Mat>(), &scene] {
+    cv::setNumThreads(threads);
+    matcher->compute(matrix(View<const Gray>(scene.left)), matrix(View<const Gray>(scene.right)), *out);
+  };
+}
+
+/// The x-Sobel prefilter with a cap of 31 is StereoBM's default.
+cv::Ptr<cv::StereoBM> block_matcher(int num_disparities, int window, bool checks) {
+  auto matcher = cv::StereoBM::create(num_disparities, window);
+  matcher->setUniquenessRatio(checks ? 15 : 0);
+  matcher->setTextureThreshold(checks ? 10 : 0);
+  matcher->setDisp12MaxDiff(checks ? 1 : -1);
+  return matcher;
+}
+
+Run block_matching(const Scene& scene, bool checks, int threads) {
+  return compute(block_matcher(scene.num_disparities, 9, checks), scene, threads);
+}
+
+Run semi_global(const Scene& scene, int mode) {
+  constexpr int kBlock = 5;
+  return compute(cv::StereoSGBM::create(0, scene.num_disparities, kBlock, 8 * kBlock * kBlock,
+                                        32 * kBlock * kBlock, 1, 63, 10, 0, 0, mode),
+                 scene, 1);
+}
+
+const Registration kOpenCv([](Registry& all) {
+  all.engines.push_back({"StereoBM raw", [](const Scene& s) { return block_matching(s, false, 1); }});
+  all.engines.push_back({"StereoBM full", [](const Scene& s) { return block_matching(s, true, 1); }});
+  all.engines.push_back(
+      {"StereoBM full, two threads", [](const Scene& s) { return block_matching(s, true, 2); }});
+  all.engines.push_back(
+      {"StereoSGBM 3WAY", [](const Scene& s) { return semi_global(s, cv::StereoSGBM::MODE_SGBM_3WAY); }});
+  all.engines.push_back(
+      {"StereoSGBM", [](const Scene& s) { return semi_global(s, cv::StereoSGBM::MODE_SGBM); }});
+});
+
+}  // namespace
+
+Image<float> block_matched(const StereoPair& pair, int num_disparities, int window) {
+  constexpr auto kSubpixels = static_cast<float>(cv::StereoMatcher::DISP_SCALE);
+  cv::Mat sixteenths;
+  block_matcher(num_disparities, window, true)
+      ->compute(matrix(pair.left()), matrix(pair.right()), sixteenths);
+  Image<float> disparity_px(pair.size());
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      const auto value = sixteenths.at<std::int16_t>(y, x);
+      // OpenCV's mark of a hole lies below the least disparity, which is 0 here.
+      disparity_px(x, y) =
+          value < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / kSubpixels;
+    }
+  }
+  return disparity_px;
+}
+
+Image<Gray> resized(const Image<Gray>& image, Size size) {
+  return resized_by_opencv(image, size);
+}
+Image<Rgb> resized(const Image<Rgb>& image, Size size) {
+  return resized_by_opencv(image, size);
+}
+
+}  // namespace cairn::engines

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// The single kernels of the matching, on every instruction set of this processor: Google Benchmark's options
+// apply, e.g. --benchmark_filter=match_rows/sad.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cairn/core/target.hpp>
+#include <cairn/disparity/left_right.hpp>
+#include <cairn/matching/kernels.hpp>
+#include <cairn/matching/prefilter.hpp>
+#include <cairn/matching/semi_global.hpp>
+#include <cairn/matching/subpixel.hpp>
+#include <random>
+#include <string>
+
+namespace {
+
+using namespace cairn;
+
+constexpr Size kSize{640, 480};
+
+/// The right picture is the left one 5 px further to the left, with some dots of its own.
+struct Pictures {
+  Image<Gray> left{kSize};
+  Image<Gray> right{kSize};
+  Pictures() {
+    std::mt19937 random(1);
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) left(x, y) = static_cast<Gray>(random());
+      for (int x = 0; x < kSize.width; ++x) {
+        right(x, y) = x + 5 < kSize.width && random() % 4 != 0 ? left(x + 5, y) : static_cast<Gray>(random());
+      }
+    }
+  }
+  [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right); }
+};
+const Pictures& pictures() {
+  static const Pictures all;
+  return all;
+}
+
+/// Pixels times disparities, in a second.
+void count_candidates(benchmark::State& state, const MatchConfig& config) {
+  const auto candidates = state.iterations() * kSize.width * kSize.height * config.num_disparities;
+  state.counters["candidates"] =
+      benchmark::Counter(static_cast<double>(candidates), benchmark::Counter::kIsRate);
+}
+
+Exec exec_on(Target target) {
+  Exec exec;
+  exec.target = target;
+  exec.pool = Pool::make();
+  return exec;
+}
+
+void match_on(benchmark::State& state, const MatchConfig& config, Target target) {
+  const Exec exec = exec_on(target);
+  for ([[maybe_unused]] auto _ : state) {
+    benchmark::DoNotOptimize(match(pictures().pair(), config, SemiGlobalConfig(), exec));
+  }
+  count_candidates(state, config);
+}
+
+template <class Stage>
+void add_stage(const std::string& stage_name, Stage stage) {
+  benchmark::RegisterBenchmark(stage_name.c_str(), [stage](benchmark::State& state) {
+    const Exec exec = exec_on(Target::best);
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(stage(exec));
+  })->Unit(benchmark::kMicrosecond);
+}
+
+void add_match(const std::string& case_name, const MatchConfig& config) {
+  for (const Target target : supported_targets()) {
+    if (target == Target::scalar) continue;
+    benchmark::RegisterBenchmark((case_name + "/" + std::string(name(target))).c_str(),
+                                 [=](benchmark::State& state) { match_on(state, config, target); })
+        ->Unit(benchmark::kMicrosecond);
+  }
+}
+
+void add_all() {
+  for (const auto& [cost_name, cost] : kCosts) {
+    for (const auto& [evidence_name, evidence] : kEvidences) {
+      add_match("match/" + std::string(cost_name) + "/" + std::string(evidence_name),
+                {.cost = cost, .evidence = evidence});
+    }
+  }
+  constexpr MatchConfig kFiltered{.cost = Cost::sad, .prefilter = Prefilter::xsobel};
+  for (const auto& [evidence_name, evidence] : kEvidences) {
+    MatchConfig config = kFiltered;
+    config.evidence = evidence;
+    add_match("match/sad on xsobel/" + std::string(evidence_name), config);
+  }
+  add_match("match/semi_global", {.method = MatchMethod::semi_global});
+
+  static const Matches matches = match(pictures().pair(), kFiltered, {});
+  add_stage("filter_xsobel", [](const Exec& exec) { return filter_xsobel(pictures().left, 31, exec); });
+  add_stage("remove_mean", [](const Exec& exec) { return remove_mean(pictures().left, 9, exec); });
+  add_stage("refine_subpixel", [](const Exec& exec) { return refine_subpixel(matches, {}, exec); });
+  add_stage("reject_inconsistent/true",
+            [](const Exec& exec) { return reject_inconsistent(matches, {}, exec); });
+  add_stage("reject_inconsistent/vote", [](const Exec& exec) {
+    return reject_inconsistent(matches, {.method = LeftRightMethod::vote}, exec);
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  add_all();
+  benchmark::RunSpecifiedBenchmarks();
+}
