@@ -121,25 +121,14 @@ class WallSearch {
   }
 
   /// Adds the best wall; false where none is good enough.
-  bool find_next() {
-    const std::vector<std::size_t> before = in_front();
-    const std::optional<GroundPlane> wall = found_among(before, min_share_);
-    if (!wall) return false;
-    add(*wall);
-    return true;
-  }
+  bool find_next() { return add_best(min_share_); }
 
   /// Adds the best wall square on the first one. One point tells where such a wall is, so less evidence will
   /// do. For a wall that hardly shows any: a side wall with a window.
   bool find_next_square() {
     if (!rig_ || planes_.size() < 2) return false;
     conditions_.push_back(square(planes_[1], *rig_));
-    const bool found = [&] {
-      const std::vector<std::size_t> before = in_front();
-      const std::optional<GroundPlane> wall = found_among(before, min_share_square_);
-      if (wall) add(*wall);
-      return wall.has_value();
-    }();
+    const bool found = add_best(min_share_square_);
     conditions_.pop_back();
     return found;
   }
@@ -155,20 +144,17 @@ class WallSearch {
     return before;
   }
 
-  std::optional<GroundPlane> found_among(const std::vector<std::size_t>& before, double min_share) {
-    if (static_cast<double>(before.size()) < min_share * static_cast<double>(points_.size()) ||
-        before.size() < 8) {
-      return std::nullopt;
-    }
+  bool add_best(double min_share) {
+    const std::vector<std::size_t> before = in_front();
+    const double least = min_share * static_cast<double>(points_.size());
+    if (static_cast<double>(before.size()) < least || before.size() < 8) return false;
     const std::optional<GroundPlane> guess = best_guess(before);
-    if (!guess) return std::nullopt;
-    std::optional<GroundPlane> wall = refined(*guess, before);
-    return wall && good_enough(*wall, min_share) ? wall : std::nullopt;
-  }
-
-  void add(const GroundPlane& wall) {
+    if (!guess) return false;
+    const GroundPlane wall = refined(*guess, before);
+    if (!good_enough(wall, min_share)) return false;
     planes_.push_back(wall);
     put_behind(wall);
+    return true;
   }
 
   void put_behind(const GroundPlane& plane) {
@@ -224,8 +210,7 @@ class WallSearch {
   }
 
   /// Least squares over the wall's own points; the condition of uprightness kept.
-  [[nodiscard]] std::optional<GroundPlane> refined(GroundPlane plane,
-                                                   const std::vector<std::size_t>& before) const {
+  [[nodiscard]] GroundPlane refined(GroundPlane plane, const std::vector<std::size_t>& before) const {
     for (int round = 0; round < 3; ++round) {
       std::array<Condition, 3> normal{};
       double weight = 0;
