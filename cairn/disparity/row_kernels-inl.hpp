@@ -46,21 +46,16 @@ inline void smooth(const std::uint8_t* const* rows, int width, int channels, Row
 
 inline void edges(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
                   int channels, std::uint32_t* CAIRN_RESTRICT squares, std::uint16_t* CAIRN_RESTRICT out) {
-  const int length = width * channels;
+  const int end = (width - 1) * channels;
   const auto square = [&](int x, int left, int right) {
     const int gx = here[right] - here[left];
     const int gy = down[x] - up[x];
-    squares[x] = static_cast<std::uint32_t>(gx * gx + gy * gy);
+    return static_cast<std::uint32_t>(gx * gx + gy * gy);
   };
-  const int inner_end = length - channels;
-  for (int x = channels; x < inner_end; ++x) {
-    const int gx = here[x + channels] - here[x - channels];
-    const int gy = down[x] - up[x];
-    squares[x] = static_cast<std::uint32_t>(gx * gx + gy * gy);
-  }
+  for (int x = channels; x < end; ++x) squares[x] = square(x, x - channels, x + channels);
   for (int c = 0; c < channels; ++c) {
-    square(c, c, width > 1 ? c + channels : c);
-    if (width > 1) square(inner_end + c, inner_end + c - channels, inner_end + c);
+    squares[c] = square(c, c, c + std::min(channels, end));
+    squares[end + c] = square(end + c, c + std::max(end - channels, 0), end + c);
   }
   // The root of the largest square is the largest root, rounded or not.
   if (channels == 3) {
