@@ -13,6 +13,10 @@ enum class RegionId : std::int32_t {};
 /// An object of one frame: 1 = the nearest, counting up with distance; none = no object here.
 enum class ObjectId : std::int32_t { none = 0 };
 
+/// A number that is never negative, as containers count.
+constexpr std::size_t slot(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
 constexpr std::size_t index(RegionId id) {
   return static_cast<std::size_t>(id);
 }

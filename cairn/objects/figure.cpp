@@ -5,6 +5,7 @@
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/figure.hpp>
 #include <cairn/regions/minimum_cut.hpp>
+#include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -31,12 +32,8 @@ constexpr double kEdgeNoise = 4.5;   // … plus deviations of the image noise
 constexpr double kSeenShare = 0.25;  // of a facet's pixels: above it the facet is figure by what is seen
 
 struct Votes {
-  std::vector<std::int64_t> figure, ground, pixels, seen_figure;
-  explicit Votes(int facets)
-      : figure(static_cast<std::size_t>(facets)),
-        ground(figure.size()),
-        pixels(figure.size()),
-        seen_figure(figure.size()) {}
+  std::vector<std::int64_t> figure, ground, seen_figure;
+  explicit Votes(int facets) : figure(slot(facets)), ground(figure.size()), seen_figure(figure.size()) {}
 };
 
 struct Scales {
@@ -108,27 +105,14 @@ struct Look {
 
 std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                            const Votes& votes) {
-  std::vector<Look> looks(votes.pixels.size());
-  for (int y = 0; y < gray.height(); ++y) {
-    const RegionId* const facet = facets.labels.row(y);
-    const Gray* const grey = gray.row(y);
-    const Rgb* const colour = rgb.empty() ? nullptr : rgb.row(y);
-    for (int x = 0; x < gray.width();) {
-      // A run of one facet at a time: its look is fetched once for all of it. Sums are whole numbers.
-      const int start = x;
-      std::array<int, 3> sum{};
-      do {
-        sum[0] += colour != nullptr ? colour[x].r : grey[x];
-        sum[1] += colour != nullptr ? colour[x].g : grey[x];
-        sum[2] += colour != nullptr ? colour[x].b : grey[x];
-        ++x;
-      } while (x < gray.width() && facet[x] == facet[start]);
-      Look& look = looks[index(facet[start])];
-      for (std::size_t c = 0; c < 3; ++c) look.colour[c] += sum[c];
-      look.box = united(look.box, {start, y, x - start, 1});
-      look.pixels += x - start;
-    }
-  }
+  std::vector<Look> looks(slot(facets.count));
+  for_each_run(facets.labels, [&](const Run& run) {
+    const std::array<int, 3> sum = colour_sum(gray, rgb, run);
+    Look& look = looks[index(run.label)];
+    for (std::size_t c = 0; c < 3; ++c) look.colour[c] += sum[c];
+    look.box = united(look.box, run.box());
+    look.pixels += run.length();
+  });
   for (std::size_t i = 0; i < looks.size(); ++i) {
     for (double& channel : looks[i].colour) channel /= looks[i].pixels;
     looks[i].seen = static_cast<double>(votes.seen_figure[i]) > kSeenShare * looks[i].pixels;
@@ -181,11 +165,6 @@ class ColourModel {
   std::vector<Cell> cells_;
   std::array<double, 2> total_{};
 };
-
-/// How far two boxes are apart along one axis; 0 where they overlap.
-int apart(int first, int length, int other_first, int other_length) {
-  return std::max({first - other_first - other_length, other_first - first - length, 0});
-}
 
 /// Whether ground goes on beside a facet in the facet's colour.
 class Continuation {
@@ -262,13 +241,12 @@ class Continuation {
   void consider(std::size_t i, std::size_t j, std::vector<Pair>& pairs) const {
     const Look& here = looks_[i];
     const Look& there = looks_[j];
-    const int rows = apart(here.box.y, here.box.height, there.box.y, there.box.height);
-    const int columns = apart(here.box.x, here.box.width, there.box.x, there.box.width);
-    if (rows > most_down_ || columns > most_across_ || i == j) return;
+    const Size between = gap_between(here.box, there.box);
+    if (between.height > most_down_ || between.width > most_across_ || i == j) return;
     const double dc = difference(here.colour, there.colour) / (kSpread * kSpread);
     if (dc > kFarthest) return;
-    const double dx = columns / across_;
-    const double dy = rows / down_;
+    const double dx = between.width / across_;
+    const double dy = between.height / down_;
     pairs.push_back({j, there.pixels * std::exp(-(dc + dx * dx + dy * dy) / 2)});
   }
 
@@ -295,11 +273,11 @@ std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, 
 
 /// Facets along the foot of a wall that hardly show evidence of figure.
 std::vector<bool> skirting(const Facets& facets, const Background& background, const Votes& votes,
-                           float above_percent) {
+                           const std::vector<Look>& looks, float above_percent) {
   constexpr float kBelow = 0.2F;        // of what is above
   constexpr double kShare = 0.8;        // of a facet's pixels
   constexpr double kHardlySeen = 0.05;  // of its pixels
-  std::vector<bool> result(votes.pixels.size());
+  std::vector<bool> result(looks.size());
   if (!background.has_floor || background.planes.size() < 2 || above_percent <= 0) return result;
   const View<const RegionId> labels = facets.labels;
   const float above = 0.01F * above_percent * static_cast<float>(labels.width());
@@ -321,9 +299,8 @@ std::vector<bool> skirting(const Facets& facets, const Background& background, c
     for (int y = first; y < std::min(last, labels.height()); ++y) ++within[index(labels(x, y))];
   }
   for (std::size_t i = 0; i < result.size(); ++i) {
-    const auto pixels = static_cast<double>(votes.pixels[i]);
-    result[i] = static_cast<double>(within[i]) > kShare * pixels &&
-                static_cast<double>(votes.seen_figure[i]) <= kHardlySeen * pixels;
+    result[i] = static_cast<double>(within[i]) > kShare * looks[i].pixels &&
+                static_cast<double>(votes.seen_figure[i]) <= kHardlySeen * looks[i].pixels;
   }
   return result;
 }
@@ -333,10 +310,8 @@ std::vector<bool> around(const std::vector<std::int32_t>& figure, const std::vec
   std::vector<bool> near(figure.size());
   for (std::size_t i = 0; i < figure.size(); ++i) near[i] = figure[i] != 0;
   for (const Border& border : borders) {
-    const auto a = static_cast<std::size_t>(border.a);
-    const auto b = static_cast<std::size_t>(border.b);
-    if (figure[a] != 0) near[b] = true;
-    if (figure[b] != 0) near[a] = true;
+    if (figure[slot(border.a)] != 0) near[slot(border.b)] = true;
+    if (figure[slot(border.b)] != 0) near[slot(border.a)] = true;
   }
   return near;
 }
@@ -357,7 +332,6 @@ Votes votes_of(const Facets& facets, View<const float> evidence_px, const Backgr
       seen.push_back({x, d, d - background.disparity_px(static_cast<float>(x), static_cast<float>(y))});
     }
     vote_in_row(facets.labels.row(y), size.width, seen, scales, votes);
-    for (int x = 0; x < size.width; ++x) ++votes.pixels[index(facets.labels(x, y))];
   }
   return votes;
 }
@@ -370,13 +344,13 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
   const Votes votes = votes_of(facets, evidence_px, background, config);
   const std::vector<Look> looks = looks_of(facets, gray, rgb, votes);
   const std::vector<Tie> ties = ties_of(facets.borders, config.smoothness, noise_sigma(gray));
-  const std::vector<bool> at_foot = skirting(facets, background, votes, config.skirting);
+  const std::vector<bool> at_foot = skirting(facets, background, votes, looks, config.skirting);
   constexpr auto kVote = static_cast<std::int64_t>(kUnit) / kSeen;
   std::vector<std::int64_t> ground_costs(looks.size());
   std::vector<std::int64_t> figure_costs(looks.size());
   for (std::size_t i = 0; i < looks.size(); ++i) {
     ground_costs[i] = kVote * (at_foot[i] ? kSeen * votes.seen_figure[i] : votes.figure[i]);
-    figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * votes.pixels[i]);
+    figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * static_cast<std::int64_t>(looks[i].pixels));
   }
   std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
   Continuation goes_on(looks, gray.width());

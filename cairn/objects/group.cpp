@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/objects/group.hpp>
 #include <cairn/regions/percent.hpp>
+#include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -20,10 +21,6 @@ constexpr double kLeastWeight = 0.6;  // below it a facet's plane is anybody's g
 constexpr double kFlatness = 1000.0;  // px², at 320 px of width: spread below which slopes are damped
 constexpr int kJoinRounds = 4;
 constexpr double kEvidenceShare = 0.03;  // of a facet's pixels: with less it shows none of its own
-
-std::size_t slot(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Weighted moments of disparity over an area, and the plane through them.
 struct Plane {
@@ -105,27 +102,28 @@ struct Shown {
   std::vector<Plane> planes;
   std::vector<std::int64_t> pixels;
   std::vector<std::int64_t> evidence;  // pixels with evidence before the background
+  std::vector<Rect> boxes;
+  explicit Shown(std::size_t facets) : planes(facets), pixels(facets), evidence(facets), boxes(facets) {}
 };
 
 Shown shown_by(const Facets& facets, const std::vector<std::int32_t>& figure, const DisparityMap& disparity,
                View<const float> evidence_px, const Background& background, float margin_px) {
-  Shown shown{std::vector<Plane>(slot(facets.count)), std::vector<std::int64_t>(slot(facets.count)),
-              std::vector<std::int64_t>(slot(facets.count))};
-  const View<const RegionId> labels = facets.labels;
-  for (int y = 0; y < labels.height(); ++y) {
-    for (int x = 0; x < labels.width(); ++x) {
-      const std::size_t facet = index(labels(x, y));
-      ++shown.pixels[facet];
-      if (figure[facet] == 0) continue;
-      const float behind = background.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      if (evidence_px(x, y) - behind > margin_px) ++shown.evidence[facet];
-      const float d = disparity.disparity_px(x, y);
-      if (disparity.reject(x, y) != Reject::none || !(d - behind > kLeastBefore * margin_px)) continue;
-      const double weight = (beside_border(labels, x, y) ? kBorderWeight : 1.0) *
-                            (std::isnan(evidence_px(x, y)) ? 1.0 : kEvidenceWeight);
-      shown.planes[facet].add(x, y, d, weight);
+  Shown shown(slot(facets.count));
+  for_each_run(facets.labels, [&](const Run& run) {
+    const std::size_t facet = index(run.label);
+    shown.pixels[facet] += run.length();
+    shown.boxes[facet] = united(shown.boxes[facet], run.box());
+    if (figure[facet] == 0) return;
+    for (int x = run.first; x < run.last; ++x) {
+      const float behind = background.disparity_px(static_cast<float>(x), static_cast<float>(run.y));
+      if (evidence_px(x, run.y) - behind > margin_px) ++shown.evidence[facet];
+      const float d = disparity.disparity_px(x, run.y);
+      if (disparity.reject(x, run.y) != Reject::none || !(d - behind > kLeastBefore * margin_px)) continue;
+      const double weight = (beside_border(facets.labels, x, run.y) ? kBorderWeight : 1.0) *
+                            (std::isnan(evidence_px(x, run.y)) ? 1.0 : kEvidenceWeight);
+      shown.planes[facet].add(x, run.y, d, weight);
     }
-  }
+  });
   return shown;
 }
 
@@ -283,27 +281,19 @@ void join_small(std::vector<std::int32_t>& groups, const Facets& facets, const G
 struct Piece {
   Plane plane;
   Rect box;
-  std::int64_t pixels = 0;
   std::vector<std::int32_t> touches;  // sorted
 };
-
-double distance(const Rect& p, const Rect& q) {
-  const int dx = std::max({p.x - q.x - q.width, q.x - p.x - p.width, 0});
-  const int dy = std::max({p.y - q.y - q.height, q.y - p.y - p.height, 0});
-  return std::hypot(dx, dy);
-}
 
 /// Unites groups of one depth that do not touch, but both touch one that is nearer, and are close: the halves
 /// of what that one parts. `groups`: per facet, 0 = background.
 void unite_occluded(std::vector<std::int32_t>& groups, const Facets& facets, const Shown& shown,
-                    const std::vector<Rect>& boxes, const Tolerance& tolerance, double gap_px) {
+                    const Tolerance& tolerance, double gap_px) {
   std::map<std::int32_t, Piece> pieces;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (groups[i] == 0) continue;
     Piece& piece = pieces[groups[i]];
     piece.plane.join(shown.planes[i]);
-    piece.box = piece.pixels > 0 ? united(piece.box, boxes[i]) : boxes[i];
-    piece.pixels += shown.pixels[i];
+    piece.box = united(piece.box, shown.boxes[i]);
   }
   for (const Border& border : facets.borders) {
     const std::int32_t p = groups[slot(border.a)];
@@ -328,7 +318,9 @@ void unite_occluded(std::vector<std::int32_t>& groups, const Facets& facets, con
     for (const auto& [q_id, q] : pieces) {
       if (q_id <= p_id || std::binary_search(p.touches.begin(), p.touches.end(), q_id)) continue;
       const double slack = tolerance.at(std::max(p.plane.d, q.plane.d));
-      if (std::abs(p.plane.d - q.plane.d) > slack || distance(p.box, q.box) >= gap_px) continue;
+      const Size apart = gap_between(p.box, q.box);
+      if (std::abs(p.plane.d - q.plane.d) > slack) continue;
+      if (std::hypot(apart.width, apart.height) >= gap_px) continue;
       if (!nearer_between(p, q, slack)) continue;
       const std::int32_t kept = std::min(now[p_id], now[q_id]);
       const std::int32_t given_up = std::max(now[p_id], now[q_id]);
@@ -338,28 +330,6 @@ void unite_occluded(std::vector<std::int32_t>& groups, const Facets& facets, con
   for (std::int32_t& group : groups) group = group == 0 ? 0 : now[group];
 }
 
-/// Calls run(label, y, first, last) for each stretch of a row with one label, in raster order.
-template <class Run>
-void for_each_run(View<const RegionId> labels, Run run) {
-  for (int y = 0; y < labels.height(); ++y) {
-    const RegionId* const label = labels.row(y);
-    for (int x = 0; x < labels.width();) {
-      const int first = x;
-      while (x < labels.width() && label[x] == label[first]) ++x;
-      run(label[first], y, first, x);
-    }
-  }
-}
-
-std::vector<Rect> boxes_of(View<const RegionId> labels, std::size_t count) {
-  std::vector<Rect> boxes(count);
-  for_each_run(labels, [&](RegionId label, int y, int first, int last) {
-    Rect& box = boxes[index(label)];
-    box = united(box, {first, y, last - first, 1});
-  });
-  return boxes;
-}
-
 /// The groups as regions, with what is known of their disparities. `groups`: per facet, 0 = background.
 Segmentation regions_of(const std::vector<std::int32_t>& groups, const Facets& facets,
                         const DisparityMap& disparity, const Exec& exec) {
@@ -367,20 +337,20 @@ Segmentation regions_of(const std::vector<std::int32_t>& groups, const Facets& f
   renumbered[0] = 0;
   std::int32_t count = 1;
   Segmentation result{Image<RegionId>(facets.labels.size(), exec.pool), {}};
-  for_each_run(facets.labels, [&](RegionId facet, int y, int first, int last) {
-    std::int32_t& id = renumbered[slot(groups[index(facet)])];
+  for_each_run(facets.labels, [&](const Run& run) {
+    std::int32_t& id = renumbered[slot(groups[index(run.label)])];
     if (id < 0) id = count++;
-    std::fill(result.labels.row(y) + first, result.labels.row(y) + last, RegionId{id});
+    std::fill_n(result.labels.row(run.y) + run.first, run.length(), RegionId{id});
   });
   result.regions.resize(slot(count));
   result.regions[0].is_floor = true;
-  for_each_run(result.labels, [&](RegionId label, int y, int first, int last) {
-    Region region = result.regions[index(label)];
-    region.pixel_count += last - first;
-    region.box = united(region.box, {first, y, last - first, 1});
-    const Reject* const reject = disparity.reject.row(y);
-    const float* const disparity_px = disparity.disparity_px.row(y);
-    for (int x = first; x < last; ++x) {
+  for_each_run(result.labels, [&](const Run& run) {
+    Region region = result.regions[index(run.label)];
+    region.pixel_count += run.length();
+    region.box = united(region.box, run.box());
+    const Reject* const reject = disparity.reject.row(run.y);
+    const float* const disparity_px = disparity.disparity_px.row(run.y);
+    for (int x = run.first; x < run.last; ++x) {
       if (reject[x] != Reject::none) continue;
       const double d = disparity_px[x];
       ++region.valid_count;
@@ -388,7 +358,7 @@ Segmentation regions_of(const std::vector<std::int32_t>& groups, const Facets& f
       region.mean += delta / region.valid_count;
       region.variance += delta * (d - region.mean);
     }
-    result.regions[index(label)] = region;
+    result.regions[index(run.label)] = region;
   });
   for (Region& region : result.regions) region.variance /= std::max(region.valid_count, 1);
   return result;
@@ -418,8 +388,7 @@ Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>&
     groups[i] = figure[i] == 0 ? 0 : groups[i] < 0 ? -1 : groups[i] + 1;
   groups = flooded(std::move(groups), facets.borders, 0);
   if (config.occluded_gap > 0) {
-    unite_occluded(groups, facets, shown, boxes_of(facets.labels, groups.size()), step,
-                   0.01 * config.occluded_gap * size.width);
+    unite_occluded(groups, facets, shown, step, 0.01 * config.occluded_gap * size.width);
   }
   return regions_of(groups, facets, disparity, exec);
 }

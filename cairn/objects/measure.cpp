@@ -5,6 +5,7 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -36,33 +37,21 @@ constexpr float kEdgeMin = 4.0F;          // grey levels …
 constexpr float kEdgeNoiseFactor = 3.0F;  // … plus deviations of the image noise
 
 std::vector<Outline> outlines(const Inputs& in) {
-  const Size size = in.fusion.labels.size();
+  const int width = in.fusion.labels.width();
   std::vector<Outline> result(in.fusion.parts.size());
-  for (int y = 0; y < size.height; ++y) {
-    const RegionId* const label = in.fusion.labels.row(y);
-    const float* const disparity = in.disparity_px.row(y);
-    const Gray* const grey = in.left.row(y);
-    const Rgb* const rgb = in.left_rgb.empty() ? nullptr : in.left_rgb.row(y);
-    for (int x = 0; x < size.width;) {
-      // A run of one region at a time: the outline is fetched once for all of it.
-      const int start = x;
-      std::int64_t valid = 0;
-      std::array<std::int64_t, 3> colour{};
-      do {
-        valid += disparity[x] == disparity[x] ? 1 : 0;  // a hole is NaN
-        colour[0] += rgb != nullptr ? rgb[x].r : grey[x];
-        colour[1] += rgb != nullptr ? rgb[x].g : grey[x];
-        colour[2] += rgb != nullptr ? rgb[x].b : grey[x];
-        ++x;
-      } while (x < size.width && label[x] == label[start]);
-      Outline& outline = result[index(label[start])];
-      if (outline.pixel_count == 0) outline.first_pixel = y * size.width + start;
-      outline.pixel_count += x - start;
-      outline.valid_count += valid;
-      for (std::size_t c = 0; c < 3; ++c) outline.colour_sum[c] += colour[c];
-      outline.box = united(outline.box, {start, y, x - start, 1});
-    }
-  }
+  for_each_run(in.fusion.labels, [&](const Run& run) {
+    const float* const disparity = in.disparity_px.row(run.y);
+    int valid = 0;
+    for (int x = run.first; x < run.last; ++x)
+      valid += disparity[x] == disparity[x] ? 1 : 0;  // a hole is NaN
+    const std::array<int, 3> colour = colour_sum(in.left, in.left_rgb, run);
+    Outline& outline = result[index(run.label)];
+    if (outline.pixel_count == 0) outline.first_pixel = run.y * width + run.first;
+    outline.pixel_count += run.length();
+    outline.valid_count += valid;
+    for (std::size_t c = 0; c < 3; ++c) outline.colour_sum[c] += colour[c];
+    outline.box = united(outline.box, run.box());
+  });
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cairn/regions/gradient.hpp>
+#include <cairn/regions/runs.hpp>
 #include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <numeric>
@@ -15,10 +16,6 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 constexpr int kRounds = 16;
-
-std::size_t slot(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::ptrdiff_t signed_slot(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
@@ -128,7 +125,7 @@ class Contacts {
         edges_(edges),
         first_(count, -1, exec.pool),
         contacts_(static_cast<std::size_t>(labels.size().area()) / 4 * 3 + 1, exec.pool) {
-    std::vector<std::int32_t> columns(static_cast<std::size_t>(labels.width()));
+    std::vector<std::int32_t> columns(slot(labels.width()));
     for (int y = 0; y < labels.height(); ++y) {
       meet(y, y, 1, labels.width() - 1, columns);
       if (y + 1 < labels.height()) meet(y, y + 1, 0, labels.width(), columns);
@@ -216,7 +213,7 @@ class Fusing {
 
   void renumber(Sets& sets) {
     const Scratch<std::int32_t> numbers = sets.numbers();
-    Scratch<std::int32_t> first(static_cast<std::size_t>(sets.count()), -1, exec_.pool);
+    Scratch<std::int32_t> first(slot(sets.count()), -1, exec_.pool);
     ScratchList<Part> parts(borders_.size(), exec_.pool);
     for (const Border& border : borders_) {
       const auto [a, b] = std::minmax({numbers[border.a], numbers[border.b]});
@@ -236,6 +233,20 @@ class Fusing {
   ScratchList<Border> borders_;
 };
 
+/// What only one edge pixel in fifty is stronger than, in 1/4 grey level.
+int clear_edge(View<const std::uint16_t> edges) {
+  std::vector<std::int64_t> histogram(std::size_t{1} << 16U);
+  for (int y = 0; y < edges.height(); ++y) {
+    const std::uint16_t* const row = edges.row(y);
+    for (int x = 0; x < edges.width(); ++x) ++histogram[row[x]];
+  }
+  std::int64_t stronger = 0;
+  int strength = static_cast<int>(histogram.size()) - 1;
+  while (strength > 0 && 50 * (stronger + histogram[slot(strength)]) <= edges.size().area())
+    stronger += histogram[slot(strength--)];
+  return strength;
+}
+
 }  // namespace
 
 std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges) {
@@ -247,22 +258,6 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
   ScratchList<Border> borders(0, exec.pool);
   Contacts(labels, edges, slot(last + 1), exec).sum_up(borders, exec);
   return {borders.begin(), borders.end()};
-}
-
-/// What only one edge pixel in fifty is stronger than, in 1/4 grey level.
-int clear_edge(View<const std::uint16_t> edges) {
-  std::vector<std::int64_t> histogram(std::size_t{1} << 16U);
-  for (int y = 0; y < edges.height(); ++y) {
-    const std::uint16_t* const row = edges.row(y);
-    for (int x = 0; x < edges.width(); ++x) ++histogram[row[x]];
-  }
-  std::int64_t stronger = 0;
-  int strength = static_cast<int>(histogram.size()) - 1;
-  while (strength > 0 &&
-         50 * (stronger + histogram[static_cast<std::size_t>(strength)]) <= edges.size().area()) {
-    stronger += histogram[static_cast<std::size_t>(strength--)];
-  }
-  return strength;
 }
 
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
@@ -291,26 +286,20 @@ Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const 
   };
   std::vector<Sums> sums(slot(facets.count));
   Segmentation result{facets.labels.clone(exec.pool), std::vector<Region>(sums.size())};
-  for (int y = 0; y < gray.height(); ++y) {
-    const RegionId* const label = facets.labels.row(y);
-    const Gray* const grey = gray.row(y);
-    for (int x = 0; x < gray.width();) {
-      // A run of one facet at a time: what is known of it is fetched once for all of it.
-      const int start = x;
-      Sums run;
-      do {
-        run.sum += grey[x];
-        run.squares += grey[x] * grey[x];
-        ++x;
-      } while (x < gray.width() && label[x] == label[start]);
-      const std::size_t i = index(label[start]);
-      sums[i].sum += run.sum;
-      sums[i].squares += run.squares;
-      Region& region = result.regions[i];
-      region.pixel_count += x - start;
-      region.box = united(region.box, {start, y, x - start, 1});
+  for_each_run(facets.labels, [&](const Run& run) {
+    const Gray* const grey = gray.row(run.y);
+    Sums here;
+    for (int x = run.first; x < run.last; ++x) {
+      here.sum += grey[x];
+      here.squares += grey[x] * grey[x];
     }
-  }
+    Sums& whole = sums[index(run.label)];
+    whole.sum += here.sum;
+    whole.squares += here.squares;
+    Region& region = result.regions[index(run.label)];
+    region.pixel_count += run.length();
+    region.box = united(region.box, run.box());
+  });
   for (std::size_t i = 0; i < sums.size(); ++i) {
     Region& region = result.regions[i];
     region.valid_count = region.pixel_count;

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/ids.hpp>
 #include <cairn/regions/minimum_cut.hpp>
-#include <cstddef>
 #include <numeric>
 
 namespace cairn {
 namespace {
-
-std::size_t slot(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The nodes and their residual capacities. What a node could take from the source or give to the sink is
 /// kept beside it, so that source and sink are no nodes.

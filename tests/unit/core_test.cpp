@@ -18,6 +18,13 @@
 namespace cairn {
 namespace {
 
+TEST(Rect, GapsAreCountedAlongEachAxis) {
+  const Rect box{10, 20, 5, 6};
+  EXPECT_EQ(gap_between(box, {15, 28, 1, 1}), (Size{0, 2}));  // touches along x
+  EXPECT_EQ(gap_between({3, 0, 4, 18}, box), (Size{3, 2}));
+  EXPECT_EQ(gap_between(box, {12, 21, 40, 40}), (Size{0, 0}));
+}
+
 TEST(Image, StartsEveryRowAtACacheLine) {
   for (const int width : {1, 3, 16, 63, 64, 65, 320}) {
     Image<Rgb> rgb(Size{width, 3});
