@@ -26,6 +26,7 @@ constexpr bool correlates(Cost cost) {
 }
 
 constexpr int kMargin = 64;  // lanes without candidate before and after a pixel's
+constexpr int kTile = 64;    // lanes whose box sums are held in registers at a time
 
 /// How wide sums and costs are. Every operator fits these.
 struct Wide {
@@ -33,8 +34,8 @@ struct Wide {
   using CostTag = lanes::Rebind<float, SumTag>;
   using Sum = std::int32_t;
   using Cost = float;
-  static constexpr int kGroup = 16;    // lanes that lie together in memory: a whole number of vectors
-  static constexpr Sum kEmptyBox = 0;  // the sum over no pixels
+  static constexpr int kShift = 0;                   // costs are kept times 2^kShift
+  static constexpr Sum empty_box(int) { return 0; }  // the sum over no pixels
   /// The row that comes in and the one that goes out.
   static constexpr Sum pair_of(int incoming, int outgoing) {
     return static_cast<Sum>(static_cast<std::uint32_t>(outgoing) << 16 |
@@ -45,17 +46,38 @@ struct Wide {
 /// Half as wide, for sad where no window's sum can reach 65535. Sums and costs are kept less 32768, as signed
 /// numbers: those are what every target compares.
 struct Narrow {
-  using SumTag = lanes::CappedTag<std::int16_t, 32>;
+  using SumTag = lanes::CappedTag<std::int16_t, 16>;  // twice as wide vectors took a fifth longer on Zen 4
   using CostTag = SumTag;
   using Sum = std::int16_t;
   using Cost = std::int16_t;
-  static constexpr int kGroup = 32;
-  static constexpr Sum kEmptyBox = std::numeric_limits<Sum>::min();
+  static constexpr int kShift = 0;
   static constexpr int kLargestSum = 65534;
+  static constexpr Sum empty_box(int) { return std::numeric_limits<Sum>::min(); }
   static constexpr Sum pair_of(int incoming, int outgoing) {
     return static_cast<Sum>(outgoing << 8 | incoming);
   }
 };
+
+/// As Narrow, where no window's sum can reach 8191 and no difference 128: above three bits that say which
+/// eight of a tile's lanes a sum belongs to. Whatever is added to a sum is a multiple of eight and leaves
+/// them alone. So the least of these numbers, and which of eight lanes it stands in, is the winner, and no
+/// index has to be carried along.
+struct Tagged : Narrow {
+  static constexpr int kShift = 3;
+  static constexpr int kLargestSum = 8190;
+  static constexpr int kLargestDifference = 127;
+  static constexpr Sum empty_box(int lane) { return static_cast<Sum>(Narrow::empty_box(0) + lane / 8); }
+};
+
+/// What stands for the cost where there is no candidate: more than any cost.
+template <class Lane>
+constexpr Lane kNone = std::numeric_limits<Lane>::max();
+template <>
+constexpr float kNone<float> = kNoCost;
+
+/// Where a left pixel stands: where nothing is clipped and nothing missing; near the border; so near to the
+/// right one that no column joins its window any more.
+enum class Place : std::uint8_t { inside, border, right_end };
 
 template <class Width>
 CAIRN_LANES_INLINE int lane_count() {
@@ -74,28 +96,28 @@ struct Geometry {
   int half;     // of the window, rounded down
   int first_d;  // px
   int count;    // candidates
-  int group;    // lanes that lie together in memory
-  int lanes;    // as many as candidates, rounded up to whole groups
+  int lanes;    // as many as candidates, rounded up to halves of tiles
   int pad;      // entries before the reversed row
   int length;   // of a reversed row with all its margins
 
-  Geometry(const MatchTask& task, int lanes_in_group)
+  explicit Geometry(const MatchTask& task)
       : width(task.out.best.width()),
         height(task.out.best.height()),
         half(task.config.window_size / 2),
         first_d(task.config.min_disparity),
         count(task.config.num_disparities),
-        group(lanes_in_group),
-        lanes(round_up(count, group)),
+        lanes(round_up(count, kTile / 2)),
         pad(std::max(0, -first_d)),
         length(round_up(pad + width + std::max(0, first_d) + lanes + kMargin, 16)) {}
 
   [[nodiscard]] int reversed(int x_right) const { return pad + width - 1 - x_right; }
   [[nodiscard]] int first_lane(int x) const { return reversed(x - first_d); }
-  /// Where a left pixel's column stands, its lanes i and on; x = −1: the one that stays 0. A group's lanes of
-  /// all columns lie together, so that a walk along the row reads memory in its order.
-  [[nodiscard]] std::ptrdiff_t column(int x, int i) const {
-    return static_cast<std::ptrdiff_t>(i & -group) * (width + 1) + (x + 1) * group + (i & (group - 1));
+  /// A tile's columns lie together, so that a walk along the row reads memory in its order. `first`: the
+  /// tile's first lane; the last tile may be half a one. The columns before x = 0 stay 0.
+  [[nodiscard]] int tile_lanes(int first) const { return std::min(kTile, lanes - first); }
+  [[nodiscard]] int columns() const { return half + 1 + width; }
+  [[nodiscard]] std::ptrdiff_t column(int x, int first) const {
+    return static_cast<std::ptrdiff_t>(first) * columns() + (half + 1 + x) * tile_lanes(first);
   }
   /// The candidates of x that lie inside the right image: lanes begin … end − 1.
   [[nodiscard]] int begin(int x) const { return std::clamp(x - width + 1 - first_d, 0, count); }

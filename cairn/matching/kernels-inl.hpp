@@ -18,7 +18,7 @@ class Band {
  public:
   Band(const MatchTask& task, int first, int last)
       : task_(task),
-        g_(task, Width::kGroup),
+        g_(task),
         full_(task.config.evidence == Evidence::full),
         radius_(task.config.row_band),
         first_(first),
@@ -26,10 +26,12 @@ class Band {
         // The right rows at the band's ends are also matched by left rows beyond them.
         first_matched_(full_ ? std::max(0, first - radius_) : first),
         last_matched_(full_ ? std::min(g_.height, last + radius_) : last),
+        exists_(g_),
         zeros_(std::max(g_.length, g_.width)),
-        block_(g_.lanes),
-        least_(radius_ > 0 ? g_.lanes : 0),
-        row_of_(radius_ > 0 ? g_.lanes : 0) {
+        block_(full_ ? g_.lanes : 0),
+        least_(full_ && radius_ > 0 ? g_.lanes : 0),
+        of_tile_(round_up(g_.width, kBlock)),
+        winners_(round_up(g_.width, kBlock)) {
     strips_.emplace_back(0, g_, correlates(kCost));
     for (int k = 1; k <= radius_; ++k) {
       strips_.emplace_back(-k, g_, correlates(kCost));
@@ -42,7 +44,7 @@ class Band {
     for (Strip& strip : strips_) {
       for (int y = first_matched_ - g_.half; y < first_matched_ + g_.half; ++y) {
         load_rows(strip, y, y - 2 * g_.half - 1);
-        update_all_columns(strip);
+        begin_row(strip, g_.width);
       }
     }
     for (int y = first_matched_; y < last_matched_; ++y) {
@@ -97,24 +99,44 @@ class Band {
     for (int i = 0, x = g_.width - 1; i < g_.width; ++i, --x) pairs[i] = Width::pair_of(in[x], out[x]);
   }
 
-  void update_all_columns(Strip& strip) { begin_box<kCost, Width>(strip, g_, g_.width); }
-
   // -- one row's costs ------------------------------------------------------------------------------------
+
+  /// Calls body.operator()<kLanes>(first lane) for each tile.
+  template <class Body>
+  void for_each_tile(const Body& body) const {
+    for (int first = 0; first < g_.lanes; first += kTile) {
+      g_.tile_lanes(first) == kTile ? body.template operator()<kTile>(first)
+                                    : body.template operator()<kTile / 2>(first);
+    }
+  }
+
+  /// The strip's columns x < end, further down by the row loaded last.
+  void begin_row(const Strip& strip, int end) {
+    const Rows<Width> rows(strip, g_, exists_);
+    for_each_tile([&]<int kLanes>(int first) { begin_box<kCost, Width, kLanes>(rows, first, end); });
+  }
 
   void match_row(int y) {
     for (Strip& strip : strips_) {
       load_rows(strip, y + g_.half, y - g_.half - 1);
       if (!wanted(strip, y)) {
-        update_all_columns(strip);
+        begin_row(strip, g_.width);
         continue;
       }
       if constexpr (correlates(kCost)) {
         sum_windows<kCost, kDouble>(strip.left, strip.rows);
         sum_windows<kCost, kDouble>(strip.right, strip.rows);
       }
-      begin_box<kCost, Width>(strip, g_, std::min(g_.half, g_.width));
+      begin_row(strip, std::min(g_.half, g_.width));
     }
-    for (int x = 0; x < g_.width; x += kBlock) match_block(x, std::min(kBlock, g_.width - x), y);
+    if (full_) {
+      for (int x = 0; x < g_.width; x += kBlock) match_block(x, std::min(kBlock, g_.width - x), y);
+    } else {
+      for (const Strip& strip : strips_) {
+        if (wanted(strip, y)) find_winners(strip, 0, g_.width);
+      }
+    }
+    if (mine(y)) settle_winners(y);
   }
 
   /// The strip's costs for left row y go into a map of this band.
@@ -124,74 +146,80 @@ class Band {
 
   void match_block(int x_first, int pixels, int y) {
     if (radius_ > 0) least_.clear();
-    for (Strip& strip : strips_) {
+    for (const Strip& strip : strips_) {
       if (!wanted(strip, y)) continue;
-      fill_costs(strip, x_first, pixels);
-      if (full_ && mine(y + strip.row)) {
+      find_winners(strip, x_first, x_first + pixels);
+      if (mine(y + strip.row)) {
         RightRow& right = right_row(y + strip.row);
         radius_ > 0 ? update_right<Width, true>(block_, g_, x_first, pixels, right)
                     : update_right<Width, false>(block_, g_, x_first, pixels, right);
       }
-      if (radius_ > 0) keep_lesser<Width>(block_, strip.row, pixels, g_.lanes, least_, row_of_);
+      if (radius_ > 0) keep_lesser<Width>(block_, pixels, g_.lanes, least_);
     }
-    if (mine(y)) settle(radius_ > 0 ? least_ : block_, x_first, y);
+    if (mine(y)) settle_evidence(radius_ > 0 ? least_ : block_, x_first, y);
   }
 
-  void fill_costs(Strip& strip, int x_first, int pixels) {
-    const int x_last = x_first + pixels;
-    for (int i = 0; i < g_.lanes; i += lane_count<Width>()) {
-      const int least_d = g_.first_d + i;
-      const int most_d = least_d + lane_count<Width>() - 1;
-      // Left of x_begin no lane's window has a column yet. From x_inside to x_border − 1 nothing is clipped.
-      const int x_begin = std::clamp(least_d - g_.half, x_first, x_last);
-      const int x_inside = std::clamp(g_.half + std::max(0, most_d), x_begin, x_last);
-      const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_last);
-      const auto slide_over = [&]<bool kBorder>(int begin, int end) {
-        slide<kCost, Width, kDouble, kBorder>(strip, g_, begin, end, i, block_.of(begin - x_first) + i,
-                                              block_.stride);
+  /// Of left pixels x_first … x_last − 1 and this row of the right image. Full evidence also wants the costs.
+  void find_winners(const Strip& strip, int x_first, int x_last) {
+    const Rows<Width> rows(strip, g_, exists_);
+    for_each_tile([&]<int kLanes>(int first) {
+      const int least_d = g_.first_d + first;
+      const int most_d = least_d + kLanes - 1;
+      // From x_inside to x_border − 1 nothing is clipped and nothing missing.
+      const bool ragged = first + kLanes > g_.count;
+      const int x_end = std::clamp(g_.width - g_.half, x_first, x_last);
+      const int x_inside = ragged ? x_end : std::clamp(g_.half + std::max(0, most_d), x_first, x_end);
+      const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
+      const auto slide_over = [&]<Place kPlace>(int begin, int end) {
+        if (begin == end) return;
+        slide<kCost, Width, kDouble, kLanes, kPlace>(rows, first, begin, end, of_tile_,
+                                                     full_ ? block_.of(begin - x_first) + first : nullptr,
+                                                     block_.stride);
       };
-      slide_over.template operator()<true>(x_begin, x_inside);
-      slide_over.template operator()<false>(x_inside, x_border);
-      slide_over.template operator()<true>(x_border, x_last);
-    }
-    const bool all_inside = g_.begin(x_last - 1) == 0 && g_.end(x_first) == g_.count && g_.count == g_.lanes;
-    for (int i = 0; !all_inside && i < pixels; ++i) {
-      Lane* const costs = block_.of(i);
-      std::fill(costs, costs + g_.begin(x_first + i), kNone<Lane>);
-      std::fill(costs + g_.end(x_first + i), costs + g_.lanes, kNone<Lane>);
-    }
+      slide_over.template operator()<Place::border>(x_first, x_inside);
+      slide_over.template operator()<Place::inside>(x_inside, x_border);
+      slide_over.template operator()<Place::border>(x_border, x_end);
+      slide_over.template operator()<Place::right_end>(x_end, x_last);
+      if (strip.row == 0 && first == 0) {
+        winners_.start<Width>(of_tile_, x_first, x_last);
+      } else {
+        winners_.keep<Width>(of_tile_, first, strip.row, x_first, x_last);
+      }
+    });
   }
 
   // -- results --------------------------------------------------------------------------------------------
 
   RightRow& right_row(int y) { return right_rows_[static_cast<std::size_t>(y % (2 * radius_ + 1))]; }
 
-  /// Writes a block's evidence. One question after the other for all its pixels, so that no pixel waits for
-  /// its own answer. All sixteen are asked, also where the row ends before: rows of images are padded to more
-  /// than that.
-  void settle(const CostBlock& block, int x_first, int y) {
-    std::array<Lane, kBlock> least;
-    std::array<int, kBlock> best{};
-    for (std::size_t i = 0; i < kBlock; ++i) least[i] = least_cost<Width>(block.of(i), g_.lanes);
-    for (std::size_t i = 0; i < kBlock; ++i) best[i] = first_lane_of<Width>(block.of(i), g_.lanes, least[i]);
-    float* const cost = task_.out.cost.row(y) + x_first;
-    std::int16_t* const disparity = task_.out.best.row(y) + x_first;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      cost[i] = as_cost(least[i]);
-      disparity[i] = least[i] < kNone<Lane> ? static_cast<std::int16_t>(g_.first_d + best[i]) : kNoMatch;
+  /// Whole vectors: rows of images are padded to more than one.
+  void settle_winners(int y) {
+    const F f;
+    const I i32;
+    const float* const costs = winners_.cost.data();
+    const std::int32_t* const lane = winners_.lane.data();
+    float* const cost = task_.out.cost.row(y);
+    std::int16_t* const best = task_.out.best.row(y);
+    const VI first_d = lanes::Set(i32, g_.first_d);
+    for (int x = 0, end = g_.width; x < end; x += lane_count<Wide>()) {
+      const VF least = lanes::Load(f, costs + x);
+      const auto none = lanes::RebindMask(i32, lanes::Eq(least, lanes::Set(f, kNoCost)));
+      const VI d = lanes::Add(lanes::Load(i32, lane + x), first_d);
+      lanes::Store(least, f, cost + x);
+      lanes::StoreNarrowed(i32, lanes::IfThenElse(none, lanes::Set(i32, std::int32_t{kNoMatch}), d),
+                           best + x);
     }
-    if (radius_ > 0) {
-      std::int8_t* const row = task_.out.row_offset.row(y) + x_first;
-      for (std::size_t i = 0; i < kBlock; ++i) {
-        row[i] = least[i] < kNone<Lane> ? static_cast<std::int8_t>(row_of_.of(i)[best[i]]) : std::int8_t{0};
-      }
-    }
-    if (full_) settle_evidence(block, best, x_first, y);
+    if (radius_ == 0) return;
+    std::copy_n(winners_.row.data(), g_.width, task_.out.row_offset.row(y));
   }
 
-  void settle_evidence(const CostBlock& block, const std::array<int, kBlock>& best, int x_first, int y) {
+  /// Writes what a block's costs tell beside the winners. One question after the other for all its pixels, so
+  /// that no pixel waits for its own answer. All sixteen are asked, also where the row ends before: rows of
+  /// images are padded to more than that.
+  void settle_evidence(const CostBlock& block, int x_first, int y) {
+    const std::int32_t* const best = winners_.lane.data() + x_first;
     std::array<float, kBlock> sums;
-    for (std::size_t i = 0; i < kBlock; ++i) sums[i] = sum_of_costs(block.of(i), g_.lanes);
+    for (std::size_t i = 0; i < kBlock; ++i) sums[i] = sum_of_costs<Width>(block.of(i), g_.lanes);
     float* const mean = task_.out.mean_cost.row(y) + x_first;
     const Geometry g = g_;
     for (int i = 0; i < kBlock; ++i) {
@@ -203,12 +231,13 @@ class Band {
     float* const after = task_.out.cost_after.row(y) + x_first;
     for (std::size_t i = 0; i < kBlock; ++i) {
       Lane* const costs = block.of(i) + best[i];
-      before[i] = as_cost(costs[-1]);
-      after[i] = as_cost(costs[1]);
+      before[i] = as_cost<Width>(costs[-1]);
+      after[i] = as_cost<Width>(costs[1]);
       costs[-1] = costs[0] = costs[1] = kNone<Lane>;  // so that the runner-up is the least of what is left
     }
     float* const runner_up = task_.out.runner_up.row(y) + x_first;
-    for (std::size_t i = 0; i < kBlock; ++i) runner_up[i] = as_cost(least_cost<Width>(block.of(i), g_.lanes));
+    for (std::size_t i = 0; i < kBlock; ++i)
+      runner_up[i] = as_cost<Width>(least_cost<Width>(block.of(i), g_.lanes));
   }
 
   void finish_right(int y) {
@@ -231,10 +260,12 @@ class Band {
   int last_;
   int first_matched_;
   int last_matched_;
+  Existence<Width> exists_;
   Scratch<std::int32_t> zeros_;
   CostBlock block_;
-  CostBlock least_;   // over the rows of the band
-  CostBlock row_of_;  // these
+  CostBlock least_;  // over the rows of the band
+  TileWinners<Width> of_tile_;
+  RowWinners winners_;
   std::vector<Strip> strips_;
   std::vector<RightRow> right_rows_;
 };
@@ -255,6 +286,8 @@ void match_rows(const MatchTask& task, int first, int last) {
   constexpr int kSingleZncc = 363;
   switch (config.cost) {
     case Cost::sad:
+      if (levels <= Tagged::kLargestDifference && n * levels <= Tagged::kLargestSum)
+        return run_band<Cost::sad, Tagged>(task, first, last);
       return n * levels <= Narrow::kLargestSum ? run_band<Cost::sad, Narrow>(task, first, last)
                                                : run_band<Cost::sad>(task, first, last);
     case Cost::ssd:

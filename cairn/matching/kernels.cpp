@@ -5,6 +5,7 @@
 // is.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cairn/matching/kernels.hpp>
 #include <cairn/matching/pixel_math.hpp>
 #include <cairn/matching/scratch.hpp>
@@ -26,17 +27,19 @@
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
 #define CAIRN_KERNEL_TARGET HWY_NAMESPACE
 #define CAIRN_LANES_INLINE HWY_INLINE
+#define CAIRN_UNROLL HWY_UNROLL(16)
 HWY_BEFORE_NAMESPACE();
 // clang-format off
 #include <cairn/matching/lanes_highway-inl.hpp>
 #include <cairn/matching/geometry-inl.hpp>
-#include <cairn/matching/window_sums-inl.hpp>
 #include <cairn/matching/winners-inl.hpp>
+#include <cairn/matching/window_sums-inl.hpp>
 #include <cairn/matching/kernels-inl.hpp>
 // clang-format on
 HWY_AFTER_NAMESPACE();
 #undef CAIRN_KERNEL_TARGET
 #undef CAIRN_LANES_INLINE
+#undef CAIRN_UNROLL
 #endif
 #endif
 
@@ -47,10 +50,11 @@ namespace lanes = plain;
 }
 #define CAIRN_KERNEL_TARGET plain_kernels
 #define CAIRN_LANES_INLINE inline
+#define CAIRN_UNROLL
 // clang-format off
 #include <cairn/matching/geometry-inl.hpp>
-#include <cairn/matching/window_sums-inl.hpp>
 #include <cairn/matching/winners-inl.hpp>
+#include <cairn/matching/window_sums-inl.hpp>
 #include <cairn/matching/kernels-inl.hpp>
 // clang-format on
 

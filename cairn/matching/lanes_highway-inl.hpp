@@ -25,21 +25,39 @@ HWY_INLINE Vec<D> DotPairs(D d, Vec<D> a, Vec<D> b) {
 }
 
 /// Each lane holds two 16-bit numbers: |low(a) − low(b)| − |high(a) − high(b)|.
-template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
+template <int kShift, class D, HWY_IF_LANE_SIZE_D(D, 4)>
 HWY_INLINE Vec<D> AbsChange(D d, Vec<D> a, Vec<D> b) {
+  static_assert(kShift == 0);
   const Repartition<std::int16_t, D> d16;
   return DotPairs(d, BitCast(d, Abs(Sub(BitCast(d16, a), BitCast(d16, b)))), Set(d, -0xFFFF));  // (1, −1)
 }
 
-/// Each lane holds two bytes: |low(a) − low(b)| − |high(a) − high(b)|.
-template <class D, HWY_IF_LANE_SIZE_D(D, 2)>
+/// Each lane holds two bytes: (|low(a) − low(b)| − |high(a) − high(b)|)·2^kShift. With a shift, no
+/// difference may exceed 127.
+template <int kShift, class D, HWY_IF_LANE_SIZE_D(D, 2)>
 HWY_INLINE Vec<D> AbsChange(D d, Vec<D> a, Vec<D> b) {
   const Repartition<std::uint8_t, D> d8;
   const auto a8 = BitCast(d8, a);
   const auto b8 = BitCast(d8, b);
-  const auto differences = BitCast(RebindToUnsigned<D>(), Sub(Max(a8, b8), Min(a8, b8)));
-  const auto low = And(differences, Set(RebindToUnsigned<D>(), 0xFF));
-  return BitCast(d, Sub(low, ShiftRight<8>(differences)));
+  const Repartition<std::int8_t, D> signed8;
+  const auto differences = kShift > 0 ? BitCast(d8, Abs(Sub(BitCast(signed8, a), BitCast(signed8, b))))
+                                      : Sub(Max(a8, b8), Min(a8, b8));
+#if HWY_ARCH_X86
+  // One pmaddubsw: unsigned bytes times (2^kShift, −2^kShift), neighbours added up. Two products of 255 fit.
+  using V = Vec<D>;
+  const V signs = Set(d, static_cast<std::int16_t>((-(1 << kShift) & 0xFF) << 8 | 1 << kShift));
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (sizeof(V) == 64) return V{_mm512_maddubs_epi16(differences.raw, signs.raw)};
+#endif
+#if HWY_TARGET <= HWY_AVX2
+  if constexpr (sizeof(V) == 32) return V{_mm256_maddubs_epi16(differences.raw, signs.raw)};
+#endif
+  if constexpr (sizeof(V) == 16) return V{_mm_maddubs_epi16(differences.raw, signs.raw)};
+#else
+  const RebindToUnsigned<D> du;
+  const auto both = BitCast(du, differences);
+  return ShiftLeft<kShift>(BitCast(d, Sub(And(both, Set(du, 0xFF)), ShiftRight<8>(both))));
+#endif
 }
 
 /// The least of all lanes.
@@ -60,6 +78,57 @@ HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
   }
 }
 
+/// The least of all vectors' lanes and the first lane that has it, the vectors' lanes counted on.
+template <class D, int kCount>
+HWY_INLINE int FirstLeast(D d, const Vec<D> (&v)[kCount], TFromD<D>& least) {
+  constexpr int kLanes = static_cast<int>(MaxLanes(D()));
+  Vec<D> all = v[0];
+  HWY_UNROLL(16)
+  for (int k = 1; k < kCount; ++k) all = Min(all, v[k]);
+  least = LeastLane(d, all);
+  const Vec<D> wanted = Set(d, least);
+#if HWY_TARGET == HWY_AVX3
+  std::uint64_t bits = 0;
+  HWY_UNROLL(16)
+  for (int k = 0; k < kCount; ++k) bits |= static_cast<std::uint64_t>(Eq(v[k], wanted).raw) << (k * kLanes);
+  return std::countr_zero(bits);
+#else
+  using T = TFromD<D>;
+  Vec<D> first = Set(d, T{kLanes * kCount});
+  HWY_UNROLL(16)
+  for (int k = kCount - 1; k >= 0; --k) first = IfThenElse(Eq(v[k], wanted), Iota(d, T{k * kLanes}), first);
+  return static_cast<int>(LeastLane(d, first));
+#endif
+}
+
+/// The lanes are seen as rows of eight, one below the other. The least of all (less −32768), and above its 16
+/// bits the first column that it stands in.
+template <class D>
+HWY_INLINE std::int32_t LeastEighth(D d, Vec<D> v) {
+  if constexpr (MaxLanes(D()) > 8) {
+    const Half<D> half;
+    return LeastEighth(half, Min(LowerHalf(half, v), UpperHalf(half, v)));
+  } else {
+    const RebindToUnsigned<D> du;
+    const auto from_0 = Xor(BitCast(du, v), Set(du, 0x8000));
+#if HWY_ARCH_X86
+    return _mm_cvtsi128_si32(_mm_minpos_epu16(from_0.raw));
+#else
+    const auto least = MinOfLanes(du, from_0);
+    const auto first = MinOfLanes(du, IfThenElse(Eq(from_0, least), Iota(du, 0), Set(du, 8)));
+    return GetLane(least) | GetLane(first) << 16;
+#endif
+  }
+}
+
+/// The same of all vectors, one below the other.
+template <class D, int kCount>
+HWY_INLINE std::int32_t LeastOfEights(D d, const Vec<D> (&v)[kCount]) {
+  Vec<D> all = v[0];
+  HWY_UNROLL(16)
+  for (int k = 1; k < kCount; ++k) all = Min(all, v[k]);
+  return LeastEighth(d, all);
+}
 /// The sum of all lanes: the upper half is added to the lower one until one lane is left.
 template <class D>
 HWY_INLINE float SumByHalves(D d, Vec<D> v) {
@@ -73,10 +142,15 @@ HWY_INLINE float SumByHalves(D d, Vec<D> v) {
   }
 }
 
-/// As many 16-bit numbers as there are 32-bit lanes.
-template <class D>
-HWY_INLINE Vec<D> LoadWidened(D d, const std::int16_t* from) {
-  return PromoteTo(d, LoadU(Rebind<std::int16_t, D>(), from));
+/// As many smaller numbers as there are 32-bit lanes.
+template <class D, class T>
+HWY_INLINE Vec<D> LoadWidened(D d, const T* from) {
+  return PromoteTo(d, LoadU(Rebind<T, D>(), from));
+}
+template <class D, class T>
+HWY_INLINE void StoreNarrowed(D, Vec<D> v, T* to) {
+  const Rebind<T, D> small;
+  StoreU(DemoteTo(small, v), small, to);
 }
 
 /// n·a − b·c in double lanes: below 2^53, thus exact.

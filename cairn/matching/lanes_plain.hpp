@@ -114,11 +114,25 @@ template <class T>
 bool Eq(T a, T b) {
   return a == b;
 }
-inline bool And(bool a, bool b) {
-  return a && b;
+template <class T>
+T And(T a, T b) {
+  return static_cast<T>(a & b);
 }
-inline bool Or(bool a, bool b) {
-  return a || b;
+template <class T>
+T Or(T a, T b) {
+  return static_cast<T>(a | b);
+}
+template <int kBits>
+std::int32_t ShiftRight(std::int32_t a) {
+  return a >> kBits;
+}
+template <int kBits>
+std::int32_t ShiftLeft(std::int32_t a) {
+  return static_cast<std::int32_t>(bits(a) << kBits);
+}
+template <class T>
+bool RebindMask(Tag<T>, bool mask) {
+  return mask;
 }
 template <class T>
 T IfThenElse(bool mask, T yes, T no) {
@@ -150,15 +164,34 @@ inline std::int32_t DotPairs(Tag<std::int32_t>, std::int32_t a, std::int32_t b) 
   return low(a) * low(b) + high(a) * high(b);
 }
 /// Each lane holds two 16-bit numbers: |low(a) − low(b)| − |high(a) − high(b)|.
-inline std::int32_t AbsChange(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
+template <int kShift>
+std::int32_t AbsChange(Tag<std::int32_t>, std::int32_t a, std::int32_t b) {
   return std::abs(low(a) - low(b)) - std::abs(high(a) - high(b));
 }
-/// Each lane holds two bytes: likewise.
-inline std::int16_t AbsChange(Tag<std::int16_t>, std::int16_t a, std::int16_t b) {
+/// Each lane holds two bytes: (|low(a) − low(b)| − |high(a) − high(b)|)·2^kShift.
+template <int kShift>
+std::int16_t AbsChange(Tag<std::int16_t>, std::int16_t a, std::int16_t b) {
   const auto low_byte = [](std::int16_t pair) { return pair & 0xFF; };
   const auto high_byte = [](std::int16_t pair) { return pair >> 8 & 0xFF; };
-  return static_cast<std::int16_t>(std::abs(low_byte(a) - low_byte(b)) -
-                                   std::abs(high_byte(a) - high_byte(b)));
+  const int change = std::abs(low_byte(a) - low_byte(b)) - std::abs(high_byte(a) - high_byte(b));
+  return static_cast<std::int16_t>(change * (1 << kShift));
+}
+/// The least of all vectors' lanes and the first lane that has it.
+template <class T, int kCount>
+int FirstLeast(Tag<T>, const T (&v)[kCount], T& least) {
+  const T* const found = std::min_element(v, v + kCount);
+  least = *found;
+  return static_cast<int>(found - v);
+}
+/// The lanes are seen as rows of eight. The least of all (less −32768), and above its 16 bits the first
+/// column that it stands in.
+template <int kCount>
+std::int32_t LeastOfEights(Tag<std::int16_t>, const std::int16_t (&v)[kCount]) {
+  std::uint32_t first = ~0U;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    first = std::min(first, static_cast<std::uint32_t>(v[i] + 32768) << 3 | i % 8);
+  }
+  return static_cast<std::int32_t>(first >> 3 | (first & 7) << 16);
 }
 inline float SumByHalves(Tag<float>, float value) {
   return value;
@@ -167,8 +200,13 @@ template <class T>
 T LeastLane(Tag<T>, T value) {
   return value;
 }
-inline std::int32_t LoadWidened(Tag<std::int32_t>, const std::int16_t* from) {
+template <class T>
+std::int32_t LoadWidened(Tag<std::int32_t>, const T* from) {
   return *from;
+}
+template <class T>
+void StoreNarrowed(Tag<std::int32_t>, std::int32_t value, T* to) {
+  *to = static_cast<T>(value);
 }
 /// n·a − b·c, exact, then rounded once.
 inline float ExactDifference(Tag<float>, std::int32_t n, std::int32_t a, std::int32_t b, std::int32_t c) {

@@ -49,7 +49,7 @@ struct Strip {
   using Sum = typename Width::Sum;
   int row;                   // of the right image, relative to the left one's
   int rows = 0;              // of the window, those inside both images
-  Scratch<Sum> column_sums;  // Geometry::column()
+  Scratch<Sum> column_sums;  // Geometry::column(); in units of 1/2^Width::kShift
   Scratch<Sum> box;          // [lane]
   Scratch<Sum> left_pairs;   // [pad + x]
   Scratch<Sum> right_pairs;  // reversed
@@ -58,12 +58,24 @@ struct Strip {
 
   Strip(int strip_row, const Geometry& g, bool with_moments)
       : row(strip_row),
-        column_sums((g.width + 1) * g.lanes),
+        column_sums(g.columns() * g.lanes),
         box(g.lanes),
         left_pairs(g.length + 16),
         right_pairs(g.length + 16),
         left(g, with_moments),
         right(g, with_moments) {}
+};
+
+/// Which candidates there are at all: all bits set, or none.
+template <class Width>
+struct Existence {
+  using Sum = typename Width::Sum;
+  Scratch<Sum> inside;  // of a reversed row: is there such a pixel?
+  Scratch<Sum> within;  // [lane]: is there such a candidate?
+  explicit Existence(const Geometry& g) : inside(g.length + 16), within(g.lanes) {
+    std::fill_n(inside.data() + g.pad, g.width, Sum{-1});
+    std::fill_n(within.data(), g.count, Sum{-1});
+  }
 };
 
 /// A strip's and its geometry's numbers as plain locals: the compiler must assume that a vector store changes
@@ -77,6 +89,8 @@ struct Rows {
   Sum* box;
   const Sum* left_pairs;
   const Sum* right_pairs;
+  const Sum* inside;  // reversed
+  const Sum* within;  // [lane]
   const std::int32_t* l;
   const std::int32_t* ll;
   const float* inverse_l;
@@ -88,13 +102,15 @@ struct Rows {
   const std::int32_t* r_before;
   const std::int32_t* rr_before;
 
-  Rows(const Strip<Width>& strip, const Geometry& geometry)
+  Rows(const Strip<Width>& strip, const Geometry& geometry, const Existence<Width>& exists)
       : g(geometry),
         rows(strip.rows),
         column_sums(strip.column_sums.data()),
         box(strip.box.data()),
         left_pairs(strip.left_pairs.data()),
         right_pairs(strip.right_pairs.data()),
+        inside(exists.inside.data()),
+        within(exists.within.data()),
         l(strip.left.sum.data()),
         ll(strip.left.energy.data()),
         inverse_l(strip.left.inverse.data()),
@@ -129,10 +145,15 @@ CAIRN_LANES_INLINE VF inverse_root(VI n, VI energy, VI sum) {
   return lanes::IfThenElseZero(lanes::Gt(v, lanes::Zero(f)), lanes::Div(lanes::Set(f, 1.0F), lanes::Sqrt(v)));
 }
 
-/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp.
-struct Sums {
-  VI n, l, ll, r, rr;
-  VF inverse_n, inverse_l, inverse_r;
+/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp: of the left window, and of
+/// the right ones.
+struct LeftSums {
+  VI n, l, ll;
+  VF inverse_n, inverse_l;
+};
+struct RightSums {
+  VI r, rr;
+  VF inverse_r;
 };
 
 /// sad, zsad: the box sum is the cost.
@@ -143,24 +164,25 @@ CAIRN_LANES_INLINE VF cost_of(VI box) {
 }
 
 template <Cost kCost, bool kDouble>
-CAIRN_LANES_INLINE VF cost_of(VI box, const Sums& s) {
+CAIRN_LANES_INLINE VF cost_of(VI box, const LeftSums& left, const RightSums& right) {
   const F f;
   if constexpr (kCost == Cost::zncc) {
-    const VF correlation =
-        lanes::Mul(difference<kDouble>(s.n, box, s.l, s.r), lanes::Mul(s.inverse_l, s.inverse_r));
+    const VF correlation = lanes::Mul(difference<kDouble>(left.n, box, left.l, right.r),
+                                      lanes::Mul(left.inverse_l, right.inverse_r));
     return lanes::Max(lanes::Zero(f), lanes::Sub(lanes::Set(f, 1.0F), correlation));
   } else {
-    const VI ssd = lanes::Sub(lanes::Add(s.ll, s.rr), lanes::Add(box, box));  // Σ(L−R)² = ΣL² + ΣR² − 2ΣLR
+    // Σ(L−R)² = ΣL² + ΣR² − 2ΣLR
+    const VI ssd = lanes::Sub(lanes::Add(left.ll, right.rr), lanes::Add(box, box));
     if constexpr (kCost == Cost::ssd) {
       return lanes::ConvertTo(f, ssd);
     } else if constexpr (kCost == Cost::nssd) {
-      const VF inverse = lanes::Mul(s.inverse_l, s.inverse_r);
+      const VF inverse = lanes::Mul(left.inverse_l, right.inverse_r);
       return lanes::IfThenElse(lanes::Gt(inverse, lanes::Zero(f)),
                                lanes::Mul(lanes::ConvertTo(f, ssd), inverse),
                                lanes::Set(f, pixel_math::kNoEnergyCost));
     } else {
-      const VI l_minus_r = lanes::Sub(s.l, s.r);
-      return lanes::Mul(difference<kDouble>(s.n, ssd, l_minus_r, l_minus_r), s.inverse_n);
+      const VI l_minus_r = lanes::Sub(left.l, right.r);
+      return lanes::Mul(difference<kDouble>(left.n, ssd, l_minus_r, l_minus_r), left.inverse_n);
     }
   }
 }
@@ -222,22 +244,17 @@ void sum_windows(Moments& m, int rows) {
   }
 }
 
-/// Of left pixel x and its partners from lane i on, where no window is clipped at the left or right: each
-/// image's own.
-CAIRN_LANES_INLINE Sums own_sums(const Rows<Wide>& in, int x, int i) {
+/// Where no window is clipped at the left or right: each image's own.
+CAIRN_LANES_INLINE LeftSums own_left_sums(const Rows<Wide>& in, int x) {
   const I i32;
   const F f;
   const int e = in.g.pad + x;
-  const int j = in.g.first_lane(x) + i;
   const int n = in.rows * (2 * in.g.half + 1);
-  return {lanes::Set(i32, n),
-          lanes::Set(i32, in.l[e]),
-          lanes::Set(i32, in.ll[e]),
-          lanes::LoadU(i32, in.r + j),
-          lanes::LoadU(i32, in.rr + j),
-          lanes::Set(f, 1.0F / static_cast<float>(n)),
-          lanes::Set(f, in.inverse_l[e]),
-          lanes::LoadU(f, in.inverse_r + j)};
+  return {lanes::Set(i32, n), lanes::Set(i32, in.l[e]), lanes::Set(i32, in.ll[e]),
+          lanes::Set(f, 1.0F / static_cast<float>(n)), lanes::Set(f, in.inverse_l[e])};
+}
+CAIRN_LANES_INLINE RightSums own_right_sums(const Rows<Wide>& in, int j) {
+  return {lanes::LoadU(I(), in.r + j), lanes::LoadU(I(), in.rr + j), lanes::LoadU(F(), in.inverse_r + j)};
 }
 
 /// The sum over the left window's columns from max(begin, d) to min(end, width + d) − 1, lane by lane.
@@ -267,7 +284,7 @@ CAIRN_LANES_INLINE VI clipped_right_sum(const std::int32_t* before, const Geomet
 /// The same near the left and right borders: of those columns alone that lie inside both images, lane by
 /// lane.
 template <Cost kCost, bool kDouble>
-CAIRN_LANES_INLINE Sums clipped_sums(const Rows<Wide>& in, int x, int i) {
+CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
   const I i32;
   const F f;
   const Geometry& g = in.g;
@@ -276,98 +293,142 @@ CAIRN_LANES_INLINE Sums clipped_sums(const Rows<Wide>& in, int x, int i) {
   const VI d = lanes::Iota(i32, g.first_d + i);
   const VI columns = lanes::Sub(lanes::Min(lanes::Set(i32, end), lanes::Add(lanes::Set(i32, g.width), d)),
                                 lanes::Max(lanes::Set(i32, begin), d));
-  const VI n = lanes::Mul(lanes::Set(i32, in.rows), columns);
-  const VI l = clipped_left_sum(in.l_before, g, begin, end, i);
-  const VI ll = clipped_left_sum(in.ll_before, g, begin, end, i);
-  Sums s = own_sums(in, x, i);
-  s.inverse_n = lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, n));
-  s.inverse_l = inverse_root<kCost, kDouble>(n, ll, l);
-  s.n = n;
-  s.l = l;
-  s.ll = ll;
+  LeftSums left;
+  left.n = lanes::Mul(lanes::Set(i32, in.rows), columns);
+  left.l = clipped_left_sum(in.l_before, g, begin, end, i);
+  left.ll = clipped_left_sum(in.ll_before, g, begin, end, i);
+  left.inverse_n = lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, left.n));
+  left.inverse_l = inverse_root<kCost, kDouble>(left.n, left.ll, left.l);
+  RightSums right = own_right_sums(in, g.first_lane(x) + i);
   // The right windows are clipped by their own image already, unless the left one cuts off more.
   if (end - begin < 2 * g.half + 1) {
-    s.r = clipped_right_sum(in.r_before, g, begin, end, i);
-    s.rr = clipped_right_sum(in.rr_before, g, begin, end, i);
-    s.inverse_r = inverse_root<kCost, kDouble>(n, s.rr, s.r);
+    right.r = clipped_right_sum(in.r_before, g, begin, end, i);
+    right.rr = clipped_right_sum(in.rr_before, g, begin, end, i);
+    right.inverse_r = inverse_root<kCost, kDouble>(left.n, right.rr, right.r);
   }
-  return s;
+  return cost_of<kCost, kDouble>(box, left, right);
 }
 
 // ----------------------------------------------------------------------------------------------------
 // Running sums
 
-/// By how much the columns of left pixel x change with this row, lanes i and on.
+/// By how much the columns of a left pixel change with this row. `left`: its pair in every lane; `j`: where
+/// its partners stand.
 template <Cost kCost, class Width, bool kBorder>
-CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(const Rows<Width>& in, int x, int i) {
+CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(const Rows<Width>& in,
+                                                                lanes::Vec<typename Width::SumTag> left,
+                                                                int j) {
   const typename Width::SumTag d;
-  const Geometry& g = in.g;
-  const int j = g.first_lane(x) + i;
-  const auto left = lanes::Set(d, in.left_pairs[g.pad + x]);
   const auto right = lanes::LoadU(d, in.right_pairs + j);
   if constexpr (correlates(kCost)) {
     return lanes::DotPairs(d, left, right);
-  } else if constexpr (kBorder) {
-    // Partners stand at the entries from pad to pad + width − 1; others count for nothing.
-    using Sum = typename Width::Sum;
-    const auto lane = lanes::Iota(d, Sum{0});
-    const auto bound = [](int entries) { return static_cast<Sum>(std::clamp(entries, 0, Width::kGroup)); };
-    const auto before = lanes::Lt(lane, lanes::Set(d, bound(g.pad - j)));
-    const auto within = lanes::Lt(lane, lanes::Set(d, bound(g.pad + g.width - j)));
-    return lanes::IfThenZeroElse(before, lanes::IfThenElseZero(within, lanes::AbsChange(d, left, right)));
   } else {
-    return lanes::AbsChange(d, left, right);
+    const auto change = lanes::AbsChange<Width::kShift>(d, left, right);
+    // Partners outside the image count for nothing; of correlations they are 0 anyway.
+    return kBorder ? lanes::And(change, lanes::LoadU(d, in.inside + j)) : change;
   }
 }
 
-template <Cost kCost, class Width, bool kBorder>
-CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> updated_column(const Rows<Width>& in, int x, int i) {
-  const typename Width::SumTag d;
-  typename Width::Sum* const sums = in.column_sums + in.g.column(x, i);
-  const auto column = lanes::Add(lanes::Load(d, sums), change_of<kCost, Width, kBorder>(in, x, i));
-  lanes::Store(column, d, sums);
-  return column;
-}
+/// How many vectors a tile of so many lanes takes.
+template <class Width, int kLanes>
+constexpr int kVectors = kLanes / static_cast<int>(lanes::MaxLanes(typename Width::SumTag()));
 
-/// Before a row's first pixel: the columns x < end join the box, which starts anew.
-template <Cost kCost, class Width>
-void begin_box(const Strip<Width>& strip, const Geometry& g, int end) {
+/// The columns of left pixel x with this row, and the box with them.
+template <Cost kCost, class Width, int kLanes, bool kBorder>
+CAIRN_LANES_INLINE void enter(const Rows<Width>& in, int first, int x,
+                              lanes::Vec<typename Width::SumTag> (&box)[kVectors<Width, kLanes>]) {
   const typename Width::SumTag d;
-  const Rows<Width> in(strip, g);
-  for (int i = 0; i < in.g.lanes; i += lane_count<Width>()) {
-    auto box = lanes::Set(d, Width::kEmptyBox);
-    for (int x = 0; x < end; ++x) box = lanes::Add(box, updated_column<kCost, Width, true>(in, x, i));
-    lanes::Store(box, d, in.box + i);
+  typename Width::Sum* const sums = in.column_sums + in.g.column(x, first);
+  const int j = in.g.first_lane(x) + first;
+  const auto left = lanes::Set(d, in.left_pairs[in.g.pad + x]);
+  CAIRN_UNROLL
+  for (int v = 0; v < kVectors<Width, kLanes>; ++v) {
+    const int at = v * lane_count<Width>();
+    const auto column =
+        lanes::Add(lanes::Load(d, sums + at), change_of<kCost, Width, kBorder>(in, left, j + at));
+    lanes::Store(column, d, sums + at);
+    box[v] = lanes::Add(box[v], column);
   }
 }
 
-/// The costs of left pixels x_begin … x_end − 1, lanes i and on. For each a column joins the box and one
-/// leaves it.
+/// Before a row's first pixel: the columns x < end join the box of a tile, which starts anew.
+template <Cost kCost, class Width, int kLanes>
+void begin_box(const Rows<Width>& rows, int first, int end) {
+  const typename Width::SumTag d;
+  const Rows<Width> in(rows);
+  lanes::Vec<typename Width::SumTag> box[kVectors<Width, kLanes>];
+  for (int i = 0; i < kLanes; ++i) in.box[first + i] = Width::empty_box(i);
+  for (int v = 0; v < kVectors<Width, kLanes>; ++v)
+    box[v] = lanes::Load(d, in.box + first + v * lane_count<Width>());
+  for (int x = 0; x < end; ++x) enter<kCost, Width, kLanes, true>(in, first, x, box);
+  for (int v = 0; v < kVectors<Width, kLanes>; ++v)
+    lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
+}
+
+/// The cost that a box makes, kNone where there is no candidate: lanes i and on of left pixel x. Only with
+/// kBorder can there be none, or a window be clipped.
 template <Cost kCost, class Width, bool kDouble, bool kBorder>
-void slide(const Strip<Width>& strip, const Geometry& geometry, int x_begin, int x_end, int i,
+CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>& in, int x, int i,
+                                                               lanes::Vec<typename Width::SumTag> box,
+                                                               const LeftSums& left) {
+  const typename Width::CostTag d;
+  const typename Width::SumTag d_sum;
+  const Geometry& g = in.g;
+  const int j = g.first_lane(x) + i;
+  lanes::Vec<typename Width::CostTag> cost;
+  if constexpr (std::is_base_of_v<Narrow, Width>) {
+    cost = box;
+  } else if constexpr (!correlates(kCost)) {
+    cost = cost_of<kCost>(box);
+  } else {
+    const int least_d = g.first_d + i;
+    const int most_d = least_d + lane_count<Width>() - 1;
+    if (kBorder && (least_d > x || most_d < x - g.width + 1)) return lanes::Set(d, kNoCost);
+    const bool clips = x < g.half + std::max(0, most_d) || x >= g.width - g.half + std::min(0, least_d);
+    cost = kBorder && clips ? clipped_cost<kCost, kDouble>(in, box, x, i)
+                            : cost_of<kCost, kDouble>(box, left, own_right_sums(in, j));
+  }
+  if constexpr (kBorder) {
+    const auto exists = lanes::And(lanes::LoadU(d_sum, in.inside + j), lanes::Load(d_sum, in.within + i));
+    const auto outside = lanes::RebindMask(d, lanes::Eq(exists, lanes::Zero(d_sum)));
+    cost = lanes::IfThenElse(outside, lanes::Set(d, kNone<typename Width::Cost>), cost);
+  }
+  return cost;
+}
+
+/// The winners of left pixels x_begin … x_end − 1 among the lanes of a tile, and on request their costs. For
+/// each a column joins the box and one leaves it.
+template <Cost kCost, class Width, bool kDouble, int kLanes, Place kPlace>
+void slide(const Rows<Width>& rows, int first, int x_begin, int x_end, const TileWinners<Width>& winners,
            typename Width::Cost* costs, std::ptrdiff_t stride) {
+  constexpr int kCount = kVectors<Width, kLanes>;
+  constexpr bool kBorder = kPlace != Place::inside;
   const typename Width::SumTag d;
-  const Rows<Width> in(strip, geometry);
+  const typename Width::CostTag d_cost;
+  const Rows<Width> in(rows);
   const int half = in.g.half;
-  auto box = lanes::Load(d, in.box + i);
+  lanes::Vec<typename Width::SumTag> box[kCount];
+  lanes::Vec<typename Width::CostTag> cost[kCount];
+  for (int v = 0; v < kCount; ++v) box[v] = lanes::Load(d, in.box + first + v * lane_count<Width>());
   for (int x = x_begin; x < x_end; ++x) {
-    if (!kBorder || x + half < in.g.width) {
-      box = lanes::Add(box, updated_column<kCost, Width, kBorder>(in, x + half, i));
+    if constexpr (kPlace != Place::right_end) enter<kCost, Width, kLanes, kBorder>(in, first, x + half, box);
+    const typename Width::Sum* const leaves = in.column_sums + in.g.column(x - half - 1, first);
+    LeftSums left;
+    if constexpr (correlates(kCost)) left = own_left_sums(in, x);
+    CAIRN_UNROLL
+    for (int v = 0; v < kCount; ++v) {
+      const int at = v * lane_count<Width>();
+      box[v] = lanes::Sub(box[v], lanes::Load(d, leaves + at));
+      cost[v] = cost_at<kCost, Width, kDouble, kBorder>(in, x, first + at, box[v], left);
     }
-    const int leaving = kBorder ? std::max(x - half - 1, -1) : x - half - 1;
-    box = lanes::Sub(box, lanes::Load(d, in.column_sums + in.g.column(leaving, i)));
-    if constexpr (std::is_same_v<Width, Narrow>) {
-      lanes::Store(box, d, costs);
-    } else if constexpr (!correlates(kCost)) {
-      lanes::Store(cost_of<kCost>(box), F(), costs);
-    } else if constexpr (kBorder) {
-      lanes::Store(cost_of<kCost, kDouble>(box, clipped_sums<kCost, kDouble>(in, x, i)), F(), costs);
-    } else {
-      lanes::Store(cost_of<kCost, kDouble>(box, own_sums(in, x, i)), F(), costs);
-    }
+    winners.find(x, cost);
+    if (costs == nullptr) continue;
+    CAIRN_UNROLL
+    for (int v = 0; v < kCount; ++v)
+      lanes::Store(without_tag<Width>(cost[v]), d_cost, costs + v * lane_count<Width>());
     costs += stride;
   }
-  lanes::Store(box, d, in.box + i);
+  for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
 }
 
 }  // namespace
