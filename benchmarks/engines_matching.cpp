@@ -109,6 +109,8 @@ Config complete_config(const MatchConfig& match, LeftRightMethod method) {
   config.left_right = {.max_diff = 1, .method = method};
   // StereoBM asks for 15 % more than the least; this is what the least may be of the runner-up.
   config.uniqueness.ratio = 13;
+  config.flatness.threshold = -1;
+  config.match.evidence = method == LeftRightMethod::vote ? Evidence::minimum : Evidence::full;
   return config;
 }
 

@@ -38,8 +38,8 @@ void check_confidence(const std::string& output, const Config& config) {
     throw Error(output + ": the confidence is written as .png");
   }
   if (!config.confidence.enabled) throw Error("option confidence.enabled: --confidence needs it");
-  if (config.match.evidence == Evidence::winner) {
-    throw Error("option match.evidence: winner keeps no costs for --confidence; set match.evidence=full");
+  if (config.match.evidence != Evidence::full) {
+    throw Error("option match.evidence: --confidence needs full");
   }
 }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <bit>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -27,51 +31,96 @@ int largest_row_offset(const Matches& matches) {
   return largest;
 }
 
-/// What the left winners say about the right image: each right pixel gets the disparity of the cheapest left
-/// pixel that claims it. Rows of the right image are independent: each looks up the left rows that may point
-/// at it.
-Image<std::int16_t> vote(const Matches& matches, const Exec& exec) {
+/// A left winner's claim to a right pixel as one number: of two the smaller wins, by its cost, then by its
+/// disparity. Costs are not negative, so that their bits are in their order.
+using Claim = std::uint64_t;
+constexpr Claim kNoClaim = ~Claim{0};
+
+Claim claim_of(float cost, std::int16_t disparity) {
+  return Claim{std::bit_cast<std::uint32_t>(cost + 0.0F)} << 16 |
+         static_cast<std::uint16_t>(disparity - kNoMatch);
+}
+int disparity_of(Claim claim) {
+  return static_cast<int>(claim & 0xFFFF) + kNoMatch;
+}
+
+/// What the left winners say about a row of the right image: each pixel goes to the cheapest left one that
+/// claims it. Rows up to `band` away may point at it. One entry of `claims` is to spare, before the first,
+/// for the left pixels that claim none: so nothing is decided by a jump.
+void vote_row(const Matches& matches, int right_y, int band, Claim* claims) {
+  const auto [width, height] = matches.best.size();
+  std::fill_n(claims - 1, width + 1, kNoClaim);
+  for (int y = std::max(0, right_y - band); y <= std::min(height - 1, right_y + band); ++y) {
+    const std::int16_t* const best = matches.best.row(y);
+    const float* const cost = matches.cost.row(y);
+    const std::int8_t* const row = matches.row_offset.empty() ? nullptr : matches.row_offset.row(y);
+    for (int x = 0; x < width; ++x) {
+      const bool claims_here = (best[x] != kNoMatch) & (row == nullptr || y + row[x] == right_y);
+      Claim& claim = claims[claims_here ? x - best[x] : -1];
+      claim = std::min(claim, claim_of(cost[x], best[x]));
+    }
+  }
+}
+
+/// `back(x)`: the disparity of the right pixel that left pixel x is matched with. Asked only where there is
+/// one.
+template <class Back>
+void compare_row(const std::int16_t* best, int width, int max_diff, const Back& back, Reject* out) {
+  for (int x = 0; x < width; ++x) {
+    const bool agrees = best[x] == kNoMatch || std::abs(best[x] - back(x)) <= max_diff;
+    out[x] = agrees ? Reject::none : Reject::left_right;
+  }
+}
+
+Image<Reject> compare_with_votes(const Matches& matches, int max_diff, const Exec& exec) {
   const Size size = matches.best.size();
   const int band = largest_row_offset(matches);
-  Image<std::int16_t> winner(size, kNoMatch, exec.pool);
-  Image<float> least(size, kNoCost, exec.pool);
+  Image<Reject> verdict(size, exec.pool);
+  const auto width = static_cast<std::size_t>(size.width);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
-    for (int right_y = first; right_y < last; ++right_y) {
-      std::int16_t* const won = winner.row(right_y);
-      float* const paid = least.row(right_y);
-      for (int y = std::max(0, right_y - band); y <= std::min(size.height - 1, right_y + band); ++y) {
-        const std::int16_t* const best = matches.best.row(y);
-        const float* const cost = matches.cost.row(y);
-        for (int x = 0; x < size.width; ++x) {
-          if (best[x] == kNoMatch || row_of_match(matches, x, y) != right_y) continue;
-          const int right_x = x - best[x];
-          const bool wins = cost[x] < paid[right_x] || (cost[x] == paid[right_x] && best[x] < won[right_x]);
-          if (wins || won[right_x] == kNoMatch) {
-            won[right_x] = best[x];
-            paid[right_x] = cost[x];
-          }
-        }
+    // The rows of votes that a left row may look into: its own and `band` up and down.
+    const int kept = 2 * band + 1;
+    std::vector<Claim> memory(static_cast<std::size_t>(kept) * (width + 1));
+    const auto claims_of = [&](int right_y) {
+      return memory.data() + static_cast<std::size_t>(right_y % kept) * (width + 1) + 1;
+    };
+    const auto vote = [&](int right_y) { vote_row(matches, right_y, band, claims_of(right_y)); };
+    for (int y = std::max(0, first - band); y < std::min(first + band, size.height); ++y) vote(y);
+    for (int y = first; y < last; ++y) {
+      if (y + band < size.height) vote(y + band);
+      const std::int16_t* const best = matches.best.row(y);
+      const Claim* const here = claims_of(y);
+      if (band == 0) {
+        compare_row(
+            best, size.width, max_diff, [=](int x) { return disparity_of(here[x - best[x]]); },
+            verdict.row(y));
+      } else {
+        compare_row(
+            best, size.width, max_diff,
+            [&](int x) { return disparity_of(claims_of(row_of_match(matches, x, y))[x - best[x]]); },
+            verdict.row(y));
       }
     }
   });
-  return winner;
+  return verdict;
 }
 
-Image<Reject> compare(const Matches& matches, View<const std::int16_t> right, int max_diff,
-                      const Exec& exec) {
+Image<Reject> compare_with_right(const Matches& matches, int max_diff, const Exec& exec) {
+  assert(matches.best_right.size() == matches.best.size());
   const Size size = matches.best.size();
   Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       const std::int16_t* const best = matches.best.row(y);
-      Reject* const out = verdict.row(y);
-      for (int x = 0; x < size.width; ++x) {
-        if (best[x] == kNoMatch) {
-          out[x] = Reject::none;
-          continue;
-        }
-        const int back = right(x - best[x], row_of_match(matches, x, y));
-        out[x] = std::abs(best[x] - back) <= max_diff ? Reject::none : Reject::left_right;
+      const std::int16_t* const right = matches.best_right.row(y);
+      if (matches.row_offset.empty()) {
+        compare_row(
+            best, size.width, max_diff, [=](int x) { return right[x - best[x]]; }, verdict.row(y));
+      } else {
+        compare_row(
+            best, size.width, max_diff,
+            [&](int x) { return matches.best_right(x - best[x], row_of_match(matches, x, y)); },
+            verdict.row(y));
       }
     }
   });
@@ -83,12 +132,8 @@ Image<Reject> compare(const Matches& matches, View<const std::int16_t> right, in
 Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config, const Exec& exec) {
   if (config.max_diff < 0) return Image<Reject>(matches.best.size(), Reject::none, exec.pool);
   const int max_diff = static_cast<int>(std::floor(config.max_diff));  // winners are whole pixels
-  if (config.method == LeftRightMethod::vote) {
-    const Image<std::int16_t> voted = vote(matches, exec);
-    return compare(matches, voted, max_diff, exec);
-  }
-  assert(matches.best_right.size() == matches.best.size());
-  return compare(matches, matches.best_right, max_diff, exec);
+  return config.method == LeftRightMethod::vote ? compare_with_votes(matches, max_diff, exec)
+                                                : compare_with_right(matches, max_diff, exec);
 }
 
 }  // namespace cairn

@@ -84,6 +84,10 @@ CAIRN_LANES_INLINE int lane_count() {
   return static_cast<int>(lanes::Lanes(typename Width::SumTag()));
 }
 
+/// How many vectors a tile of so many lanes takes.
+template <class Width, int kLanes>
+constexpr int kVectors = kLanes / static_cast<int>(lanes::MaxLanes(typename Width::SumTag()));
+
 using F = Wide::CostTag;
 using I = Wide::SumTag;
 using VF = lanes::Vec<F>;

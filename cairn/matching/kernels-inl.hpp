@@ -20,6 +20,7 @@ class Band {
       : task_(task),
         g_(task),
         full_(task.config.evidence == Evidence::full),
+        keeps_costs_(task.config.evidence != Evidence::winner),
         radius_(task.config.row_band),
         first_(first),
         last_(last),
@@ -28,10 +29,15 @@ class Band {
         last_matched_(full_ ? std::min(g_.height, last + radius_) : last),
         exists_(g_),
         zeros_(std::max(g_.length, g_.width)),
-        block_(full_ ? g_.lanes : 0),
-        least_(full_ && radius_ > 0 ? g_.lanes : 0),
-        of_tile_(round_up(g_.width, kBlock)),
+        step_(keeps_costs_ ? kBlock : round_up(g_.width, kBlock)),
+        blocks_{Block<Width>(g_, step_, keeps_costs_), Block<Width>(g_, step_, keeps_costs_)},
+        least_(keeps_costs_ && radius_ > 0 ? g_.lanes : 0),
+        hide_(2 * g_.lanes + kMargin),
+        candidates_(round_up(g_.width, kBlock)),
         winners_(round_up(g_.width, kBlock)) {
+    std::fill_n(hide_.data(), hide_.size(), std::numeric_limits<Lane>::lowest());
+    std::fill_n(hide_.data() + g_.lanes - 1, 3, kNone<Lane>);
+    for (int x = 0; x < g_.width; ++x) candidates_[x] = g_.end(x) - g_.begin(x);
     strips_.emplace_back(0, g_, correlates(kCost));
     for (int k = 1; k <= radius_; ++k) {
       strips_.emplace_back(-k, g_, correlates(kCost));
@@ -129,13 +135,7 @@ class Band {
       }
       begin_row(strip, std::min(g_.half, g_.width));
     }
-    if (full_) {
-      for (int x = 0; x < g_.width; x += kBlock) match_block(x, std::min(kBlock, g_.width - x), y);
-    } else {
-      for (const Strip& strip : strips_) {
-        if (wanted(strip, y)) find_winners(strip, 0, g_.width);
-      }
-    }
+    match_blocks(y);
     if (mine(y)) settle_winners(y);
   }
 
@@ -144,25 +144,40 @@ class Band {
     return inside(strip, y) && (mine(y) || (full_ && mine(y + strip.row)));
   }
 
-  void match_block(int x_first, int pixels, int y) {
-    if (radius_ > 0) least_.clear();
-    for (const Strip& strip : strips_) {
-      if (!wanted(strip, y)) continue;
-      find_winners(strip, x_first, x_first + pixels);
-      if (mine(y + strip.row)) {
-        RightRow& right = right_row(y + strip.row);
-        radius_ > 0 ? update_right<Width, true>(block_, g_, x_first, pixels, right)
-                    : update_right<Width, false>(block_, g_, x_first, pixels, right);
+  /// So many left pixels and one row of the right image: what is done between two looks at a block.
+  struct Work {
+    const Strip* strip = nullptr;
+    int x_first = 0;
+    int x_last = 0;
+    bool begins = false;  // with the first strip
+    bool ends = false;
+  };
+
+  /// What a block holds is not looked at before the next one is filled: what has just been written lane by
+  /// lane and is read as vectors at once has to wait for every write.
+  void match_blocks(int y) {
+    const auto unwanted = [&](const Strip& strip) { return !wanted(strip, y); };
+    const auto first = std::find_if_not(strips_.begin(), strips_.end(), unwanted);
+    const auto last = std::find_if_not(strips_.rbegin(), strips_.rend(), unwanted).base();
+    Work before;
+    std::size_t turn = 0;
+    for (int x = 0; x < g_.width; x += step_) {
+      for (auto strip = first; strip < last; ++strip) {
+        if (unwanted(*strip)) continue;
+        const Work now{&*strip, x, std::min(x + step_, g_.width), strip == first, strip + 1 == last};
+        fill(blocks_[turn], now);
+        turn = 1 - turn;
+        if (before.strip != nullptr) look_at(blocks_[turn], before, y);
+        before = now;
       }
-      if (radius_ > 0) keep_lesser<Width>(block_, pixels, g_.lanes, least_);
     }
-    if (mine(y)) settle_evidence(radius_ > 0 ? least_ : block_, x_first, y);
+    if (before.strip != nullptr) look_at(blocks_[1 - turn], before, y);
   }
 
-  /// Of left pixels x_first … x_last − 1 and this row of the right image. Full evidence also wants the costs.
-  void find_winners(const Strip& strip, int x_first, int x_last) {
-    const Rows<Width> rows(strip, g_, exists_);
-    for_each_tile([&]<int kLanes>(int first) {
+  void fill(const Block<Width>& block, const Work& work) const {
+    const auto [strip, x_first, x_last, begins, ends] = work;
+    const Rows<Width> rows(*strip, g_, exists_);
+    for_each_tile([&, x_first = x_first, x_last = x_last]<int kLanes>(int first) {
       const int least_d = g_.first_d + first;
       const int most_d = least_d + kLanes - 1;
       // From x_inside to x_border − 1 nothing is clipped and nothing missing.
@@ -171,21 +186,43 @@ class Band {
       const int x_inside = ragged ? x_end : std::clamp(g_.half + std::max(0, most_d), x_first, x_end);
       const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
       const auto slide_over = [&]<Place kPlace>(int begin, int end) {
-        if (begin == end) return;
-        slide<kCost, Width, kDouble, kLanes, kPlace>(rows, first, begin, end, of_tile_,
-                                                     full_ ? block_.of(begin - x_first) + first : nullptr,
-                                                     block_.stride);
+        if (begin < end)
+          slide<kCost, Width, kDouble, kLanes, kPlace>(rows, first, begin, end, begin - x_first, block);
       };
       slide_over.template operator()<Place::border>(x_first, x_inside);
       slide_over.template operator()<Place::inside>(x_inside, x_border);
       slide_over.template operator()<Place::border>(x_border, x_end);
       slide_over.template operator()<Place::right_end>(x_end, x_last);
-      if (strip.row == 0 && first == 0) {
-        winners_.start<Width>(of_tile_, x_first, x_last);
-      } else {
-        winners_.keep<Width>(of_tile_, first, strip.row, x_first, x_last);
-      }
     });
+  }
+
+  template <bool kTies>
+  void update_right(const CostBlock& costs, int x_first, int x_last, RightRow& right) const {
+    if constexpr (std::is_same_v<Width, Tagged>) {
+      if (x_last - x_first == kBlock)
+        return kernels::CAIRN_KERNEL_TARGET::update_right<kTies>(costs, g_, x_first, right);
+    }
+    kernels::CAIRN_KERNEL_TARGET::update_right<Width, kTies>(costs, g_, x_first, x_last - x_first, right);
+  }
+
+  void look_at(const Block<Width>& block, const Work& work, int y) {
+    const auto [strip, x_first, x_last, begins, ends] = work;
+    if (full_ && mine(y + strip->row)) {
+      RightRow& right = right_row(y + strip->row);
+      radius_ > 0 ? update_right<true>(block.costs, x_first, x_last, right)
+                  : update_right<false>(block.costs, x_first, x_last, right);
+    }
+    if (!mine(y)) return;
+    if (begins) winners_.start(block.winners.front(), x_first, x_last);
+    for (std::size_t tile = begins ? 1 : 0; tile < block.winners.size(); ++tile) {
+      winners_.keep(block.winners[tile], static_cast<int>(tile) * kTile, strip->row, x_first, x_last);
+    }
+    if (!keeps_costs_) return;
+    if (radius_ > 0) {
+      if (begins) least_.clear();
+      keep_lesser<Width>(block.costs, x_last - x_first, g_.lanes, least_);
+    }
+    if (ends) settle_evidence(radius_ > 0 ? least_ : block.costs, x_first, y);
   }
 
   // -- results --------------------------------------------------------------------------------------------
@@ -217,27 +254,51 @@ class Band {
   /// that no pixel waits for its own answer. All sixteen are asked, also where the row ends before: rows of
   /// images are padded to more than that.
   void settle_evidence(const CostBlock& block, int x_first, int y) {
+    if (full_) settle_mean(block, x_first, y);
     const std::int32_t* const best = winners_.lane.data() + x_first;
-    std::array<float, kBlock> sums;
-    for (std::size_t i = 0; i < kBlock; ++i) sums[i] = sum_of_costs<Width>(block.of(i), g_.lanes);
-    float* const mean = task_.out.mean_cost.row(y) + x_first;
-    const Geometry g = g_;
+    alignas(64) std::array<Lane, kBlock> before;
+    alignas(64) std::array<Lane, kBlock> after;
     for (int i = 0; i < kBlock; ++i) {
-      const int candidates = g.end(x_first + i) - g.begin(x_first + i);
-      const float quotient = sums[static_cast<std::size_t>(i)] / static_cast<float>(std::max(candidates, 1));
-      mean[i] = candidates > 0 ? quotient : kNoCost;
+      const Lane* const costs = block.of(i);
+      before[static_cast<std::size_t>(i)] = costs[best[i] - 1];
+      after[static_cast<std::size_t>(i)] = costs[best[i] + 1];
     }
-    float* const before = task_.out.cost_before.row(y) + x_first;
-    float* const after = task_.out.cost_after.row(y) + x_first;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      Lane* const costs = block.of(i) + best[i];
-      before[i] = as_cost<Width>(costs[-1]);
-      after[i] = as_cost<Width>(costs[1]);
-      costs[-1] = costs[0] = costs[1] = kNone<Lane>;  // so that the runner-up is the least of what is left
+    alignas(64) std::array<Lane, kBlock> runner_up;
+    runner_up.fill(kNone<Lane>);
+    for_each_tile([&]<int kLanes>(int first) {
+      std::array<Lane, kBlock> of_tile;
+      for (int i = 0; i < kBlock; ++i) {
+        const Lane* const hidden = hide_.data() + g_.lanes - best[i] + first;
+        of_tile[static_cast<std::size_t>(i)] = least_cost<Width, kLanes>(block.of(i) + first, hidden);
+      }
+      for (std::size_t i = 0; i < kBlock; ++i) runner_up[i] = std::min(runner_up[i], of_tile[i]);
+    });
+    store_costs(before, task_.out.cost_before.row(y) + x_first);
+    store_costs(after, task_.out.cost_after.row(y) + x_first);
+    store_costs(runner_up, task_.out.runner_up.row(y) + x_first);
+  }
+
+  void store_costs(const std::array<Lane, kBlock>& kept, float* to) const {
+    for (int i = 0; i < kBlock; i += lane_count<Wide>()) {
+      lanes::Store(as_costs(Width(), kept.data() + i), F(), to + i);
     }
-    float* const runner_up = task_.out.runner_up.row(y) + x_first;
-    for (std::size_t i = 0; i < kBlock; ++i)
-      runner_up[i] = as_cost<Width>(least_cost<Width>(block.of(i), g_.lanes));
+  }
+
+  void settle_mean(const CostBlock& block, int x_first, int y) const {
+    const F f;
+    const std::int32_t* const candidates = candidates_.data() + x_first;
+    alignas(64) std::array<float, kBlock> sums;
+    for (int i = 0; i < kBlock; ++i) {
+      sums[static_cast<std::size_t>(i)] =
+          sum_of_costs<Width>(block.of(i), g_.lanes, g_.lanes - candidates[i]);
+    }
+    float* const mean = task_.out.mean_cost.row(y) + x_first;
+    for (int i = 0; i < kBlock; i += lane_count<Wide>()) {
+      const VF count = lanes::ConvertTo(f, lanes::Load(I(), candidates + i));
+      const VF quotient = lanes::Div(lanes::Load(f, sums.data() + i), count);
+      const auto none = lanes::Eq(count, lanes::Zero(f));
+      lanes::Store(lanes::IfThenElse(none, lanes::Set(f, kNoCost), quotient), f, mean + i);
+    }
   }
 
   void finish_right(int y) {
@@ -255,6 +316,7 @@ class Band {
   const MatchTask& task_;
   Geometry g_;
   bool full_;
+  bool keeps_costs_;
   int radius_;  // of the band of right rows
   int first_;
   int last_;
@@ -262,9 +324,11 @@ class Band {
   int last_matched_;
   Existence<Width> exists_;
   Scratch<std::int32_t> zeros_;
-  CostBlock block_;
-  CostBlock least_;  // over the rows of the band
-  TileWinners<Width> of_tile_;
+  int step_;  // left pixels in a block
+  std::array<Block<Width>, 2> blocks_;
+  CostBlock least_;     // over the rows of the band
+  Scratch<Lane> hide_;  // more than any cost for a lane and its neighbours, less than any for all others
+  Scratch<std::int32_t> candidates_;  // [x]: so many
   RowWinners winners_;
   std::vector<Strip> strips_;
   std::vector<RightRow> right_rows_;

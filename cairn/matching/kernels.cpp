@@ -27,6 +27,7 @@
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
 #define CAIRN_KERNEL_TARGET HWY_NAMESPACE
 #define CAIRN_LANES_INLINE HWY_INLINE
+#define CAIRN_NOINLINE HWY_NOINLINE
 #define CAIRN_UNROLL HWY_UNROLL(16)
 HWY_BEFORE_NAMESPACE();
 // clang-format off
@@ -39,6 +40,7 @@ HWY_BEFORE_NAMESPACE();
 HWY_AFTER_NAMESPACE();
 #undef CAIRN_KERNEL_TARGET
 #undef CAIRN_LANES_INLINE
+#undef CAIRN_NOINLINE
 #undef CAIRN_UNROLL
 #endif
 #endif
@@ -50,6 +52,7 @@ namespace lanes = plain;
 }
 #define CAIRN_KERNEL_TARGET plain_kernels
 #define CAIRN_LANES_INLINE inline
+#define CAIRN_NOINLINE
 #define CAIRN_UNROLL
 // clang-format off
 #include <cairn/matching/geometry-inl.hpp>

@@ -9,6 +9,16 @@ namespace cairn::kernels::HWY_NAMESPACE::lanes {
 
 using namespace hwy::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary is Highway's
 
+/// first, first + 1, first + 2 … Loaded: compilers put Iota() together lane by lane, in memory, and wait for
+/// it.
+template <class D, class T = TFromD<D>>
+HWY_INLINE Vec<D> CountFrom(D d, T first) {
+  alignas(64) static constexpr T kNumbers[32] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10,
+                                                 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+                                                 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
+  return Add(Load(d, kNumbers), Set(d, first));
+}
+
 /// Each lane holds two 16-bit numbers: low(a)·low(b) + high(a)·high(b).
 template <class D>
 HWY_INLINE Vec<D> DotPairs(D d, Vec<D> a, Vec<D> b) {
@@ -65,17 +75,30 @@ template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
 HWY_INLINE auto LeastLane(D d, Vec<D> v) {
   return GetLane(MinOfLanes(d, v));
 }
-template <class D, HWY_IF_LANE_SIZE_D(D, 2)>
-HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
+/// The lanes are seen as rows of eight, one below the other. The least of all (less −32768), and above its 16
+/// bits the first column that it stands in.
+template <class D>
+HWY_INLINE std::int32_t LeastEighth(D d, Vec<D> v) {
   if constexpr (MaxLanes(D()) > 8) {
     const Half<D> half;
-    return LeastLane(half, Min(LowerHalf(half, v), UpperHalf(half, v)));
+    return LeastEighth(half, Min(LowerHalf(half, v), UpperHalf(half, v)));
   } else {
-    // Unsigned, x86 has one instruction for it.
     const RebindToUnsigned<D> du;
-    const auto shifted = Xor(BitCast(du, v), Set(du, 0x8000));
-    return static_cast<std::int16_t>(GetLane(MinOfLanes(du, shifted)) ^ 0x8000);
+    const auto from_0 = Xor(BitCast(du, v), Set(du, 0x8000));
+#if HWY_ARCH_X86
+    return _mm_cvtsi128_si32(_mm_minpos_epu16(from_0.raw));
+#else
+    const auto least = MinOfLanes(du, from_0);
+    const auto first =
+        MinOfLanes(du, IfThenElse(Eq(from_0, least), CountFrom(du, std::uint16_t{0}), Set(du, 8)));
+    return GetLane(least) | GetLane(first) << 16;
+#endif
   }
+}
+
+template <class D, HWY_IF_LANE_SIZE_D(D, 2)>
+HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
+  return static_cast<std::int16_t>(LeastEighth(d, v) ^ 0x8000);
 }
 
 /// The least of all vectors' lanes and the first lane that has it, the vectors' lanes counted on.
@@ -96,29 +119,10 @@ HWY_INLINE int FirstLeast(D d, const Vec<D> (&v)[kCount], TFromD<D>& least) {
   using T = TFromD<D>;
   Vec<D> first = Set(d, T{kLanes * kCount});
   HWY_UNROLL(16)
-  for (int k = kCount - 1; k >= 0; --k) first = IfThenElse(Eq(v[k], wanted), Iota(d, T{k * kLanes}), first);
+  for (int k = kCount - 1; k >= 0; --k)
+    first = IfThenElse(Eq(v[k], wanted), CountFrom(d, T{k * kLanes}), first);
   return static_cast<int>(LeastLane(d, first));
 #endif
-}
-
-/// The lanes are seen as rows of eight, one below the other. The least of all (less −32768), and above its 16
-/// bits the first column that it stands in.
-template <class D>
-HWY_INLINE std::int32_t LeastEighth(D d, Vec<D> v) {
-  if constexpr (MaxLanes(D()) > 8) {
-    const Half<D> half;
-    return LeastEighth(half, Min(LowerHalf(half, v), UpperHalf(half, v)));
-  } else {
-    const RebindToUnsigned<D> du;
-    const auto from_0 = Xor(BitCast(du, v), Set(du, 0x8000));
-#if HWY_ARCH_X86
-    return _mm_cvtsi128_si32(_mm_minpos_epu16(from_0.raw));
-#else
-    const auto least = MinOfLanes(du, from_0);
-    const auto first = MinOfLanes(du, IfThenElse(Eq(from_0, least), Iota(du, 0), Set(du, 8)));
-    return GetLane(least) | GetLane(first) << 16;
-#endif
-  }
 }
 
 /// The same of all vectors, one below the other.
@@ -140,6 +144,30 @@ HWY_INLINE float SumByHalves(D d, Vec<D> v) {
     v = Add(v, Shuffle1032(v));
     return GetLane(Add(v, Shuffle2301(v)));
   }
+}
+
+/// A sum of 16-bit numbers, in fewer and wider lanes: none yet; with those of v; of all lanes together.
+template <class D>
+using SumOf = Vec<Repartition<std::int32_t, D>>;
+template <class D>
+HWY_INLINE SumOf<D> ZeroSum(D) {
+  return Zero(Repartition<std::int32_t, D>());
+}
+template <class D>
+HWY_INLINE SumOf<D> AddPairs(D d, SumOf<D> sum, Vec<D> v) {
+#if HWY_ARCH_X86
+  const Repartition<std::int32_t, D> wide;
+  SumOf<D> unused = Zero(wide);
+  return Add(sum, ReorderWidenMulAccumulate(wide, v, Set(d, std::int16_t{1}), Zero(wide), unused));
+#else
+  const auto pairs = BitCast(Repartition<std::int32_t, D>(), v);
+  (void)d;
+  return Add(sum, Add(ShiftRight<16>(ShiftLeft<16>(pairs)), ShiftRight<16>(pairs)));
+#endif
+}
+template <class D>
+HWY_INLINE std::int32_t SumOfAll(D, SumOf<D> sum) {
+  return GetLane(SumOfLanes(Repartition<std::int32_t, D>(), sum));
 }
 
 /// As many smaller numbers as there are 32-bit lanes.

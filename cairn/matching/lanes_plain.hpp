@@ -45,7 +45,7 @@ inline std::int16_t Sub(std::int16_t a, std::int16_t b) {
   return static_cast<std::int16_t>(a - b);
 }
 template <class T>
-T Iota(Tag<T>, T first) {
+T CountFrom(Tag<T>, T first) {
   return first;
 }
 template <class T>
@@ -192,6 +192,15 @@ std::int32_t LeastOfEights(Tag<std::int16_t>, const std::int16_t (&v)[kCount]) {
     first = std::min(first, static_cast<std::uint32_t>(v[i] + 32768) << 3 | i % 8);
   }
   return static_cast<std::int32_t>(first >> 3 | (first & 7) << 16);
+}
+inline std::int32_t ZeroSum(Tag<std::int16_t>) {
+  return 0;
+}
+inline std::int32_t AddPairs(Tag<std::int16_t>, std::int32_t sum, std::int16_t v) {
+  return sum + v;
+}
+inline std::int32_t SumOfAll(Tag<std::int16_t>, std::int32_t sum) {
+  return sum;
 }
 inline float SumByHalves(Tag<float>, float value) {
   return value;

@@ -17,8 +17,9 @@ enum class MatchMethod : std::uint8_t { window, semi_global };
 /// The correlation operators, each as a cost ≥ 0 where less is better. (paper, "Disparity map estimation")
 enum class Cost : std::uint8_t { sad, ssd, zsad, zssd, nssd, zncc };
 enum class Prefilter : std::uint8_t { none, xsobel };
-/// Which maps of Matches are wanted and paid for: winner = best and cost only.
-enum class Evidence : std::uint8_t { winner, full };
+/// Which maps of Matches are wanted and paid for. winner: best and cost; minimum: also what lies around them;
+/// full: also the mean and the right image's winners.
+enum class Evidence : std::uint8_t { winner, minimum, full };
 
 inline constexpr std::array kMatchMethods{Choice<MatchMethod>{"window", MatchMethod::window},
                                           Choice<MatchMethod>{"semi_global", MatchMethod::semi_global}};
@@ -28,6 +29,7 @@ inline constexpr std::array kCosts{Choice<Cost>{"sad", Cost::sad},   Choice<Cost
 inline constexpr std::array kPrefilters{Choice<Prefilter>{"none", Prefilter::none},
                                         Choice<Prefilter>{"xsobel", Prefilter::xsobel}};
 inline constexpr std::array kEvidences{Choice<Evidence>{"winner", Evidence::winner},
+                                       Choice<Evidence>{"minimum", Evidence::minimum},
                                        Choice<Evidence>{"full", Evidence::full}};
 
 struct MatchConfig {
@@ -53,7 +55,11 @@ void fields(MatchConfig& c, V&& v) {
   v("row_band", c.row_band, "rows", "also search k rows above and below (vibration)", range(0, 8));
   v("prefilter", c.prefilter, "", "filter both images before matching", kPrefilters);
   v("prefilter_cap", c.prefilter_cap, "grey levels", "clip the x-Sobel response to ±cap", range(1, 63));
-  v("evidence", c.evidence, "", "winner: best and cost only; full: all that the checks need", kEvidences);
+  v("evidence", c.evidence, "",
+    "winner: best and cost only; minimum: also its neighbours and the runner-up, all that sub-pixel, "
+    "uniqueness "
+    "and left_right.method=vote need; full: all that the checks need",
+    kEvidences);
 }
 
 /// In Matches::best: no candidate lay inside the right image.
@@ -63,7 +69,8 @@ inline constexpr std::int16_t kNoMatch = std::numeric_limits<std::int16_t>::min(
 inline constexpr float kNoCost = std::numeric_limits<float>::infinity();
 
 /// The outcome of correlation, per left pixel (best_right: per right pixel).
-/// With Evidence::winner only best, row_offset and cost are there; the other images are empty.
+/// With Evidence::winner only best, row_offset and cost are there, with Evidence::minimum all but best_right
+/// and mean_cost; the other images are empty.
 struct Matches {
   Image<std::int16_t> best;  // disparity of least cost in px, kNoMatch = none; ties: the smallest disparity
   Image<std::int16_t> best_right;  // the same seen from the right image, out of the same costs

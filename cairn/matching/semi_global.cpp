@@ -35,10 +35,11 @@ SemiGlobalPenalties table_of(const SemiGlobalConfig& config) {
 }
 
 Matches make_matches(Size size, Evidence evidence, const Pool& pool) {
+  const Size minimum = evidence != Evidence::winner ? size : Size{};
   const Size full = evidence == Evidence::full ? size : Size{};
   return {Image<std::int16_t>(size, pool), Image<std::int16_t>(full, pool), Image<std::int8_t>(),
-          Image<float>(size, pool),        Image<float>(full, pool),        Image<float>(full, pool),
-          Image<float>(full, pool),        Image<float>(full, pool)};
+          Image<float>(size, pool),        Image<float>(minimum, pool),     Image<float>(full, pool),
+          Image<float>(minimum, pool),     Image<float>(minimum, pool)};
 }
 
 /// One reversed row of the right image: where it has pixels.
@@ -87,20 +88,13 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   Image<std::uint8_t> steps(volume, exec.pool);
   Image<std::uint8_t> along({volume.width, 1}, 0, exec.pool);
   Image<std::uint8_t> least({size.width, 1}, 0, exec.pool);
-  const SemiGlobalTask task{layout,
-                            table_of(penalties),
-                            config.evidence == Evidence::full,
-                            pair.left(),
-                            pair.right(),
-                            smooth,
-                            left_bits,
-                            right_bits,
-                            inside,
-                            costs,
-                            steps,
-                            along,
-                            least,
-                            matches};
+  const SemiGlobalTask task{layout,          table_of(penalties),
+                            config.evidence, pair.left(),
+                            pair.right(),    smooth,
+                            left_bits,       right_bits,
+                            inside,          costs,
+                            steps,           along,
+                            least,           matches};
   follow_paths(task, run, exec);
   return matches;
 }

@@ -321,8 +321,8 @@ class Crossing {
         along_(g_.lanes),
         sums_(kBlock * stride_),
         lane_numbers_(32),
-        right_sum_(task.full ? g_.length() : 0),
-        right_lane_(task.full ? g_.length() : 0) {
+        right_sum_(task.evidence == Evidence::full ? g_.length() : 0),
+        right_lane_(task.evidence == Evidence::full ? g_.length() : 0) {
     std::fill_n(sums_.data(), sums_.size(), kNoSum);
     std::iota(lane_numbers_.data(), lane_numbers_.data() + lane_numbers_.size(), std::int16_t{0});
   }
@@ -366,7 +366,7 @@ class Crossing {
       }
       settle(x_first, pixels, y);
     }
-    if (task_.full) settle_right(y);
+    if (task_.evidence == Evidence::full) settle_right(y);
   }
 
   [[nodiscard]] std::int16_t* sums_of(int pixel) const {
@@ -389,14 +389,15 @@ class Crossing {
       task_.out.best(x_first + i, y) = found ? static_cast<std::int16_t>(g_.first_d + lane) : kNoMatch;
       task_.out.cost(x_first + i, y) = cost_of(sum);
     }
-    if (!task_.full) return;
-    update_right(x_first, pixels);
+    if (task_.evidence == Evidence::winner) return;
+    const bool full = task_.evidence == Evidence::full;
+    if (full) update_right(x_first, pixels);
     for (int i = 0; i < pixels; ++i) {
       const auto& [sum, lane, total] = winners[static_cast<std::size_t>(i)];
       const int x = x_first + i;
       const bool found = sum < kNoSum;
       const auto candidates = static_cast<float>(std::max(1, g_.end(x) - g_.begin(x)));
-      task_.out.mean_cost(x, y) = found ? static_cast<float>(total) / candidates : kNoCost;
+      if (full) task_.out.mean_cost(x, y) = found ? static_cast<float>(total) / candidates : kNoCost;
       task_.out.cost_before(x, y) = found ? cost_of(sums_of(i)[lane - 1]) : kNoCost;
       task_.out.cost_after(x, y) = found ? cost_of(sums_of(i)[lane + 1]) : kNoCost;
       task_.out.runner_up(x, y) = cost_of(least_beside(i, lane));

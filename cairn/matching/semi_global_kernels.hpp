@@ -48,7 +48,7 @@ struct SearchLayout {
 struct SemiGlobalTask {
   SearchLayout layout;
   SemiGlobalPenalties penalties;
-  bool full;  // evidence
+  Evidence evidence;
   View<const Gray> left;
   View<const Gray> right;
   View<Gray> smooth;                // the left image, smoothed

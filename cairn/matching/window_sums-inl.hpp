@@ -261,7 +261,7 @@ CAIRN_LANES_INLINE RightSums own_right_sums(const Rows<Wide>& in, int j) {
 CAIRN_LANES_INLINE VI clipped_left_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
                                        int i) {
   const I i32;
-  const VI d = lanes::Iota(i32, g.first_d + i);
+  const VI d = lanes::CountFrom(i32, g.first_d + i);
   const std::int32_t* const at = before + g.half + g.pad;  // [x]
   const VI low = lanes::IfThenElse(lanes::Gt(d, lanes::Set(i32, begin)),
                                    lanes::LoadU(i32, at + g.first_d + i), lanes::Set(i32, at[begin]));
@@ -290,7 +290,7 @@ CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
   const Geometry& g = in.g;
   const int begin = std::max(x - g.half, 0);
   const int end = std::min(x + g.half + 1, g.width);
-  const VI d = lanes::Iota(i32, g.first_d + i);
+  const VI d = lanes::CountFrom(i32, g.first_d + i);
   const VI columns = lanes::Sub(lanes::Min(lanes::Set(i32, end), lanes::Add(lanes::Set(i32, g.width), d)),
                                 lanes::Max(lanes::Set(i32, begin), d));
   LeftSums left;
@@ -328,10 +328,6 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(const Rows<Width
     return kBorder ? lanes::And(change, lanes::LoadU(d, in.inside + j)) : change;
   }
 }
-
-/// How many vectors a tile of so many lanes takes.
-template <class Width, int kLanes>
-constexpr int kVectors = kLanes / static_cast<int>(lanes::MaxLanes(typename Width::SumTag()));
 
 /// The columns of left pixel x with this row, and the box with them.
 template <Cost kCost, class Width, int kLanes, bool kBorder>
@@ -396,17 +392,23 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>
   return cost;
 }
 
-/// The winners of left pixels x_begin … x_end − 1 among the lanes of a tile, and on request their costs. For
-/// each a column joins the box and one leaves it.
+/// The winners of left pixels x_begin … x_end − 1 among the lanes of a tile, and where the block keeps them
+/// their costs. For each a column joins the box and one leaves it. `pixel`: number of the first one in its
+/// block.
+///
+/// Not to be inlined: on its own it gets all registers.
 template <Cost kCost, class Width, bool kDouble, int kLanes, Place kPlace>
-void slide(const Rows<Width>& rows, int first, int x_begin, int x_end, const TileWinners<Width>& winners,
-           typename Width::Cost* costs, std::ptrdiff_t stride) {
+CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x_end, int pixel,
+                          const Block<Width>& block) {
   constexpr int kCount = kVectors<Width, kLanes>;
   constexpr bool kBorder = kPlace != Place::inside;
   const typename Width::SumTag d;
   const typename Width::CostTag d_cost;
   const Rows<Width> in(rows);
   const int half = in.g.half;
+  const TileWinners<Width>& winners = block.winners[static_cast<std::size_t>(first / kTile)];
+  const bool keeps_costs = !block.costs.empty();
+  typename Width::Cost* costs = keeps_costs ? block.costs.of(pixel) + first : nullptr;
   lanes::Vec<typename Width::SumTag> box[kCount];
   lanes::Vec<typename Width::CostTag> cost[kCount];
   for (int v = 0; v < kCount; ++v) box[v] = lanes::Load(d, in.box + first + v * lane_count<Width>());
@@ -421,12 +423,13 @@ void slide(const Rows<Width>& rows, int first, int x_begin, int x_end, const Til
       box[v] = lanes::Sub(box[v], lanes::Load(d, leaves + at));
       cost[v] = cost_at<kCost, Width, kDouble, kBorder>(in, x, first + at, box[v], left);
     }
-    winners.find(x, cost);
-    if (costs == nullptr) continue;
+    winners.find(pixel, cost);
+    ++pixel;
+    if (!keeps_costs) continue;
     CAIRN_UNROLL
     for (int v = 0; v < kCount; ++v)
       lanes::Store(without_tag<Width>(cost[v]), d_cost, costs + v * lane_count<Width>());
-    costs += stride;
+    costs += block.costs.stride;
   }
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
 }

@@ -20,40 +20,42 @@ CAIRN_LANES_INLINE float as_cost(typename Width::Cost lane) {
   }
 }
 
-/// The least costs of a row's left pixels among a tile's lanes, and the first lanes that have them.
+/// The least costs of left pixels among a tile's lanes, and the first lanes that have them.
 template <class Width>
 struct TileWinners {
-  Scratch<float> costs;  // [x]
+  Scratch<float> costs;  // [pixel]
   Scratch<std::int32_t> first_lanes;
-  explicit TileWinners(int width) : costs(width), first_lanes(width) {}
+  explicit TileWinners(int pixels) : costs(pixels), first_lanes(pixels) {}
 
   template <int kCount>
-  CAIRN_LANES_INLINE void find(int x, const lanes::Vec<typename Width::CostTag> (&cost)[kCount]) const {
+  CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<typename Width::CostTag> (&cost)[kCount]) const {
     typename Width::Cost least;
-    first_lanes[x] = lanes::FirstLeast(typename Width::CostTag(), cost, least);
-    costs[x] = as_cost<Width>(least);
+    first_lanes[pixel] = lanes::FirstLeast(typename Width::CostTag(), cost, least);
+    costs[pixel] = as_cost<Width>(least);
   }
-  [[nodiscard]] CAIRN_LANES_INLINE VF cost(int x) const { return lanes::Load(F(), costs.data() + x); }
-  [[nodiscard]] CAIRN_LANES_INLINE VI lane(int x) const { return lanes::Load(I(), first_lanes.data() + x); }
+  [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const { return lanes::Load(F(), costs.data() + pixel); }
+  [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
+    return lanes::Load(I(), first_lanes.data() + pixel);
+  }
 };
 template <>
 struct TileWinners<Tagged> {
-  /// [x]: the sum with its tag, from 0 on; above its 16 bits, which of eight lanes.
+  /// [pixel]: the sum with its tag, from 0 on; above its 16 bits, which of eight lanes.
   Scratch<std::int32_t> tagged;
-  explicit TileWinners(int width) : tagged(width) {}
+  explicit TileWinners(int pixels) : tagged(pixels) {}
 
   template <int kCount>
-  CAIRN_LANES_INLINE void find(int x, const lanes::Vec<Tagged::CostTag> (&cost)[kCount]) const {
-    tagged[x] = lanes::LeastOfEights(Tagged::CostTag(), cost);
+  CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<Tagged::CostTag> (&cost)[kCount]) const {
+    tagged[pixel] = lanes::LeastOfEights(Tagged::CostTag(), cost);
   }
-  [[nodiscard]] CAIRN_LANES_INLINE VF cost(int x) const {
-    const VI sum = lanes::And(lanes::Load(I(), tagged.data() + x), lanes::Set(I(), 65535));
+  [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const {
+    const VI sum = lanes::And(lanes::Load(I(), tagged.data() + pixel), lanes::Set(I(), 65535));
     const auto none = lanes::RebindMask(F(), lanes::Eq(sum, lanes::Set(I(), 65535)));
     return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
                              lanes::ConvertTo(F(), lanes::ShiftRight<Tagged::kShift>(sum)));
   }
-  [[nodiscard]] CAIRN_LANES_INLINE VI lane(int x) const {
-    const VI both = lanes::Load(I(), tagged.data() + x);
+  [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
+    const VI both = lanes::Load(I(), tagged.data() + pixel);
     const VI tag = lanes::And(both, lanes::Set(I(), 7));
     return lanes::Add(lanes::ShiftLeft<3>(tag), lanes::ShiftRight<16>(both));
   }
@@ -74,7 +76,11 @@ template <class Lane>
 struct CostBlock {
   int stride;
   Scratch<Lane> costs;
-  explicit CostBlock(int lanes_used) : stride(lanes_used + 2 * kMargin), costs(kBlock * stride) { clear(); }
+  explicit CostBlock(int lanes_used)
+      : stride(lanes_used > 0 ? lanes_used + 2 * kMargin : 0), costs(kBlock * stride) {
+    clear();
+  }
+  [[nodiscard]] bool empty() const { return stride == 0; }
   void clear() { std::fill_n(costs.data(), costs.size(), kNone<Lane>); }
   [[nodiscard]] Lane* of(std::ptrdiff_t pixel) const { return costs.data() + pixel * stride + kMargin; }
 };
@@ -88,12 +94,16 @@ struct RightRow {
   void clear() { std::fill_n(cost.data(), cost.size(), kNone<Lane>); }
 };
 
-template <class Width>
-CAIRN_LANES_INLINE typename Width::Cost least_cost(const typename Width::Cost* costs, int count) {
+/// The least of a tile's costs, each raised to what stands in `at_least`.
+template <class Width, int kLanes>
+CAIRN_LANES_INLINE typename Width::Cost least_cost(const typename Width::Cost* costs,
+                                                   const typename Width::Cost* at_least) {
   const typename Width::CostTag d;
-  auto least = lanes::Load(d, costs);
-  for (int i = lane_count<Width>(); i < count; i += lane_count<Width>()) {
-    least = lanes::Min(lanes::Load(d, costs + i), least);
+  auto least = lanes::Max(lanes::Load(d, costs), lanes::LoadU(d, at_least));
+  CAIRN_UNROLL
+  for (int v = 1; v < kVectors<Width, kLanes>; ++v) {
+    const int i = v * lane_count<Width>();
+    least = lanes::Min(lanes::Max(lanes::Load(d, costs + i), lanes::LoadU(d, at_least + i)), least);
   }
   return lanes::LeastLane(d, least);
 }
@@ -125,20 +135,69 @@ CAIRN_LANES_INLINE VF partial_sums(const std::int16_t* costs, int count, int res
 
 /// pixel_math::sum_of_partials() of them all: the same halvings, vectors first, then lanes.
 template <class Width>
-CAIRN_LANES_INLINE float sum_of_costs(const typename Width::Cost* costs, int count) {
+CAIRN_LANES_INLINE float sum_by_parts(const typename Width::Cost* costs, int count) {
   constexpr int kLanes = static_cast<int>(lanes::MaxLanes(F()));
-  constexpr int kVectors = pixel_math::kPartialSums / kLanes;
-  VF sums[kVectors];
-  for (int v = 0; v < kVectors; ++v) sums[v] = partial_sums<Width>(costs, count, v * kLanes);
-  for (int half = kVectors / 2; half > 0; half /= 2) {
+  constexpr int kSums = pixel_math::kPartialSums / kLanes;
+  VF sums[kSums];
+  for (int v = 0; v < kSums; ++v) sums[v] = partial_sums<Width>(costs, count, v * kLanes);
+  for (int half = kSums / 2; half > 0; half /= 2) {
     for (int v = 0; v < half; ++v) sums[v] = lanes::Add(sums[v], sums[v + half]);
   }
   return lanes::SumByHalves(F(), sums[0]);
 }
 
-/// Hands a block's costs to the right pixels that they are about. A right pixel meets its left pixels from
-/// left to right, its candidates thus in ascending order: strictly less keeps the smallest disparity. Between
-/// the rows of a band that is no longer so, and equal costs are decided by the lane (kTies).
+/// The same sum out of the costs as they are kept, `missing` of which are none. Below 2^24 all its parts are
+/// exact in any order.
+template <class Width>
+CAIRN_LANES_INLINE float exact_sum(const std::int16_t* costs, int count, int missing) {
+  const typename Width::CostTag d;
+  auto sum = lanes::ZeroSum(d);
+  for (int first = 0; first < count; first += kTile / 2) {
+    CAIRN_UNROLL
+    for (int v = 0; v < kVectors<Width, kTile / 2>; ++v) {
+      sum = lanes::AddPairs(d, sum, lanes::Load(d, costs + first + v * lane_count<Width>()));
+    }
+  }
+  constexpr int kTag = (1 << Width::kShift) - 1;
+  const int from_0 = lanes::SumOfAll(d, sum) + (32768 - kTag) * count;
+  return static_cast<float>((from_0 >> Width::kShift) - missing * (65535 >> Width::kShift));
+}
+
+template <class Width>
+CAIRN_LANES_INLINE float sum_of_costs(const typename Width::Cost* costs, int count, int missing) {
+  if constexpr (std::is_base_of_v<Narrow, Width>) {
+    if ((count - missing) * Width::kLargestSum < 1 << 24) return exact_sum<Width>(costs, count, missing);
+  }
+  return sum_by_parts<Width>(costs, count);
+}
+
+/// As Matches has them.
+CAIRN_LANES_INLINE VF as_costs(Wide, const float* kept) {
+  return lanes::Load(F(), kept);
+}
+template <class Width>
+CAIRN_LANES_INLINE VF as_costs(Width, const std::int16_t* kept) {
+  const VI from_0 = lanes::Add(lanes::LoadWidened(I(), kept), lanes::Set(I(), 32768));
+  const auto none = lanes::RebindMask(F(), lanes::Eq(from_0, lanes::Set(I(), 65535)));
+  return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
+                           lanes::ConvertTo(F(), lanes::ShiftRight<Width::kShift>(from_0)));
+}
+
+/// What a right pixel has found so far against what it finds now, both with the lane. A right pixel meets its
+/// left pixels from left to right, its candidates thus in ascending order: strictly less keeps the smallest
+/// disparity. Between the rows of a band that is no longer so, and equal costs are decided by the lane
+/// (kTies).
+template <class Width, bool kTies, class V>
+CAIRN_LANES_INLINE void keep_lesser(V& least, V& where, V cost, V lane) {
+  auto better = lanes::Lt(cost, least);
+  if constexpr (kTies) {
+    better = lanes::Or(better, lanes::And(lanes::Eq(cost, least), lanes::Lt(lane, where)));
+  }
+  where = lanes::IfThenElse(better, lane, where);
+  least = lanes::Min(cost, least);
+}
+
+/// Hands the costs of a block's left pixels to the right pixels that they are about.
 template <class Width, bool kTies>
 void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& g, int x_first, int pixels,
                   RightRow<typename Width::Cost>& right) {
@@ -149,21 +208,54 @@ void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& 
   Lane* const right_lane = right.lane.data() + g.first_lane(x_first + pixels - 1);
   const Lane* const first_costs = block.of(0) - pixels + 1;
   const std::ptrdiff_t next = block.stride + 1;
-  for (int j = 0, end = g.count + pixels - 1; j < end; j += lane_count<Width>()) {
+  for (int j = 0, count = g.count + pixels - 1; j < count; j += lane_count<Width>()) {
     auto least = lanes::LoadU(d, right_cost + j);
     auto where = lanes::LoadU(d, right_lane + j);
-    auto lane = lanes::Iota(d, static_cast<Lane>(j - pixels + 1));
+    auto lane = lanes::CountFrom(d, static_cast<Lane>(j - pixels + 1));
     const Lane* costs = first_costs + j;
     for (int pixel = 0; pixel < pixels; ++pixel) {
-      const auto cost = lanes::LoadU(d, costs);
-      auto better = lanes::Lt(cost, least);
-      if constexpr (kTies) {
-        better = lanes::Or(better, lanes::And(lanes::Eq(cost, least), lanes::Lt(lane, where)));
-      }
-      where = lanes::IfThenElse(better, lane, where);
-      least = lanes::Min(cost, least);
+      keep_lesser<Width, kTies>(least, where, lanes::LoadU(d, costs), lane);
       lane = lanes::Add(lane, one);
       costs += next;
+    }
+    lanes::StoreU(least, d, right_cost + j);
+    lanes::StoreU(where, d, right_lane + j);
+  }
+}
+
+/// The least costs of eight left pixels, one lane further for each. Their numbers take the place of the tag,
+/// which is 7: so the least knows whose it is.
+CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t* costs,
+                                                              std::ptrdiff_t next) {
+  const Tagged::CostTag d;
+  auto least = lanes::LoadU(d, costs + 7 * next);
+  CAIRN_UNROLL
+  for (int pixel = 0; pixel < 7; ++pixel) {
+    const auto number = lanes::Set(d, static_cast<std::int16_t>(7 - pixel));
+    least = lanes::Min(least, lanes::Sub(lanes::LoadU(d, costs + pixel * next), number));
+  }
+  return least;
+}
+
+/// The same for a whole block: what is stored is loaded again by the next one at the same places.
+template <bool kTies>
+void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x_first,
+                  RightRow<std::int16_t>& right) {
+  const Tagged::CostTag d;
+  const auto tag = lanes::Set(d, std::int16_t{7});
+  std::int16_t* const right_cost = right.cost.data() + g.first_lane(x_first + kBlock - 1);
+  std::int16_t* const right_lane = right.lane.data() + g.first_lane(x_first + kBlock - 1);
+  const std::ptrdiff_t next = block.stride + 1;
+  for (int j = 0, count = g.count + kBlock - 1; j < count; j += lane_count<Tagged>()) {
+    auto least = lanes::LoadU(d, right_cost + j);
+    auto where = lanes::LoadU(d, right_lane + j);
+    CAIRN_UNROLL
+    for (int pixel = 0; pixel < kBlock; pixel += 8) {
+      const int first = j - kBlock + 1 + pixel;
+      const auto cost = least_of_eight(block.of(pixel) + first, next);
+      const auto lane =
+          lanes::Add(lanes::CountFrom(d, static_cast<std::int16_t>(first)), lanes::And(cost, tag));
+      keep_lesser<Tagged, kTies>(least, where, lanes::Or(cost, tag), lane);
     }
     lanes::StoreU(least, d, right_cost + j);
     lanes::StoreU(where, d, right_lane + j);
@@ -184,6 +276,16 @@ void keep_lesser(const CostBlock<typename Width::Cost>& block, int pixels, int c
   }
 }
 
+/// What is found out of left pixels that lie side by side, before it is looked at.
+template <class Width>
+struct Block {
+  CostBlock<typename Width::Cost> costs;  // empty where nobody asks for them
+  std::vector<TileWinners<Width>> winners;
+  Block(const Geometry& g, int pixels, bool keeps_costs) : costs(keeps_costs ? g.lanes : 0) {
+    for (int first = 0; first < g.lanes; first += kTile) winners.emplace_back(pixels);
+  }
+};
+
 /// The winners of a row's left pixels among all tiles and rows.
 struct RowWinners {
   Scratch<float> cost;  // [x]
@@ -191,12 +293,13 @@ struct RowWinners {
   Scratch<std::int8_t> row;
   explicit RowWinners(int width) : cost(width), lane(width), row(width) {}
 
-  /// With the first tile of the row's own height. Left pixels `begin` (a multiple of 16) to end − 1.
+  /// With the first tile of the row's own height, which is about the left pixels `begin` (a multiple of 16)
+  /// to end − 1.
   template <class Width>
   void start(const TileWinners<Width>& tile, int begin, int end) const {
     for (int x = begin; x < end; x += lane_count<Wide>()) {
-      lanes::Store(tile.cost(x), F(), &cost[x]);
-      lanes::Store(tile.lane(x), I(), &lane[x]);
+      lanes::Store(tile.cost(x - begin), F(), &cost[x]);
+      lanes::Store(tile.lane(x - begin), I(), &lane[x]);
     }
     std::fill(&row[begin], row.data() + end, std::int8_t{0});
   }
@@ -207,8 +310,8 @@ struct RowWinners {
     const F f;
     const I i32;
     for (int x = begin; x < end; x += lane_count<Wide>()) {
-      const VF its_cost = tile.cost(x);
-      const VI its_lane = lanes::Add(tile.lane(x), lanes::Set(i32, first));
+      const VF its_cost = tile.cost(x - begin);
+      const VI its_lane = lanes::Add(tile.lane(x - begin), lanes::Set(i32, first));
       const VF known_cost = lanes::Load(f, &cost[x]);
       const VI known_lane = lanes::Load(i32, &lane[x]);
       const auto before = lanes::RebindMask(f, lanes::Lt(its_lane, known_lane));

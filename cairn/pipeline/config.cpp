@@ -197,19 +197,18 @@ void for_each_option(C& config, F&& visit) {
 }
 
 void require_evidence(const Config& c) {
-  if (c.match.evidence == Evidence::full) return;
-  const auto refuse_if = [](bool needed, const char* option) {
-    if (needed) {
-      throw Error(std::string("option match.evidence: winner keeps no costs for ") + option +
-                  "; set match.evidence=full, or " + option + "=-1");
-    }
+  const auto refuse_if = [&](bool needed, Evidence least, const char* option) {
+    if (!needed || c.match.evidence >= least) return;
+    throw Error("option match.evidence: " + write(c.match.evidence, kEvidences) + " keeps too little for " +
+                option + "; set match.evidence=" + write(least, kEvidences) + ", or " + option + "=-1");
   };
-  refuse_if(c.uniqueness.ratio >= 0, "uniqueness.ratio");
-  refuse_if(c.flatness.threshold >= 0, "flatness.threshold");
-  if (c.left_right.max_diff >= 0 && c.left_right.method == LeftRightMethod::true_) {
-    throw Error(
-        "option match.evidence: winner keeps no right image's winners for left_right.method=true; set "
-        "match.evidence=full, left_right.method=vote, or left_right.max_diff=-1");
+  refuse_if(c.uniqueness.ratio >= 0, Evidence::minimum, "uniqueness.ratio");
+  refuse_if(c.flatness.threshold >= 0, Evidence::full, "flatness.threshold");
+  if (c.match.evidence < Evidence::full && c.left_right.max_diff >= 0 &&
+      c.left_right.method == LeftRightMethod::true_) {
+    throw Error("option match.evidence: " + write(c.match.evidence, kEvidences) +
+                " keeps no right image's winners for left_right.method=true; set match.evidence=full, "
+                "left_right.method=vote, or left_right.max_diff=-1");
   }
 }
 

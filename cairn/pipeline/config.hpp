@@ -101,7 +101,7 @@ void set(Config& config, std::string_view name, std::string_view value);
 /// The names of the presets.
 std::vector<std::string> preset_names();
 /// Throws Error where a value lies outside its range or options contradict each other (a check that needs
-/// evidence which match.evidence=winner does not keep; a ground from fewer than four points or from points on
+/// evidence which match.evidence does not keep; a ground from fewer than four points or from points on
 /// a line).
 void validate(const Config& config);
 /// The same, and against an image: the window must fit, a disparity must be possible, a pose needs a rig.

@@ -121,16 +121,26 @@ TEST_P(MatchEquivalence, HoldsForEveryRowBand) {
     banded.row_band = band;
     expect_equal_to_reference({29, 9}, banded);
     expect_equal_to_reference({19, 2}, banded);
-    banded.evidence = Evidence::winner;
-    expect_equal_to_reference({29, 9}, banded);
+    for (const Evidence evidence : {Evidence::winner, Evidence::minimum}) {
+      banded.evidence = evidence;
+      expect_equal_to_reference({29, 9}, banded);
+    }
   }
 }
 
-TEST_P(MatchEquivalence, HoldsForTheWinnerAlone) {
-  for (const int window : {3, 9, 17, 23}) {
-    auto winner = config(window, 0, 19);
-    winner.evidence = Evidence::winner;
-    expect_equal_to_reference({41, 8}, winner);
+TEST_P(MatchEquivalence, HoldsForLessThanFullEvidence) {
+  for (const Evidence evidence : {Evidence::winner, Evidence::minimum}) {
+    for (const int window : {3, 9, 17, 23}) {
+      auto less = config(window, 0, 19);
+      less.evidence = evidence;
+      expect_equal_to_reference({41, 8}, less);
+    }
+    // More candidates than are held at a time, to the left and to the right.
+    for (const int first : {-110, 0}) {
+      auto less = config(5, first, 100);
+      less.evidence = evidence;
+      expect_equal_to_reference({170, 4}, less);
+    }
   }
 }
 

@@ -122,6 +122,7 @@ TEST(SemiGlobalEquivalence, HoldsForEveryPenalty) {
 TEST(SemiGlobalEquivalence, HoldsForTheWinnerAlone) {
   expect_equal_to_reference({41, 8}, search(0, 19, Evidence::winner));
   expect_equal_to_reference({70, 8}, search(0, 64, Evidence::winner));
+  expect_equal_to_reference({41, 8}, search(-3, 19, Evidence::minimum));
 }
 
 }  // namespace

@@ -71,7 +71,6 @@ std::pair<float, int> cost_in_band(const Pictures& in, const MatchConfig& config
 }
 
 void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Matches& out) {
-  const bool full = config.evidence == Evidence::full;
   std::vector<float> costs;
   std::array<float, pixel_math::kPartialSums> partial{};
   int count = 0;
@@ -91,15 +90,16 @@ void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Ma
     out.row_offset(x, y) = static_cast<std::int8_t>(
         count > 0 ? cost_in_band(in, config, x, y, config.min_disparity + best).second : 0);
   }
-  if (!full) return;
+  if (config.evidence == Evidence::winner) return;
   out.runner_up(x, y) = kNoCost;
   for (int i = 0; i < config.num_disparities; ++i) {
     if (std::abs(i - best) > 1) out.runner_up(x, y) = std::min(out.runner_up(x, y), cost_at(i));
   }
-  out.mean_cost(x, y) =
-      count > 0 ? pixel_math::sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
   out.cost_before(x, y) = count > 0 ? cost_at(best - 1) : kNoCost;
   out.cost_after(x, y) = count > 0 ? cost_at(best + 1) : kNoCost;
+  if (config.evidence == Evidence::minimum) return;
+  out.mean_cost(x, y) =
+      count > 0 ? pixel_math::sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
 }
 
 /// Seen from the right image: every left pixel and row that may have matched (x_right, y_right).
@@ -157,10 +157,11 @@ Matches match(const StereoPair& pair, const MatchConfig& config) {
   const Pictures in{picture(pair.left(), config), picture(pair.right(), config)};
   const Size size = pair.size();
   const Size band = config.row_band > 0 ? size : Size{};
+  const Size minimum = config.evidence != Evidence::winner ? size : Size{};
   const Size full = config.evidence == Evidence::full ? size : Size{};
   Matches out{Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(band),
-              Image<float>(size),        Image<float>(full),        Image<float>(full),
-              Image<float>(full),        Image<float>(full)};
+              Image<float>(size),        Image<float>(minimum),     Image<float>(full),
+              Image<float>(minimum),     Image<float>(minimum)};
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
       match_pixel(in, config, x, y, out);

@@ -130,9 +130,10 @@ void add_paths(Volume& costs, const Image<Gray>& smooth, const SemiGlobalConfig&
 }
 
 Matches make_matches(Size size, Evidence evidence) {
+  const Size minimum = evidence != Evidence::winner ? size : Size{};
   const Size full = evidence == Evidence::full ? size : Size{};
-  return {Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(), Image<float>(size),
-          Image<float>(full),        Image<float>(full),        Image<float>(full),   Image<float>(full)};
+  return {Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(),  Image<float>(size),
+          Image<float>(minimum),     Image<float>(full),        Image<float>(minimum), Image<float>(minimum)};
 }
 
 void settle_pixel(Volume& sums, int x, int y, Matches& out) {
@@ -156,12 +157,13 @@ void settle_pixel(Volume& sums, int x, int y, Matches& out) {
   }
   out.best(x, y) = best;
   out.cost(x, y) = least;
-  if (out.best_right.empty()) return;
-  out.best_right(x, y) = best_right;
+  if (out.runner_up.empty()) return;
   out.runner_up(x, y) = runner_up;
-  out.mean_cost(x, y) = count > 0 ? total / count : kNoCost;
   out.cost_before(x, y) = cost_at(x, best - 1);
   out.cost_after(x, y) = cost_at(x, best + 1);
+  if (out.best_right.empty()) return;
+  out.best_right(x, y) = best_right;
+  out.mean_cost(x, y) = count > 0 ? total / count : kNoCost;
 }
 
 }  // namespace

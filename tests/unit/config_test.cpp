@@ -112,6 +112,17 @@ TEST(Validate, RefusesChecksThatTheKeptEvidenceCannotFeed) {
   EXPECT_NO_THROW(validate(config));
 }
 
+TEST(Validate, TakesUniquenessButNotFlatnessWithTheMinimumsEvidence) {
+  Config config = Config::paper();
+  config.match.evidence = Evidence::minimum;
+  config.left_right.method = LeftRightMethod::vote;
+  EXPECT_NE(message_of([&] { validate(config); }).find("flatness.threshold"), std::string::npos);
+  config.flatness.threshold = -1;
+  EXPECT_NO_THROW(validate(config));
+  config.left_right.method = LeftRightMethod::true_;
+  EXPECT_NE(message_of([&] { validate(config); }).find("left_right.method"), std::string::npos);
+}
+
 TEST(Validate, RefusesWhatDoesNotFitTheImage) {
   Config config;
   EXPECT_NO_THROW(validate(config, {320, 240}, false));
