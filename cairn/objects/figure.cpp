@@ -5,6 +5,7 @@
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/figure.hpp>
 #include <cairn/regions/minimum_cut.hpp>
+#include <cairn/regions/percent.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -32,7 +33,7 @@ constexpr double kEdgeNoise = 4.5;   // … plus deviations of the image noise
 constexpr double kSeenShare = 0.25;  // of a facet's pixels: above it the facet is figure by what is seen
 
 struct Votes {
-  std::vector<std::int64_t> figure, ground, seen_figure;
+  std::vector<std::int64_t> figure, ground, seen_figure;  // the last is part of the first
   explicit Votes(int facets) : figure(slot(facets)), ground(figure.size()), seen_figure(figure.size()) {}
 };
 
@@ -40,6 +41,7 @@ struct Scales {
   float margin_px;
   float agreement_px;
   int longest_bridge_px;
+  int seen_at_border;  // votes
 };
 
 /// One pixel of a row that has evidence.
@@ -70,8 +72,10 @@ void vote_to_border(const RegionId* facet, int first, int last, const Seen* end,
   vote(facet, first, last, false, sure ? kConcluded : kCutOff, votes);
 }
 
-void vote_in_row(const RegionId* facet, int width, const std::vector<Seen>& seen, const Scales& scales,
+void vote_in_row(View<const RegionId> facets, int y, const std::vector<Seen>& seen, const Scales& scales,
                  Votes& votes) {
+  const RegionId* const facet = facets.row(y);
+  const int width = facets.width();
   if (seen.empty()) {
     vote_to_border(facet, 0, width, nullptr, scales, votes);
     return;
@@ -79,8 +83,11 @@ void vote_in_row(const RegionId* facet, int width, const std::vector<Seen>& seen
   vote_to_border(facet, 0, seen.front().x, &seen.front(), scales, votes);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const bool figure = seen[i].before_background_px > scales.margin_px;
-    vote(facet, seen[i].x, seen[i].x + 1, figure, kSeen, votes);
-    votes.seen_figure[index(facet[seen[i].x])] += figure ? 1 : 0;
+    // The matcher gives the nearer surface's disparity to both sides of its edge, so what is seen before the
+    // background next to a border may be the neighbour's.
+    const int weight = figure && beside_border(facets, seen[i].x, y) ? scales.seen_at_border : kSeen;
+    vote(facet, seen[i].x, seen[i].x + 1, figure, weight, votes);
+    if (figure) votes.seen_figure[index(facet[seen[i].x])] += weight;
     if (i + 1 < seen.size()) vote_between(facet, seen[i], seen[i + 1], scales, votes);
   }
   vote_to_border(facet, seen.back().x + 1, width, &seen.back(), scales, votes);
@@ -115,33 +122,47 @@ std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<con
   });
   for (std::size_t i = 0; i < looks.size(); ++i) {
     for (double& channel : looks[i].colour) channel /= looks[i].pixels;
-    looks[i].seen = static_cast<double>(votes.seen_figure[i]) > kSeenShare * looks[i].pixels;
+    looks[i].seen = static_cast<double>(votes.seen_figure[i]) > kSeenShare * kSeen * looks[i].pixels;
   }
   return looks;
 }
 
-/// How common colours are in the ground and in the figure that is seen. Colours are gathered in cells of the
-/// colour cube, each with its own mean.
+/// What each facet counts in the models of ground and of figure, in pixels. Figure counts where it is seen to
+/// be. Ground counts unless it touches figure and is no larger than a part of an object: a part that has the
+/// colour of the rest of its object, but no evidence, would speak for the ground that it was taken for.
+std::vector<double> counted(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+                            const std::vector<bool>& asked, double largest_part) {
+  std::vector<double> pixels(looks.size());
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double spared = asked[i] ? largest_part : 0;
+    pixels[i] = figure[i] == 0 ? std::max(looks[i].pixels - spared, 0.0) : looks[i].seen ? looks[i].pixels : 0;
+  }
+  return pixels;
+}
+
+/// How common colours are in the ground and in the figure. Colours are gathered in cells of the colour cube,
+/// each with its own mean.
 class ColourModel {
  public:
-  ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure) {
+  ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+              const std::vector<double>& counted) {
     std::map<int, Cell> cells;
     for (std::size_t i = 0; i < looks.size(); ++i) {
-      if (figure[i] != 0 && !looks[i].seen) continue;
+      if (!(counted[i] > 0)) continue;
       int key = 0;
       for (const double channel : looks[i].colour) key = 16 * key + static_cast<int>(channel / 16);
       Cell& cell = cells[key];
       const double before = cell.pixels[0] + cell.pixels[1];
       for (std::size_t c = 0; c < 3; ++c) {
-        cell.mean[c] += (looks[i].colour[c] - cell.mean[c]) * looks[i].pixels / (before + looks[i].pixels);
+        cell.mean[c] += (looks[i].colour[c] - cell.mean[c]) * counted[i] / (before + counted[i]);
       }
-      cell.pixels.at(figure[i] != 0 ? 1 : 0) += looks[i].pixels;
-      total_.at(figure[i] != 0 ? 1 : 0) += looks[i].pixels;
+      cell.pixels.at(figure[i] != 0 ? 1 : 0) += counted[i];
+      total_.at(figure[i] != 0 ? 1 : 0) += counted[i];
     }
     for (const auto& [key, cell] : cells) cells_.push_back(cell);
   }
 
-  /// Logarithm of how many times as common a colour is in the ground as in the figure, −2 … 2.
+  /// Logarithm of how many times as common a colour is in the ground as in the figure, −kMost … kMost.
   [[nodiscard]] double ground_over_figure(const Colour& colour) const {
     std::array<double, 2> near{};
     for (const Cell& cell : cells_) {
@@ -155,9 +176,9 @@ class ColourModel {
   }
 
  private:
-  static constexpr double kSpread = 12;      // grey levels
-  static constexpr double kUnknown = 0.001;  // colours that nothing has are nobody's
-  static constexpr double kMost = 2;
+  static constexpr double kSpread = 12;       // grey levels
+  static constexpr double kUnknown = 0.0003;  // colours that nothing has are nobody's
+  static constexpr double kMost = 3;
   struct Cell {
     Colour mean{};
     std::array<double, 2> pixels{};  // of ground, of figure
@@ -184,11 +205,11 @@ class Continuation {
 
   /// 0 … 1: how much ground of its colour lies beside facet i, more than there is seen figure of that colour,
   /// compared with its own size.
-  double operator()(std::size_t i, const std::vector<std::int32_t>& figure) {
+  double operator()(std::size_t i, const std::vector<std::int32_t>& figure,
+                    const std::vector<double>& counted) {
     std::array<double, 2> near{};
     for (const Pair& pair : pairs_of(i)) {
-      if (figure[pair.other] != 0 && !looks_[pair.other].seen) continue;
-      near.at(figure[pair.other] != 0 ? 1 : 0) += pair.weight;
+      near.at(figure[pair.other] != 0 ? 1 : 0) += pair.likeness * counted[pair.other];
     }
     const double pixels = looks_[i].pixels;
     return std::max(std::min(near[0] / pixels, 1.0) - std::min(near[1] / pixels, 1.0), 0.0);
@@ -202,7 +223,7 @@ class Continuation {
 
   struct Pair {
     std::size_t other;
-    double weight;  // pixels that count
+    double likeness;  // 0 … 1
   };
 
   static double squared(double value) { return value * value; }
@@ -247,7 +268,7 @@ class Continuation {
     if (dc > kFarthest) return;
     const double dx = between.width / across_;
     const double dy = between.height / down_;
-    pairs.push_back({j, there.pixels * std::exp(-(dc + dx * dx + dy * dy) / 2)});
+    pairs.push_back({j, std::exp(-(dc + dx * dx + dy * dy) / 2)});
   }
 
   const std::vector<Look>& looks_;
@@ -300,7 +321,7 @@ std::vector<bool> skirting(const Facets& facets, const Background& background, c
   }
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = static_cast<double>(within[i]) > kShare * looks[i].pixels &&
-                static_cast<double>(votes.seen_figure[i]) <= kHardlySeen * looks[i].pixels;
+                static_cast<double>(votes.seen_figure[i]) <= kHardlySeen * kSeen * looks[i].pixels;
   }
   return result;
 }
@@ -321,7 +342,8 @@ Votes votes_of(const Facets& facets, View<const float> evidence_px, const Backgr
   const Size size = facets.labels.size();
   const auto per_mille = 0.001F * static_cast<float>(size.width);
   const Scales scales{config.margin * per_mille, config.agreement * per_mille,
-                      static_cast<int>(0.01F * config.longest_bridge * static_cast<float>(size.width))};
+                      static_cast<int>(0.01F * config.longest_bridge * static_cast<float>(size.width)),
+                      static_cast<int>(std::lround(static_cast<float>(kSeen) * config.border_weight))};
   Votes votes(facets.count);
   std::vector<Seen> seen;
   for (int y = 0; y < size.height; ++y) {
@@ -331,7 +353,7 @@ Votes votes_of(const Facets& facets, View<const float> evidence_px, const Backgr
       if (std::isnan(d)) continue;
       seen.push_back({x, d, d - background.disparity_px(static_cast<float>(x), static_cast<float>(y))});
     }
-    vote_in_row(facets.labels.row(y), size.width, seen, scales, votes);
+    vote_in_row(facets.labels, y, seen, scales, votes);
   }
   return votes;
 }
@@ -349,20 +371,22 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
   std::vector<std::int64_t> ground_costs(looks.size());
   std::vector<std::int64_t> figure_costs(looks.size());
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    ground_costs[i] = kVote * (at_foot[i] ? kSeen * votes.seen_figure[i] : votes.figure[i]);
+    ground_costs[i] = kVote * (at_foot[i] ? votes.seen_figure[i] : votes.figure[i]);
     figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * static_cast<std::int64_t>(looks[i].pixels));
   }
   std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
+  const auto largest_part = static_cast<double>(pixels_in(config.largest_part, gray.size()));
   Continuation goes_on(looks, gray.width());
   for (int round = 1; round < kRounds; ++round) {
     std::vector<std::int64_t> with_colour_ground = ground_costs;
     std::vector<std::int64_t> with_colour_figure = figure_costs;
-    const ColourModel model(looks, figure);
     const std::vector<bool> asked = around(figure, facets.borders);
+    const std::vector<double> pixels = counted(looks, figure, asked, largest_part);
+    const ColourModel model(looks, figure, pixels);
     for (std::size_t i = 0; i < looks.size(); ++i) {
       if (!asked[i] || looks[i].seen) continue;
       const double colour = config.colour_weight * model.ground_over_figure(looks[i].colour);
-      const double on = config.continuation_weight * goes_on(i, figure);
+      const double on = config.continuation_weight * goes_on(i, figure, pixels);
       if (!at_foot[i])
         with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
       with_colour_figure[i] += std::llround(kUnit * looks[i].pixels * (std::max(colour, 0.0) + on));

@@ -87,16 +87,6 @@ struct Neighbours {
   }
 };
 
-bool beside_border(View<const RegionId> labels, int x, int y) {
-  const RegionId here = labels(x, y);
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, labels.height() - 1); ++v) {
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, labels.width() - 1); ++u) {
-      if (labels(u, v) != here) return true;
-    }
-  }
-  return false;
-}
-
 /// What the facets show of themselves.
 struct Shown {
   std::vector<Plane> planes;

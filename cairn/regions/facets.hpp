@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
 #include <cairn/core/ids.hpp>
@@ -51,6 +52,17 @@ struct Facets {
   int count = 0;
   std::vector<Border> borders;
 };
+
+/// Whether one of the eight pixels around lies in another region.
+inline bool beside_border(View<const RegionId> labels, int x, int y) {
+  const RegionId here = labels(x, y);
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, labels.height() - 1); ++v) {
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, labels.width() - 1); ++u) {
+      if (labels(u, v) != here) return true;
+    }
+  }
+  return false;
+}
 
 /// The borders between the regions of `labels`, sorted.
 std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges);
