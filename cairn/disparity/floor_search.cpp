@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 namespace cairn {
@@ -97,12 +98,13 @@ struct Tally {
   int on = 0;      // within the tolerance
   int beside = 0;  // else within twice of it
   int below = 0;   // else farther away from the camera
+  int mirrored = 0;  // those of beside and below that are seen in the plane as in a mirror
   int all = 0;
 
   /// A surface that cuts through the plane puts as many matches beside it as on it, and so does noise: what a
   /// plane has more on it than beside it is its own. Nothing should be below a floor, but for wrong matches
   /// and for what is seen mirrored in it.
-  [[nodiscard]] int score() const { return on - beside - below; }
+  [[nodiscard]] int score() const { return on - beside - below + mirrored; }
   /// What planes are compared by: the score, and its share in what lies under the horizon. By the score
   /// alone, a plane that spans the picture would beat a road that fills its lower half.
   [[nodiscard]] double rank() const {
@@ -157,6 +159,65 @@ struct Camera {
     return pitch <= std::tan(radians(kSteepestPitch)) && pitch >= std::tan(radians(kLeastPitch));
   }
 };
+
+/// The matches by where they are, to ask whether one is at a place.
+class Places {
+ public:
+  Places(const Points& points, Size image)
+      : points_(points), columns_(image.width / kCell + 1), rows_(image.height / kCell + 1) {
+    first_.resize(static_cast<std::size_t>(columns_ * rows_) + 1);
+    for (std::size_t i = 0; i < points.size(); ++i) ++first_[cell_of(i) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    members_.resize(points.size());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < points.size(); ++i) members_[next[cell_of(i)]++] = i;
+  }
+
+  /// Whether there is a match of this disparity about (x, y).
+  [[nodiscard]] bool has(float x, float y, float d) const {
+    if (!(x >= 0 && y >= 0)) return false;
+    const float column = x / kCell;
+    const float row = y / kCell;
+    if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_))) return false;
+    const auto cell = static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
+    return std::any_of(members_.begin() + static_cast<std::ptrdiff_t>(first_[cell]),
+                       members_.begin() + static_cast<std::ptrdiff_t>(first_[cell + 1]),
+                       [&](std::size_t i) { return std::abs(points_.d[i] - d) <= kTolerance; });
+  }
+
+ private:
+  static constexpr int kCell = 8;  // px
+
+  [[nodiscard]] std::size_t cell_of(std::size_t i) const {
+    return static_cast<std::size_t>(static_cast<int>(points_.y[i]) / kCell * columns_ +
+                                    static_cast<int>(points_.x[i]) / kCell);
+  }
+
+  const Points& points_;
+  int columns_;
+  int rows_;
+  std::vector<std::size_t> first_;
+  std::vector<std::size_t> members_;
+};
+
+/// Of the matches under the plane, those of which the original is seen where the plane as a mirror puts it.
+int mirrored(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera) {
+  const Vec3 normal = camera.normal(plane);
+  const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
+  int sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float below = -points.above(plane, i);
+    if (below <= kTolerance || plane.disparity_px(points.x[i], points.y[i]) + camera.infinity <= 0) continue;
+    const float twice = 2 * below / square;
+    const float z = 1 - twice * normal.z;
+    if (!(z > 0)) continue;
+    const float x = ((points.x[i] - camera.cx_px) / camera.focal_px - twice * normal.x) / z;
+    const float y = ((points.y[i] - camera.cy_px) / camera.focal_px - twice * normal.y) / z;
+    const float d = (points.d[i] + camera.infinity) / z - camera.infinity;
+    sum += places.has(camera.cx_px + camera.focal_px * x, camera.cy_px + camera.focal_px * y, d) ? 1 : 0;
+  }
+  return sum;
+}
 
 /// splitmix64 (Steele, Lea, Flood 2014): a well mixed number for each n, without a state.
 std::uint64_t mixed(std::uint64_t n) {
@@ -263,22 +324,31 @@ struct Candidates {
 
 Candidates candidates(View<const float> disparity_px, const Points& points, const Camera& camera) {
   const Points some = about(kRefining, points);
+  const Places places(points, disparity_px.size());
   std::vector<GroundPlane> seen;
+  std::vector<GroundPlane> walls;
   Candidates found;
   for (const Guess& next : guesses(points, camera)) {
     if (seen.size() == kFinalists) break;
     const auto explains = [&](const GroundPlane& plane) {
       return points.on(plane, next.i) && points.on(plane, next.j);
     };
+    // A guess through a wall and something else leads to the wall again.
+    const auto touches = [&](const GroundPlane& plane) {
+      return points.on(plane, next.i) || points.on(plane, next.j);
+    };
     if (std::any_of(seen.begin(), seen.end(), explains)) continue;
+    if (std::any_of(walls.begin(), walls.end(), touches)) continue;
     const auto plane = refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F});
     seen.push_back(plane);
-    const Tally judged = tally(plane, points, camera.infinity);
+    Tally judged = tally(plane, points, camera.infinity);
+    judged.mirrored = mirrored(plane, points, places, camera);
     if (!judged.convincing()) continue;
     if (camera.may_stand_on(plane) && rises(plane, disparity_px, points)) {
       found.floors.push_back({plane, judged});
     } else {
       found.others = true;
+      walls.push_back(plane);
     }
   }
   std::stable_sort(found.floors.begin(), found.floors.end(),
