@@ -46,10 +46,12 @@ inline constexpr std::array kAblations{
     Ablation{"figure.margin=0", "figure need not stand clear of the background"},
     Ablation{"figure.agreement=0", "plain stretches are bridged by nothing"},
     Ablation{"figure.longest_bridge=100", "bridges of any length"},
+    Ablation{"figure.border_weight=1", "what is seen beside a border counts as much as any"},
     Ablation{"figure.skirting=0", "stretches are bridged along the foot of a wall, too"},
     Ablation{"figure.smoothness=0", "each facet decides alone"},
     Ablation{"figure.colour_weight=0", "colour says nothing"},
     Ablation{"figure.continuation_weight=0", "ground that goes on beside says nothing"},
+    Ablation{"figure.largest_part=0", "parts of an object that pass for ground speak for their colour"},
     Ablation{"group.step=1000", "steps of disparity part no objects"},
     Ablation{"group.deviation=1000", "planes part no objects"},
     Ablation{"group.step_share=0 group.deviation_share=0", "the same tolerance near and far"},
@@ -57,6 +59,7 @@ inline constexpr std::array kAblations{
     Ablation{"group.occluded_gap=0", "what a nearer object parts stays apart"},
     Ablation{"group.min_area=0", "small groups stay by themselves"},
     Ablation{"fusion.method=overlap", "paper: the two segmentations and their overlap"},
+    Ablation{"objects.min_confidence=0", "paper: whatever is left is an object"},
     Ablation{"objects.min_area=0.1", "paper: smaller objects, too"},
 };
 

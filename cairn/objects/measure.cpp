@@ -218,6 +218,7 @@ Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const Di
       found[i].object = measured(in, RegionId{static_cast<std::int32_t>(region)}, outline[region]);
     }
   });
+  std::erase_if(found, [&](const Found& f) { return f.object.confidence < config.min_confidence; });
   std::sort(found.begin(), found.end(), [&](const Found& a, const Found& b) {
     if (a.object.disparity_px != b.object.disparity_px) return a.object.disparity_px > b.object.disparity_px;
     return outline[a.region].first_pixel < outline[b.region].first_pixel;

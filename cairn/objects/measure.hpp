@@ -14,11 +14,14 @@ namespace cairn {
 struct ObjectsConfig {
   float min_area = 0.1F;
   float max_area = 30.0F;
+  float min_confidence = 0.0F;
 };
 template <class V>
 void fields(ObjectsConfig& c, V&& v) {
   v("min_area", c.min_area, "% of the image", "smaller regions are no objects", range(0.0F, 100.0F));
   v("max_area", c.max_area, "% of the image", "larger regions are background", range(0.0F, 100.0F));
+  v("min_confidence", c.min_confidence, "", "regions less likely than this to be an object are none",
+    range(0.0F, 1.0F));
 }
 
 /// Something that stands or hangs in front of the background.
@@ -46,8 +49,8 @@ struct Objects {
 };
 
 /// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image
-/// or touches three of its borders (background); what is smaller than min_area; what has no valid pixel.
-/// (METHOD §7)
+/// or touches three of its borders (background); what is smaller than min_area; what has no valid pixel; what
+/// would have a confidence below min_confidence (beyond the paper). (METHOD §7)
 ///
 /// Confidence is a logistic function of the logarithm of the mask's share of the image, of edge_share and of
 /// cut_share; below a valid_share of one half it falls with that, too: what has no disparity is a guess. Its

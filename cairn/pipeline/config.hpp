@@ -50,7 +50,7 @@ struct Config {
   FacetsConfig facets;
   FigureConfig figure;
   GroupConfig group;
-  ObjectsConfig objects{.min_area = 0.25F};
+  ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.2F};
 
   /// Only what the paper describes. (METHOD, "Two presets")
   static Config paper();
