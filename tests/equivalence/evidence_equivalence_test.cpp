@@ -301,6 +301,8 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
   int figures = 0;
   int by_colour = 0;
   int by_skirting = 0;
+  int by_border = 0;
+  int by_part = 0;
   std::vector<Size> all_sizes = sizes();
   all_sizes.push_back({84, 40});
   for (const Size size : all_sizes) {
@@ -321,6 +323,8 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
         if (seed % 4 == 0) config.smoothness = 0;
         if (seed % 5 == 0) config.colour_weight = 3;
         if (seed == 7) config.continuation_weight = 3;
+        config.border_weight = 0.2F * static_cast<float>(seed % 6);
+        config.largest_part = static_cast<float>(seed % 4 == 3 ? 100 : 2 * (seed % 4));
         const Image<Rgb> coloured = painted(facets, seed);
         const Image<Gray> grey = greens(coloured);
         const View<const Rgb> rgb = seed > 3 ? coloured.view() : View<const Rgb>{};
@@ -337,12 +341,20 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
         plain = config;
         plain.skirting = 0;
         by_skirting += figure(plain) != expected ? 1 : 0;
+        plain = config;
+        plain.border_weight = 1;
+        by_border += figure(plain) != expected ? 1 : 0;
+        plain = config;
+        plain.largest_part = 0;
+        by_part += figure(plain) != expected ? 1 : 0;
       }
     }
   }
   EXPECT_GT(figures, 50);
   EXPECT_GT(by_colour, 5);
   EXPECT_GT(by_skirting, 3);
+  EXPECT_GT(by_border, 5);
+  EXPECT_GT(by_part, 5);
 }
 
 TEST(SegmentFacets, GivesTheSameOnAnyNumberOfThreads) {
@@ -471,7 +483,8 @@ TEST(WayByEvidence, ManagesOptionsAtTheEndsOfTheirRanges) {
     config.facets = {end(0, 5), end(0, 255), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
     config.facets = {};
-    config.figure = {0, end(0, 100), end(0, 100), end(0, 100), end(0, 100), end(0, 10), end(0, 10)};
+    config.figure = {0,           end(0, 100), end(0, 100), end(0, 1),  end(0, 100),
+                     end(0, 100), end(0, 10),  end(0, 10),  end(0, 100)};
     config.group = {end(0, 1000), end(0, 100), end(0, 1000), end(0, 100),
                     end(0, 100),  end(0, 100), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);

@@ -86,9 +86,20 @@ constexpr float kBelow = 0.2F;
 constexpr double kFootShare = 0.8;
 constexpr double kHardlySeen = 0.05;
 
+/// Does the facet of this pixel end in a row or column beside it?
+bool is_at_border(View<const RegionId> labels, int x, int y) {
+  for (const int v : {y - 1, y, y + 1}) {
+    for (const int u : {x - 1, x, x + 1}) {
+      const bool inside = u >= 0 && u < labels.width() && v >= 0 && v < labels.height();
+      if (inside && labels(u, v) != labels(x, y)) return true;
+    }
+  }
+  return false;
+}
+
 /// What one pixel says: positive is figure, negative ground, in twentieths of a pixel of evidence.
-int vote(View<const float> evidence_px, const Background& background, const FigureConfig& config, int x,
-         int y) {
+int vote(View<const RegionId> labels, View<const float> evidence_px, const Background& background,
+         const FigureConfig& config, int x, int y) {
   const auto per_mille = 0.001F * static_cast<float>(evidence_px.width());
   const auto longest =
       static_cast<int>(0.01F * config.longest_bridge * static_cast<float>(evidence_px.width()));
@@ -99,7 +110,11 @@ int vote(View<const float> evidence_px, const Background& background, const Figu
   };
   const std::optional<int> l = next_seen(evidence_px, x, y, -1);
   const std::optional<int> r = next_seen(evidence_px, x, y, 1);
-  if (l == x) return stands_before(x) ? kSeen : -kSeen;
+  if (l == x && !stands_before(x)) return -kSeen;
+  if (l == x) {
+    const float weight = is_at_border(labels, x, y) ? config.border_weight : 1.0F;
+    return static_cast<int>(std::lround(kSeen * weight));
+  }
   if (!l && !r) return -kCutOff;
   if (!l || !r) return stands_before(l ? *l : *r) ? -kCutOff : -kConcluded;
   if (!stands_before(*l) || !stands_before(*r)) return -kConcluded;
@@ -130,10 +145,12 @@ struct Patch {
   double pixels = 0;
   std::array<double, 3> colour{};  // mean
   int left = std::numeric_limits<int>::max(), right = -1, top = std::numeric_limits<int>::max(), bottom = -1;
-  [[nodiscard]] bool is_seen() const { return static_cast<double>(seen_figure) > kSeenShare * pixels; }
+  [[nodiscard]] bool is_seen() const {
+    return static_cast<double>(seen_figure) > kSeen * kSeenShare * pixels;
+  }
   [[nodiscard]] bool is_skirting() const {
     return static_cast<double>(at_foot) > kFootShare * pixels &&
-           static_cast<double>(seen_figure) <= kHardlySeen * pixels;
+           static_cast<double>(seen_figure) <= kSeen * kHardlySeen * pixels;
   }
   [[nodiscard]] std::array<int, 3> cell() const {
     const auto of = [](double channel) { return static_cast<int>(channel / kCell); };
@@ -148,10 +165,10 @@ std::vector<Patch> patches_of(const Facets& facets, View<const Gray> gray, View<
   for (int y = 0; y < gray.height(); ++y) {
     for (int x = 0; x < gray.width(); ++x) {
       Patch& p = patches[index(facets.labels(x, y))];
-      const int said = vote(evidence_px, background, config, x, y);
+      const int said = vote(facets.labels, evidence_px, background, config, x, y);
       p.for_figure += std::max(said, 0);
       p.for_ground += std::max(-said, 0);
-      p.seen_figure += said > 0 && !std::isnan(evidence_px(x, y)) ? 1 : 0;
+      p.seen_figure += std::isnan(evidence_px(x, y)) ? 0 : std::max(said, 0);
       p.at_foot += is_at_foot(background, gray.size(), config, x, y) ? 1 : 0;
       p.pixels += 1;
       const Rgb colour = rgb.empty() ? Rgb{gray(x, y), gray(x, y), gray(x, y)} : rgb(x, y);
@@ -172,42 +189,67 @@ double difference(const std::array<double, 3>& p, const std::array<double, 3>& q
   return ((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2])) / 3;
 }
 
-/// Pixels of ground and of seen figure among patches, each counted as `weight` says.
-template <class Weight>
-std::array<double, 2> ground_and_figure(const std::vector<Patch>& patches,
-                                        const std::vector<std::int32_t>& figure, Weight weight) {
-  std::array<double, 2> sums{};
+/// Is facet i figure, or does it touch figure?
+bool is_at_figure(std::int32_t i, const std::vector<std::int32_t>& figure,
+                  const std::vector<Border>& borders) {
+  const auto touches = [&](const Border& b) {
+    return (b.a == i && figure[slot(b.b)] != 0) || (b.b == i && figure[slot(b.a)] != 0);
+  };
+  return figure[slot(i)] != 0 || std::any_of(borders.begin(), borders.end(), touches);
+}
+
+/// What the patches count in the models of ground and of figure, in pixels: figure where it is seen to be,
+/// ground with all, but at figure only with what it is larger than a part of an object.
+std::vector<double> counted(const std::vector<Patch>& patches, const std::vector<std::int32_t>& figure,
+                            const std::vector<Border>& borders, double largest_part) {
+  std::vector<double> counts;
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (figure[i] == 0) sums[0] += patches[i].pixels * weight(i);
-    if (figure[i] != 0 && patches[i].is_seen()) sums[1] += patches[i].pixels * weight(i);
+    const bool at_figure = is_at_figure(static_cast<std::int32_t>(i), figure, borders);
+    const double as_ground = patches[i].pixels - (at_figure ? largest_part : 0);
+    const double as_figure = patches[i].is_seen() ? patches[i].pixels : 0;
+    counts.push_back(figure[i] != 0 ? as_figure : std::max(as_ground, 0.0));
+  }
+  return counts;
+}
+
+/// The sides that the cut before left, and what each patch counts on its side.
+struct Sides {
+  const std::vector<std::int32_t>& figure;
+  std::vector<double> counts;
+};
+
+/// What counts of ground and of figure, each patch as far as `weight` says.
+template <class Weight>
+std::array<double, 2> ground_and_figure(const Sides& sides, Weight weight) {
+  std::array<double, 2> sums{};
+  for (std::size_t i = 0; i < sides.counts.size(); ++i) {
+    if (sides.counts[i] > 0) sums.at(sides.figure[i] != 0 ? 1 : 0) += sides.counts[i] * weight(i);
   }
   return sums;
 }
 
-/// Logarithm of how many times as common a colour is in the ground as in the figure that is seen; each patch
-/// stands for its cell of the colour cube with the mean colour of all that is known in that cell.
-double ground_over_figure(const Patch& patch, const std::vector<Patch>& patches,
-                          const std::vector<std::int32_t>& figure) {
+/// Logarithm of how many times as common a colour is in the ground as in the figure; each patch stands for
+/// its cell of the colour cube with the mean colour of all that counts in that cell.
+double ground_over_figure(const Patch& patch, const std::vector<Patch>& patches, const Sides& sides) {
   const auto like = [&](std::size_t i) {
     std::array<double, 3> mean{};
     double pixels = 0;
     for (std::size_t j = 0; j < patches.size(); ++j) {
-      if (patches[j].cell() != patches[i].cell() || (figure[j] != 0 && !patches[j].is_seen())) continue;
-      for (std::size_t c = 0; c < 3; ++c) mean.at(c) += patches[j].colour.at(c) * patches[j].pixels;
-      pixels += patches[j].pixels;
+      if (patches[j].cell() != patches[i].cell()) continue;
+      for (std::size_t c = 0; c < 3; ++c) mean.at(c) += patches[j].colour.at(c) * sides.counts[j];
+      pixels += sides.counts[j];
     }
     for (double& channel : mean) channel /= pixels;
     return std::exp(-difference(patch.colour, mean) / (2 * kModelSpread * kModelSpread));
   };
-  const auto near = ground_and_figure(patches, figure, like);
-  const auto all = ground_and_figure(patches, figure, [](std::size_t) { return 1.0; });
+  const auto near = ground_and_figure(sides, like);
+  const auto all = ground_and_figure(sides, [](std::size_t) { return 1.0; });
   const auto share = [&](std::size_t side) { return near.at(side) / std::max(all.at(side), 1.0) + kUnknown; };
   return std::clamp(std::log(share(0) / share(1)), -kMost, kMost);
 }
 
-/// How much more ground than seen figure of its colour lies beside patch i, in its own sizes, 0 … 1.
-double goes_on(std::size_t i, const std::vector<Patch>& patches, const std::vector<std::int32_t>& figure,
-               int width) {
+/// How much more ground than figure of its colour lies beside patch i, in its own sizes, 0 … 1.
+double goes_on(std::size_t i, const std::vector<Patch>& patches, const Sides& sides, int width) {
   const Patch& here = patches[i];
   const auto beside = [&](std::size_t j) {
     const Patch& there = patches[j];
@@ -219,17 +261,8 @@ double goes_on(std::size_t i, const std::vector<Patch>& patches, const std::vect
     const bool far = dx * dx > kFarthest || dy * dy > kFarthest || dc > kFarthest;
     return i == j || far ? 0.0 : std::exp(-(dc + dx * dx + dy * dy) / 2);
   };
-  const auto near = ground_and_figure(patches, figure, beside);
+  const auto near = ground_and_figure(sides, beside);
   return std::max(std::min(near[0] / here.pixels, 1.0) - std::min(near[1] / here.pixels, 1.0), 0.0);
-}
-
-/// Is facet i figure, or does it touch figure?
-bool is_at_figure(std::int32_t i, const std::vector<std::int32_t>& figure,
-                  const std::vector<Border>& borders) {
-  const auto touches = [&](const Border& b) {
-    return (b.a == i && figure[slot(b.b)] != 0) || (b.b == i && figure[slot(b.a)] != 0);
-  };
-  return figure[slot(i)] != 0 || std::any_of(borders.begin(), borders.end(), touches);
 }
 
 }  // namespace
@@ -402,20 +435,23 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     const double cost = config.smoothness * static_cast<double>(b.length) * std::exp(-b.mean_edge() / edge);
     ties.push_back({b.a, b.b, std::llround(kUnit * cost)});
   }
+  const double largest_part =
+      std::ceil(double{config.largest_part} * static_cast<double>(gray.size().area()) / 100);
   std::vector<std::int32_t> figure(patches.size());
   for (int round = 0; round < kRounds; ++round) {
+    const Sides sides{figure, counted(patches, figure, facets.borders, largest_part)};
     std::vector<std::int64_t> cost_0;
     std::vector<std::int64_t> cost_1;
     for (std::size_t i = 0; i < patches.size(); ++i) {
       const Patch& p = patches[i];
       const auto pixels = static_cast<std::int64_t>(p.pixels);
-      const std::int64_t for_figure = p.is_skirting() ? kSeen * p.seen_figure : p.for_figure;
+      const std::int64_t for_figure = p.is_skirting() ? p.seen_figure : p.for_figure;
       cost_0.push_back(static_cast<std::int64_t>(kUnit) / kSeen * for_figure);
       cost_1.push_back(static_cast<std::int64_t>(kUnit) / kSeen * (p.for_ground + kInDoubt * pixels));
       const bool asked = is_at_figure(static_cast<std::int32_t>(i), figure, facets.borders) && !p.is_seen();
       if (round == 0 || !asked) continue;
-      const double colour = config.colour_weight * ground_over_figure(p, patches, figure);
-      const double on = config.continuation_weight * goes_on(i, patches, figure, gray.width());
+      const double colour = config.colour_weight * ground_over_figure(p, patches, sides);
+      const double on = config.continuation_weight * goes_on(i, patches, sides, gray.width());
       if (!p.is_skirting()) cost_0.back() += std::llround(kUnit * p.pixels * std::max(-colour, 0.0));
       cost_1.back() += std::llround(kUnit * p.pixels * (std::max(colour, 0.0) + on));
     }

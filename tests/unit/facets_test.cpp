@@ -165,6 +165,29 @@ TEST(BordersOf, CountsPairsOfNeighboursWithTheirStrongerEdgeAndTheirMiddle) {
   EXPECT_EQ(borders[2].b, 2);
 }
 
+TEST(BesideBorder, IsWhatHasAnotherRegionAmongTheEightPixelsAround) {
+  const Image<RegionId> labels = grid<RegionId>({{1, 0, 0, 0, 0},  //
+                                                 {0, 0, 0, 0, 0},
+                                                 {0, 0, 0, 0, 0},
+                                                 {0, 0, 0, 2, 2}});
+  const Image<int> expected = grid<int>({{1, 1, 0, 0, 0},  //
+                                         {1, 1, 0, 0, 0},
+                                         {0, 0, 1, 1, 1},
+                                         {0, 0, 1, 1, 1}});
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 5; ++x) EXPECT_EQ(beside_border(labels, x, y), expected(x, y) != 0) << x << ' ' << y;
+  }
+}
+
+TEST(BesideBorder, IsNoPixelOfASingleRegion) {
+  for (const Size size : {Size{1, 1}, Size{1, 3}, Size{3, 1}}) {
+    const Image<RegionId> labels(size, RegionId{4}, {});
+    for (int i = 0; i < size.width * size.height; ++i) {
+      EXPECT_FALSE(beside_border(labels, i % size.width, i / size.width));
+    }
+  }
+}
+
 TEST(AsSegmentation, GivesEachFacetItsGreyStatistics) {
   const auto labels = grid<RegionId>({{0, 0, 1}, {0, 1, 1}});
   const auto grey = grid<Gray>({{10, 20, 100}, {30, 100, 160}});

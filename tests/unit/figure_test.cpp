@@ -325,6 +325,59 @@ TEST(Figure, KnowsOfNoFootOfAWallAlongTheHorizon) {
   EXPECT_EQ(before_a_skirting_board(4, 10, true, false, kNowhere), (Labels{0, 1, 1, 1}));
 }
 
+/// A facet `width` columns wide of which 12 of 20 rows are seen to be figure and the others to be ground.
+std::int32_t with_evidence_of_both(int width, float border_weight) {
+  Stage stage;
+  stage.facet(1, 30, 30 + width);
+  stage.see(0, 100, kBehind);
+  stage.see(30, 30 + width, 10, 0, 12);
+  FigureConfig config = cut_only();
+  config.smoothness = 0;
+  config.border_weight = border_weight;
+  return stage.figure(2, config)[1];
+}
+
+TEST(Figure, ThatIsSeenBesideABorderCountsItsWeight) {
+  // Both columns are beside a border: 24 of these against 16 for ground, and a twentieth of 40 in doubt.
+  EXPECT_EQ(with_evidence_of_both(2, 1), 1);
+  EXPECT_EQ(with_evidence_of_both(2, 0.8F), 1);
+  EXPECT_EQ(with_evidence_of_both(2, 0.7F), 0);
+  EXPECT_EQ(with_evidence_of_both(2, 0), 0);
+}
+
+TEST(Figure, ThatIsSeenAwayFromABorderCountsWhateverThatWeight) {
+  // 8 of 10 columns are not beside a border: 96 against 80, and 10 in doubt.
+  EXPECT_EQ(with_evidence_of_both(10, 0), 1);
+}
+
+/// A small object of which a part, facet 2 with 5 % of the picture, shows no evidence, and a large object in
+/// another colour, so that the small one's colour is no more common in the figure than in its own part.
+Labels with_a_plain_part(float largest_part) {
+  Stage stage;
+  stage.facet(1, 20, 22);
+  stage.facet(2, 22, 27);
+  stage.facet(3, 60, 90);
+  stage.edges.fill(200);
+  stage.see(0, 20, kBehind);
+  stage.see(20, 22, 10);
+  stage.see(27, 60, kBehind);
+  stage.see(60, 90, 10);
+  stage.see(90, 100, kBehind);
+  for (int y = 0; y < kSize.height; ++y) std::fill_n(stage.grey.row(y) + 22, 5, grey_of(1));
+  FigureConfig config;
+  config.largest_part = largest_part;
+  return stage.figure(4, config);
+}
+
+TEST(Figure, TakesInAPartInItsColourThatPassedForGround) {
+  EXPECT_EQ(with_a_plain_part(5), (Labels{0, 1, 1, 1}));
+}
+
+TEST(Figure, LosesAPartThatSpeaksForItsColourAsGround) {
+  EXPECT_EQ(with_a_plain_part(0), (Labels{0, 1, 0, 1}));
+  EXPECT_EQ(with_a_plain_part(2), (Labels{0, 1, 0, 1}));  // larger than that
+}
+
 TEST(Figure, OutvotesAFewWrongDisparities) {
   Stage stage;
   stage.facet(1, 30, 60);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/objects/measure.hpp>
+#include <cmath>
 #include <limits>
 
 #include "support/grids.hpp"
@@ -153,6 +154,31 @@ TEST(Measure, IsMoreConfidentOfWhatIsLargeOutlinedAndWhole) {
   EXPECT_LT(confidence({0, 5, 4, 4}, true), whole);
   EXPECT_EQ(confidence({10, 5, 4, 4}, true, 8), whole);
   EXPECT_FLOAT_EQ(confidence({10, 5, 4, 4}, true, 12), whole / 2);
+}
+
+TEST(Measure, WhatIsLessLikelyThanAskedForIsNoObjectAndTakesNoNumber) {
+  Scene scene({40, 20}, {{{2, 2, 5, 5}, 16}, {{10, 2, 5, 5}, 8}, {{20, 2, 5, 5}, 12}, {{30, 2, 5, 5}, 4}});
+  for (int y = 0; y < 20; ++y) {  // the first and the third have no outline
+    for (const int x : {2, 20}) std::fill_n(scene.left.row(y) + x, 5, Gray{10});
+  }
+  ASSERT_EQ(scene.measured().list.size(), 4U);
+  const Objects objects = scene.measured({.min_confidence = 0.2F});
+  ASSERT_EQ(objects.list.size(), 2U);
+  EXPECT_EQ(objects.list[0].id, ObjectId{1});
+  EXPECT_EQ(objects.list[0].disparity_px, 8);
+  EXPECT_EQ(objects.list[1].id, ObjectId{2});
+  EXPECT_EQ(objects.list[1].disparity_px, 4);
+  EXPECT_EQ(objects.labels(4, 4), ObjectId::none);
+  EXPECT_EQ(objects.labels(12, 4), ObjectId{1});
+  EXPECT_EQ(objects.labels(22, 4), ObjectId::none);
+  EXPECT_EQ(objects.labels(32, 4), ObjectId{2});
+}
+
+TEST(Measure, WhatIsJustAsLikelyAsAskedForIsAnObject) {
+  const Scene scene({40, 20}, {{{2, 2, 5, 5}, 8}});
+  const float confidence = scene.measured().list.at(0).confidence;
+  EXPECT_EQ(scene.measured({.min_confidence = confidence}).list.size(), 1U);
+  EXPECT_TRUE(scene.measured({.min_confidence = std::nextafter(confidence, 1.0F)}).list.empty());
 }
 
 TEST(Measure, TakesTheMeanColourOfTheMask) {
