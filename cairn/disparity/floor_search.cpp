@@ -80,9 +80,13 @@ std::int64_t count_valid(View<const float> disparity_px, const Exec& exec) {
   return sum;
 }
 
-/// The matches at the nodes of a grid that is as fine as kSamples allows.
-Points sample(View<const float> disparity_px, std::int64_t valid) {
-  const int step = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(valid) / kSamples)));
+/// The finest grid that has no more than about kSamples matches at its nodes, in px.
+int grid_step(std::int64_t valid) {
+  return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(valid) / kSamples)));
+}
+
+/// The matches at the nodes of a grid.
+Points sample(View<const float> disparity_px, int step) {
   Points points;
   for (int y = 0; y < disparity_px.height(); y += step) {
     for (int x = 0; x < disparity_px.width(); x += step) {
@@ -95,9 +99,9 @@ Points sample(View<const float> disparity_px, std::int64_t valid) {
 
 /// How the matches under a plane's horizon lie to it.
 struct Tally {
-  int on = 0;      // within the tolerance
-  int beside = 0;  // else within twice of it
-  int below = 0;   // else farther away from the camera
+  int on = 0;        // within the tolerance
+  int beside = 0;    // else within twice of it
+  int below = 0;     // else farther away from the camera
   int mirrored = 0;  // those of beside and below that are seen in the plane as in a mirror
   int all = 0;
 
@@ -163,8 +167,11 @@ struct Camera {
 /// The matches by where they are, to ask whether one is at a place.
 class Places {
  public:
-  Places(const Points& points, Size image)
-      : points_(points), columns_(image.width / kCell + 1), rows_(image.height / kCell + 1) {
+  Places(const Points& points, Size image, int grid_step)
+      : points_(points),
+        cell_(std::max(kCell, 2 * grid_step)),
+        columns_(image.width / cell_ + 1),
+        rows_(image.height / cell_ + 1) {
     first_.resize(static_cast<std::size_t>(columns_ * rows_) + 1);
     for (std::size_t i = 0; i < points.size(); ++i) ++first_[cell_of(i) + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -176,8 +183,8 @@ class Places {
   /// Whether there is a match of this disparity about (x, y).
   [[nodiscard]] bool has(float x, float y, float d) const {
     if (!(x >= 0 && y >= 0)) return false;
-    const float column = x / kCell;
-    const float row = y / kCell;
+    const float column = x / static_cast<float>(cell_);
+    const float row = y / static_cast<float>(cell_);
     if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_))) return false;
     const auto cell = static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
     return std::any_of(members_.begin() + static_cast<std::ptrdiff_t>(first_[cell]),
@@ -186,14 +193,16 @@ class Places {
   }
 
  private:
+  // Where the grid is coarse a cell is two steps of it wide: else there would be cells without a node.
   static constexpr int kCell = 8;  // px
 
   [[nodiscard]] std::size_t cell_of(std::size_t i) const {
-    return static_cast<std::size_t>(static_cast<int>(points_.y[i]) / kCell * columns_ +
-                                    static_cast<int>(points_.x[i]) / kCell);
+    return static_cast<std::size_t>(static_cast<int>(points_.y[i]) / cell_ * columns_ +
+                                    static_cast<int>(points_.x[i]) / cell_);
   }
 
   const Points& points_;
+  int cell_;
   int columns_;
   int rows_;
   std::vector<std::size_t> first_;
@@ -322,9 +331,9 @@ struct Candidates {
   bool others = false;
 };
 
-Candidates candidates(View<const float> disparity_px, const Points& points, const Camera& camera) {
+Candidates candidates(View<const float> disparity_px, const Points& points, const Places& places,
+                      const Camera& camera) {
   const Points some = about(kRefining, points);
-  const Places places(points, disparity_px.size());
   std::vector<GroundPlane> seen;
   std::vector<GroundPlane> walls;
   Candidates found;
@@ -455,11 +464,13 @@ Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>
   const std::int64_t valid = count_valid(disparity_px, exec);
   const auto least = kLeastMatches * static_cast<double>(disparity_px.size().area());
   if (valid < kFewestMatches || static_cast<double>(valid) < least) return refused(Refusal::too_few_matches);
-  const Points points = sample(disparity_px, valid);
+  const int step = grid_step(valid);
+  const Points points = sample(disparity_px, step);
   if (points.size() < kFewestMatches) return refused(Refusal::too_few_matches);
 
   const Camera camera(disparity_px.size(), rig);
-  const auto found = candidates(disparity_px, points, camera);
+  const Places places(points, disparity_px.size(), step);
+  const auto found = candidates(disparity_px, points, places, camera);
   if (found.floors.empty()) {
     return refused(found.others || faces_a_wall(points, camera) ? Refusal::implausible : Refusal::no_plane);
   }
