@@ -154,7 +154,7 @@ Image<Rgb> painted(const Facets& facets, std::uint32_t seed) {
       const int facet = number(facets.labels(x, y));
       const auto channel = [&](int c) {
         const int shade = base(c == 0 ? 0 : 1, facet);
-        return static_cast<std::uint8_t>(60 + 7 * shade * shade + noise(x, y));
+        return static_cast<std::uint8_t>(60 + 4 * shade * shade + noise(x, y));
       };
       rgb(x, y) = {channel(0), channel(1), channel(2)};
     }
@@ -324,7 +324,7 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
         if (seed % 5 == 0) config.colour_weight = 3;
         if (seed == 7) config.continuation_weight = 3;
         config.border_weight = 0.2F * static_cast<float>(seed % 6);
-        config.largest_part = static_cast<float>(seed % 4 == 3 ? 100 : 2 * (seed % 4));
+        config.largest_part = seed == 3 ? 100.0F : 0.7F * static_cast<float>(seed % 4);
         const Image<Rgb> coloured = painted(facets, seed);
         const Image<Gray> grey = greens(coloured);
         const View<const Rgb> rgb = seed > 3 ? coloured.view() : View<const Rgb>{};
