@@ -31,7 +31,7 @@ constexpr int kFewestPairs = 8;       // of matches, that this is judged by
 constexpr double kAlike = 4;          // so many neighbouring matches err alike
 constexpr int kLowerSurface = 3;      // a plane below the best counts with a third of its score
 
-// How hard it is searched: about a millisecond.
+// How hard it is searched: one to three milliseconds.
 constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kRefining = 1024;  // of them, for least squares
 constexpr std::size_t kScreening = 512;  // of them, for a guess's score
@@ -107,7 +107,7 @@ struct Tally {
 
   /// A surface that cuts through the plane puts as many matches beside it as on it, and so does noise: what a
   /// plane has more on it than beside it is its own. Nothing should be below a floor, but for wrong matches
-  /// and for what is seen mirrored in it.
+  /// and for what is seen mirrored in it; the latter does not count where it is known.
   [[nodiscard]] int score() const { return on - beside - below + mirrored; }
   /// What planes are compared by: the score, and its share in what lies under the horizon. By the score
   /// alone, a plane that spans the picture would beat a road that fills its lower half.
@@ -209,7 +209,9 @@ class Places {
   std::vector<std::size_t> members_;
 };
 
-/// Of the matches under the plane, those of which the original is seen where the plane as a mirror puts it.
+/// Of the matches under the plane, those of which the original is seen where the plane as a mirror puts it. A
+/// point's distance from the plane, in units of its depth, is the difference of the disparities divided by
+/// the normal's length.
 int mirrored(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera) {
   const Vec3 normal = camera.normal(plane);
   const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;

@@ -49,7 +49,8 @@ void fields(FigureConfig& c, V&& v) {
   v("continuation_weight", c.continuation_weight, "px of evidence",
     "what it says for ground that ground of its colour goes on beside it; 0 = nothing", range(0.0F, 10.0F));
   v("largest_part", c.largest_part, "% of the image",
-    "ground that touches figure speaks for its colour only with what it is larger than this: it may be a part "
+    "ground that touches figure speaks for its colour only with what it is larger than this: it may be a "
+    "part "
     "of an object without evidence; 0 = with all",
     range(0.0F, 100.0F));
 }
@@ -60,17 +61,17 @@ void fields(FigureConfig& c, V&& v) {
 /// margin before the background. A plain stretch between two pieces of evidence belongs to the farther of its
 /// ends, since an edge belongs to the nearer of the surfaces that it parts: it is figure where both ends are,
 /// and says nothing where those lie in different depths. A stretch that runs out of the image is ground, at
-/// half weight: what the picture cuts off is mostly background. Figure that is seen right
-/// beside a facet's border counts border_weight, for it may be the neighbour's. No conclusion is drawn along
-/// the foot of a wall: a skirting board has no upright edges, and would join all that stands before it.
+/// half weight: what the picture cuts off is mostly background. Figure that is seen right beside a facet's
+/// border counts border_weight, for it may be the neighbour's. No conclusion is drawn along the foot of a
+/// wall: a skirting board has no upright edges, and would join all that stands before it.
 ///
 /// These votes are the costs of a facet's two labels; parting two neighbours costs the more the longer and
 /// the weaker their common border. The labelling of least cost is exact: a minimum cut. It is found three
 /// times: the second and third time facets that are not seen to be figure also go by their colour, compared
 /// with all that is ground and with all that is seen to be figure, and by whether the ground around them goes
-/// on in their colour, as a wall does behind two objects. Ground that touches figure has no say in that unless
-/// it is larger than largest_part: it may be the object's. (METHOD §6, beyond the paper; colour against the
-/// two models and cut in turn: Rother, Kolmogorov & Blake 2004, "GrabCut")
+/// on in their colour, as a wall does behind two objects. Ground that touches figure has a say in that only
+/// with what it is larger than largest_part: it may be the object's. (METHOD §6, beyond the paper; colour
+/// against the two models and cut in turn: Rother, Kolmogorov & Blake 2004, "GrabCut")
 std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                                           View<const float> evidence_px, const Background& background,
                                           const FigureConfig& config, const Exec& exec);
