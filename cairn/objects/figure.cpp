@@ -134,8 +134,9 @@ std::vector<double> counted(const std::vector<Look>& looks, const std::vector<st
                             const std::vector<bool>& asked, double largest_part) {
   std::vector<double> pixels(looks.size());
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    const double spared = asked[i] ? largest_part : 0;
-    pixels[i] = figure[i] == 0 ? std::max(looks[i].pixels - spared, 0.0) : looks[i].seen ? looks[i].pixels : 0;
+    const double as_ground = std::max(looks[i].pixels - (asked[i] ? largest_part : 0), 0.0);
+    const double as_figure = looks[i].seen ? looks[i].pixels : 0;
+    pixels[i] = figure[i] != 0 ? as_figure : as_ground;
   }
   return pixels;
 }
