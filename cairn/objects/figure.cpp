@@ -376,7 +376,9 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * static_cast<std::int64_t>(looks[i].pixels));
   }
   std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
-  const auto largest_part = static_cast<double>(pixels_in(config.largest_part, gray.size()));
+  // Where no floor is known, what mirrors an object would pass for a part of it.
+  const double largest_part =
+      background.has_floor ? static_cast<double>(pixels_in(config.largest_part, gray.size())) : 0;
   Continuation goes_on(looks, gray.width());
   for (int round = 1; round < kRounds; ++round) {
     std::vector<std::int64_t> with_colour_ground = ground_costs;

@@ -436,7 +436,9 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     ties.push_back({b.a, b.b, std::llround(kUnit * cost)});
   }
   const double largest_part =
-      std::ceil(double{config.largest_part} * static_cast<double>(gray.size().area()) / 100);
+      background.has_floor
+          ? std::ceil(double{config.largest_part} * static_cast<double>(gray.size().area()) / 100)
+          : 0;
   std::vector<std::int32_t> figure(patches.size());
   for (int round = 0; round < kRounds; ++round) {
     const Sides sides{figure, counted(patches, figure, facets.borders, largest_part)};

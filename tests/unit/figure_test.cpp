@@ -40,9 +40,9 @@ struct Stage {
       for (int x = first; x < last; ++x) evidence(x, y) = disparity_px;
     }
   }
-  [[nodiscard]] Labels figure(int facets, const FigureConfig& config = {}) const {
+  [[nodiscard]] Labels figure(int facets, const FigureConfig& config = {}, bool has_floor = false) const {
     return separate_figure({labels.clone(), facets, borders_of(labels, edges)}, grey, rgb, evidence,
-                           Background{{{0, 0, kBehind}}}, config, {});
+                           Background{{{0, 0, kBehind}}, has_floor}, config, {});
   }
 };
 
@@ -352,7 +352,7 @@ TEST(Figure, ThatIsSeenAwayFromABorderCountsWhateverThatWeight) {
 
 /// A small object of which a part, facet 2 with 5 % of the picture, shows no evidence, and a large object in
 /// another colour, so that the small one's colour is no more common in the figure than in its own part.
-Labels with_a_plain_part(float largest_part) {
+Labels with_a_plain_part(float largest_part, bool has_floor) {
   Stage stage;
   stage.facet(1, 20, 22);
   stage.facet(2, 22, 27);
@@ -366,16 +366,20 @@ Labels with_a_plain_part(float largest_part) {
   for (int y = 0; y < kSize.height; ++y) std::fill_n(stage.grey.row(y) + 22, 5, grey_of(1));
   FigureConfig config;
   config.largest_part = largest_part;
-  return stage.figure(4, config);
+  return stage.figure(4, config, has_floor);
 }
 
 TEST(Figure, TakesInAPartInItsColourThatPassedForGround) {
-  EXPECT_EQ(with_a_plain_part(5), (Labels{0, 1, 1, 1}));
+  EXPECT_EQ(with_a_plain_part(5, true), (Labels{0, 1, 1, 1}));
 }
 
 TEST(Figure, LosesAPartThatSpeaksForItsColourAsGround) {
-  EXPECT_EQ(with_a_plain_part(0), (Labels{0, 1, 0, 1}));
-  EXPECT_EQ(with_a_plain_part(2), (Labels{0, 1, 0, 1}));  // larger than that
+  EXPECT_EQ(with_a_plain_part(0, true), (Labels{0, 1, 0, 1}));
+  EXPECT_EQ(with_a_plain_part(2, true), (Labels{0, 1, 0, 1}));  // larger than that
+}
+
+TEST(Figure, LeavesWhatMayBeAMirrorImageWhereNoFloorIsKnown) {
+  EXPECT_EQ(with_a_plain_part(5, false), (Labels{0, 1, 0, 1}));
 }
 
 TEST(Figure, OutvotesAFewWrongDisparities) {
