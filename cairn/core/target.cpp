@@ -47,7 +47,7 @@ bool runs_here(Target target) {
 std::vector<Target> compiled_targets() {
   std::vector<Target> targets;
   for (const auto& [target, unused] : kNames) {
-    if (target != Target::best && kernels::match_rows(target) != nullptr) targets.push_back(target);
+    if (target != Target::best && kernels::match_kernels(target) != nullptr) targets.push_back(target);
   }
   return targets;
 }

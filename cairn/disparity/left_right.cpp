@@ -4,6 +4,7 @@
 #include <bit>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/left_right.hpp>
+#include <cairn/matching/kernels.hpp>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -15,10 +16,6 @@ namespace cairn {
 namespace {
 
 constexpr int kGrain = 32;  // rows
-
-int row_of_match(const Matches& matches, int x, int y) {
-  return matches.row_offset.empty() ? y : y + matches.row_offset(x, y);
-}
 
 /// How many rows up or down a match may lie.
 int largest_row_offset(const Matches& matches) {
@@ -40,8 +37,8 @@ Claim claim_of(float cost, std::int16_t disparity) {
   return Claim{std::bit_cast<std::uint32_t>(cost + 0.0F)} << 16 |
          static_cast<std::uint16_t>(disparity - kNoMatch);
 }
-int disparity_of(Claim claim) {
-  return static_cast<int>(claim & 0xFFFF) + kNoMatch;
+std::int32_t disparity_of(Claim claim) {
+  return static_cast<std::int32_t>(claim & 0xFFFF) + kNoMatch;
 }
 
 /// What the left winners say about a row of the right image: each pixel goes to the cheapest left one that
@@ -62,25 +59,28 @@ void vote_row(const Matches& matches, int right_y, int band, Claim* claims) {
   }
 }
 
-/// `back(x)`: the disparity of the right pixel that left pixel x is matched with. Asked only where there is
-/// one.
+/// Where row_offset tells which row a match lies in. `back(x, y)`: the disparity of a right pixel.
 template <class Back>
-void compare_row(const std::int16_t* best, int width, int max_diff, const Back& back, Reject* out) {
-  for (int x = 0; x < width; ++x) {
-    const bool agrees = best[x] == kNoMatch || std::abs(best[x] - back(x)) <= max_diff;
-    out[x] = agrees ? Reject::none : Reject::left_right;
+void compare_across_rows(const Matches& matches, int y, int max_diff, const Back& back, Reject* verdict) {
+  const std::int16_t* const best = matches.best.row(y);
+  for (int x = 0; x < matches.best.width(); ++x) {
+    const bool agrees = best[x] == kNoMatch ||
+                        std::abs(best[x] - back(x - best[x], y + matches.row_offset(x, y))) <= max_diff;
+    verdict[x] = agrees ? Reject::none : Reject::left_right;
   }
 }
 
 Image<Reject> compare_with_votes(const Matches& matches, int max_diff, const Exec& exec) {
   const Size size = matches.best.size();
   const int band = largest_row_offset(matches);
-  Image<Reject> verdict(size, exec.pool);
   const auto width = static_cast<std::size_t>(size.width);
+  const auto look_back = kernels::match_kernels(exec).look_back;
+  Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     // The rows of votes that a left row may look into: its own and `band` up and down.
     const int kept = 2 * band + 1;
     std::vector<Claim> memory(static_cast<std::size_t>(kept) * (width + 1));
+    std::vector<std::int32_t> back(width);
     const auto claims_of = [&](int right_y) {
       return memory.data() + static_cast<std::size_t>(right_y % kept) * (width + 1) + 1;
     };
@@ -88,17 +88,12 @@ Image<Reject> compare_with_votes(const Matches& matches, int max_diff, const Exe
     for (int y = std::max(0, first - band); y < std::min(first + band, size.height); ++y) vote(y);
     for (int y = first; y < last; ++y) {
       if (y + band < size.height) vote(y + band);
-      const std::int16_t* const best = matches.best.row(y);
-      const Claim* const here = claims_of(y);
-      if (band == 0) {
-        compare_row(
-            best, size.width, max_diff, [=](int x) { return disparity_of(here[x - best[x]]); },
-            verdict.row(y));
+      if (matches.row_offset.empty()) {
+        std::transform(claims_of(y), claims_of(y) + width, back.data(), disparity_of);
+        look_back(matches.best.row(y), back.data(), size.width, max_diff, verdict.row(y));
       } else {
-        compare_row(
-            best, size.width, max_diff,
-            [&](int x) { return disparity_of(claims_of(row_of_match(matches, x, y))[x - best[x]]); },
-            verdict.row(y));
+        const auto voted = [&](int x, int right_y) { return disparity_of(claims_of(right_y)[x]); };
+        compare_across_rows(matches, y, max_diff, voted, verdict.row(y));
       }
     }
   });
@@ -108,19 +103,17 @@ Image<Reject> compare_with_votes(const Matches& matches, int max_diff, const Exe
 Image<Reject> compare_with_right(const Matches& matches, int max_diff, const Exec& exec) {
   assert(matches.best_right.size() == matches.best.size());
   const Size size = matches.best.size();
+  const auto look_back = kernels::match_kernels(exec).look_back;
   Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
+    std::vector<std::int32_t> back(static_cast<std::size_t>(size.width));
     for (int y = first; y < last; ++y) {
-      const std::int16_t* const best = matches.best.row(y);
-      const std::int16_t* const right = matches.best_right.row(y);
       if (matches.row_offset.empty()) {
-        compare_row(
-            best, size.width, max_diff, [=](int x) { return right[x - best[x]]; }, verdict.row(y));
+        std::copy_n(matches.best_right.row(y), size.width, back.data());
+        look_back(matches.best.row(y), back.data(), size.width, max_diff, verdict.row(y));
       } else {
-        compare_row(
-            best, size.width, max_diff,
-            [&](int x) { return matches.best_right(x - best[x], row_of_match(matches, x, y)); },
-            verdict.row(y));
+        const auto right = [&](int x, int right_y) { return matches.best_right(x, right_y); };
+        compare_across_rows(matches, y, max_diff, right, verdict.row(y));
       }
     }
   });

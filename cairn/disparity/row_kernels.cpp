@@ -38,33 +38,12 @@ HWY_AFTER_NAMESPACE();
 #define CAIRN_KERNEL_TARGET plain_kernels
 #include <cairn/disparity/row_kernels-inl.hpp>
 
+#include <cairn/core/of_target.hpp>
+
 namespace cairn::kernels {
 
 const RowKernels* row_kernels(Target target) {
-  switch (target) {
-    case Target::scalar:
-      return &plain_kernels::kRowKernels;
-#if CAIRN_WITH_HWY
-#if HWY_TARGETS & HWY_SSE4
-    case Target::sse4:
-      return &N_SSE4::kRowKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Target::avx2:
-      return &N_AVX2::kRowKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Target::avx512:
-      return &N_AVX3::kRowKernels;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Target::neon:
-      return &N_NEON::kRowKernels;
-#endif
-#endif
-    default:
-      return nullptr;
-  }
+  CAIRN_OF_TARGET(target, kRowKernels)
 }
 
 const RowKernels& row_kernels(const Exec& exec) {

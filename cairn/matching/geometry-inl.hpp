@@ -25,7 +25,7 @@ constexpr bool correlates(Cost cost) {
   return cost != Cost::sad && cost != Cost::zsad;
 }
 
-constexpr int kMargin = 64;  // lanes without candidate before and after a pixel's
+constexpr int kMargin = 32;  // lanes without candidate before and after a pixel's
 constexpr int kTile = 64;    // lanes whose box sums are held in registers at a time
 
 /// How wide sums and costs are. Every operator fits these.
@@ -112,7 +112,7 @@ struct Geometry {
         count(task.config.num_disparities),
         lanes(round_up(count, kTile / 2)),
         pad(std::max(0, -first_d)),
-        length(round_up(pad + width + std::max(0, first_d) + lanes + kMargin, 16)) {}
+        length(round_up(pad + width + std::max(0, first_d) + lanes + 64, 16)) {}
 
   [[nodiscard]] int reversed(int x_right) const { return pad + width - 1 - x_right; }
   [[nodiscard]] int first_lane(int x) const { return reversed(x - first_d); }

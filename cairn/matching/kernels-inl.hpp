@@ -32,11 +32,8 @@ class Band {
         step_(keeps_costs_ ? kBlock : round_up(g_.width, kBlock)),
         blocks_{Block<Width>(g_, step_, keeps_costs_), Block<Width>(g_, step_, keeps_costs_)},
         least_(keeps_costs_ && radius_ > 0 ? g_.lanes : 0),
-        hide_(2 * g_.lanes + kMargin),
         candidates_(round_up(g_.width, kBlock)),
         winners_(round_up(g_.width, kBlock)) {
-    std::fill_n(hide_.data(), hide_.size(), std::numeric_limits<Lane>::lowest());
-    std::fill_n(hide_.data() + g_.lanes - 1, 3, kNone<Lane>);
     for (int x = 0; x < g_.width; ++x) candidates_[x] = g_.end(x) - g_.begin(x);
     strips_.emplace_back(0, g_, correlates(kCost));
     for (int k = 1; k <= radius_; ++k) {
@@ -80,13 +77,8 @@ class Band {
     }
     strip.rows += (comes ? 1 : 0) - (goes ? 1 : 0);
     if constexpr (correlates(kCost)) {
-      move_down(strip.left, strip.left_pairs.data());
-      move_down(strip.right, strip.right_pairs.data());
-      // The product that goes out is taken away.
-      for (int x = 0; x < g_.width; ++x) {
-        std::int32_t& pair = strip.left_pairs[g_.pad + x];
-        pair = Wide::pair_of(pair & 0xFFFF, -(pair >> 16));
-      }
+      move_down<-1>(strip.left, strip.left_pairs.data());
+      move_down<1>(strip.right, strip.right_pairs.data());
     }
   }
 
@@ -96,13 +88,13 @@ class Band {
     const auto* zeros = reinterpret_cast<const Pixel*>(zeros_.data());
     const Pixel* in = incoming >= 0 ? left.row(incoming) : zeros;
     const Pixel* out = outgoing >= 0 ? left.row(outgoing) : zeros;
-    typename Width::Sum* pairs = strip.left_pairs.data() + g_.pad;
-    for (int x = 0; x < g_.width; ++x) pairs[x] = Width::pair_of(in[x], out[x]);
+    // Of a correlation, the product that goes out is taken away.
+    constexpr int kSign = correlates(kCost) ? -1 : 1;
+    pair_up<Width, kSign>(in, out, g_.width, strip.left_pairs.data() + g_.pad);
 
     in = incoming >= 0 ? right.row(incoming + strip.row) : zeros;
     out = outgoing >= 0 ? right.row(outgoing + strip.row) : zeros;
-    pairs = strip.right_pairs.data() + g_.reversed(g_.width - 1);
-    for (int i = 0, x = g_.width - 1; i < g_.width; ++i, --x) pairs[i] = Width::pair_of(in[x], out[x]);
+    pair_up_reversed<Width>(in, out, g_.width, strip.right_pairs.data() + g_.pad);
   }
 
   // -- one row's costs ------------------------------------------------------------------------------------
@@ -196,21 +188,12 @@ class Band {
     });
   }
 
-  template <bool kTies>
-  void update_right(const CostBlock& costs, int x_first, int x_last, RightRow& right) const {
-    if constexpr (std::is_same_v<Width, Tagged>) {
-      if (x_last - x_first == kBlock)
-        return kernels::CAIRN_KERNEL_TARGET::update_right<kTies>(costs, g_, x_first, right);
-    }
-    kernels::CAIRN_KERNEL_TARGET::update_right<Width, kTies>(costs, g_, x_first, x_last - x_first, right);
-  }
-
   void look_at(const Block<Width>& block, const Work& work, int y) {
     const auto [strip, x_first, x_last, begins, ends] = work;
     if (full_ && mine(y + strip->row)) {
       RightRow& right = right_row(y + strip->row);
-      radius_ > 0 ? update_right<true>(block.costs, x_first, x_last, right)
-                  : update_right<false>(block.costs, x_first, x_last, right);
+      radius_ > 0 ? update_right<Width, true>(block.costs, g_, x_first, x_last - x_first, right)
+                  : update_right<Width, false>(block.costs, g_, x_first, x_last - x_first, right);
     }
     if (!mine(y)) return;
     if (begins) winners_.start(block.winners.front(), x_first, x_last);
@@ -222,7 +205,7 @@ class Band {
       if (begins) least_.clear();
       keep_lesser<Width>(block.costs, x_last - x_first, g_.lanes, least_);
     }
-    if (ends) settle_evidence(radius_ > 0 ? least_ : block.costs, x_first, y);
+    if (ends) settle_evidence(radius_ > 0 ? least_ : block.costs, x_first, x_last - x_first, y);
   }
 
   // -- results --------------------------------------------------------------------------------------------
@@ -251,40 +234,40 @@ class Band {
   }
 
   /// Writes what a block's costs tell beside the winners. One question after the other for all its pixels, so
-  /// that no pixel waits for its own answer. All sixteen are asked, also where the row ends before: rows of
-  /// images are padded to more than that.
-  void settle_evidence(const CostBlock& block, int x_first, int y) {
-    if (full_) settle_mean(block, x_first, y);
+  /// that no pixel waits for its own answer. All of the block are asked, also where the row ends before;
+  /// written are whole vectors, to which rows of images are padded.
+  void settle_evidence(const CostBlock& block, int x_first, int pixels, int y) {
+    if (full_) settle_mean(block, x_first, pixels, y);
     const std::int32_t* const best = winners_.lane.data() + x_first;
     alignas(64) std::array<Lane, kBlock> before;
     alignas(64) std::array<Lane, kBlock> after;
     for (int i = 0; i < kBlock; ++i) {
-      const Lane* const costs = block.of(i);
-      before[static_cast<std::size_t>(i)] = costs[best[i] - 1];
-      after[static_cast<std::size_t>(i)] = costs[best[i] + 1];
+      Lane* const costs = block.of(i) + best[i];
+      before[static_cast<std::size_t>(i)] = costs[-1];
+      after[static_cast<std::size_t>(i)] = costs[1];
+      costs[-1] = costs[0] = costs[1] = kNone<Lane>;  // so that the runner-up is the least of what is left
     }
     alignas(64) std::array<Lane, kBlock> runner_up;
     runner_up.fill(kNone<Lane>);
     for_each_tile([&]<int kLanes>(int first) {
       std::array<Lane, kBlock> of_tile;
       for (int i = 0; i < kBlock; ++i) {
-        const Lane* const hidden = hide_.data() + g_.lanes - best[i] + first;
-        of_tile[static_cast<std::size_t>(i)] = least_cost<Width, kLanes>(block.of(i) + first, hidden);
+        of_tile[static_cast<std::size_t>(i)] = least_cost<Width, kLanes>(block.of(i) + first);
       }
       for (std::size_t i = 0; i < kBlock; ++i) runner_up[i] = std::min(runner_up[i], of_tile[i]);
     });
-    store_costs(before, task_.out.cost_before.row(y) + x_first);
-    store_costs(after, task_.out.cost_after.row(y) + x_first);
-    store_costs(runner_up, task_.out.runner_up.row(y) + x_first);
+    store_costs(before, pixels, task_.out.cost_before.row(y) + x_first);
+    store_costs(after, pixels, task_.out.cost_after.row(y) + x_first);
+    store_costs(runner_up, pixels, task_.out.runner_up.row(y) + x_first);
   }
 
-  void store_costs(const std::array<Lane, kBlock>& kept, float* to) const {
-    for (int i = 0; i < kBlock; i += lane_count<Wide>()) {
+  void store_costs(const std::array<Lane, kBlock>& kept, int pixels, float* to) const {
+    for (int i = 0; i < pixels; i += lane_count<Wide>()) {
       lanes::Store(as_costs(Width(), kept.data() + i), F(), to + i);
     }
   }
 
-  void settle_mean(const CostBlock& block, int x_first, int y) const {
+  void settle_mean(const CostBlock& block, int x_first, int pixels, int y) const {
     const F f;
     const std::int32_t* const candidates = candidates_.data() + x_first;
     alignas(64) std::array<float, kBlock> sums;
@@ -293,7 +276,7 @@ class Band {
           sum_of_costs<Width>(block.of(i), g_.lanes, g_.lanes - candidates[i]);
     }
     float* const mean = task_.out.mean_cost.row(y) + x_first;
-    for (int i = 0; i < kBlock; i += lane_count<Wide>()) {
+    for (int i = 0; i < pixels; i += lane_count<Wide>()) {
       const VF count = lanes::ConvertTo(f, lanes::Load(I(), candidates + i));
       const VF quotient = lanes::Div(lanes::Load(f, sums.data() + i), count);
       const auto none = lanes::Eq(count, lanes::Zero(f));
@@ -326,8 +309,7 @@ class Band {
   Scratch<std::int32_t> zeros_;
   int step_;  // left pixels in a block
   std::array<Block<Width>, 2> blocks_;
-  CostBlock least_;     // over the rows of the band
-  Scratch<Lane> hide_;  // more than any cost for a lane and its neighbours, less than any for all others
+  CostBlock least_;                   // over the rows of the band
   Scratch<std::int32_t> candidates_;  // [x]: so many
   RowWinners winners_;
   std::vector<Strip> strips_;
@@ -338,8 +320,6 @@ template <Cost kCost, class Width = Wide, bool kDouble = false>
 void run_band(const MatchTask& task, int first, int last) {
   Band<kCost, Width, kDouble>(task, first, last).run();
 }
-
-}  // namespace
 
 void match_rows(const MatchTask& task, int first, int last) {
   const MatchConfig& config = task.config;
@@ -368,5 +348,10 @@ void match_rows(const MatchTask& task, int first, int last) {
                               : run_band<Cost::zncc, Wide, true>(task, first, last);
   }
 }
+
+}  // namespace
+
+extern const MatchKernels kMatchKernels;
+const MatchKernels kMatchKernels{match_rows, filter_row, refine_row, look_back};
 
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

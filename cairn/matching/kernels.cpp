@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cairn/core/target.hpp>
 #include <cairn/matching/kernels.hpp>
 #include <cairn/matching/pixel_math.hpp>
 #include <cairn/matching/scratch.hpp>
@@ -35,6 +36,7 @@ HWY_BEFORE_NAMESPACE();
 #include <cairn/matching/geometry-inl.hpp>
 #include <cairn/matching/winners-inl.hpp>
 #include <cairn/matching/window_sums-inl.hpp>
+#include <cairn/matching/pixel_rows-inl.hpp>
 #include <cairn/matching/kernels-inl.hpp>
 // clang-format on
 HWY_AFTER_NAMESPACE();
@@ -58,36 +60,20 @@ namespace lanes = plain;
 #include <cairn/matching/geometry-inl.hpp>
 #include <cairn/matching/winners-inl.hpp>
 #include <cairn/matching/window_sums-inl.hpp>
+#include <cairn/matching/pixel_rows-inl.hpp>
 #include <cairn/matching/kernels-inl.hpp>
 // clang-format on
 
+#include <cairn/core/of_target.hpp>
+
 namespace cairn::kernels {
 
-MatchRows match_rows(Target target) {
-  switch (target) {
-    case Target::scalar:
-      return plain_kernels::match_rows;
-#if CAIRN_WITH_HWY
-#if HWY_TARGETS & HWY_SSE4
-    case Target::sse4:
-      return N_SSE4::match_rows;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Target::avx2:
-      return N_AVX2::match_rows;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Target::avx512:
-      return N_AVX3::match_rows;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Target::neon:
-      return N_NEON::match_rows;
-#endif
-#endif
-    default:
-      return nullptr;
-  }
+const MatchKernels* match_kernels(Target target) {
+  CAIRN_OF_TARGET(target, kMatchKernels)
+}
+
+const MatchKernels& match_kernels(const Exec& exec) {
+  return *match_kernels(active_target(exec));
 }
 
 }  // namespace cairn::kernels

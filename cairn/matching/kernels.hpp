@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
+#include <cairn/disparity/reject.hpp>
 #include <cairn/matching/match.hpp>
+#include <cairn/matching/subpixel.hpp>
 #include <cstdint>
 
 /// The seam to the instruction sets: everything of match() that runs per pixel and disparity. Private to the
@@ -21,10 +23,33 @@ struct MatchTask {
   Pool pool;  // for the working memory
 };
 
-/// Fills the rows first … last − 1 of every map. Any split into bands gives the same result.
-using MatchRows = void (*)(const MatchTask& task, int first, int last);
+/// One row of refine_subpixel(). Rows of images: whole vectors are read and written, beyond `width` in their
+/// padding.
+struct RefinedRow {
+  const std::int16_t* best;
+  const float* before;  // nullptr: nothing is refined
+  const float* cost;
+  const float* after;
+  int width;
+  float* out;
+};
 
-/// The function of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
-MatchRows match_rows(Target target);
+struct MatchKernels {
+  /// Fills the rows first … last − 1 of every map. Any split into bands gives the same result.
+  void (*match_rows)(const MatchTask& task, int first, int last);
+  /// Out of three rows of an image one of filter_xsobel(). `columns`: room for a row.
+  void (*filter_row)(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
+                     std::int16_t* columns, Gray* out);
+  void (*refine_row)(SubpixelMethod method, const RefinedRow& row);
+  /// One row of reject_inconsistent(): `back`: the disparity of each right pixel. Rows of images, but for
+  /// `back`.
+  void (*look_back)(const std::int16_t* best, const std::int32_t* back, int width, int max_diff,
+                    Reject* verdict);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const MatchKernels* match_kernels(Target target);
+/// Those for the target that `exec` gets.
+const MatchKernels& match_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

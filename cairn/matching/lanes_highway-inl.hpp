@@ -170,6 +170,14 @@ HWY_INLINE std::int32_t SumOfAll(D, SumOf<D> sum) {
   return GetLane(SumOfLanes(Repartition<std::int32_t, D>(), sum));
 }
 
+/// `before`'s last lane and the lanes of v up to each, added up. Of at most 4 lanes.
+template <class D>
+HWY_INLINE Vec<D> RunningSum(D d, Vec<D> before, Vec<D> v) {
+  v = Add(v, ShiftLeftLanes<1>(d, v));
+  v = Add(v, ShiftLeftLanes<2>(d, v));
+  return Add(v, Broadcast<3>(before));
+}
+
 /// As many smaller numbers as there are 32-bit lanes.
 template <class D, class T>
 HWY_INLINE Vec<D> LoadWidened(D d, const T* from) {

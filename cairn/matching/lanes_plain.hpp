@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 /// Vectors of one lane in plain C++, with those of Highway's operations that the kernels use, under Highway's
 /// names and with its meaning. The kernels compiled over these are Target::scalar.
@@ -122,6 +123,12 @@ template <class T>
 T Or(T a, T b) {
   return static_cast<T>(a | b);
 }
+inline std::int32_t Abs(std::int32_t a) {
+  return std::abs(a);
+}
+inline std::int32_t GatherIndex(Tag<std::int32_t>, const std::int32_t* from, std::int32_t index) {
+  return from[index];
+}
 template <int kBits>
 std::int32_t ShiftRight(std::int32_t a) {
   return a >> kBits;
@@ -192,6 +199,13 @@ std::int32_t LeastOfEights(Tag<std::int16_t>, const std::int16_t (&v)[kCount]) {
     first = std::min(first, static_cast<std::uint32_t>(v[i] + 32768) << 3 | i % 8);
   }
   return static_cast<std::int32_t>(first >> 3 | (first & 7) << 16);
+}
+inline std::int32_t Reverse(Tag<std::int32_t>, std::int32_t v) {
+  return v;
+}
+/// `before`'s last lane and the lanes of v up to each, added up.
+inline std::int32_t RunningSum(Tag<std::int32_t>, std::int32_t before, std::int32_t v) {
+  return Add(before, v);
 }
 inline std::int32_t ZeroSum(Tag<std::int16_t>) {
   return 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/core/target.hpp>
 #include <cairn/matching/kernels.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/prefilter.hpp>
@@ -43,7 +42,7 @@ Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exe
     task.right_flat = right_flat;
   }
 
-  const kernels::MatchRows rows = kernels::match_rows(active_target(exec));
+  const auto rows = kernels::match_kernels(exec).match_rows;
   // A band first sums up the window's rows above it, at about a third of a row's price.
   const int grain = 2 * config.window_size;
   parallel_for(exec, pair.size().height, grain, [&](int first, int last) { rows(task, first, last); });

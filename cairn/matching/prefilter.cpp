@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/matching/kernels.hpp>
 #include <cairn/matching/pixel_math.hpp>
 #include <cairn/matching/prefilter.hpp>
 #include <cstddef>
@@ -47,30 +48,18 @@ class ColumnSums {
   bool started_ = false;
 };
 
-/// Out of three rows of the image one of the filtered. Short loops over small types, on copies of all that
-/// they need: compilers turn them into vectors without help. `columns`: room for a row.
-void filter_row(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
-                std::int16_t* columns, Gray* out) {
-  for (int x = 0; x < width; ++x) columns[x] = static_cast<std::int16_t>(above[x] + 2 * here[x] + below[x]);
-  const auto most = static_cast<std::int16_t>(cap);
-  const auto least = static_cast<std::int16_t>(-cap);
-  for (int x = 1; x < width - 1; ++x) {
-    const auto slope = static_cast<std::int16_t>(columns[x + 1] - columns[x - 1]);
-    out[x] = static_cast<Gray>(std::clamp(slope, least, most) + most);
-  }
-  out[0] = out[width - 1] = static_cast<Gray>(cap);
-}
-
 }  // namespace
 
 Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec) {
   Image<Gray> filtered(image.size(), exec.pool);
   const Size size = image.size();
+  const kernels::MatchKernels& run = kernels::match_kernels(exec);
   parallel_for(exec, size.height, 16, [&](int first, int last) {
     std::vector<std::int16_t> columns(static_cast<std::size_t>(size.width));
     for (int y = first; y < last; ++y) {
-      filter_row(image.row(mirrored(y - 1, size.height)), image.row(y),
-                 image.row(mirrored(y + 1, size.height)), size.width, cap, columns.data(), filtered.row(y));
+      run.filter_row(image.row(mirrored(y - 1, size.height)), image.row(y),
+                     image.row(mirrored(y + 1, size.height)), size.width, cap, columns.data(),
+                     filtered.row(y));
     }
   });
   return filtered;

@@ -45,33 +45,12 @@ namespace bytes = plain_bytes;
 #define CAIRN_LANES_ATTR
 #include <cairn/matching/semi_global_kernels-inl.hpp>
 
+#include <cairn/core/of_target.hpp>
+
 namespace cairn::kernels {
 
 const SemiGlobalKernels* semi_global_kernels(Target target) {
-  switch (target) {
-    case Target::scalar:
-      return &plain_kernels::kSemiGlobalKernels;
-#if CAIRN_WITH_HWY
-#if HWY_TARGETS & HWY_SSE4
-    case Target::sse4:
-      return &N_SSE4::kSemiGlobalKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Target::avx2:
-      return &N_AVX2::kSemiGlobalKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Target::avx512:
-      return &N_AVX3::kSemiGlobalKernels;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Target::neon:
-      return &N_NEON::kSemiGlobalKernels;
-#endif
-#endif
-    default:
-      return nullptr;
-  }
+  CAIRN_OF_TARGET(target, kSemiGlobalKernels)
 }
 
 }  // namespace cairn::kernels

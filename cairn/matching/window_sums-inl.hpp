@@ -29,7 +29,7 @@ struct Moments {
       : half(g.half),
         first(g.pad),
         width(wanted ? g.width : 0),
-        column_sum(wanted ? g.length + 2 * half + 16 : 0),
+        column_sum(wanted ? round_up(g.length + 2 * half + 16, 16) : 0),
         column_energy(column_sum.size()),
         sum_before(column_sum.size() + 1),
         energy_before(column_sum.size() + 1),
@@ -65,6 +65,42 @@ struct Strip {
         left(g, with_moments),
         right(g, with_moments) {}
 };
+
+/// Whole vectors of Wide::pair_of().
+template <int kSign, class Pixel>
+CAIRN_LANES_INLINE VI pair_up(const Pixel* in, const Pixel* out) {
+  const I i32;
+  const VI comes = lanes::LoadWidened(i32, in);
+  const VI goes = lanes::ShiftLeft<16>(lanes::LoadWidened(i32, out));
+  if constexpr (kSign > 0) return lanes::Or(lanes::And(comes, lanes::Set(i32, 0xFFFF)), goes);
+  return lanes::Sub(comes, goes);  // of numbers ≥ 0
+}
+
+/// Lays the pixels of two rows side by side, one that comes in and one that goes out, the latter times kSign.
+template <class Width, int kSign, class Pixel>
+void pair_up(const Pixel* in, const Pixel* out, int width, typename Width::Sum* pairs) {
+  int x = 0;
+  if constexpr (std::is_same_v<Width, Wide>) {
+    for (; x + lane_count<Wide>() <= width; x += lane_count<Wide>()) {
+      lanes::StoreU(pair_up<kSign>(in + x, out + x), I(), pairs + x);
+    }
+  }
+  for (; x < width; ++x) pairs[x] = Width::pair_of(in[x], kSign * out[x]);
+}
+/// The same, the last pixel first.
+template <class Width, class Pixel>
+void pair_up_reversed(const Pixel* in, const Pixel* out, int width, typename Width::Sum* pairs) {
+  int x = 0;
+  if constexpr (std::is_same_v<Width, Wide>) {
+    for (; x + lane_count<Wide>() <= width; x += lane_count<Wide>()) {
+      const VI reversed = lanes::Reverse(I(), pair_up<1>(in + x, out + x));
+      lanes::StoreU(reversed, I(), pairs + width - x - lane_count<Wide>());
+    }
+  }
+  const Pixel* const last_in = in + width - 1;
+  const Pixel* const last_out = out + width - 1;
+  for (int i = 0; i < width - x; ++i) pairs[i] = Width::pair_of(last_in[-i], last_out[-i]);
+}
 
 /// Which candidates there are at all: all bits set, or none.
 template <class Width>
@@ -190,11 +226,12 @@ CAIRN_LANES_INLINE VF cost_of(VI box, const LeftSums& left, const RightSums& rig
 // ----------------------------------------------------------------------------------------------------
 // The windows' own sums
 
-/// The columns' sums, one row further down. `pairs`: as the image has them, nothing negated.
-inline void move_down(Moments& m, const std::int32_t* pairs) {
+/// The columns' sums, one row further down. kSign: with which the pairs hold the row that goes out.
+template <int kSign>
+void move_down(Moments& m, const std::int32_t* pairs) {
   const I i32;
-  const VI difference_signs = lanes::Set(i32, Wide::pair_of(1, -1));
-  const VI sum_signs = lanes::Set(i32, Wide::pair_of(1, 1));
+  const VI difference_signs = lanes::Set(i32, Wide::pair_of(1, -kSign));
+  const VI sum_signs = lanes::Set(i32, Wide::pair_of(1, kSign));
   std::int32_t* const sums = m.column_sum.data() + m.half;
   std::int32_t* const energies = m.column_energy.data() + m.half;
   for (int e = m.first, end = m.first + m.width; e < end; e += lane_count<Wide>()) {
@@ -211,13 +248,14 @@ inline void sum_up_columns(Moments& m) {
   const std::int32_t* const column_energy = m.column_energy.data();
   std::int32_t* const sum_before = m.sum_before.data();
   std::int32_t* const energy_before = m.energy_before.data();
-  std::uint32_t sum = 0;
-  std::uint32_t energy = 0;
-  for (int e = 0, count = m.column_sum.size(); e < count; ++e) {
-    sum += static_cast<std::uint32_t>(column_sum[e]);
-    energy += static_cast<std::uint32_t>(column_energy[e]);
-    sum_before[e + 1] = static_cast<std::int32_t>(sum);
-    energy_before[e + 1] = static_cast<std::int32_t>(energy);
+  const lanes::CappedTag<std::int32_t, 4> d;
+  auto sum = lanes::Zero(d);
+  auto energy = lanes::Zero(d);
+  for (int e = 0, count = m.column_sum.size(); e < count; e += static_cast<int>(lanes::Lanes(d))) {
+    sum = lanes::RunningSum(d, sum, lanes::Load(d, column_sum + e));
+    energy = lanes::RunningSum(d, energy, lanes::Load(d, column_energy + e));
+    lanes::StoreU(sum, d, sum_before + e + 1);
+    lanes::StoreU(energy, d, energy_before + e + 1);
   }
 }
 
@@ -354,9 +392,11 @@ void begin_box(const Rows<Width>& rows, int first, int end) {
   const Rows<Width> in(rows);
   lanes::Vec<typename Width::SumTag> box[kVectors<Width, kLanes>];
   for (int i = 0; i < kLanes; ++i) in.box[first + i] = Width::empty_box(i);
+  CAIRN_UNROLL
   for (int v = 0; v < kVectors<Width, kLanes>; ++v)
     box[v] = lanes::Load(d, in.box + first + v * lane_count<Width>());
   for (int x = 0; x < end; ++x) enter<kCost, Width, kLanes, true>(in, first, x, box);
+  CAIRN_UNROLL
   for (int v = 0; v < kVectors<Width, kLanes>; ++v)
     lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
 }
@@ -411,6 +451,7 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
   typename Width::Cost* costs = keeps_costs ? block.costs.of(pixel) + first : nullptr;
   lanes::Vec<typename Width::SumTag> box[kCount];
   lanes::Vec<typename Width::CostTag> cost[kCount];
+  CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) box[v] = lanes::Load(d, in.box + first + v * lane_count<Width>());
   for (int x = x_begin; x < x_end; ++x) {
     if constexpr (kPlace != Place::right_end) enter<kCost, Width, kLanes, kBorder>(in, first, x + half, box);
@@ -431,6 +472,7 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
       lanes::Store(without_tag<Width>(cost[v]), d_cost, costs + v * lane_count<Width>());
     costs += block.costs.stride;
   }
+  CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
 }
 

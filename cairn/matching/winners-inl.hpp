@@ -8,7 +8,8 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-constexpr int kBlock = 16;  // left pixels whose costs are held at a time
+constexpr int kBlock = 32;       // left pixels whose costs are held at a time
+constexpr int kRightBlock = 16;  // of these, so many are handed on at a time: as many as a vector has lanes
 
 /// As Matches has it.
 template <class Width>
@@ -90,20 +91,18 @@ template <class Lane>
 struct RightRow {
   Scratch<Lane> cost;
   Scratch<Lane> lane;  // in the cost's own type, so that one mask serves both
-  explicit RightRow(int length) : cost(length + kMargin), lane(length + kMargin) { clear(); }
+  explicit RightRow(int length) : cost(length + 64), lane(length + 64) { clear(); }
   void clear() { std::fill_n(cost.data(), cost.size(), kNone<Lane>); }
 };
 
-/// The least of a tile's costs, each raised to what stands in `at_least`.
+/// The least of a tile's costs.
 template <class Width, int kLanes>
-CAIRN_LANES_INLINE typename Width::Cost least_cost(const typename Width::Cost* costs,
-                                                   const typename Width::Cost* at_least) {
+CAIRN_LANES_INLINE typename Width::Cost least_cost(const typename Width::Cost* costs) {
   const typename Width::CostTag d;
-  auto least = lanes::Max(lanes::Load(d, costs), lanes::LoadU(d, at_least));
+  auto least = lanes::Load(d, costs);
   CAIRN_UNROLL
   for (int v = 1; v < kVectors<Width, kLanes>; ++v) {
-    const int i = v * lane_count<Width>();
-    least = lanes::Min(lanes::Max(lanes::Load(d, costs + i), lanes::LoadU(d, at_least + i)), least);
+    least = lanes::Min(lanes::Load(d, costs + v * lane_count<Width>()), least);
   }
   return lanes::LeastLane(d, least);
 }
@@ -197,16 +196,18 @@ CAIRN_LANES_INLINE void keep_lesser(V& least, V& where, V cost, V lane) {
   least = lanes::Min(cost, least);
 }
 
-/// Hands the costs of a block's left pixels to the right pixels that they are about.
+/// Hands the costs of a block's left pixels begin … end − 1 to the right pixels that they are about.
+/// `x_first`: of the block.
 template <class Width, bool kTies>
-void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& g, int x_first, int pixels,
-                  RightRow<typename Width::Cost>& right) {
+void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& g, int x_first, int begin,
+                  int end, RightRow<typename Width::Cost>& right) {
   using Lane = typename Width::Cost;
   const typename Width::CostTag d;
   const auto one = lanes::Set(d, Lane{1});
-  Lane* const right_cost = right.cost.data() + g.first_lane(x_first + pixels - 1);
-  Lane* const right_lane = right.lane.data() + g.first_lane(x_first + pixels - 1);
-  const Lane* const first_costs = block.of(0) - pixels + 1;
+  const int pixels = end - begin;
+  Lane* const right_cost = right.cost.data() + g.first_lane(x_first + end - 1);
+  Lane* const right_lane = right.lane.data() + g.first_lane(x_first + end - 1);
+  const Lane* const first_costs = block.of(begin) - pixels + 1;
   const std::ptrdiff_t next = block.stride + 1;
   for (int j = 0, count = g.count + pixels - 1; j < count; j += lane_count<Width>()) {
     auto least = lanes::LoadU(d, right_cost + j);
@@ -237,28 +238,44 @@ CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t
   return least;
 }
 
-/// The same for a whole block: what is stored is loaded again by the next one at the same places.
+/// The same for kRightBlock pixels: what is stored is loaded again by the next ones at the same places.
 template <bool kTies>
-void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x_first,
+void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x_first, int begin,
                   RightRow<std::int16_t>& right) {
   const Tagged::CostTag d;
   const auto tag = lanes::Set(d, std::int16_t{7});
-  std::int16_t* const right_cost = right.cost.data() + g.first_lane(x_first + kBlock - 1);
-  std::int16_t* const right_lane = right.lane.data() + g.first_lane(x_first + kBlock - 1);
+  std::int16_t* const right_cost = right.cost.data() + g.first_lane(x_first + begin + kRightBlock - 1);
+  std::int16_t* const right_lane = right.lane.data() + g.first_lane(x_first + begin + kRightBlock - 1);
   const std::ptrdiff_t next = block.stride + 1;
-  for (int j = 0, count = g.count + kBlock - 1; j < count; j += lane_count<Tagged>()) {
+  for (int j = 0, count = g.count + kRightBlock - 1; j < count; j += lane_count<Tagged>()) {
     auto least = lanes::LoadU(d, right_cost + j);
     auto where = lanes::LoadU(d, right_lane + j);
     CAIRN_UNROLL
-    for (int pixel = 0; pixel < kBlock; pixel += 8) {
-      const int first = j - kBlock + 1 + pixel;
-      const auto cost = least_of_eight(block.of(pixel) + first, next);
+    for (int pixel = 0; pixel < kRightBlock; pixel += 8) {
+      const int first = j - kRightBlock + 1 + pixel;
+      const auto cost = least_of_eight(block.of(begin + pixel) + first, next);
       const auto lane =
           lanes::Add(lanes::CountFrom(d, static_cast<std::int16_t>(first)), lanes::And(cost, tag));
       keep_lesser<Tagged, kTies>(least, where, lanes::Or(cost, tag), lane);
     }
     lanes::StoreU(least, d, right_cost + j);
     lanes::StoreU(where, d, right_lane + j);
+  }
+}
+
+/// … and for all that a block holds.
+template <class Width, bool kTies>
+void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& g, int x_first, int pixels,
+                  RightRow<typename Width::Cost>& right) {
+  for (int begin = 0; begin < pixels; begin += kRightBlock) {
+    const int end = std::min(begin + kRightBlock, pixels);
+    if constexpr (std::is_same_v<Width, Tagged>) {
+      if (end - begin == kRightBlock) {
+        update_right<kTies>(block, g, x_first, begin, right);
+        continue;
+      }
+    }
+    update_right<Width, kTies>(block, g, x_first, begin, end, right);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cairn/core/target.hpp>
 #include <limits>
 #include <random>
 
@@ -119,8 +120,11 @@ TEST_P(ChecksEquivalence, LeftRight) {
           SCOPED_TRACE(text(size) + " band " + std::to_string(band) + " max_diff " +
                        std::to_string(max_diff));
           const LeftRightConfig config{max_diff, method};
-          EXPECT_EQ(numbers(reject_inconsistent(matches, config, exec)),
-                    numbers(reference::reject_inconsistent(matches, config)));
+          const auto expected = numbers(reference::reject_inconsistent(matches, config));
+          for (const Target target : supported_targets()) {
+            exec.target = target;
+            EXPECT_EQ(numbers(reject_inconsistent(matches, config, exec)), expected) << name(target);
+          }
         }
       }
     }

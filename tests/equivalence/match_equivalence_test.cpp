@@ -5,8 +5,10 @@
 #include <cairn/core/target.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/prefilter.hpp>
+#include <cairn/matching/subpixel.hpp>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "reference/match.hpp"
@@ -155,6 +157,17 @@ TEST_P(MatchEquivalence, HoldsForPrefilteredImages) {
   }
 }
 
+TEST_P(MatchEquivalence, HoldsForRowsOfSeveralBlocksAndSeveralTilesOfCandidates) {
+  for (const int width : {63, 64, 65, 96, 130}) expect_equal_to_reference({width, 3}, config(3, 0, 70));
+  for (const int count : {32, 33, 64, 65, 96, 97, 129}) {
+    auto filtered = config(9, -5, count);
+    filtered.prefilter = Prefilter::xsobel;
+    expect_equal_to_reference({140, 4}, filtered);
+    filtered.row_band = 1;
+    expect_equal_to_reference({75, 3}, filtered);
+  }
+}
+
 TEST_P(MatchEquivalence, HoldsForTheLargestSumsThatAWindowCanHave) {
   // Black and white in equal parts, like and unlike, and all white against all black.
   const Size size{40, 36};
@@ -175,6 +188,28 @@ TEST_P(MatchEquivalence, HoldsForTheLargestSumsThatAWindowCanHave) {
   }
 }
 
+TEST_P(MatchEquivalence, HoldsForTheLargestSumsOfPrefilteredImages) {
+  // Slopes to the utmost everywhere, up where the other image goes down.
+  const Size size{44, 30};
+  Image<Gray> steps(size);
+  Image<Gray> inverted(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      steps(x, y) = x % 4 < 2 ? 0 : 255;
+      inverted(x, y) = static_cast<Gray>(255 - steps(x, y));
+    }
+  }
+  // On either side of the sums that 13 and 16 bits hold.
+  for (const auto& [window, cap] :
+       {std::pair{7, 63}, std::pair{9, 50}, std::pair{9, 51}, std::pair{15, 18}, std::pair{15, 19},
+        std::pair{21, 63}, std::pair{23, 61}, std::pair{23, 62}}) {
+    auto filtered = config(window, 0, 5);
+    filtered.prefilter = Prefilter::xsobel;
+    filtered.prefilter_cap = cap;
+    expect_equal_to_reference(StereoPair::from(steps, inverted), filtered);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(AllCosts, MatchEquivalence,
                          testing::Values(Cost::sad, Cost::ssd, Cost::zsad, Cost::zssd, Cost::nssd,
                                          Cost::zncc),
@@ -186,12 +221,39 @@ TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
   for (const Size size : {Size{1, 1}, Size{2, 1}, Size{1, 5}, Size{3, 2}, Size{37, 41}}) {
     const Pictures pictures(size, 5);
     const View<const Gray> image = pictures.pair().left();
-    for (const int threads : {1, 3}) {
-      const Exec exec = Exec::with_threads(threads);
+    for (const Target target : supported_targets()) {
+      const Exec exec = Exec::with_threads(target == Target::scalar ? 3 : 1, target);
       EXPECT_EQ(first_difference(reference::filter_xsobel(image, 31), filter_xsobel(image, 31, exec)), "");
       for (const int window : {3, 9, 31}) {
         EXPECT_EQ(first_difference(reference::remove_mean(image, window), remove_mean(image, window, exec)),
                   "");
+      }
+    }
+  }
+}
+
+TEST(SubpixelEquivalence, RefinementMeetsItsDefinition) {
+  for (const Size size : {Size{1, 1}, Size{5, 3}, Size{70, 9}}) {
+    const Pictures pictures(size, 7);
+    for (const Evidence evidence : {Evidence::winner, Evidence::full}) {
+      const Matches matches = match(pictures.pair(),
+                                    {.cost = Cost::sad,
+                                     .window_size = 3,
+                                     .min_disparity = 2,
+                                     .num_disparities = 9,
+                                     .evidence = evidence},
+                                    {});
+      for (const auto& [method_name, method] : kSubpixelMethods) {
+        for (const bool enabled : {false, true}) {
+          const SubpixelConfig config{enabled, method};
+          for (const Target target : supported_targets()) {
+            const Exec exec = Exec::with_threads(1, target);
+            EXPECT_EQ(first_difference(reference::refine_subpixel(matches, config),
+                                       refine_subpixel(matches, config, exec)),
+                      "")
+                << text(size) << " " << method_name << " on " << name(target);
+          }
+        }
       }
     }
   }

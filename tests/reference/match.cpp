@@ -6,6 +6,7 @@
 #include <array>
 #include <cairn/matching/pixel_math.hpp>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 namespace cairn::reference {
@@ -148,6 +149,21 @@ Image<std::int16_t> remove_mean(View<const Gray> image, int window_size) {
       }
       count = std::max(count, 1);
       out(x, y) = static_cast<std::int16_t>(16 * image(x, y) - (16 * sum + count / 2) / count);
+    }
+  }
+  return out;
+}
+
+Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config) {
+  Image<float> out(matches.best.size());
+  for (int y = 0; y < out.height(); ++y) {
+    for (int x = 0; x < out.width(); ++x) {
+      const std::int16_t best = matches.best(x, y);
+      out(x, y) = best == kNoMatch ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(best);
+      if (best == kNoMatch || !config.enabled || matches.cost_before.empty()) continue;
+      const float a = matches.cost_before(x, y), m = matches.cost(x, y), c = matches.cost_after(x, y);
+      const float rise = config.method == SubpixelMethod::parabola ? (a - m) + (c - m) : std::max(a, c) - m;
+      if (rise > 0 && rise < kNoCost) out(x, y) += 0.5F * (a - c) / rise;
     }
   }
   return out;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/matching/match.hpp>
+#include <cairn/matching/subpixel.hpp>
 
 namespace cairn::reference {
 
@@ -10,5 +11,6 @@ namespace cairn::reference {
 Matches match(const StereoPair& pair, const MatchConfig& config);
 Image<Gray> filter_xsobel(View<const Gray> image, int cap);
 Image<std::int16_t> remove_mean(View<const Gray> image, int window_size);
+Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config);
 
 }  // namespace cairn::reference

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
+//
+// What is done for each pixel of a row before and after the search. Most are plain loops over short types, on
+// copies of all that they need: compilers turn them into vectors without help.
+
+namespace cairn::kernels::CAIRN_KERNEL_TARGET {
+namespace {
+
+inline void filter_row(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
+                       std::int16_t* columns, Gray* out) {
+  for (int x = 0; x < width; ++x) columns[x] = static_cast<std::int16_t>(above[x] + 2 * here[x] + below[x]);
+  const auto most = static_cast<std::int16_t>(cap);
+  const auto least = static_cast<std::int16_t>(-cap);
+  for (int x = 1; x < width - 1; ++x) {
+    const auto slope = static_cast<std::int16_t>(columns[x + 1] - columns[x - 1]);
+    out[x] = static_cast<Gray>(std::clamp(slope, least, most) + most);
+  }
+  out[0] = out[width - 1] = static_cast<Gray>(cap);
+}
+
+/// How steeply the curve through (−1, before), (0, least), (1, after) rises.
+template <SubpixelMethod kMethod>
+CAIRN_LANES_INLINE VF steepness(VF before, VF least, VF after) {
+  if constexpr (kMethod == SubpixelMethod::parabola) {
+    return lanes::Add(lanes::Sub(before, least), lanes::Sub(after, least));
+  } else {
+    return lanes::Sub(lanes::Max(before, after), least);
+  }
+}
+
+/// Where that curve is lowest: within ±1/2, as `least` is the least of the three. A missing neighbour (∞) and
+/// three equal costs give 0.
+template <SubpixelMethod kMethod>
+CAIRN_LANES_INLINE VF lowest(VF before, VF least, VF after) {
+  const F f;
+  const VF rise = steepness<kMethod>(before, least, after);
+  const auto defined = lanes::And(lanes::Gt(rise, lanes::Zero(f)), lanes::Lt(rise, lanes::Set(f, kNoCost)));
+  const VF divisor = lanes::IfThenElse(defined, rise, lanes::Set(f, 1.0F));
+  const VF offset = lanes::Div(lanes::Mul(lanes::Set(f, 0.5F), lanes::Sub(before, after)), divisor);
+  return lanes::IfThenElseZero(defined, offset);
+}
+
+template <SubpixelMethod kMethod>
+void refine_row(const RefinedRow& row) {
+  const F f;
+  const I i32;
+  for (int x = 0; x < row.width; x += lane_count<Wide>()) {
+    const VI best = lanes::LoadWidened(i32, row.best + x);
+    VF d = lanes::ConvertTo(f, best);
+    if (row.before != nullptr) {
+      const VF offset = lowest<kMethod>(lanes::Load(f, row.before + x), lanes::Load(f, row.cost + x),
+                                        lanes::Load(f, row.after + x));
+      d = lanes::Add(d, offset);
+    }
+    const auto none = lanes::RebindMask(f, lanes::Eq(best, lanes::Set(i32, std::int32_t{kNoMatch})));
+    const VF hole = lanes::Set(f, std::numeric_limits<float>::quiet_NaN());
+    lanes::Store(lanes::IfThenElse(none, hole, d), f, row.out + x);
+  }
+}
+inline void refine_row(SubpixelMethod method, const RefinedRow& row) {
+  method == SubpixelMethod::parabola ? refine_row<SubpixelMethod::parabola>(row)
+                                     : refine_row<SubpixelMethod::equiangular>(row);
+}
+
+inline void look_back(const std::int16_t* best, const std::int32_t* back, int width, int max_diff,
+                      Reject* verdict) {
+  const I i32;
+  const VI none = lanes::Set(i32, std::int32_t{kNoMatch});
+  const VI last = lanes::Set(i32, width - 1);
+  for (int x = 0; x < width; x += lane_count<Wide>()) {
+    const VI d = lanes::LoadWidened(i32, best + x);
+    // Held inside the row: where there is no match, and beyond the row's end.
+    const VI partner = lanes::Sub(lanes::CountFrom(i32, x), d);
+    const VI inside = lanes::Min(lanes::Max(partner, lanes::Zero(i32)), last);
+    const VI difference = lanes::Abs(lanes::Sub(d, lanes::GatherIndex(i32, back, inside)));
+    const auto differs = lanes::Gt(difference, lanes::Set(i32, max_diff));
+    const VI code = lanes::Set(i32, static_cast<std::int32_t>(Reject::left_right));
+    const VI found = lanes::IfThenZeroElse(lanes::Eq(d, none), lanes::IfThenElseZero(differs, code));
+    lanes::StoreNarrowed(i32, found, reinterpret_cast<std::uint8_t*>(verdict) + x);
+  }
+}
+
+}  // namespace
+}  // namespace cairn::kernels::CAIRN_KERNEL_TARGET
