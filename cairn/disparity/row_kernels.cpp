@@ -18,8 +18,7 @@
 #endif
 
 #if CAIRN_WITH_HWY
-// Only what Target names; see matching/kernels.cpp.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <cairn/core/highway_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/disparity/row_kernels.cpp"
 #include <hwy/foreach_target.h>

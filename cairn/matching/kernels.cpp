@@ -17,9 +17,7 @@
 #include <vector>
 
 #if CAIRN_WITH_HWY
-// Only what Target names; SSSE3 alone, the finer kinds of AVX-512 and Highway's emulation are never asked
-// for.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <cairn/core/highway_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/matching/kernels.cpp"
 #include <hwy/foreach_target.h>

@@ -78,7 +78,7 @@ HWY_INLINE auto LeastLane(D d, Vec<D> v) {
 /// The lanes are seen as rows of eight, one below the other. The least of all (less −32768), and above its 16
 /// bits the first column that it stands in.
 template <class D>
-HWY_INLINE std::int32_t LeastEighth(D d, Vec<D> v) {
+HWY_INLINE std::int32_t LeastEighth([[maybe_unused]] D d, Vec<D> v) {
   if constexpr (MaxLanes(D()) > 8) {
     const Half<D> half;
     return LeastEighth(half, Min(LowerHalf(half, v), UpperHalf(half, v)));
@@ -120,7 +120,7 @@ HWY_INLINE int FirstLeast(D d, const Vec<D> (&v)[kCount], TFromD<D>& least) {
   Vec<D> first = Set(d, T{kLanes * kCount});
   HWY_UNROLL(16)
   for (int k = kCount - 1; k >= 0; --k)
-    first = IfThenElse(Eq(v[k], wanted), CountFrom(d, T{k * kLanes}), first);
+    first = IfThenElse(Eq(v[k], wanted), CountFrom(d, static_cast<T>(k * kLanes)), first);
   return static_cast<int>(LeastLane(d, first));
 #endif
 }

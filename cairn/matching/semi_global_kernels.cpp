@@ -13,8 +13,7 @@
 #include <numeric>
 
 #if CAIRN_WITH_HWY
-// Only what Target names; see kernels.cpp.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <cairn/core/highway_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/matching/semi_global_kernels.cpp"
 #include <hwy/foreach_target.h>
