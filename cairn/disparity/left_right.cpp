@@ -29,12 +29,14 @@ int largest_row_offset(const Matches& matches) {
 }
 
 /// A left winner's claim to a right pixel as one number: of two the smaller wins, by its cost, then by its
-/// disparity. Costs are not negative, so that their bits are in their order.
+/// disparity. Costs are not negative, so that their bits are in their order; the sign that a zero may have is
+/// left out.
 using Claim = std::uint64_t;
 constexpr Claim kNoClaim = ~Claim{0};
 
 Claim claim_of(float cost, std::int16_t disparity) {
-  return Claim{std::bit_cast<std::uint32_t>(cost + 0.0F)} << 16 |
+  constexpr std::uint32_t kNoSign = 0x7FFFFFFF;
+  return Claim{std::bit_cast<std::uint32_t>(cost) & kNoSign} << 16 |
          static_cast<std::uint16_t>(disparity - kNoMatch);
 }
 std::int32_t disparity_of(Claim claim) {

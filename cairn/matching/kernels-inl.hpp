@@ -269,18 +269,35 @@ class Band {
 
   void settle_mean(const CostBlock& block, int x_first, int pixels, int y) const {
     const F f;
-    const std::int32_t* const candidates = candidates_.data() + x_first;
     alignas(64) std::array<float, kBlock> sums;
-    for (int i = 0; i < kBlock; ++i) {
-      sums[static_cast<std::size_t>(i)] =
-          sum_of_costs<Width>(block.of(i), g_.lanes, g_.lanes - candidates[i]);
-    }
+    sum_costs(block, candidates_.data() + x_first, sums);
     float* const mean = task_.out.mean_cost.row(y) + x_first;
     for (int i = 0; i < pixels; i += lane_count<Wide>()) {
-      const VF count = lanes::ConvertTo(f, lanes::Load(I(), candidates + i));
+      const VF count = lanes::ConvertTo(f, lanes::Load(I(), candidates_.data() + x_first + i));
       const VF quotient = lanes::Div(lanes::Load(f, sums.data() + i), count);
       const auto none = lanes::Eq(count, lanes::Zero(f));
       lanes::Store(lanes::IfThenElse(none, lanes::Set(f, kNoCost), quotient), f, mean + i);
+    }
+  }
+
+  void sum_costs(const CostBlock& block, [[maybe_unused]] const std::int32_t* candidates,
+                 std::array<float, kBlock>& sums) const {
+    if constexpr (std::is_base_of_v<Narrow, Width>) {
+      if (g_.count * Width::kLargestSum < 1 << 24) {
+        const I i32;
+        alignas(64) std::array<std::int32_t, kBlock> kept;
+        for (int i = 0; i < kBlock; ++i) {
+          kept[static_cast<std::size_t>(i)] = sum_of_kept<Width>(block.of(i), g_.lanes);
+        }
+        for (int i = 0; i < kBlock; i += lane_count<Wide>()) {
+          const VI missing = lanes::Sub(lanes::Set(i32, g_.lanes), lanes::Load(i32, candidates + i));
+          lanes::Store(sum_from_kept<Width>(kept.data() + i, g_.lanes, missing), F(), sums.data() + i);
+        }
+        return;
+      }
+    }
+    for (int i = 0; i < kBlock; ++i) {
+      sums[static_cast<std::size_t>(i)] = sum_by_parts<Width>(block.of(i), g_.lanes);
     }
   }
 

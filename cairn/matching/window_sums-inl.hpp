@@ -446,8 +446,9 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
   const typename Width::CostTag d_cost;
   const Rows<Width> in(rows);
   const int half = in.g.half;
-  const TileWinners<Width>& winners = block.winners[static_cast<std::size_t>(first / kTile)];
+  const auto winners = block.winners[static_cast<std::size_t>(first / kTile)].places();
   const bool keeps_costs = !block.costs.empty();
+  const std::ptrdiff_t stride = block.costs.stride;
   typename Width::Cost* costs = keeps_costs ? block.costs.of(pixel) + first : nullptr;
   lanes::Vec<typename Width::SumTag> box[kCount];
   lanes::Vec<typename Width::CostTag> cost[kCount];
@@ -470,7 +471,7 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
     CAIRN_UNROLL
     for (int v = 0; v < kCount; ++v)
       lanes::Store(without_tag<Width>(cost[v]), d_cost, costs + v * lane_count<Width>());
-    costs += block.costs.stride;
+    costs += stride;
   }
   CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());

@@ -28,12 +28,18 @@ struct TileWinners {
   Scratch<std::int32_t> first_lanes;
   explicit TileWinners(int pixels) : costs(pixels), first_lanes(pixels) {}
 
-  template <int kCount>
-  CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<typename Width::CostTag> (&cost)[kCount]) const {
-    typename Width::Cost least;
-    first_lanes[pixel] = lanes::FirstLeast(typename Width::CostTag(), cost, least);
-    costs[pixel] = as_cost<Width>(least);
-  }
+  /// Where winners are written, on its own: nothing of it is fetched anew for each pixel.
+  struct Places {
+    float* costs;
+    std::int32_t* first_lanes;
+    template <int kCount>
+    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<typename Width::CostTag> (&cost)[kCount]) const {
+      typename Width::Cost least;
+      first_lanes[pixel] = lanes::FirstLeast(typename Width::CostTag(), cost, least);
+      costs[pixel] = as_cost<Width>(least);
+    }
+  };
+  [[nodiscard]] Places places() const { return {costs.data(), first_lanes.data()}; }
   [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const { return lanes::Load(F(), costs.data() + pixel); }
   [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
     return lanes::Load(I(), first_lanes.data() + pixel);
@@ -45,10 +51,14 @@ struct TileWinners<Tagged> {
   Scratch<std::int32_t> tagged;
   explicit TileWinners(int pixels) : tagged(pixels) {}
 
-  template <int kCount>
-  CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<Tagged::CostTag> (&cost)[kCount]) const {
-    tagged[pixel] = lanes::LeastOfEights(Tagged::CostTag(), cost);
-  }
+  struct Places {
+    std::int32_t* tagged;
+    template <int kCount>
+    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<Tagged::CostTag> (&cost)[kCount]) const {
+      tagged[pixel] = lanes::LeastOfEights(Tagged::CostTag(), cost);
+    }
+  };
+  [[nodiscard]] Places places() const { return {tagged.data()}; }
   [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const {
     const VI sum = lanes::And(lanes::Load(I(), tagged.data() + pixel), lanes::Set(I(), 65535));
     const auto none = lanes::RebindMask(F(), lanes::Eq(sum, lanes::Set(I(), 65535)));
@@ -145,10 +155,9 @@ CAIRN_LANES_INLINE float sum_by_parts(const typename Width::Cost* costs, int cou
   return lanes::SumByHalves(F(), sums[0]);
 }
 
-/// The same sum out of the costs as they are kept, `missing` of which are none. Below 2^24 all its parts are
-/// exact in any order.
+/// The sum of costs as they are kept.
 template <class Width>
-CAIRN_LANES_INLINE float exact_sum(const std::int16_t* costs, int count, int missing) {
+CAIRN_LANES_INLINE std::int32_t sum_of_kept(const std::int16_t* costs, int count) {
   const typename Width::CostTag d;
   auto sum = lanes::ZeroSum(d);
   for (int first = 0; first < count; first += kTile / 2) {
@@ -157,17 +166,18 @@ CAIRN_LANES_INLINE float exact_sum(const std::int16_t* costs, int count, int mis
       sum = lanes::AddPairs(d, sum, lanes::Load(d, costs + first + v * lane_count<Width>()));
     }
   }
-  constexpr int kTag = (1 << Width::kShift) - 1;
-  const int from_0 = lanes::SumOfAll(d, sum) + (32768 - kTag) * count;
-  return static_cast<float>((from_0 >> Width::kShift) - missing * (65535 >> Width::kShift));
+  return lanes::SumOfAll(d, sum);
 }
 
+/// What sum_by_parts() says, out of the sum of `count` kept costs, `missing` of which are none. Below 2^24
+/// all parts are exact in any order.
 template <class Width>
-CAIRN_LANES_INLINE float sum_of_costs(const typename Width::Cost* costs, int count, int missing) {
-  if constexpr (std::is_base_of_v<Narrow, Width>) {
-    if ((count - missing) * Width::kLargestSum < 1 << 24) return exact_sum<Width>(costs, count, missing);
-  }
-  return sum_by_parts<Width>(costs, count);
+CAIRN_LANES_INLINE VF sum_from_kept(const std::int32_t* sum_of_kept, int count, VI missing) {
+  const I i32;
+  constexpr int kTag = (1 << Width::kShift) - 1;
+  const VI from_0 = lanes::Add(lanes::Load(i32, sum_of_kept), lanes::Set(i32, (32768 - kTag) * count));
+  const VI of_none = lanes::Mul(missing, lanes::Set(i32, 65535 >> Width::kShift));
+  return lanes::ConvertTo(F(), lanes::Sub(lanes::ShiftRight<Width::kShift>(from_0), of_none));
 }
 
 /// As Matches has them.
