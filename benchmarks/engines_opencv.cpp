@@ -33,7 +33,7 @@ Image<T> resized_by_opencv(const Image<T>& image, Size size) {
   return small;
 }
 
-Run compute(cv::Ptr<cv::StereoMatcher> matcher, const Scene& scene, int threads) {
+Run compute(const cv::Ptr<cv::StereoMatcher>& matcher, const Scene& scene, int threads) {
   return [=, out = std::make_shared<cv::Mat>(), &scene] {
     cv::setNumThreads(threads);
     matcher->compute(matrix(View<const Gray>(scene.left)), matrix(View<const Gray>(scene.right)), *out);
