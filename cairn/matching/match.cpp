@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/matching/kernels.hpp>
 #include <cairn/matching/match.hpp>
@@ -43,8 +44,10 @@ Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exe
   }
 
   const auto rows = kernels::match_kernels(exec).match_rows;
-  // A band first sums up the window's rows above it, at about a third of a row's price.
-  const int grain = 2 * config.window_size;
+  // A band first sums up the window's rows above it, at about a third of a row's price: few and large ones,
+  // but two for each thread, to even out what else the processors do.
+  const int bands = 2 * exec.threads();
+  const int grain = std::max(2 * config.window_size, (pair.size().height + bands - 1) / bands);
   parallel_for(exec, pair.size().height, grain, [&](int first, int last) { rows(task, first, last); });
   return matches;
 }
