@@ -5,21 +5,23 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/objects/ranks.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
-#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
 
 namespace cairn {
 namespace {
 
 constexpr int kGrain = 64;  // rows
 
-/// What one look at every pixel tells of a fused region.
+/// What the runs of a fused region tell of it.
 struct Outline {
   std::int64_t pixel_count = 0;
-  std::int64_t valid_count = 0;
-  std::array<std::int64_t, 3> colour_sum{};
   int first_pixel = 0;
   Rect box;
 };
@@ -36,20 +38,14 @@ struct Inputs {
 constexpr float kEdgeMin = 4.0F;          // grey levels …
 constexpr float kEdgeNoiseFactor = 3.0F;  // … plus deviations of the image noise
 
-std::vector<Outline> outlines(const Inputs& in) {
+std::vector<Outline> outlines(const Inputs& in, std::vector<Run>& runs) {
   const int width = in.fusion.labels.width();
   std::vector<Outline> result(in.fusion.parts.size());
   for_each_run(in.fusion.labels, [&](const Run& run) {
-    const float* const disparity = in.disparity_px.row(run.y);
-    int valid = 0;
-    for (int x = run.first; x < run.last; ++x)
-      valid += disparity[x] == disparity[x] ? 1 : 0;  // a hole is NaN
-    const std::array<int, 3> colour = colour_sum(in.left, in.left_rgb, run);
+    runs.push_back(run);
     Outline& outline = result[index(run.label)];
     if (outline.pixel_count == 0) outline.first_pixel = run.y * width + run.first;
     outline.pixel_count += run.length();
-    outline.valid_count += valid;
-    for (std::size_t c = 0; c < 3; ++c) outline.colour_sum[c] += colour[c];
     outline.box = united(outline.box, run.box());
   });
   return result;
@@ -63,52 +59,24 @@ int borders_touched(Rect box, Size image) {
 bool is_object(const Outline& outline, const Region& disparity_region, Size image,
                const ObjectsConfig& config) {
   const double percent = 100.0 * static_cast<double>(outline.pixel_count) / static_cast<double>(image.area());
-  return !disparity_region.is_floor && outline.valid_count > 0 && percent >= config.min_area &&
-         percent <= config.max_area && borders_touched(outline.box, image) < 3;
+  return !disparity_region.is_floor && percent >= config.min_area && percent <= config.max_area &&
+         borders_touched(outline.box, image) < 3;
 }
 
 /// The 2nd to the 98th percentile: the values of ranks ⌊(p·(n−1) + 50)/100⌋ in ascending order. Reorders
 /// `values`, which are not empty.
 float span_without_tails(std::vector<float>& values) {
-  const auto rank = [&](std::size_t percent) {
-    return values.begin() + static_cast<std::ptrdiff_t>((percent * (values.size() - 1) + 50) / 100);
-  };
-  const auto low = rank(2);
-  const auto high = rank(98);
-  std::nth_element(values.begin(), low, values.end());
-  const float lowest = *low;
-  std::nth_element(low, high, values.end());  // what is not below it keeps its ranks
-  return *high - lowest;
+  const auto rank = [&](std::size_t percent) { return (percent * (values.size() - 1) + 50) / 100; };
+  const auto [lowest, highest] = values_at_ranks(values, rank(2), rank(98));
+  return highest - lowest;
 }
 
 /// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.
 float median(std::vector<float>& values) {
-  const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), upper, values.end());
-  if (values.size() % 2 == 1) return *upper;
-  return (*upper + *std::max_element(values.begin(), upper)) / 2;
-}
-
-Rgb mean_colour(const Outline& outline) {
-  const auto mean = [&](std::size_t c) {
-    return static_cast<std::uint8_t>((outline.colour_sum[c] + outline.pixel_count / 2) / outline.pixel_count);
-  };
-  return {mean(0), mean(1), mean(2)};
-}
-
-/// Position and extent from the coordinates of an object's points, one list per axis.
-void place(Object& object, std::array<std::vector<float>, 3>& points) {
-  if (points[0].empty()) return;
-  std::array<float, 3> mean{};
-  std::array<float, 3> span{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::vector<float>& values = points[axis];
-    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-    mean[axis] = static_cast<float>(sum / static_cast<double>(values.size()));
-    span[axis] = span_without_tails(values);
-  }
-  object.position_in_camera_m = Vec3{mean[0], mean[1], mean[2]};
-  object.extent_in_camera_m = Vec3{span[0], span[1], span[2]};
+  const std::size_t upper = values.size() / 2;
+  if (values.size() % 2 == 1) return values_at_ranks(values, upper, upper).first;
+  const auto [below, above] = values_at_ranks(values, upper - 1, upper);
+  return (above + below) / 2;
 }
 
 /// How an object's outline looks, in steps from a pixel of it to a 4-neighbour that is not.
@@ -118,34 +86,138 @@ struct Rim {
   std::int64_t cut = 0;
 };
 
-Rim rim(const Inputs& in, RegionId region, Rect box) {
-  const View<const RegionId> labels = in.fusion.labels;
-  const auto step = [&](int x, int y, int u, int v) {
-    if (in.left_rgb.empty()) return std::abs(in.left(x, y) - in.left(u, v));
-    const Rgb p = in.left_rgb(x, y);
-    const Rgb q = in.left_rgb(u, v);
-    return std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)});
-  };
-  Rim result;
-  const auto look = [&](int x, int y, int u, int v) {
-    if (!labels.contains(u, v)) {
-      ++result.length;
-      ++result.cut;
-    } else if (labels(u, v) != region) {
-      ++result.length;
-      result.at_edge += step(x, y, u, v) > in.edge_min ? 1 : 0;
+/// What the pixels of an object show, gathered run by run. Values are appended without a branch: holes come
+/// irregularly.
+class Gathered {
+ public:
+  Gathered(const Inputs& in, std::size_t pixels) : in_(in), disparities_(pixels + 1) {
+    if (!in.rig) return;
+    for (std::vector<float>& axis : points_) axis.resize(pixels + 1);
+    for (std::vector<float>& axis : of_run_) axis.resize(slot(in.left.width()));
+  }
+
+  void add(const Run& run) {
+    const std::array<int, 3> colour = cairn::colour_sum(in_.left, in_.left_rgb, run);
+    for (std::size_t c = 0; c < 3; ++c) colour_sum_[c] += colour[c];
+    const float* const disparity = in_.disparity_px.row(run.y);
+    float* const room = disparities_.data() + valid_count_;
+    std::size_t valid = 0;
+    for (int x = run.first; x < run.last; ++x) {
+      room[valid] = disparity[x];
+      valid += disparity[x] == disparity[x] ? 1 : 0;  // a hole is NaN
     }
-  };
-  for (int y = box.y; y < box.y + box.height; ++y) {
-    for (int x = box.x; x < box.x + box.width; ++x) {
-      if (labels(x, y) != region) continue;
-      look(x, y, x - 1, y);
-      look(x, y, x + 1, y);
-      look(x, y, x, y - 1);
-      look(x, y, x, y + 1);
+    valid_count_ += valid;
+    if (in_.rig) add_points(*in_.rig, run, disparity);
+    look_aside(run, run.first, run.first - 1);
+    look_aside(run, run.last - 1, run.last);
+    look_along(run, run.y - 1);
+    look_along(run, run.y + 1);
+  }
+
+  [[nodiscard]] std::size_t valid_count() const { return valid_count_; }
+  [[nodiscard]] const std::array<std::int64_t, 3>& colour_sum() const { return colour_sum_; }
+  [[nodiscard]] const Rim& rim() const { return rim_; }
+  [[nodiscard]] std::vector<float> disparities() && {
+    disparities_.resize(valid_count_);
+    return std::move(disparities_);
+  }
+  /// Coordinates in the camera's frame of the valid pixels before infinity, one list per axis.
+  [[nodiscard]] std::array<std::vector<float>, 3> points() && {
+    for (std::vector<float>& axis : points_) axis.resize(point_count_);
+    return std::move(points_);
+  }
+
+ private:
+  /// As StereoRig::point_in_camera_m(), for a run at once.
+  void add_points(const StereoRig& rig, const Run& run, const float* disparity) {
+    float* const x = of_run_[0].data();
+    float* const y = of_run_[1].data();
+    float* const z = of_run_[2].data();
+    const float row = static_cast<float>(run.y) - rig.cy_px;
+    for (int i = 0; i < run.length(); ++i) {
+      z[i] = rig.focal_px * rig.baseline_m / (disparity[run.first + i] + rig.doffs_px);
+      x[i] = (static_cast<float>(run.first + i) - rig.cx_px) * z[i] / rig.focal_px;
+      y[i] = row * z[i] / rig.focal_px;
+    }
+    float* const xs = points_[0].data() + point_count_;
+    float* const ys = points_[1].data() + point_count_;
+    float* const zs = points_[2].data() + point_count_;
+    std::size_t count = 0;
+    for (int i = 0; i < run.length(); ++i) {
+      xs[count] = x[i];
+      ys[count] = y[i];
+      zs[count] = z[i];
+      count += disparity[run.first + i] + rig.doffs_px > 0 ? 1 : 0;
+    }
+    point_count_ += count;
+  }
+
+  [[nodiscard]] bool is_edge(int x, int y, int u, int v) const {
+    if (in_.left_rgb.empty()) return std::abs(in_.left(x, y) - in_.left(u, v)) > in_.edge_min;
+    const Rgb p = in_.left_rgb(x, y);
+    const Rgb q = in_.left_rgb(u, v);
+    return std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)}) > in_.edge_min;
+  }
+
+  /// From an end of the run, x, to the pixel beside it, u.
+  void look_aside(const Run& run, int x, int u) {
+    ++rim_.length;
+    if (u < 0 || u >= in_.left.width()) {
+      ++rim_.cut;
+    } else {
+      rim_.at_edge += is_edge(x, run.y, u, run.y) ? 1 : 0;
     }
   }
-  return result;
+
+  /// From the run to the row above or below, v.
+  void look_along(const Run& run, int v) {
+    if (v < 0 || v >= in_.left.height()) {
+      rim_.length += run.length();
+      rim_.cut += run.length();
+      return;
+    }
+    const RegionId* const label = in_.fusion.labels.row(v);
+    const RegionId here = run.label;
+    int crossed = 0;
+    for (int x = run.first; x < run.last; ++x) crossed += label[x] != here ? 1 : 0;
+    if (crossed == 0) return;  // most are inside
+    rim_.length += crossed;
+    for (int x = run.first; x < run.last; ++x) {
+      if (label[x] != run.label) rim_.at_edge += is_edge(x, run.y, x, v) ? 1 : 0;
+    }
+  }
+
+  const Inputs& in_;
+  std::vector<float> disparities_;  // one more than there can be, as each is written before it is judged
+  std::array<std::vector<float>, 3> points_;
+  std::array<std::vector<float>, 3> of_run_;
+  std::array<std::int64_t, 3> colour_sum_{};
+  std::size_t valid_count_ = 0;
+  std::size_t point_count_ = 0;
+  Rim rim_;
+};
+
+Rgb mean_colour(const std::array<std::int64_t, 3>& sum, std::int64_t pixels) {
+  const auto mean = [&](std::size_t c) { return static_cast<std::uint8_t>((sum[c] + pixels / 2) / pixels); };
+  return {mean(0), mean(1), mean(2)};
+}
+
+/// Position and extent from the coordinates of an object's points, one list per axis.
+void place(Object& object, std::array<std::vector<float>, 3> points) {
+  auto& [x, y, z] = points;
+  if (x.empty()) return;
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < x.size();
+       ++i) {  // three chains, of which each alone would wait for its additions
+    sum[0] += x[i];
+    sum[1] += y[i];
+    sum[2] += z[i];
+  }
+  const auto mean = [&](std::size_t axis) {
+    return static_cast<float>(sum[axis] / static_cast<double>(x.size()));
+  };
+  object.position_in_camera_m = Vec3{mean(0), mean(1), mean(2)};
+  object.extent_in_camera_m = Vec3{span_without_tails(x), span_without_tails(y), span_without_tails(z)};
 }
 
 float confidence_of(const Object& object, Size image) {
@@ -155,42 +227,51 @@ float confidence_of(const Object& object, Size image) {
   return static_cast<float>(supported / (1.0 + std::exp(-sum)));
 }
 
-Object measured(const Inputs& in, RegionId region, const Outline& outline) {
-  std::vector<float> disparities;
-  disparities.reserve(static_cast<std::size_t>(outline.valid_count));
-  std::array<std::vector<float>, 3> points;
-  for (std::vector<float>& axis : points) axis.reserve(in.rig ? disparities.capacity() : 0);
-  const Rect box = outline.box;
-  for (int y = box.y; y < box.y + box.height; ++y) {
-    const RegionId* const label = in.fusion.labels.row(y);
-    const float* const disparity = in.disparity_px.row(y);
-    for (int x = box.x; x < box.x + box.width; ++x) {
-      if (label[x] != region || disparity[x] != disparity[x]) continue;
-      disparities.push_back(disparity[x]);
-      if (!in.rig) continue;
-      const auto point =
-          in.rig->point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity[x]);
-      if (!point) continue;
-      points[0].push_back(point->x);
-      points[1].push_back(point->y);
-      points[2].push_back(point->z);
-    }
-  }
+/// nullopt where no pixel has a disparity.
+std::optional<Object> measured(const Outline& outline, Gathered gathered, Size image) {
+  if (gathered.valid_count() == 0) return std::nullopt;
   Object object;
-  object.box_px = box;
+  object.box_px = outline.box;
   object.pixel_count = static_cast<int>(outline.pixel_count);
-  object.disparity_px = median(disparities);
-  object.valid_share = static_cast<float>(outline.valid_count) / static_cast<float>(outline.pixel_count);
-  object.mean_colour = mean_colour(outline);
-  place(object, points);
-  const Rim outer = rim(in, region, box);
+  object.valid_share = static_cast<float>(gathered.valid_count()) / static_cast<float>(outline.pixel_count);
+  object.mean_colour = mean_colour(gathered.colour_sum(), outline.pixel_count);
+  const Rim rim = gathered.rim();
   const auto share = [&](std::int64_t part) {
-    return static_cast<float>(part) / static_cast<float>(std::max<std::int64_t>(outer.length, 1));
+    return static_cast<float>(part) / static_cast<float>(std::max<std::int64_t>(rim.length, 1));
   };
-  object.edge_share = share(outer.at_edge);
-  object.cut_share = share(outer.cut);
-  object.confidence = confidence_of(object, in.left.size());
+  object.edge_share = share(rim.at_edge);
+  object.cut_share = share(rim.cut);
+  object.confidence = confidence_of(object, image);
+  place(object, std::move(gathered).points());
+  std::vector<float> disparities = std::move(gathered).disparities();
+  object.disparity_px = median(disparities);
   return object;
+}
+
+/// A region that may be an object.
+struct Candidate {
+  std::size_t region;
+  std::optional<Object> object;
+};
+
+/// Measures the candidates first … last − 1, all together in one pass over the picture: region after region
+/// would fetch every row anew.
+void measure_range(const Inputs& in, const std::vector<Run>& runs, const std::vector<Outline>& outline,
+                   std::vector<Candidate>& candidates, int first, int last) {
+  const std::span<Candidate> range = std::span(candidates).subspan(slot(first), slot(last) - slot(first));
+  std::vector<Gathered> gathered;
+  gathered.reserve(range.size());
+  std::vector<Gathered*> of_region(outline.size(), nullptr);
+  for (const Candidate& candidate : range) {
+    of_region[candidate.region] =
+        &gathered.emplace_back(in, static_cast<std::size_t>(outline[candidate.region].pixel_count));
+  }
+  for (const Run& run : runs) {
+    if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
+  }
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    range[i].object = measured(outline[range[i].region], std::move(gathered[i]), in.left.size());
+  }
 }
 
 }  // namespace
@@ -201,35 +282,31 @@ Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const Di
   const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma(left));
   const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig, edge_min};
   const Size size = fusion.labels.size();
-  const std::vector<Outline> outline = outlines(in);
+  std::vector<Run> runs;
+  const std::vector<Outline> outline = outlines(in, runs);
 
-  struct Found {
-    std::size_t region;
-    Object object;
-  };
-  std::vector<Found> found;
+  std::vector<Candidate> found;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Region& followed = by_disparity.regions[index(fusion.disparity_region[i])];
-    if (is_object(outline[i], followed, size, config)) found.push_back({i, {}});
+    if (is_object(outline[i], followed, size, config)) found.push_back({i, std::nullopt});
   }
-  parallel_for(exec, static_cast<int>(found.size()), 1, [&](int first, int last) {
-    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
-      const std::size_t region = found[i].region;
-      found[i].object = measured(in, RegionId{static_cast<std::int32_t>(region)}, outline[region]);
-    }
+  parallel_for(exec, static_cast<int>(found.size()), 1,
+               [&](int first, int last) { measure_range(in, runs, outline, found, first, last); });
+  std::erase_if(found, [&](const Candidate& candidate) {
+    return !candidate.object || candidate.object->confidence < config.min_confidence;
   });
-  std::erase_if(found, [&](const Found& f) { return f.object.confidence < config.min_confidence; });
-  std::sort(found.begin(), found.end(), [&](const Found& a, const Found& b) {
-    if (a.object.disparity_px != b.object.disparity_px) return a.object.disparity_px > b.object.disparity_px;
+  std::sort(found.begin(), found.end(), [&](const Candidate& a, const Candidate& b) {
+    if (a.object->disparity_px != b.object->disparity_px)
+      return a.object->disparity_px > b.object->disparity_px;
     return outline[a.region].first_pixel < outline[b.region].first_pixel;
   });
 
   Objects objects{Image<ObjectId>(size, exec.pool), {}};
   std::vector<ObjectId> id_of(fusion.parts.size(), ObjectId::none);
-  for (Found& f : found) {
-    f.object.id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
-    id_of[f.region] = f.object.id;
-    objects.list.push_back(f.object);
+  for (Candidate& candidate : found) {
+    candidate.object->id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
+    id_of[candidate.region] = candidate.object->id;
+    objects.list.push_back(*candidate.object);
   }
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {

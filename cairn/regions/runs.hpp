@@ -34,12 +34,18 @@ void for_each_run(View<const RegionId> labels, Found found) {
 
 /// The run's colours, summed; its grey three times where there is no colour (`rgb` empty).
 inline std::array<int, 3> colour_sum(View<const Gray> gray, View<const Rgb> rgb, const Run& run) {
+  if (rgb.empty()) {
+    const Gray* const row = gray.row(run.y);
+    int sum = 0;
+    for (int x = run.first; x < run.last; ++x) sum += row[x];
+    return {sum, sum, sum};
+  }
+  const Rgb* const row = rgb.row(run.y);
   std::array<int, 3> sum{};
   for (int x = run.first; x < run.last; ++x) {
-    const Rgb colour = rgb.empty() ? Rgb{gray(x, run.y), gray(x, run.y), gray(x, run.y)} : rgb(x, run.y);
-    sum[0] += colour.r;
-    sum[1] += colour.g;
-    sum[2] += colour.b;
+    sum[0] += row[x].r;
+    sum[1] += row[x].g;
+    sum[2] += row[x].b;
   }
   return sum;
 }
