@@ -52,6 +52,7 @@ class ScratchList {
   ScratchList(std::size_t capacity, const Pool& pool) : pool_(pool), array_(capacity, pool) {}
 
   [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t capacity() const { return array_.size(); }
   [[nodiscard]] T* data() { return array_.data(); }
   [[nodiscard]] T* begin() { return array_.data(); }
   [[nodiscard]] T* end() { return array_.data() + size_; }

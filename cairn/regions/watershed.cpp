@@ -2,279 +2,406 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cairn/core/parallel.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <numeric>
 
 namespace cairn {
 namespace {
 
+using kernels::kWordBits;
+using kernels::Word;
+
 constexpr int kGrain = 16;  // rows
+constexpr int kBlock = 64;  // rows that ways are followed through at once
+constexpr Word kLastBit = Word{1} << (kWordBits - 1);
 
-// Where a pixel flows to. The numbers are the order in which ties are decided. As wide as heights, so that
-// the loops over both become vector code.
-using Arrow = std::uint16_t;
-constexpr Arrow kNowhere = 0;  // lowest around: a basin's floor, or a plateau pixel not reached yet
-constexpr Arrow kUp = 1;
-constexpr Arrow kLeft = 2;
-constexpr Arrow kRight = 3;
-constexpr Arrow kDown = 4;
-constexpr Arrow kDirection = 7;  // mask of the direction
-constexpr Arrow kBeside = 8;     // flows across its plateau to a pixel that flows downhill: distance 1
-constexpr Arrow kDeep = 16;      // the same, from further away
-constexpr Arrow kFloor = 32;     // part of a basin's floor that has been dealt with
-constexpr Arrow kOutside = 64;   // frame around the image: neither flows nor is flown to
+/// What there is one bit of for each pixel. The first four: where the pixel flows to; at most one of them is
+/// set, and the numbers are the order in which ties are decided.
+enum Plane : std::uint8_t {
+  kUp,
+  kLeft,
+  kRight,
+  kDown,
+  kStill,       // does not flow (yet)
+  kReached,     // flows across its plateau to a pixel that flows downhill
+  kEqualRight,  // as high as the right neighbour
+  kEqualBelow,
+  kPlanes
+};
 
-using Heights = Image<std::uint16_t>;
-using Arrows = Image<Arrow>;
-
-/// All working images have this size: a frame one pixel wide around the image, so that no neighbour needs a
-/// bounds check, and a width at which images of every pixel type have the same stride, so that one index
-/// serves them all.
-Size framed(Size size) {
-  return {(size.width + 2 + 63) / 64 * 64, size.height + 2};
-}
-
-/// Calls row(y) for the rows of the image, numbered as in the framed images: 1 … height.
-template <class Row>
-void for_each_row(Size size, const Exec& exec, Row row) {
-  parallel_for(exec, size.height, kGrain, [&](int first, int last) {
-    for (int y = first + 1; y <= last; ++y) row(y);
-  });
-}
-
-template <class T>
-Image<T> with_frame(Size size, T frame, const Exec& exec) {
-  Image<T> image(framed(size), exec.pool);
-  std::fill_n(image.row(0), image.width(), frame);
-  std::fill_n(image.row(size.height + 1), image.width(), frame);
-  for (int y = 1; y <= size.height; ++y) {
-    image(0, y) = frame;
-    std::fill(image.row(y) + 1 + size.width, image.row(y) + image.width(), frame);
-  }
-  return image;
-}
-
-Heights heights_of(View<const std::uint16_t> gradient, const Exec& exec) {
-  Heights heights =
-      with_frame<std::uint16_t>(gradient.size(), UINT16_MAX, exec);  // nothing is higher: no way out
-  for_each_row(gradient.size(), exec,
-               [&](int y) { std::copy_n(gradient.row(y - 1), gradient.width(), heights.row(y) + 1); });
-  return heights;
-}
-
-/// Arrows to the lowest neighbour, where that is lower.
-Arrows flow_downhill(const Heights& heights, Size size, const Exec& exec) {
-  Arrows arrows = with_frame(size, kOutside, exec);
-  for_each_row(size, exec, [&](int y) {
-    const std::uint16_t* const here = heights.row(y) + 1;
-    const std::uint16_t* const up = heights.row(y - 1) + 1;
-    const std::uint16_t* const down = heights.row(y + 1) + 1;
-    Arrow* const out = arrows.row(y) + 1;
-    for (int x = 0; x < size.width; ++x) {
-      const std::uint16_t lowest = std::min(std::min(up[x], here[x - 1]), std::min(here[x + 1], down[x]));
-      Arrow arrow = kDown;
-      arrow = here[x + 1] == lowest ? kRight : arrow;
-      arrow = here[x - 1] == lowest ? kLeft : arrow;
-      arrow = up[x] == lowest ? kUp : arrow;
-      out[x] = lowest < here[x] ? arrow : kNowhere;
-    }
-  });
-  return arrows;
-}
-
-/// Adds the arrows of plateau pixels at distance 1: beside a pixel of the same height that flows downhill.
-Arrows flow_beside(const Arrows& downhill, const Heights& heights, Size size, const Exec& exec) {
-  Arrows arrows = with_frame(size, kOutside, exec);
-  for_each_row(size, exec, [&](int y) {
-    const std::uint16_t* const here = heights.row(y) + 1;
-    const std::uint16_t* const up = heights.row(y - 1) + 1;
-    const std::uint16_t* const down = heights.row(y + 1) + 1;
-    const Arrow* const arrow = downhill.row(y) + 1;
-    const Arrow* const arrow_up = downhill.row(y - 1) + 1;
-    const Arrow* const arrow_down = downhill.row(y + 1) + 1;
-    Arrow* const out = arrows.row(y) + 1;
-    // A neighbour with the flag kOutside has the height UINT16_MAX, as a hole may have: so it must be asked
-    // for an arrow.
-    const auto flows = [](Arrow a) { return static_cast<Arrow>(a - 1) < kDown; };
-    for (int x = 0; x < size.width; ++x) {
-      Arrow to = kNowhere;
-      to = (down[x] == here[x]) & flows(arrow_down[x]) ? kBeside | kDown : to;
-      to = (here[x + 1] == here[x]) & flows(arrow[x + 1]) ? kBeside | kRight : to;
-      to = (here[x - 1] == here[x]) & flows(arrow[x - 1]) ? kBeside | kLeft : to;
-      to = (up[x] == here[x]) & flows(arrow_up[x]) ? kBeside | kUp : to;
-      out[x] = arrow[x] != kNowhere ? arrow[x] : to;
-    }
-  });
-  return arrows;
-}
-
-/// The pixels that have no arrow yet but a neighbour of the same height: the inner parts of plateaus.
-ScratchList<std::int32_t> inner_plateaus(const Arrows& arrows, const Heights& heights, Size size,
-                                         const Exec& exec) {
-  const std::ptrdiff_t stride = heights.width();
-  const std::uint16_t* const height = heights.row(0);
-  ScratchList<std::int32_t> inner(static_cast<std::size_t>(size.area()), exec.pool);
-  std::vector<std::int32_t> nowhere(static_cast<std::size_t>(size.width));
-  for (int y = 1; y <= size.height; ++y) {
-    const Arrow* const arrow = arrows.row(y) + 1;
-    const auto start = static_cast<std::int32_t>(y * stride + 1);
-    // Both loops without a branch: what they look for comes irregularly.
-    std::size_t found = 0;
-    for (int x = 0; x < size.width; ++x) {
-      nowhere[found] = start + x;
-      found += arrow[x] == kNowhere ? 1 : 0;
-    }
-    std::int32_t* const room = inner.room_for(found);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < found; ++i) {
-      const std::uint16_t* const p = height + nowhere[i];
-      const bool has_equal = (p[-stride] == *p) | (p[-1] == *p) | (p[1] == *p) | (p[stride] == *p);
-      room[kept] = nowhere[i];
-      kept += has_equal ? 1 : 0;
-    }
-    inner.grown(kept);
-  }
-  return inner;
-}
-
-/// Arrows of plateau pixels from distance 2 on, one level of distance after the other. Plateaus without lower
-/// border are left without arrows.
-void flow_across(const ScratchList<std::int32_t>& inner, Arrows& arrows, const Heights& heights,
-                 const Exec& exec) {
-  const std::ptrdiff_t stride = heights.width();
-  const std::uint16_t* const height = heights.row(0);
-  Arrow* const arrow = arrows.row(0);
-  Scratch<std::int32_t> queue(inner.size(), exec.pool);
-  std::int32_t* last = queue.begin();
-
-  const std::array<std::ptrdiff_t, 4> steps{-stride, -1, 1, stride};
-  for (const std::int32_t p : inner) {
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-      const std::ptrdiff_t q = p + steps[k];
-      if (height[q] != height[p] || (arrow[q] & kBeside) == 0) continue;
-      arrow[p] = static_cast<Arrow>((k + 1) | kDeep);
-      *last++ = p;
-      break;
-    }
+/// Bit planes of an image: 64 pixels are dealt with in one step, and all planes fit the second-level cache. A
+/// row holds its words of all planes, one plane after the other. Each plane has a word of zeros behind its
+/// last in every row, and there is a row of zeros above and one below, so that no neighbour needs a bounds
+/// check.
+class Bits {
+ public:
+  Bits(Size size, const Exec& exec)
+      : size_(size),
+        words_((size.width + kWordBits - 1) / kWordBits),
+        planes_(static_cast<std::size_t>(row_stride() * (size.height + 2)), exec.pool) {
+    std::fill_n(at(kUp, -1), row_stride(), Word{0});
+    std::fill_n(at(kUp, size.height), row_stride(), Word{0});
   }
 
-  // Distance n+1 from distance n. Ties: a pixel may be reached from several sides, and "up" must win. So the
-  // whole level first claims the pixels below (for them it is "up"), then those to the right, to the left,
-  // and above.
-  struct Claim {
-    std::ptrdiff_t step;
-    Arrow arrow;
-  };
-  const std::array<Claim, 4> claims{Claim{stride, kUp | kDeep}, Claim{1, kLeft | kDeep},
-                                    Claim{-1, kRight | kDeep}, Claim{-stride, kDown | kDeep}};
-  for (const std::int32_t* first = queue.begin(); first != last;) {
-    const std::int32_t* const level_end = last;
-    for (const Claim& claim : claims) {
-      for (const std::int32_t* p = first; p != level_end; ++p) {
-        const std::ptrdiff_t q = *p + claim.step;
-        if (arrow[q] != kNowhere || height[q] != height[*p]) continue;
-        arrow[q] = claim.arrow;
-        *last++ = static_cast<std::int32_t>(q);
+  [[nodiscard]] Size size() const { return size_; }
+  [[nodiscard]] int words() const { return words_; }
+  /// From a plane's word to the same one of the row below.
+  [[nodiscard]] std::ptrdiff_t row_stride() const { return std::ptrdiff_t{kPlanes} * (words_ + 1); }
+  /// From a plane's word to the same one of another plane.
+  [[nodiscard]] std::ptrdiff_t step(Plane from, Plane to) const {
+    return (std::ptrdiff_t{to} - from) * (words_ + 1);
+  }
+  [[nodiscard]] Word* at(Plane plane, int y) { return planes_.data() + offset(plane, y); }
+  [[nodiscard]] const Word* at(Plane plane, int y) const { return planes_.begin() + offset(plane, y); }
+  /// The bits of word `w` that stand for pixels of the image.
+  [[nodiscard]] Word inside(int w) const {
+    const int rest = size_.width - w * kWordBits;
+    return rest >= kWordBits ? ~Word{0} : (Word{1} << rest) - 1;
+  }
+
+ private:
+  [[nodiscard]] std::ptrdiff_t offset(Plane plane, int y) const {
+    return (y + 1) * row_stride() + std::ptrdiff_t{plane} * (words_ + 1);
+  }
+
+  Size size_;
+  int words_;
+  Scratch<Word> planes_;
+};
+
+/// Whether the left neighbours have the bit.
+Word of_left(const Word* word) {
+  return (*word << 1U) | (word[-1] >> (kWordBits - 1));
+}
+Word of_right(const Word* word) {
+  return (*word >> 1U) | (word[1] << (kWordBits - 1));
+}
+
+/// Rows of heights with a frame that is higher than all: nothing flows out. Three of them at a time.
+class FramedRows {
+ public:
+  FramedRows(View<const std::uint16_t> heights, int words)
+      : heights_(heights), length_(slot(words * kWordBits + 2)) {
+    for (auto& row : rows_) row.resize(length_, UINT16_MAX);
+  }
+  /// Row y may be one outside. The three last ones fetched stay.
+  const std::uint16_t* fetch(int y) {
+    std::vector<std::uint16_t>& row = rows_.at(slot((y + 3) % 3));
+    if (y < 0 || y >= heights_.height()) {
+      std::fill(row.begin(), row.end(), UINT16_MAX);
+    } else {
+      std::copy_n(heights_.row(y), heights_.width(), row.data() + 1);
+    }
+    return row.data() + 1;
+  }
+
+ private:
+  View<const std::uint16_t> heights_;
+  std::size_t length_;
+  std::array<std::vector<std::uint16_t>, 3> rows_;
+};
+
+/// Clears what the comparison says of pixels outside the image, and notes who does not flow.
+void finish_row(Bits& bits, int y) {
+  const int last = bits.words() - 1;
+  for (const Plane plane : {kUp, kLeft, kRight, kDown, kEqualRight, kEqualBelow}) {
+    Word* const row = bits.at(plane, y);
+    row[last] &= bits.inside(last);
+    row[last + 1] = 0;
+  }
+  bits.at(kEqualRight, y)[last] &= bits.inside(last) >> 1U;
+  if (y + 1 == bits.size().height) std::fill_n(bits.at(kEqualBelow, y), bits.words(), Word{0});
+  for (int w = 0; w <= last; ++w) {
+    const Word flows =
+        bits.at(kUp, y)[w] | bits.at(kLeft, y)[w] | bits.at(kRight, y)[w] | bits.at(kDown, y)[w];
+    bits.at(kStill, y)[w] = ~flows & bits.inside(w);
+  }
+  bits.at(kStill, y)[last + 1] = 0;
+  bits.at(kReached, y)[last + 1] = 0;
+}
+
+/// Every pixel flows to its lowest neighbour, where that is lower.
+Bits flow_downhill(View<const std::uint16_t> heights, const Exec& exec) {
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
+  Bits bits(heights.size(), exec);
+  parallel_for(exec, heights.height(), kGrain, [&](int first, int last) {
+    FramedRows rows(heights, bits.words());
+    const std::uint16_t* above = rows.fetch(first - 1);
+    const std::uint16_t* here = rows.fetch(first);
+    for (int y = first; y < last; ++y) {
+      const std::uint16_t* const below = rows.fetch(y + 1);
+      run.compare(above, here, below, bits.words(),
+                  {bits.at(kUp, y), bits.at(kLeft, y), bits.at(kRight, y), bits.at(kDown, y),
+                   bits.at(kEqualRight, y), bits.at(kEqualBelow, y)});
+      finish_row(bits, y);
+      above = here;
+      here = below;
+    }
+  });
+  return bits;
+}
+
+/// Finds the plateau pixels at distance 1: beside a pixel of the same height that flows downhill.
+void flow_beside(Bits& bits, const Exec& exec) {
+  const std::ptrdiff_t stride = bits.row_stride();
+  parallel_for(exec, bits.size().height, kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      for (int w = 0; w < bits.words(); ++w) {
+        const Word* const still = bits.at(kStill, y) + w;
+        const Word* const equal_right = bits.at(kEqualRight, y) + w;
+        const Word* const equal_below = bits.at(kEqualBelow, y) + w;
+        // Outside nothing is still, but nothing is equal either.
+        const Word up = *still & equal_below[-stride] & ~still[-stride];
+        const Word left = *still & ~up & of_left(equal_right) & ~of_left(still);
+        const Word right = *still & ~(up | left) & *equal_right & ~of_right(still);
+        const Word down = *still & ~(up | left | right) & *equal_below & ~still[stride];
+        bits.at(kUp, y)[w] |= up;
+        bits.at(kLeft, y)[w] |= left;
+        bits.at(kRight, y)[w] |= right;
+        bits.at(kDown, y)[w] |= down;
+        bits.at(kReached, y)[w] = up | left | right | down;
       }
     }
-    first = level_end;
-  }
-}
-
-/// For each pixel the index of the pixel that it flows to; its own on a basin's floor.
-Image<std::int32_t> targets_of(const Arrows& arrows, Size size, const Exec& exec) {
-  Image<std::int32_t> targets(arrows.size(), exec.pool);
-  const auto stride = static_cast<std::int32_t>(arrows.width());
-  const std::array<std::int32_t, kDirection + 1> steps{0, -stride, -1, 1, stride, 0, 0, 0};
-  for_each_row(size, exec, [&](int y) {
-    const Arrow* const arrow = arrows.row(y) + 1;
-    std::int32_t* const target = targets.row(y) + 1;
-    for (int x = 0; x < size.width; ++x) {
-      target[x] = y * stride + 1 + x + steps[arrow[x] & kDirection];
-    }
   });
-  return targets;
 }
 
-/// Basin floors of several pixels: leads all of them to one.
-void join_floors(ScratchList<std::int32_t>& inner, Arrows& arrows, Image<std::int32_t>& targets,
-                 const Exec& exec) {
-  const std::ptrdiff_t stride = arrows.width();
-  Arrow* const arrow = arrows.row(0);
-  std::int32_t* const target = targets.row(0);
-  Scratch<std::int32_t> stack(inner.size(), exec.pool);
-  for (const std::int32_t start : inner) {
-    if (arrow[start] != kNowhere) continue;
-    std::int32_t* top = stack.begin();
-    const auto reach = [&](std::ptrdiff_t p) {
-      arrow[p] = kFloor;
-      target[p] = start;
-      *top++ = static_cast<std::int32_t>(p);
+/// Lets the plateau pixels from distance 2 on flow, one level of distance after the other. Plateaus without
+/// lower border stay still. Heights need not be compared any more: pixels that touch and do not flow have
+/// the same height, for the higher one would flow, and so have one at distance 1 and a still one.
+class Flooding {
+ public:
+  Flooding(Bits& bits, const Exec& exec)
+      : bits_(bits),
+        still_(bits.at(kStill, 0)),
+        now_(slot(bits.words() * bits.size().height), exec.pool),
+        next_(now_.capacity(), exec.pool) {
+    const Word* const reached = bits.at(kReached, 0);
+    for (int y = 0; y < bits.size().height; ++y) {
+      for (std::ptrdiff_t i = y * bits.row_stride(); i < y * bits.row_stride() + bits.words(); ++i) {
+        still_[i] &= ~reached[i];
+        if (reached[i] != 0) now_.push_back({i, reached[i]});
+      }
+    }
+  }
+
+  void run() {
+    const std::ptrdiff_t stride = bits_.row_stride();
+    for (; now_.size() > 0; advance()) {
+      // Ties: a pixel may be reached from several sides, and "up" must win. So the whole level first claims
+      // the pixels below (for them it is "up"), then those to the right, to the left, and above.
+      for (const Front& front : now_) claim(front.word + stride, front.pixels, kUp);
+      for (const Front& front : now_) {
+        claim(front.word, front.pixels << 1U, kLeft);
+        if ((front.pixels & kLastBit) != 0) claim(front.word + 1, 1, kLeft);
+      }
+      for (const Front& front : now_) {
+        claim(front.word, front.pixels >> 1U, kRight);
+        if ((front.pixels & 1U) != 0) claim(front.word - 1, kLastBit, kRight);
+      }
+      for (const Front& front : now_) claim(front.word - stride, front.pixels, kDown);
+    }
+  }
+
+ private:
+  /// Pixels of one level in a word. Words are counted from the plane's first.
+  struct Front {
+    std::ptrdiff_t word;
+    Word pixels;
+  };
+
+  void claim(std::ptrdiff_t word, Word pixels, Plane direction) {
+    const Word found = pixels & still_[word];
+    if (found == 0) return;
+    still_[word] ^= found;
+    still_[word + bits_.step(kStill, direction)] |= found;
+    next_.push_back({word, found});
+  }
+  void advance() {
+    std::swap(now_, next_);
+    next_.clear();
+  }
+
+  Bits& bits_;
+  Word* still_;
+  ScratchList<Front> now_;
+  ScratchList<Front> next_;
+};
+
+/// The ways that pixels flow, in stretches: what flows within a row to the same pixel of it, from where it
+/// leaves the row or goes no farther, lies side by side. Stretches are numbered along each row from
+/// y · width on.
+class Ways {
+ public:
+  Ways(const Bits& bits, Image<RegionId>& labels, const Exec& exec)
+      : bits_(bits),
+        labels_(labels),
+        exec_(exec),
+        to_(static_cast<std::size_t>(labels.size().area()), exec.pool) {
+    number_stretches();
+    join_floors();
+    go_up();
+    go_on();
+  }
+
+  /// Numbers the basins in the order of their first stretches, writes the labels; returns how many there are.
+  int label() {
+    Scratch<RegionId> label_of(to_.size(), exec_.pool);
+    RegionId* const label = label_of.data();
+    const std::int32_t* const to = to_.begin();
+    const int width = labels_.width();
+    std::int32_t count = 0;
+    for (int y = 0; y < labels_.height(); ++y) {
+      const std::int32_t first = y * width;
+      const std::int32_t last = number(labels_(width - 1, y));
+      std::fill(label + first, label + last + 1, RegionId{-1});
+    }
+    for (int y = 0; y < labels_.height(); ++y) {
+      const std::int32_t last = number(labels_(width - 1, y));
+      for (std::int32_t i = y * width; i <= last; ++i) {
+        const std::int32_t end = to[to[i]];
+        // Without a branch, as in kernels: −1 where the basin has no number yet, 0 else.
+        const std::int32_t is_new = number(label[end]) >> 31;
+        const RegionId known{(number(label[end]) & ~is_new) | (count & is_new)};
+        count -= is_new;
+        label[end] = known;
+        label[i] = known;
+      }
+    }
+    parallel_for(exec_, labels_.height(), kGrain, [&](int first, int last) {
+      for (int y = first; y < last; ++y) {
+        RegionId* const row = labels_.row(y);
+        for (int x = 0; x < width; ++x) row[x] = label[number(row[x])];
+      }
+    });
+    return count;
+  }
+
+ private:
+  [[nodiscard]] std::int32_t stretch(int x, int y) const { return number(labels_(x, y)); }
+  template <class Found>
+  void for_each_pixel(Plane plane, int y, Found found) const {
+    const Word* const row = bits_.at(plane, y);
+    for (int w = 0; w < bits_.words(); ++w) for_each_bit(row[w], w, found);
+  }
+  template <class Found>
+  static void for_each_bit(Word word, int w, Found found) {
+    for (; word != 0; word &= word - 1) found(w * kWordBits + std::countr_zero(word));
+  }
+
+  void number_stretches() {
+    const kernels::LabelKernels& run = kernels::label_kernels(exec_);
+    const int width = labels_.width();
+    parallel_for(exec_, labels_.height(), kGrain, [&](int first, int last) {
+      std::vector<Word> starts(slot(bits_.words()));
+      for (int y = first; y < last; ++y) {
+        const Word* const left = bits_.at(kLeft, y);
+        const Word* const right = bits_.at(kRight, y);
+        const Word* const still = bits_.at(kStill, y);
+        for (int w = 0; w < bits_.words(); ++w) {
+          starts[slot(w)] =
+              ~(left[w] | of_left(right + w) | (still[w] & of_left(still + w))) & bits_.inside(w);
+        }
+        run.count_up(starts.data(), width, y * width, labels_.row(y));
+        std::iota(to_.begin() + y * width, to_.begin() + stretch(width - 1, y) + 1, y * width);
+      }
+    });
+  }
+
+  /// Basin floors of several rows: leads all of them to their first stretch.
+  void join_floors() {
+    const auto end_of = [&](std::int32_t i) {
+      while (to_[i] != i) {
+        to_[i] = to_[to_[i]];
+        i = to_[i];
+      }
+      return i;
     };
-    reach(start);
-    while (top != stack.begin()) {
-      const std::ptrdiff_t p = *--top;
-      // Pixels without arrow that touch have the same height: the higher one would flow.
-      for (const std::ptrdiff_t q : {p - stride, p - 1, p + 1, p + stride}) {
-        if (arrow[q] == kNowhere) reach(q);
+    std::vector<std::int32_t> joined;
+    for (int y = 1; y < labels_.height(); ++y) {
+      const Word* const above = bits_.at(kStill, y - 1);
+      const Word* const here = bits_.at(kStill, y);
+      for (int w = 0; w < bits_.words(); ++w) {
+        const Word both = above[w] & here[w];
+        // One pixel is enough for two stretches that touch along several.
+        for_each_bit(both & ~(both << 1U), w, [&](int x) {
+          const std::int32_t p = end_of(stretch(x, y - 1));
+          const std::int32_t q = end_of(stretch(x, y));
+          if (p == q) return;
+          to_[std::max(p, q)] = std::min(p, q);
+          joined.push_back(std::max(p, q));
+        });
       }
     }
+    for (const std::int32_t i : joined) to_[i] = end_of(i);
   }
-}
 
-/// Leads every pixel to the end of its way: to a pixel that is its own target. Sweeps to and fro, since a
-/// sweep follows a way in its own direction to the end, and at least halves what is left of any other.
-void follow_targets(Image<std::int32_t>& targets, Size size) {
-  std::int32_t* const target = targets.row(0);
-  const std::ptrdiff_t stride = targets.width();
-  const auto advance = [&](std::ptrdiff_t p) {
-    const std::int32_t before = target[p];
-    target[p] = target[before];
-    return before ^ target[p];
-  };
-  for (std::int32_t moved = 1; moved != 0;) {
-    moved = 0;
-    for (std::ptrdiff_t y = 1; y <= size.height; ++y) {
-      for (std::ptrdiff_t p = y * stride + 1; p <= y * stride + size.width; ++p) moved |= advance(p);
-    }
-    if (moved == 0) break;
-    moved = 0;
-    for (std::ptrdiff_t y = size.height; y >= 1; --y) {
-      for (std::ptrdiff_t p = y * stride + size.width; p > y * stride; --p) moved |= advance(p);
-    }
+  /// Follows the ways that lead up, as long as they do and stay in one block of rows. A stretch then leads to
+  /// a floor, or to where its way goes on otherwise, which still leads to itself.
+  void go_up() {
+    const int blocks = (labels_.height() + kBlock - 1) / kBlock;
+    parallel_for(exec_, blocks, 1, [&](int first, int last) {
+      for (int y = first * kBlock + 1; y < std::min(last * kBlock, labels_.height()); ++y) {
+        if (y % kBlock == 0) continue;
+        for_each_pixel(kUp, y, [&](int x) { to_[stretch(x, y)] = to_[stretch(x, y - 1)]; });
+      }
+    });
   }
-}
 
-/// Numbers the ends of the ways in raster order of the first pixel that leads there.
-Basins numbered(const Image<std::int32_t>& targets, Size size, const Exec& exec) {
-  Basins basins{Image<RegionId>(size, exec.pool), 0};
-  Image<std::int32_t> ids(targets.size(), -1, exec.pool);
-  std::int32_t* const id = ids.row(0);
-  for (int y = 0; y < size.height; ++y) {
-    const std::int32_t* const target = targets.row(y + 1) + 1;
-    RegionId* const label = basins.labels.row(y);
-    for (int x = 0; x < size.width; ++x) {
-      std::int32_t& known = id[target[x]];
-      if (known < 0) known = basins.count++;
-      label[x] = RegionId{known};
+  /// Follows the others to their ends. From below, so that most of what a way meets is at its end already.
+  void go_on() {
+    ScratchList<std::int32_t> rest(static_cast<std::size_t>(labels_.size().area() / 16), exec_.pool);
+    for (int y = kBlock; y < labels_.height(); y += kBlock) {
+      for_each_pixel(kUp, y, [&](int x) {
+        to_[stretch(x, y)] = to_[stretch(x, y - 1)];
+        rest.push_back(stretch(x, y));
+      });
+    }
+    for (int y = labels_.height() - 2; y >= 0; --y) {
+      const std::int32_t decided = (y + 1) * labels_.width();
+      std::int32_t* const room = rest.room_for(slot(labels_.width()));
+      std::size_t found = 0;
+      for_each_pixel(kDown, y, [&](int x) {
+        const std::int32_t i = stretch(x, y);
+        const std::int32_t end = to_[to_[stretch(x, y + 1)]];
+        to_[i] = end;
+        // Whether it is an end is known of rows below, where all is led on; the others come again.
+        room[found] = i;
+        found += static_cast<std::size_t>((end < decided) | (to_[end] != end));
+      });
+      rest.grown(found);
+    }
+    for (std::size_t count = rest.size(); count > 0;) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::int32_t i = rest.begin()[k];
+        const std::int32_t end = to_[to_[i]];
+        to_[i] = end;
+        rest.begin()[kept] = i;
+        kept += to_[end] != end ? 1 : 0;
+      }
+      count = kept;
     }
   }
-  return basins;
-}
+
+  const Bits& bits_;
+  Image<RegionId>& labels_;
+  const Exec& exec_;
+  Scratch<std::int32_t> to_;  // for each stretch one farther down its way; itself at the end
+};
 
 }  // namespace
 
 Basins watershed(View<const std::uint16_t> gradient, const Exec& exec) {
-  const Size size = gradient.size();
-  const Heights heights = heights_of(gradient, exec);
-  Arrows arrows = flow_beside(flow_downhill(heights, size, exec), heights, size, exec);
-  ScratchList<std::int32_t> inner = inner_plateaus(arrows, heights, size, exec);
-  flow_across(inner, arrows, heights, exec);
-  Image<std::int32_t> targets = targets_of(arrows, size, exec);
-  join_floors(inner, arrows, targets, exec);
-  follow_targets(targets, size);
-  return numbered(targets, size, exec);
+  Bits bits = flow_downhill(gradient, exec);
+  flow_beside(bits, exec);
+  Flooding(bits, exec).run();
+  Basins basins{Image<RegionId>(gradient.size(), exec.pool), 0};
+  basins.count = Ways(bits, basins.labels, exec).label();
+  return basins;
 }
 
 }  // namespace cairn

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/core/target.hpp>
 #include <cairn/regions/split_floor.hpp>
 #include <random>
 
@@ -18,6 +19,16 @@ Exec threads(int count) {
   Exec exec = Exec::with_threads(count);
   exec.pool = Pool::make();
   return exec;
+}
+
+/// Every instruction set of this machine.
+std::vector<Exec> all_targets() {
+  std::vector<Exec> all;
+  for (const Target target : supported_targets()) {
+    all.push_back(threads(1));
+    all.back().target = target;
+  }
+  return all;
 }
 
 /// Every width that a vector of 64 bytes can end at, and heights that split into uneven parts.
@@ -146,6 +157,10 @@ TEST(RegionsEquivalence, WatershedIsItsTwinWithAndWithoutPlateaus) {
         ASSERT_EQ(numbers(basins.labels), numbers(expected.labels)) << text(size) << " highest " << highest;
         ASSERT_EQ(basins.count, expected.count);
       }
+      for (const Exec& exec : all_targets()) {
+        ASSERT_EQ(numbers(watershed(image, exec).labels), numbers(expected.labels))
+            << text(size) << " highest " << highest << " on " << name(exec.target);
+      }
     }
   }
 }
@@ -159,6 +174,30 @@ TEST(RegionsEquivalence, WatershedIsItsTwinOnWidePlateaus) {
     }
     EXPECT_EQ(numbers(watershed(image, {}).labels), numbers(reference::watershed(image).labels))
         << "seed " << seed;
+  }
+}
+
+TEST(RegionsEquivalence, WatershedFollowsAWayThatTurnsWhereABlockOfRowsEnds) {
+  // Rows are dealt with in blocks of 64. The way climbs column 1, falls in column 3 to row `turn` and climbs
+  // in column 5 past the row where it fell from.
+  for (int turn = 60; turn < 70; ++turn) {
+    Image<std::uint16_t> image(Size{7, 80}, 60000, {});
+    std::uint16_t height = 50000;
+    const auto go = [&](Point from, Point to) {
+      const int steps = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+      for (int i = 0; i <= steps; ++i) {
+        image(from.x + (to.x - from.x) * i / std::max(steps, 1),
+              from.y + (to.y - from.y) * i / std::max(steps, 1)) = height -= 10;
+      }
+    };
+    go({1, turn - 6}, {1, turn - 10});
+    go({2, turn - 10}, {3, turn - 10});
+    go({3, turn - 9}, {3, turn});
+    go({4, turn}, {5, turn});
+    go({5, turn - 1}, {5, turn - 20});
+    const Basins basins = watershed(image, {});
+    EXPECT_EQ(numbers(basins.labels), numbers(reference::watershed(image).labels)) << "turn " << turn;
+    EXPECT_EQ(basins.labels(1, turn - 6), basins.labels(5, turn - 20)) << "turn " << turn;
   }
 }
 

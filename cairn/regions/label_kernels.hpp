@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/core/ids.hpp>
+#include <cstddef>
+#include <cstdint>
+
+/// The seam to the instruction sets: what watershed() and build_graph() do for each pixel of a row. Private
+/// to the library.
+namespace cairn::kernels {
+
+/// One bit for each of 64 pixels, the leftmost in the lowest bit.
+using Word = std::uint64_t;
+constexpr int kWordBits = 64;
+
+/// How the pixels of a row lie to their neighbours.
+struct Slopes {
+  // The lowest neighbour, where that is lower than the pixel; of several the first in this order.
+  Word* up;
+  Word* left;
+  Word* right;
+  Word* down;
+  // As high as the pixel.
+  Word* equal_right;
+  Word* equal_below;
+};
+
+/// The pairs of different labels that rows of pixels show, the smaller one in `a`.
+struct LabelPairs {
+  std::int32_t* a;
+  std::int32_t* b;
+};
+
+/// How much longer than their contents the lists must be that kernels write: whole vectors are stored.
+constexpr std::size_t kListSlack = 64;
+
+struct LabelKernels {
+  /// `words` words of `slopes`, from heights[−1 … 64·words] of three rows.
+  void (*compare)(const std::uint16_t* above, const std::uint16_t* here, const std::uint16_t* below,
+                  int words, const Slopes& slopes);
+  /// out[x] = first + how many bits up to x are set, x itself counted, − 1. Writes whole eights of pixels.
+  void (*count_up)(const Word* bits, int width, std::int32_t first, RegionId* out);
+  /// Where the runs of equal labels in a row end: ends[i] is one past the last pixel of run i. Returns how
+  /// many there are.
+  int (*find_runs)(const RegionId* label, int width, std::int32_t* ends);
+  /// Pairs of labels one above the other. What the column before shows is left out. Returns how many.
+  int (*touches_below)(const RegionId* row, const RegionId* below, int width, LabelPairs pairs);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const LabelKernels* label_kernels(Target target);
+/// Those for the target that `exec` gets.
+const LabelKernels& label_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// No include guard: compiled once for each target, inside HWY_BEFORE_NAMESPACE.
+namespace cairn::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Heights = hn::ScalableTag<std::uint16_t>;
+using Labels = hn::ScalableTag<std::int32_t>;
+
+/// Writes a mask's bits where those of pixel x belong.
+template <class D, class M>
+HWY_INLINE void put_bits(D d, M mask, Word* words, int x) {
+  static_assert(hn::MaxLanes(D()) % 8 == 0);
+  hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(words) + x / 8);
+}
+
+void compare(const std::uint16_t* HWY_RESTRICT above, const std::uint16_t* HWY_RESTRICT here,
+             const std::uint16_t* HWY_RESTRICT below, int words, const Slopes& slopes) {
+  const Heights d;
+  const Slopes to = slopes;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  for (int x = 0; x < words * kWordBits; x += step) {
+    const auto centre = hn::LoadU(d, here + x);
+    const auto up = hn::LoadU(d, above + x);
+    const auto left = hn::LoadU(d, here + x - 1);
+    const auto right = hn::LoadU(d, here + x + 1);
+    const auto down = hn::LoadU(d, below + x);
+    const auto lowest = hn::Min(hn::Min(up, left), hn::Min(right, down));
+    const auto stays = hn::Eq(hn::Min(lowest, centre), centre);
+    const auto not_up = hn::Or(stays, hn::Ne(up, lowest));
+    const auto not_left = hn::Ne(left, lowest);
+    const auto not_right = hn::Ne(right, lowest);
+    const auto past_left = hn::And(not_up, not_left);
+    put_bits(d, hn::Not(not_up), to.up, x);
+    put_bits(d, hn::AndNot(stays, hn::AndNot(not_left, not_up)), to.left, x);
+    put_bits(d, hn::AndNot(stays, hn::AndNot(not_right, past_left)), to.right, x);
+    put_bits(d, hn::AndNot(stays, hn::And(past_left, not_right)), to.down, x);
+    put_bits(d, hn::Eq(centre, right), to.equal_right, x);
+    put_bits(d, hn::Eq(centre, down), to.equal_below, x);
+  }
+}
+
+void count_up(const Word* HWY_RESTRICT bits, int width, std::int32_t first, RegionId* HWY_RESTRICT out) {
+  const hn::CappedTag<std::int32_t, 8> d;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  auto* const to = reinterpret_cast<std::int32_t*>(out);
+  std::int32_t before = first - 1;
+  for (int x = 0; x < width; x += 8) {
+    const std::uint8_t* const counts =
+        plain_labels::kBitCounts[(bits[x / kWordBits] >> (x % kWordBits)) & 0xFFU].data();
+    const auto base = hn::Set(d, before);
+    for (std::size_t i = 0; i < 8; i += hn::Lanes(d)) {
+      hn::StoreU(hn::Add(base, hn::PromoteTo(d, hn::LoadU(d8, counts + i))), d, to + x + i);
+    }
+    before += counts[7];
+  }
+}
+
+int find_runs(const RegionId* HWY_RESTRICT label, int width, std::int32_t* HWY_RESTRICT ends) {
+  const Labels d;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  const auto* const at = reinterpret_cast<const std::int32_t*>(label);
+  int runs = 0;
+  int x = 0;
+  for (; x + step < width; x += step) {
+    const auto changes = hn::Ne(hn::LoadU(d, at + x), hn::LoadU(d, at + x + 1));
+    hn::StoreU(hn::Compress(hn::Iota(d, x + 1), changes), d, ends + runs);
+    runs += static_cast<int>(hn::CountTrue(d, changes));
+  }
+  return plain_labels::find_runs_from(x, runs, label, width, ends);
+}
+
+int touches_below(const RegionId* HWY_RESTRICT row, const RegionId* HWY_RESTRICT below, int width,
+                  LabelPairs pairs) {
+  const Labels d;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  const auto* const here = reinterpret_cast<const std::int32_t*>(row);
+  const auto* const there = reinterpret_cast<const std::int32_t*>(below);
+  int count = plain_labels::touches_in_first_column(row, below, pairs);
+  int x = 1;
+  for (; x + step <= width; x += step) {
+    const auto p = hn::LoadU(d, here + x);
+    const auto q = hn::LoadU(d, there + x);
+    const auto is_new = hn::Or(hn::Ne(p, hn::LoadU(d, here + x - 1)), hn::Ne(q, hn::LoadU(d, there + x - 1)));
+    const auto found = hn::And(hn::Ne(p, q), is_new);
+    hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
+    hn::StoreU(hn::Compress(hn::Max(p, q), found), d, pairs.b + count);
+    count += static_cast<int>(hn::CountTrue(d, found));
+  }
+  return plain_labels::touches_below_from(x, count, row, below, width, pairs);
+}
+
+constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_below};
+
+}  // namespace
+}  // namespace cairn::kernels::HWY_NAMESPACE
