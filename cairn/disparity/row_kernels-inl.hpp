@@ -68,6 +68,56 @@ inline void edges(const std::int16_t* up, const std::int16_t* here, const std::i
   }
 }
 
+/// For each pixel magnitude(centre, up, left, right, down); what is outside counts as the pixel itself.
+template <class Magnitude>
+inline void over_neighbours(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+                            int width, std::uint16_t* CAIRN_RESTRICT out, Magnitude magnitude) {
+  const int end = width - 1;
+  out[0] = magnitude(here[0], up[0], here[0], here[end > 0 ? 1 : 0], down[0]);
+  for (int x = 1; x < end; ++x) out[x] = magnitude(here[x], up[x], here[x - 1], here[x + 1], down[x]);
+  if (end > 0) out[end] = magnitude(here[end], up[end], here[end - 1], here[end], down[end]);
+}
+
+inline void steepness(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
+                      std::uint16_t* CAIRN_RESTRICT out) {
+  over_neighbours(up, here, down, width, out, [](int, int u, int l, int r, int d) {
+    constexpr int kCap =
+        256 * 16;  // beyond it the root rounds to 255 anyhow, and floats hold the sum exactly
+    const int square = std::min((r - l) * (r - l) + (d - u) * (d - u), kCap * kCap);
+    const int root = static_cast<int>(std::sqrt(static_cast<float>(square)) * (1.0F / 16) + 0.5F);
+    return static_cast<std::uint16_t>(std::min(root, 255));
+  });
+}
+
+inline void disparity_steepness(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+                                int width, std::uint16_t* CAIRN_RESTRICT out) {
+  over_neighbours(up, here, down, width, out, [](int centre, int u, int l, int r, int d) {
+    const auto known = [centre](int neighbour) { return neighbour == kHole16 ? centre : neighbour; };
+    const auto capped = [](int step) { return std::min(std::max(step, -kSteepest16), kSteepest16); };
+    const int gx = capped(known(r) - known(l));
+    const int gy = capped(known(d) - known(u));
+    const int square = std::min(gx * gx + gy * gy, kSteepest16 * kSteepest16);
+    const int root = static_cast<int>(std::sqrt(static_cast<float>(square)) + 0.5F);
+    return static_cast<std::uint16_t>(centre == kHole16 ? int{kHoleGradient} : root);
+  });
+}
+
+inline void quantise(const float* disparity_px, int width, std::int16_t* CAIRN_RESTRICT out) {
+  for (int x = 0; x < width; ++x) {
+    const float d = disparity_px[x];
+    const bool valid = d == d;  // a hole is NaN
+    // 32767/16 is no limit in practice (kMaxDisparity); the clamp only keeps the conversion defined.
+    const float wide = (valid ? d : 0.0F) * 16.0F;
+    const float high = wide < -32767.0F ? -32767.0F : wide;
+    const float sixteenths = high > 32767.0F ? 32767.0F : high;
+    // Truncation and a correction instead of std::floor, which is a call per pixel before SSE4.1.
+    const int truncated = static_cast<int>(sixteenths);
+    const float rest = sixteenths - static_cast<float>(truncated);
+    const int rounded = truncated + (rest >= 0.5F ? 1 : 0) - (rest < -0.5F ? 1 : 0);
+    out[x] = static_cast<std::int16_t>(valid ? rounded : int{kHole16});
+  }
+}
+
 inline void noise(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
                   std::uint16_t* CAIRN_RESTRICT out) {
   for (int x = 1; x + 1 < width; ++x) {
@@ -142,8 +192,9 @@ inline int count_beyond(const PointArrays& points, const GroundPlane& plane, flo
   return count;
 }
 
-inline constexpr RowKernels kRowKernels{smooth,   edges,  noise,    smooth_lightly,
-                                        textured, agreed, count_on, count_beyond};
+inline constexpr RowKernels kRowKernels{smooth,   edges,    steepness,      disparity_steepness,
+                                        quantise, noise,    smooth_lightly, textured,
+                                        agreed,   count_on, count_beyond};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

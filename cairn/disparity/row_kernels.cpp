@@ -7,6 +7,7 @@
 #include <cairn/core/target.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/regions/gradient.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>

@@ -7,8 +7,8 @@
 #include <cairn/disparity/reject.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what find_evidence(), edge_strength() and fit_background() do for each
-/// pixel of a row, and for each point of a sample. Private to the library.
+/// The seam to the instruction sets: what find_evidence(), gradient(), edge_strength() and fit_background()
+/// do for each pixel of a row, and for each point of a sample. Private to the library.
 namespace cairn::kernels {
 
 /// One side of a symmetric smoothing kernel in 1/256: weights[i] stands at +i and −i.
@@ -38,6 +38,15 @@ struct RowKernels {
   /// and those above and below. `squares`: width samples, working memory.
   void (*edges)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
                 int channels, std::uint32_t* squares, std::uint16_t* out);
+  /// Magnitude in whole levels, capped at 255, of the gradient from one side of a pixel to the other of a row
+  /// that smooth() made from single samples.
+  void (*steepness)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
+                    std::uint16_t* out);
+  /// The same of quantised disparities: see gradient() in regions/gradient.hpp.
+  void (*disparity_steepness)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+                              int width, std::uint16_t* out);
+  /// Disparities in 1/16 px: see quantised() in regions/gradient.hpp.
+  void (*quantise)(const float* disparity_px, int width, std::int16_t* out);
   /// |(1 −2 1; −2 4 −2; 1 −2 1)| of the samples 1 … width − 2.
   void (*noise)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,
                 std::uint16_t* out);

@@ -45,8 +45,12 @@ struct LabelKernels {
   /// Where the runs of equal labels in a row end: ends[i] is one past the last pixel of run i. Returns how
   /// many there are.
   int (*find_runs)(const RegionId* label, int width, std::int32_t* ends);
-  /// Pairs of labels one above the other. What the column before shows is left out. Returns how many.
-  int (*touches_below)(const RegionId* row, const RegionId* below, int width, LabelPairs pairs);
+  /// The pairs of different labels side by side in a row, and one above the other in two. What has its like
+  /// one row higher, or side by side close by, is left out: every pair of labels that touch somewhere in an
+  /// image shows up somewhere, and most of them seldom. `above` of the first row: labels that there are not.
+  /// Return how many.
+  int (*touches_beside)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
+  int (*touches_below)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -63,37 +63,72 @@ int find_runs(const RegionId* HWY_RESTRICT label, int width, std::int32_t* HWY_R
   const Labels d;
   const auto step = static_cast<int>(hn::Lanes(d));
   const auto* const at = reinterpret_cast<const std::int32_t*>(label);
+  const auto steps = hn::Set(d, step);
+  auto next = hn::Iota(d, 1);
   int runs = 0;
   int x = 0;
   for (; x + step < width; x += step) {
     const auto changes = hn::Ne(hn::LoadU(d, at + x), hn::LoadU(d, at + x + 1));
-    hn::StoreU(hn::Compress(hn::Iota(d, x + 1), changes), d, ends + runs);
+    hn::StoreU(hn::Compress(next, changes), d, ends + runs);
     runs += static_cast<int>(hn::CountTrue(d, changes));
+    next = hn::Add(next, steps);
   }
   return plain_labels::find_runs_from(x, runs, label, width, ends);
 }
 
-int touches_below(const RegionId* HWY_RESTRICT row, const RegionId* HWY_RESTRICT below, int width,
+/// Appends the pairs of `found`; returns how many there are then.
+template <class D, class M>
+HWY_INLINE int put_pairs(D d, hn::Vec<D> p, hn::Vec<D> q, M found, LabelPairs pairs, int count) {
+  hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
+  hn::StoreU(hn::Compress(hn::Max(p, q), found), d, pairs.b + count);
+  return count + static_cast<int>(hn::CountTrue(d, found));
+}
+
+int touches_beside(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,
+                   LabelPairs pairs) {
+  const Labels d;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  const auto* const higher = reinterpret_cast<const std::int32_t*>(above);
+  const auto* const here = reinterpret_cast<const std::int32_t*>(row);
+  int x = std::min(2, width);
+  int count = plain_labels::touches_beside_in(1, x, 0, above, row, width, pairs);
+  for (; x + step < width; x += step) {
+    const auto p = hn::LoadU(d, here + x - 1);
+    const auto q = hn::LoadU(d, here + x);
+    const auto before = hn::LoadU(d, higher + x - 1);
+    const auto at = hn::LoadU(d, higher + x);
+    const auto straight = hn::And(hn::Eq(before, p), hn::Eq(at, q));
+    const auto from_left = hn::And(hn::Eq(hn::LoadU(d, higher + x - 2), p), hn::Eq(before, q));
+    const auto from_right = hn::And(hn::Eq(at, p), hn::Eq(hn::LoadU(d, higher + x + 1), q));
+    const auto known = hn::Or(straight, hn::Or(from_left, from_right));
+    count = put_pairs(d, p, q, hn::AndNot(known, hn::Ne(p, q)), pairs, count);
+  }
+  return plain_labels::touches_beside_in(x, width, count, above, row, width, pairs);
+}
+
+int touches_below(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,
                   LabelPairs pairs) {
   const Labels d;
   const auto step = static_cast<int>(hn::Lanes(d));
+  const auto* const higher = reinterpret_cast<const std::int32_t*>(above);
   const auto* const here = reinterpret_cast<const std::int32_t*>(row);
-  const auto* const there = reinterpret_cast<const std::int32_t*>(below);
-  int count = plain_labels::touches_in_first_column(row, below, pairs);
-  int x = 1;
-  for (; x + step <= width; x += step) {
-    const auto p = hn::LoadU(d, here + x);
-    const auto q = hn::LoadU(d, there + x);
-    const auto is_new = hn::Or(hn::Ne(p, hn::LoadU(d, here + x - 1)), hn::Ne(q, hn::LoadU(d, there + x - 1)));
-    const auto found = hn::And(hn::Ne(p, q), is_new);
-    hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
-    hn::StoreU(hn::Compress(hn::Max(p, q), found), d, pairs.b + count);
-    count += static_cast<int>(hn::CountTrue(d, found));
+  int x = std::min(1, width);
+  int count = plain_labels::touches_below_in(0, x, 0, above, row, width, pairs);
+  for (; x + step < width; x += step) {
+    const auto p = hn::LoadU(d, higher + x);
+    const auto q = hn::LoadU(d, here + x);
+    const auto p_left = hn::LoadU(d, higher + x - 1);
+    const auto q_left = hn::LoadU(d, here + x - 1);
+    const auto same = hn::And(hn::Eq(p_left, p), hn::Eq(q_left, q));
+    const auto left = hn::Or(hn::Eq(p_left, q), hn::Eq(q_left, p));
+    const auto right = hn::Or(hn::Eq(hn::LoadU(d, higher + x + 1), q), hn::Eq(hn::LoadU(d, here + x + 1), p));
+    const auto known = hn::Or(same, hn::Or(left, right));
+    count = put_pairs(d, p, q, hn::AndNot(known, hn::Ne(p, q)), pairs, count);
   }
-  return plain_labels::touches_below_from(x, count, row, below, width, pairs);
+  return plain_labels::touches_below_in(x, width, count, above, row, width, pairs);
 }
 
-constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_below};
+constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_beside, touches_below};
 
 }  // namespace
 }  // namespace cairn::kernels::HWY_NAMESPACE

@@ -73,28 +73,51 @@ inline int find_runs(const RegionId* label, int width, std::int32_t* ends) {
   return find_runs_from(0, 0, label, width, ends);
 }
 
-/// touches_below() from pixel `x` ≥ 1 on, `count` pairs found already.
-inline int touches_below_from(int x, int count, const RegionId* row, const RegionId* below, int width,
-                              LabelPairs pairs) {
-  for (; x < width; ++x) {
-    pairs.a[count] = std::min(number(row[x]), number(below[x]));
-    pairs.b[count] = std::max(number(row[x]), number(below[x]));
-    count += static_cast<int>((row[x] != below[x]) & ((row[x - 1] != row[x]) | (below[x - 1] != below[x])));
+inline void put_pair(LabelPairs pairs, int at, RegionId p, RegionId q) {
+  pairs.a[at] = std::min(number(p), number(q));
+  pairs.b[at] = std::max(number(p), number(q));
+}
+
+/// touches_beside() for the pixels first … last − 1 and their left neighbours, `count` pairs found already.
+/// A border that goes straight or aslant through rows is met in its first row only.
+inline int touches_beside_in(int first, int last, int count, const RegionId* above, const RegionId* row,
+                             int width, LabelPairs pairs) {
+  for (int x = first; x < last; ++x) {
+    const RegionId p = row[x - 1];
+    const RegionId q = row[x];
+    const bool straight = (above[x - 1] == p) & (above[x] == q);
+    const bool from_left = x > 1 && (above[x - 2] == p) & (above[x - 1] == q);
+    const bool from_right = x + 1 < width && (above[x] == p) & (above[x + 1] == q);
+    put_pair(pairs, count, p, q);
+    count += static_cast<int>((p != q) & !(straight | from_left | from_right));
   }
   return count;
 }
 
-/// The first column has none before it.
-inline int touches_in_first_column(const RegionId* row, const RegionId* below, LabelPairs pairs) {
-  pairs.a[0] = std::min(number(row[0]), number(below[0]));
-  pairs.b[0] = std::max(number(row[0]), number(below[0]));
-  return row[0] != below[0] ? 1 : 0;
+inline int touches_beside(const RegionId* above, const RegionId* row, int width, LabelPairs pairs) {
+  return touches_beside_in(1, width, 0, above, row, width, pairs);
 }
 
-inline int touches_below(const RegionId* row, const RegionId* below, int width, LabelPairs pairs) {
-  return touches_below_from(1, touches_in_first_column(row, below, pairs), row, below, width, pairs);
+/// touches_below() for the pixels first … last − 1. Where both labels stand in a column beside, they are side
+/// by side, too, or were met there.
+inline int touches_below_in(int first, int last, int count, const RegionId* above, const RegionId* row,
+                            int width, LabelPairs pairs) {
+  for (int x = first; x < last; ++x) {
+    const RegionId p = above[x];
+    const RegionId q = row[x];
+    const bool left =
+        x > 0 && (((above[x - 1] == p) & (row[x - 1] == q)) | (above[x - 1] == q) | (row[x - 1] == p));
+    const bool right = x + 1 < width && (above[x + 1] == q) | (row[x + 1] == p);
+    put_pair(pairs, count, p, q);
+    count += static_cast<int>((p != q) & !(left | right));
+  }
+  return count;
 }
 
-inline constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_below};
+inline int touches_below(const RegionId* above, const RegionId* row, int width, LabelPairs pairs) {
+  return touches_below_in(0, width, 0, above, row, width, pairs);
+}
+
+inline constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_beside, touches_below};
 
 }  // namespace cairn::kernels::plain_labels

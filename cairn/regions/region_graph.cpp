@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/regions/gradient.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cairn/regions/scratch.hpp>
 #include <limits>
@@ -13,144 +14,122 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 
-/// Where the runs of equal labels in a row end: ends[i] is one past the last pixel of run i. Returns how many
-/// there are. Written without a branch, as no processor can foretell where labels change.
-int find_runs(const RegionId* label, int width, std::int32_t* ends) {
-  int runs = 0;
-  for (int x = 0; x + 1 < width; ++x) {
-    ends[runs] = x + 1;
-    runs += label[x] != label[x + 1] ? 1 : 0;
+/// What the values of some pixels beside each other sum up to. Small numbers share a word, so that sums up to
+/// every pixel of a row are made and looked up fast.
+struct GreySums {
+  using Packed = std::uint64_t;  // sum · 2⁴⁰ + sum of squares
+  static Packed of(Gray value) {
+    const Packed v = value;
+    return (v << 40U) + v * v;
   }
-  ends[runs] = width;
-  return runs + 1;
-}
-
-/// Sums from the start of a row up to a pixel, itself not counted.
-struct Prefix {
-  std::int64_t sum = 0;
-  std::int64_t sum_of_squares = 0;
-  std::int32_t valid_count = 0;
-  std::int32_t floor_count = 0;
+  static void add(Packed sums, int pixels, RegionGraph::Node& node) {
+    node.valid_count += pixels;
+    node.sum += static_cast<std::int64_t>(sums >> 40U);
+    node.sum_of_squares += static_cast<std::int64_t>(sums & ((Packed{1} << 40U) - 1));
+  }
 };
-
-void sum_up(const std::int16_t* value, const std::uint8_t* floor, int width, Prefix* prefix) {
-  Prefix p;
-  for (int x = 0; x < width; ++x) {
-    prefix[x] = p;
-    const bool valid = value[x] != kHole16;
-    const int v = valid ? value[x] : 0;
-    p.sum += v;
-    p.sum_of_squares += v * v;
-    p.valid_count += valid ? 1 : 0;
-    p.floor_count += floor != nullptr && floor[x] != 0 ? 1 : 0;
+struct DisparitySums {
+  struct Packed {
+    std::int64_t squares = 0;
+    std::int64_t rest = 0;  // sum · 2³² + valid pixels · 2¹⁶ + floor pixels
+    Packed& operator+=(Packed o) {
+      squares += o.squares;
+      rest += o.rest;
+      return *this;
+    }
+    Packed operator-(Packed o) const { return {squares - o.squares, rest - o.rest}; }
+  };
+  static Packed of(std::int16_t value, bool is_floor) {
+    const bool valid = value != kHole16;
+    const std::int64_t v = valid ? value : 0;
+    return {v * v, v * (std::int64_t{1} << 32U) + (valid ? 1 << 16U : 0) + (is_floor ? 1 : 0)};
   }
-  prefix[width] = p;
-}
+  static void add(Packed sums, int, RegionGraph::Node& node) {
+    node.valid_count += (sums.rest >> 16U) & 0xFFFF;
+    node.sum += sums.rest >> 32U;
+    node.sum_of_squares += sums.squares;
+    node.is_floor |= (sums.rest & 0xFFFF) != 0;
+  }
+};
+constexpr int kMostSummed = 0xFFFF;  // pixels whose sums surely fit
 
-/// A row's runs added to the nodes. While counting, a box holds its right and lower end in place of width and
-/// height.
-void count_row(const RegionId* label, int y, int width, const Prefix* prefix, const std::int32_t* ends,
-               int runs, RegionGraph::Node* nodes) {
+/// A row's runs added to the nodes, from the sums up to each pixel, itself not counted. While counting, a box
+/// holds its right and lower end in place of width and height, and no upper one: that is the first pixel's
+/// row.
+template <class Sums>
+void count_row(const RegionId* label, int y, int width, const typename Sums::Packed* up_to,
+               const std::int32_t* ends, int runs, RegionGraph::Node* nodes) {
   int begin = 0;
   for (int i = 0; i < runs; ++i) {
     const int end = ends[i];
-    const Prefix& from = prefix[begin];
-    const Prefix& to = prefix[end];
     RegionGraph::Node& node = nodes[index(label[begin])];
     node.pixel_count += end - begin;
-    node.valid_count += to.valid_count - from.valid_count;
-    node.sum += to.sum - from.sum;
-    node.sum_of_squares += to.sum_of_squares - from.sum_of_squares;
-    node.is_floor |= to.floor_count != from.floor_count;
     node.first_pixel = std::min(node.first_pixel, y * width + begin);
     node.box.x = std::min(node.box.x, begin);
-    node.box.y = std::min(node.box.y, y);
     node.box.width = std::max(node.box.width, end);
-    node.box.height = std::max(node.box.height, y + 1);
+    node.box.height = y + 1;
+    for (; end - begin > kMostSummed; begin += kMostSummed)
+      Sums::add(up_to[begin + kMostSummed] - up_to[begin], kMostSummed, node);
+    Sums::add(up_to[end] - up_to[begin], end - begin, node);
     begin = end;
   }
 }
 
-struct Touch {
-  std::int32_t a;
-  std::int32_t b;
+/// Pairs of regions that touch, the smaller number in `a`.
+struct Touches {
+  ScratchList<std::int32_t> a;
+  ScratchList<std::int32_t> b;
+
+  Touches(std::size_t capacity, const Exec& exec) : a(capacity, exec.pool), b(capacity, exec.pool) {}
+  [[nodiscard]] std::size_t size() const { return a.size(); }
+  /// Appends what find(room) writes there, at most `most` pairs; it returns how many.
+  template <class Find>
+  void append(std::size_t most, Find find) {
+    std::int32_t* const room = a.room_for(most + kernels::kListSlack);
+    const auto found = slot(find(kernels::LabelPairs{room, b.room_for(most + kernels::kListSlack)}));
+    a.grown(found);
+    b.grown(found);
+  }
 };
 
-/// Pairs of labels side by side in a row. What the row above shows at the same place is left out; without
-/// branches, as find_runs(). Returns how many.
-int touches_beside(const RegionId* above, const RegionId* row, const std::int32_t* ends, int runs,
-                   Touch* touches) {
-  int n = 0;
-  for (int i = 0; i + 1 < runs; ++i) {
-    const int x = ends[i];
-    touches[n] = {number(row[x - 1]), number(row[x])};
-    n += static_cast<int>((above[x - 1] != row[x - 1]) | (above[x] != row[x]));
-  }
-  return n;
-}
-
-/// Pairs of labels one above the other. What the column before shows is left out.
-int touches_below(const RegionId* row, const RegionId* below, int width, Touch* touches) {
-  touches[0] = {number(row[0]), number(below[0])};
-  int n = row[0] != below[0] ? 1 : 0;
-  for (int x = 1; x < width; ++x) {
-    touches[n] = {number(row[x]), number(below[x])};
-    n += static_cast<int>((row[x] != below[x]) & ((row[x - 1] != row[x]) | (below[x - 1] != below[x])));
-  }
-  return n;
-}
-
-/// Drops most repetitions of pairs: remembers those seen last.
-class Recent {
- public:
-  /// Keeps the first of each pair, smaller label first; returns how many.
-  int distinct(Touch* touches, int count) {
-    int kept = 0;
-    for (int i = 0; i < count; ++i) {
-      const Touch touch{std::min(touches[i].a, touches[i].b), std::max(touches[i].a, touches[i].b)};
-      const auto hash = static_cast<std::uint32_t>(touch.a) * 0x9E3779B1U +
-                        static_cast<std::uint32_t>(touch.b) * 0x85EBCA6BU;
-      Touch& last = seen_[hash >> (32U - kBits)];
-      touches[kept] = touch;
-      kept += static_cast<int>((last.a != touch.a) | (last.b != touch.b));
-      last = touch;
-    }
-    return kept;
-  }
-
- private:
-  static constexpr unsigned kBits =
-      11;  // several times the pairs that two rows show; fits the first-level cache
-  std::vector<Touch> seen_ = std::vector<Touch>(1U << kBits, Touch{-1, -1});
-};
-
-/// One pass over the rows: counts the nodes and finds which of them touch. Some pairs may stand in the list
-/// twice.
-ScratchList<Touch> count_and_touch(View<const RegionId> labels, View<const std::int16_t> values,
-                                   View<const std::uint8_t> floor, std::vector<RegionGraph::Node>& nodes,
-                                   const Exec& exec) {
+/// One pass over the rows: counts the nodes and finds which of them touch. Some pairs are found more than
+/// once. `sums_at(x, y)`: those of one pixel.
+template <class Sums, class SumsAt>
+Touches count_and_touch(View<const RegionId> labels, std::vector<RegionGraph::Node>& nodes, const Exec& exec,
+                        SumsAt sums_at) {
   constexpr int kFarthest = std::numeric_limits<int>::max();
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
   const int width = labels.width();
-  const auto length = static_cast<std::size_t>(width);
+  const std::size_t length = slot(width) + kernels::kListSlack;
   std::fill(nodes.begin(), nodes.end(),
-            RegionGraph::Node{.first_pixel = kFarthest, .box = {kFarthest, kFarthest, 0, 0}});
+            RegionGraph::Node{.first_pixel = kFarthest, .box = {kFarthest, 0, 0, 0}});
   std::vector<std::int32_t> ends(length);
-  std::vector<Prefix> prefix(length + 1);
-  const std::vector<RegionId> nothing(length, RegionId{-1});
-  ScratchList<Touch> touches(static_cast<std::size_t>(labels.size().area() / 4), exec.pool);
-  Recent recent;
+  std::vector<typename Sums::Packed> up_to(slot(width) + 1);
+  const std::vector<RegionId> nothing(slot(width), RegionId{-1});
+  Touches touches(static_cast<std::size_t>(labels.size().area() / 4), exec);
   for (int y = 0; y < labels.height(); ++y) {
     const RegionId* const row = labels.row(y);
-    sum_up(values.row(y), floor.empty() ? nullptr : floor.row(y), width, prefix.data());
-    const int runs = find_runs(row, width, ends.data());
-    count_row(row, y, width, prefix.data(), ends.data(), runs, nodes.data());
-    Touch* const found = touches.room_for(2 * length);
-    int count = touches_beside(y > 0 ? labels.row(y - 1) : nothing.data(), row, ends.data(), runs, found);
-    if (y + 1 < labels.height()) count += touches_below(row, labels.row(y + 1), width, found + count);
-    touches.grown(static_cast<std::size_t>(recent.distinct(found, count)));
+    typename Sums::Packed sums{};
+    for (int x = 0; x < width; ++x) {
+      up_to[slot(x)] = sums;
+      sums += sums_at(x, y);
+    }
+    up_to[slot(width)] = sums;
+    const int runs = run.find_runs(row, width, ends.data());
+    count_row<Sums>(row, y, width, up_to.data(), ends.data(), runs, nodes.data());
+    const RegionId* const above = y > 0 ? labels.row(y - 1) : nothing.data();
+    touches.append(slot(width),
+                   [&](kernels::LabelPairs room) { return run.touches_beside(above, row, width, room); });
+    if (y == 0) continue;
+    touches.append(slot(width),
+                   [&](kernels::LabelPairs room) { return run.touches_below(above, row, width, room); });
   }
   for (RegionGraph::Node& node : nodes) {
-    if (node.pixel_count == 0) node = {};
+    if (node.pixel_count == 0) {
+      node = {};
+      continue;
+    }
+    node.box.y = node.first_pixel / width;
     node.box.width -= node.box.x;
     node.box.height -= node.box.y;
   }
@@ -158,49 +137,54 @@ ScratchList<Touch> count_and_touch(View<const RegionId> labels, View<const std::
 }
 
 /// Compact adjacency from touches: every pair in both directions once, neighbours ascending.
-void link(RegionGraph& graph, ScratchList<Touch>& touches, const Exec& exec) {
+void link(RegionGraph& graph, const Touches& touches, const Exec& exec) {
   const auto count = static_cast<std::int32_t>(graph.nodes.size());
-  std::vector<std::int32_t>& first = graph.first_arc;
-  first.assign(graph.nodes.size() + 1, 0);
-  for (const Touch& touch : touches) {
-    ++first[static_cast<std::size_t>(touch.a) + 1];
-    ++first[static_cast<std::size_t>(touch.b) + 1];
+  graph.first_arc.assign(graph.nodes.size() + 1, 0);
+  std::int32_t* const first = graph.first_arc.data();
+  const std::int32_t* const touch_a = touches.a.begin();
+  const std::int32_t* const touch_b = touches.b.begin();
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    ++first[touch_a[i] + 1];
+    ++first[touch_b[i] + 1];
   }
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  Scratch<std::int32_t> unsorted(2 * touches.size(), exec.pool);
-  Scratch<std::int32_t> end(graph.nodes.size(), exec.pool);
-  std::copy_n(first.begin(), graph.nodes.size(), end.begin());
-  for (const Touch& touch : touches) {
-    unsorted[end[touch.a]++] = touch.b;
-    unsorted[end[touch.b]++] = touch.a;
+  std::partial_sum(first, first + count + 1, first);
+  Scratch<std::int32_t> unsorted_room(2 * touches.size(), exec.pool);
+  Scratch<std::int32_t> end_room(graph.nodes.size(), exec.pool);
+  std::int32_t* const unsorted = unsorted_room.data();
+  std::int32_t* const end = end_room.data();
+  std::copy_n(first, count, end);
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    unsorted[end[touch_a[i]]++] = touch_b[i];
+    unsorted[end[touch_b[i]]++] = touch_a[i];
   }
 
   // Handing every node, in ascending order, to its neighbours' lists sorts those lists, and repetitions end
   // up side by side, where they are seen. Pairs are symmetric, so the lists have room for the same number.
-  Scratch<std::int32_t> sorted(2 * touches.size(), exec.pool);
-  std::copy_n(first.begin(), graph.nodes.size(), end.begin());
+  Scratch<std::int32_t> sorted_room(2 * touches.size() + 1, exec.pool);
+  std::int32_t* const sorted = sorted_room.data() + 1;
+  std::copy_n(first, count, end);
+  sorted[-1] = -1;
+  std::int32_t size = 0;
   for (std::int32_t a = 0; a < count; ++a) {
-    for (std::int32_t i = first[static_cast<std::size_t>(a)]; i < first[static_cast<std::size_t>(a) + 1];
-         ++i) {
+    for (std::int32_t i = first[a]; i < first[a + 1]; ++i) {
       const std::int32_t b = unsorted[i];
       const std::int32_t at = end[b];
-      const bool is_new = at == first[static_cast<std::size_t>(b)] || sorted[at - 1] != a;
+      // What stands before a list's begin is another list's, and may be anything.
+      const bool is_new = (at == first[b]) | (sorted[at - 1] != a);
       sorted[at] = a;
       end[b] = at + (is_new ? 1 : 0);
+      size += is_new ? 1 : 0;
     }
   }
 
-  graph.arcs.resize(2 * touches.size());
-  std::int32_t size = 0;
+  graph.arcs.resize(slot(size));
+  std::int32_t* to = graph.arcs.data();
   for (std::int32_t a = 0; a < count; ++a) {
-    const std::int32_t begin = first[static_cast<std::size_t>(a)];
-    const std::int32_t length = end[a] - begin;
-    std::copy_n(sorted.begin() + begin, length, graph.arcs.begin() + size);
-    first[static_cast<std::size_t>(a)] = size;
-    size += length;
+    const std::int32_t begin = first[a];
+    first[a] = static_cast<std::int32_t>(to - graph.arcs.data());
+    for (std::int32_t i = begin; i < end[a]; ++i) *to++ = sorted[i];
   }
-  first[graph.nodes.size()] = size;
-  graph.arcs.resize(static_cast<std::size_t>(size));
+  first[count] = size;
 }
 
 Region region_of(const RegionGraph::Node& node, double value_scale) {
@@ -217,9 +201,19 @@ Region region_of(const RegionGraph::Node& node, double value_scale) {
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
                         View<const std::uint8_t> floor, const Exec& exec) {
   RegionGraph graph;
-  graph.nodes.resize(static_cast<std::size_t>(count));
-  ScratchList<Touch> touches = count_and_touch(labels, values, floor, graph.nodes, exec);
-  link(graph, touches, exec);
+  graph.nodes.resize(slot(count));
+  const auto sums_at = [&](int x, int y) {
+    return DisparitySums::of(values(x, y), !floor.empty() && floor(x, y) != 0);
+  };
+  link(graph, count_and_touch<DisparitySums>(labels, graph.nodes, exec, sums_at), exec);
+  return graph;
+}
+
+RegionGraph build_graph(View<const RegionId> labels, int count, View<const Gray> values, const Exec& exec) {
+  RegionGraph graph;
+  graph.nodes.resize(slot(count));
+  const auto sums_at = [&](int x, int y) { return GreySums::of(values(x, y)); };
+  link(graph, count_and_touch<GreySums>(labels, graph.nodes, exec, sums_at), exec);
   return graph;
 }
 

@@ -70,6 +70,9 @@ struct RegionGraph {
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
                         View<const std::uint8_t> floor, const Exec& exec);
 
+/// The same of grey levels: every pixel has a value, and there is no floor.
+RegionGraph build_graph(View<const RegionId> labels, int count, View<const Gray> values, const Exec& exec);
+
 /// Which region every old one ended in. merged_into[i] = the surviving id, itself where it survived.
 using Merges = std::vector<std::int32_t>;
 

@@ -226,6 +226,41 @@ TEST(RegionsEquivalence, GraphIsItsTwin) {
   }
 }
 
+TEST(RegionsEquivalence, GraphOfGreyLevelsIsThatOfTheSameNumbers) {
+  for (const Size size : sizes()) {
+    const Image<Gray> image = random_image<Gray>(size, 0, 255, 44);
+    Image<std::int16_t> wide(size);
+    for (int y = 0; y < size.height; ++y) std::copy_n(image.row(y), size.width, wide.row(y));
+    const Basins basins = random_basins(size, 45);
+    expect_equal(build_graph(basins.labels, basins.count, image, {}),
+                 reference::build_graph(basins.labels, basins.count, wide, {}));
+  }
+}
+
+TEST(RegionsEquivalence, GraphIsTheSameOnAllTargets) {
+  for (const Size size : sizes()) {
+    const Image<RegionId> labels = random_image<RegionId>(size, 0, 5, 46);
+    const Image<std::int16_t> values = random_disparity16(size, 47);
+    const RegionGraph expected = reference::build_graph(labels, 6, values, {});
+    for (const Exec& exec : all_targets()) expect_equal(build_graph(labels, 6, values, {}, exec), expected);
+  }
+}
+
+TEST(RegionsEquivalence, GraphSumsUpVeryLongRuns) {
+  const Image<RegionId> labels(Size{150000, 1}, RegionId{0}, {});
+  const Image<Gray> grey(labels.size(), Gray{255}, {});
+  const Image<std::int16_t> least(labels.size(), std::int16_t{-32767}, {});
+  const Image<std::uint8_t> floor(labels.size(), std::uint8_t{1}, {});
+  const auto as_grey = build_graph(labels, 1, grey, {}).nodes.front();
+  EXPECT_EQ(as_grey.sum, 150000LL * 255);
+  EXPECT_EQ(as_grey.sum_of_squares, 150000LL * 255 * 255);
+  const auto as_disparity = build_graph(labels, 1, least, floor, {}).nodes.front();
+  EXPECT_EQ(as_disparity.sum, 150000LL * -32767);
+  EXPECT_EQ(as_disparity.sum_of_squares, 150000LL * 32767 * 32767);
+  EXPECT_EQ(as_disparity.valid_count, 150000);
+  EXPECT_TRUE(as_disparity.is_floor);
+}
+
 TEST(RegionsEquivalence, GraphOfScatteredLabelsIsItsTwin) {
   // Labels as no watershed makes them: not connected, not in raster order, some numbers without a pixel.
   const Image<RegionId> labels = random_image<RegionId>({33, 21}, 3, 17, 42);
