@@ -13,10 +13,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <io/atomic_file.hpp>
 #include <io/overlay.hpp>
@@ -34,6 +32,7 @@
 #include <vector>
 
 #include "ablations.hpp"
+#include "machine.hpp"
 #include "markdown_table.hpp"
 #include "opencv_matchers.hpp"
 #include "scored_frames.hpp"
@@ -423,10 +422,12 @@ std::vector<Matcher> all_matchers() {
                          .disparity.disparity_px.clone();
                    }});
   }
-  for (const OpenCvMatcher& matcher : kOpenCvMatchers) {
+  for (const OpenCvMatcher& matcher : accurate_opencv_matchers()) {
     all.push_back({"OpenCV " + std::string(matcher.name), [&matcher](const TrueFrame& frame, const Exec&) {
                      const auto& [left, right] = frame.pictures;
-                     return matcher.match(StereoPair::from(left.gray, right.gray), frame.num_disparities);
+                     const ReadyMatcher ready = matcher.prepare({.num_disparities = frame.num_disparities});
+                     ready.compute(StereoPair::from(left.gray, right.gray));
+                     return ready.disparity_px();
                    }});
   }
   return all;
@@ -505,9 +506,9 @@ void add_middlebury(Page& page, const fs::path& data, int threads) {
       "Columns x ≥ the number of disparities only, since OpenCV's matchers leave the others empty:\n\n" +
       from_range.text() + "\nAll columns:\n\n" + all_columns.text() + "\n";
   page.text += "OpenCV's settings: ";
-  for (const OpenCvMatcher& matcher : kOpenCvMatchers) {
+  for (const OpenCvMatcher& matcher : accurate_opencv_matchers()) {
     page.text += std::string(matcher.name) + ": " + std::string(matcher.settings) +
-                 (&matcher == &kOpenCvMatchers.back() ? ".\n\n" : "; ");
+                 (&matcher == &accurate_opencv_matchers().back() ? ".\n\n" : "; ");
   }
   page.text += "<details><summary>Pair by pair, columns x ≥ the number of disparities</summary>\n\n" +
                pairs.text() + "\n</details>\n\n";
@@ -681,24 +682,6 @@ void add_sequences(Page& page, const fs::path& data, int threads) {
 
 // ---- the page ----
 
-std::string processor() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown processor";
-}
-
-std::string today() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> buffer{};
-  std::strftime(buffer.data(), buffer.size(), "%F", &utc);
-  return buffer.data();
-}
-
 std::string head(const std::string& commit) {
   return "# Accuracy\n\n<!-- Written by ./dev accuracy; do not edit. -->\n\n"
          "Measured on " +
@@ -787,7 +770,7 @@ int main(int argc, char** argv) {
     }
     const auto start = std::chrono::steady_clock::now();
     const int threads = argc == 5 ? threads_of(argv[4]) : std::max(1U, std::thread::hardware_concurrency());
-    use_one_opencv_thread();
+    set_opencv_threads(1);
     write(measure_all(data, argv[3], threads), argv[2]);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     std::printf("wrote %s/accuracy.md and its pictures in %.0f s on %d threads\n", argv[2], took.count(),

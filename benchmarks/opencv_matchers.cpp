@@ -2,12 +2,22 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "opencv_matchers.hpp"
 
+#include <array>
+#include <cairn/core/error.hpp>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <utility>
 
 namespace cairn::report {
+
+struct ReadyMatcher::State {
+  cv::Ptr<cv::StereoMatcher> matcher;
+  cv::Mat sixteenths;
+};
+
 namespace {
 
 cv::Mat matrix(View<const Gray> image) {
@@ -16,30 +26,24 @@ cv::Mat matrix(View<const Gray> image) {
           static_cast<std::size_t>(image.stride())};
 }
 
-Image<float> matched(cv::StereoMatcher& matcher, const StereoPair& pair) {
-  constexpr auto kSubpixels = static_cast<float>(cv::StereoMatcher::DISP_SCALE);
-  cv::Mat sixteenths;
-  matcher.compute(matrix(pair.left()), matrix(pair.right()), sixteenths);
-  Image<float> disparity_px(pair.size());
-  for (int y = 0; y < disparity_px.height(); ++y) {
-    for (int x = 0; x < disparity_px.width(); ++x) {
-      const auto value = sixteenths.at<std::int16_t>(y, x);
-      // OpenCV's mark of a hole lies below the least disparity, which is 0 here.
-      disparity_px(x, y) =
-          value < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / kSubpixels;
-    }
-  }
-  return disparity_px;
+int rounded_up(int num_disparities) {
+  constexpr int kStep = 16;
+  return (num_disparities + kStep - 1) / kStep * kStep;
 }
 
-Image<float> block_matching(const StereoPair& pair, int num_disparities) {
+ReadyMatcher ready(cv::Ptr<cv::StereoMatcher> matcher) {
+  return ReadyMatcher(std::make_shared<ReadyMatcher::State>(ReadyMatcher::State{std::move(matcher), {}}));
+}
+
+ReadyMatcher block_matching(const SearchRange& range) {
   constexpr int kWindow = 9;
-  const auto matcher = cv::StereoBM::create(num_disparities, kWindow);
+  auto matcher = cv::StereoBM::create(rounded_up(range.num_disparities), kWindow);
+  matcher->setMinDisparity(range.min_disparity);
   matcher->setDisp12MaxDiff(1);
-  return matched(*matcher, pair);
+  return ready(std::move(matcher));
 }
 
-Image<float> semi_global(const StereoPair& pair, int num_disparities, int mode) {
+ReadyMatcher semi_global(const SearchRange& range, int mode) {
   constexpr int kBlock = 5;
   constexpr int kSmallPenalty = 8 * kBlock * kBlock;
   constexpr int kLargePenalty = 32 * kBlock * kBlock;
@@ -48,38 +52,80 @@ Image<float> semi_global(const StereoPair& pair, int num_disparities, int mode) 
   constexpr int kUniqueness = 10;
   constexpr int kSpeckleSize = 100;
   constexpr int kSpeckleRange = 2;
-  const auto matcher =
-      cv::StereoSGBM::create(0, num_disparities, kBlock, kSmallPenalty, kLargePenalty, kMostDisagreement,
-                             kPrefilterCap, kUniqueness, kSpeckleSize, kSpeckleRange, mode);
-  return matched(*matcher, pair);
+  return ready(cv::StereoSGBM::create(range.min_disparity, rounded_up(range.num_disparities), kBlock,
+                                      kSmallPenalty, kLargePenalty, kMostDisagreement, kPrefilterCap,
+                                      kUniqueness, kSpeckleSize, kSpeckleRange, mode));
 }
 
-Image<float> semi_global_5_paths(const StereoPair& pair, int num_disparities) {
-  return semi_global(pair, num_disparities, cv::StereoSGBM::MODE_SGBM);
+ReadyMatcher semi_global_3_paths(const SearchRange& range) {
+  return semi_global(range, cv::StereoSGBM::MODE_SGBM_3WAY);
+}
+ReadyMatcher semi_global_5_paths(const SearchRange& range) {
+  return semi_global(range, cv::StereoSGBM::MODE_SGBM);
+}
+ReadyMatcher semi_global_8_paths(const SearchRange& range) {
+  return semi_global(range, cv::StereoSGBM::MODE_HH);
 }
 
-Image<float> semi_global_8_paths(const StereoPair& pair, int num_disparities) {
-  return semi_global(pair, num_disparities, cv::StereoSGBM::MODE_HH);
-}
+constexpr OpenCvMatcher kBlockMatching{
+    "StereoBM", "window 9, x-Sobel with cap 31, uniqueness 15, texture 10, left-right 1, no speckle filter",
+    block_matching};
+constexpr std::string_view kSemiGlobalSettings =
+    "block 5, P1 200, P2 800, prefilter cap 63, uniqueness 10, left-right 1, speckles 100 px within 2";
+constexpr OpenCvMatcher kSemiGlobal{"StereoSGBM", kSemiGlobalSettings, semi_global_5_paths};
+
+constexpr std::array kQuick{
+    kBlockMatching, OpenCvMatcher{"StereoSGBM 3-way", "as StereoSGBM, with 3 paths", semi_global_3_paths},
+    kSemiGlobal};
+constexpr std::array kAccurate{kBlockMatching, kSemiGlobal,
+                               OpenCvMatcher{"StereoSGBM HH", "the same with 8 paths", semi_global_8_paths}};
 
 }  // namespace
 
-constexpr std::string_view kSemiGlobalSettings =
-    "block 5, P1 200, P2 800, prefilter cap 63, uniqueness 10, left-right 1, speckles 100 px within 2";
+void ReadyMatcher::compute(const StereoPair& pair) const {
+  // In narrower pictures OpenCV 4.6 throws on threads of its own, which nobody can catch.
+  constexpr int kMargin = 16;
+  const cv::StereoMatcher& matcher = *state_->matcher;
+  const int least_width = matcher.getNumDisparities() + std::abs(matcher.getMinDisparity()) + kMargin;
+  if (pair.size().width < least_width || pair.size().height < kMargin) {
+    throw Error("wants at least " + text(Size{least_width, kMargin}) + " px");
+  }
+  try {
+    state_->matcher->compute(matrix(pair.left()), matrix(pair.right()), state_->sixteenths);
+  } catch (const cv::Exception& refusal) {
+    throw Error(refusal.err);
+  }
+}
 
-const std::array<OpenCvMatcher, 3> kOpenCvMatchers{
-    OpenCvMatcher{"StereoBM",
-                  "window 9, x-Sobel with cap 31, uniqueness 15, texture 10, left-right 1, no speckle filter",
-                  block_matching},
-    OpenCvMatcher{"StereoSGBM", kSemiGlobalSettings, semi_global_5_paths},
-    OpenCvMatcher{"StereoSGBM HH", "the same with 8 paths", semi_global_8_paths}};
+Image<float> ReadyMatcher::disparity_px() const {
+  constexpr auto kSubpixels = static_cast<float>(cv::StereoMatcher::DISP_SCALE);
+  const cv::Mat& sixteenths = state_->sixteenths;
+  // OpenCV's mark of a hole lies below the least disparity.
+  const int least = state_->matcher->getMinDisparity() * cv::StereoMatcher::DISP_SCALE;
+  Image<float> disparity_px(Size{sixteenths.cols, sixteenths.rows});
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      const auto value = sixteenths.at<std::int16_t>(y, x);
+      disparity_px(x, y) =
+          value < least ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / kSubpixels;
+    }
+  }
+  return disparity_px;
+}
+
+std::span<const OpenCvMatcher> quick_opencv_matchers() {
+  return kQuick;
+}
+std::span<const OpenCvMatcher> accurate_opencv_matchers() {
+  return kAccurate;
+}
 
 std::string_view opencv_version() {
   return CV_VERSION;
 }
 
-void use_one_opencv_thread() {
-  cv::setNumThreads(1);
+void set_opencv_threads(int threads) {
+  cv::setNumThreads(threads);
 }
 
 }  // namespace cairn::report

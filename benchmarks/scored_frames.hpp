@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "statistics.hpp"
+
 /// Frames with their truth in memory, and how well a configuration does on them.
 namespace cairn::report {
 
@@ -53,11 +55,5 @@ void for_each_index(std::size_t count, int threads,
 
 /// Processor time of the calling thread so far: what other programs do on the machine hardly shows in it.
 double thread_milliseconds();
-
-/// The smallest value that at least `share` (0 … 1) of them do not exceed; NaN of none. NaN among the values
-/// are left out.
-double percentile(std::vector<double> values, double share);
-/// NaN are left out; NaN of none.
-double mean(const std::vector<double>& values);
 
 }  // namespace cairn::report

@@ -15,6 +15,7 @@ using Work = std::function<int()>;
 Work declare_segment(CLI::App& app);
 Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
+Work declare_bench(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
 
@@ -28,6 +29,7 @@ inline constexpr std::array kCommands{
     Command{"segment", "find the objects of a stereo pair, or of a folder of pairs", declare_segment},
     Command{"disparity", "match a stereo pair and check every match", declare_disparity},
     Command{"evaluate", "compare results with the truth", declare_evaluate},
+    Command{"bench", "time each stage on a stereo pair, with OpenCV's matchers beside it", declare_bench},
     Command{"config", "show every option with its value, unit, range and meaning", declare_config},
     Command{"info", "show version, instruction sets and threads", declare_info},
 };

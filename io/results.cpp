@@ -225,6 +225,10 @@ void replace(const fs::path& made, const fs::path& folder) {
 
 }  // namespace
 
+std::string config_json(const Config& config) {
+  return json(config).dump();
+}
+
 std::string objects_json(const Frame& frame, const Provenance& provenance) {
   const Size size = frame.disparity.disparity_px.size();
   Json j;

@@ -24,6 +24,9 @@ struct Provenance {
   bool external_disparity = false;  // the disparity was given, not matched
 };
 
+/// Every option by section, as a JSON object.
+std::string config_json(const Config& config);
+
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);
 

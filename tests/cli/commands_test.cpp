@@ -18,6 +18,7 @@ TEST_F(Command, ShowsHelpForEveryCommandAndForNone) {
                                                     {"segment", "--help"},
                                                     {"disparity", "--help"},
                                                     {"evaluate", "--help"},
+                                                    {"bench", "--help"},
                                                     {"config", "--help"},
                                                     {"info", "--help"}}) {
     const Outcome outcome = run(arguments);

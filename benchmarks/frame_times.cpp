@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "frame_times.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segmenter.hpp>
+#include <chrono>
+#include <ctime>
+#include <functional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace cairn::report {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double process_ms() {
+  std::timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+std::int64_t most_resident_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{1024} * usage.ru_maxrss;
+}
+
+struct Elapsed {
+  double wall_ms = 0;
+  double cpu_ms = 0;
+  void add_to(Samples& samples) const {
+    samples.wall_ms.push_back(wall_ms);
+    samples.cpu_ms.push_back(cpu_ms);
+  }
+  Elapsed& operator+=(const Elapsed& other) {
+    wall_ms += other.wall_ms;
+    cpu_ms += other.cpu_ms;
+    return *this;
+  }
+};
+
+template <class Work>
+Elapsed timed(const Work& work) {
+  const double cpu = process_ms();
+  const auto wall = Clock::now();
+  work();
+  const std::chrono::duration<double, std::milli> elapsed = Clock::now() - wall;
+  return {elapsed.count(), process_ms() - cpu};
+}
+
+/// The stages of the frame that is being worked on. A stage's processor time runs from the end of the one
+/// before, as the observer's wall time does.
+class StageClock {
+ public:
+  void begin_frame() {
+    current_.clear();
+    mark_ms_ = process_ms();
+  }
+  void operator()(std::string_view stage, double wall_ms) {
+    const Elapsed elapsed{wall_ms, process_ms() - mark_ms_};
+    const auto found = std::find_if(current_.begin(), current_.end(),
+                                    [&](const auto& entry) { return entry.first == stage; });
+    if (found == current_.end()) {
+      current_.emplace_back(stage, elapsed);
+    } else {
+      found->second += elapsed;
+    }
+    mark_ms_ = process_ms();
+  }
+  [[nodiscard]] const std::vector<std::pair<std::string, Elapsed>>& stages() const { return current_; }
+
+ private:
+  std::vector<std::pair<std::string, Elapsed>> current_;
+  double mark_ms_ = 0;
+};
+
+/// What estimate_disparity() calls: said by itself, so that no list of stages has to be kept here.
+std::set<std::string, std::less<>> disparity_stages(const StereoPair& pair,
+                                                    const std::optional<StereoRig>& rig, const Config& config,
+                                                    Exec exec) {
+  std::set<std::string, std::less<>> names;
+  exec.observe = [&](std::string_view stage, const Artifact&, double) { names.emplace(stage); };
+  static_cast<void>(estimate_disparity(pair, rig, config, exec));
+  return names;
+}
+
+struct Peer {
+  ReadyMatcher matcher;
+  PeerTimes times;
+};
+
+/// Ready, and warm; those that refuse the pair say why and are not asked again.
+std::vector<Peer> prepare(std::span<const OpenCvMatcher> matchers, const StereoPair& pair,
+                          const MatchConfig& config) {
+  std::vector<Peer> peers;
+  for (const OpenCvMatcher& matcher : matchers) {
+    Peer peer{matcher.prepare({config.min_disparity, config.num_disparities}), {}};
+    peer.times.matcher = &matcher;
+    try {
+      peer.matcher.compute(pair);
+    } catch (const Error& error) {
+      peer.times.refusal = error.what();
+    }
+    peers.push_back(std::move(peer));
+  }
+  return peers;
+}
+
+void add_frame(FrameTimes& all, const StageClock& clock, const Elapsed& frame) {
+  frame.add_to(all.frame);
+  Elapsed disparity;
+  for (std::size_t i = 0; i < all.stages.size(); ++i) {
+    const Elapsed& elapsed = clock.stages().at(i).second;
+    elapsed.add_to(all.stages[i].times);
+    if (all.stages[i].for_disparity) disparity += elapsed;
+  }
+  disparity.add_to(all.disparity);
+}
+
+}  // namespace
+
+FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
+                       const Exec& exec, const Limits& limits, std::span<const OpenCvMatcher> matchers) {
+  const int least = std::min(3, limits.frames);
+  FrameTimes all;
+  StageClock clock;
+  Exec watched = exec;
+  watched.observe = [&clock](std::string_view stage, const Artifact&, double ms) { clock(stage, ms); };
+  const Segmenter segmenter(config, rig, watched);
+  const Pool& pool = segmenter.exec().pool;
+  const auto run = [&] {
+    return timed([&] {
+      clock.begin_frame();
+      static_cast<void>(segmenter.segment(pair));
+    });
+  };
+
+  all.first_frame_ms = run().wall_ms;
+  all.resident_bytes = most_resident_bytes();
+  all.first_allocations = pool.heap_allocations();
+  const auto for_disparity = disparity_stages(pair, rig, config, exec);
+  for (const auto& [name, elapsed] : clock.stages())
+    all.stages.push_back({name, for_disparity.contains(name), {}});
+
+  std::vector<Peer> peers = prepare(matchers, pair, config.match);
+  const auto start = Clock::now();
+  const auto in_time = [&] {
+    return all.frames() < least ||
+           (all.frames() < limits.frames &&
+            std::chrono::duration<double>(Clock::now() - start).count() < limits.seconds);
+  };
+  while (in_time()) {
+    const Elapsed frame = run();
+    add_frame(all, clock, frame);
+    for (Peer& peer : peers) {
+      if (peer.times.refusal.empty()) timed([&] { peer.matcher.compute(pair); }).add_to(peer.times.times);
+    }
+  }
+
+  all.pool_bytes = pool.bytes();
+  all.later_allocations = pool.heap_allocations() - all.first_allocations;
+  const Frame frame = segmenter.segment(pair);
+  all.objects = static_cast<int>(frame.objects.list.size());
+  all.disparity_px = frame.disparity.disparity_px.clone();
+  for (Peer& peer : peers) {
+    if (peer.times.refusal.empty()) peer.times.disparity_px = peer.matcher.disparity_px();
+    all.peers.push_back(std::move(peer.times));
+  }
+  return all;
+}
+
+}  // namespace cairn::report

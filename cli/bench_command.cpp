@@ -1,0 +1,457 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <benchmarks/drawn_pair.hpp>
+#include <benchmarks/frame_times.hpp>
+#include <benchmarks/machine.hpp>
+#include <benchmarks/opencv_matchers.hpp>
+#include <benchmarks/statistics.hpp>
+#include <cairn/core/error.hpp>
+#include <cairn/core/target.hpp>
+#include <cairn/evaluation/disparity_error.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <io/atomic_file.hpp>
+#include <io/dataset.hpp>
+#include <io/disparity_files.hpp>
+#include <io/image_files.hpp>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using report::FrameTimes;
+using report::Samples;
+
+struct BenchOptions {
+  InputOptions input;
+  ExecOptions exec;
+  std::optional<std::string> size;  // of the pair that the program draws
+  std::string truth;
+  std::optional<int> frames;
+  std::optional<double> seconds;
+  bool no_opencv = false;
+  std::optional<std::string> json;
+};
+
+// ---- what is measured on ----
+
+/// What is known to be true of the pair.
+struct Truth {
+  std::string source;
+  Image<float> disparity_px;
+  Image<std::uint8_t> hidden;  // empty where not known
+};
+
+struct Subject {
+  std::string name;
+  bool drawn = false;
+  io::Picture left;
+  Image<Gray> right;
+  std::optional<StereoRig> rig;
+  Config config;
+  std::string preset;
+  std::optional<Truth> truth;
+
+  [[nodiscard]] StereoPair pair() const { return StereoPair::from(left.gray, right, left.rgb); }
+};
+
+Size size_in(const std::string& words) {
+  constexpr int kLeast = 16;
+  constexpr int kMost = 8192;
+  Size size;
+  const char* const end = words.data() + words.size();
+  const auto [cross, bad_width] = std::from_chars(words.data(), end, size.width);
+  bool good = bad_width == std::errc() && cross != end && *cross == 'x';
+  if (good) {
+    const auto [rest, bad_height] = std::from_chars(cross + 1, end, size.height);
+    good = bad_height == std::errc() && rest == end;
+  }
+  good = good && std::min(size.width, size.height) >= kLeast && std::max(size.width, size.height) <= kMost;
+  if (!good) {
+    throw Error("--size " + words + ": expected WIDTHxHEIGHT, e.g. 640x480, each side from " +
+                std::to_string(kLeast) + " to " + std::to_string(kMost));
+  }
+  return size;
+}
+
+Subject draw(const BenchOptions& options) {
+  constexpr float kShareOfRange = 0.75F;  // that the scene's disparities take up
+  if (!options.truth.empty())
+    throw Error("--truth " + options.truth + ": is for a pair of yours; give LEFT and RIGHT");
+  if (!options.input.calib.empty())
+    throw Error("--calib " + options.input.calib + ": is for a pair of yours; give LEFT and RIGHT");
+  const Size size = options.size ? size_in(*options.size) : Size{640, 480};
+  ResolvedConfig resolved = resolve(options.input.config);
+  const MatchConfig& match = resolved.config.match;
+  const int farthest_seen =
+      match.min_disparity + static_cast<int>(kShareOfRange * static_cast<float>(match.num_disparities));
+  report::DrawnPair drawn = report::draw_pair(size, static_cast<float>(std::max(1, farthest_seen)));
+  Subject subject;
+  subject.name = "drawn by the program";
+  subject.drawn = true;
+  subject.left = {std::move(drawn.left), std::move(drawn.left_rgb)};
+  subject.right = std::move(drawn.right);
+  subject.rig = drawn.rig;
+  subject.config = std::move(resolved.config);
+  subject.preset = std::move(resolved.preset);
+  subject.truth = Truth{"drawn with the pair", std::move(drawn.disparity_px), std::move(drawn.hidden)};
+  return subject;
+}
+
+Truth load_truth(const std::string& name, Size size) {
+  std::error_code ignored;
+  fs::path disparity = name;
+  std::optional<fs::path> occlusion;
+  if (fs::is_directory(disparity, ignored)) {
+    const io::TruthFiles files = io::find_truth(disparity);
+    if (!files.disparity) throw Error(name + ": has no disp_left.png or disp_left.pfm");
+    disparity = *files.disparity;
+    occlusion = files.occlusion;
+  }
+  const auto require_size = [&](const fs::path& file, Size found) {
+    if (found == size) return;
+    throw Error(file.string() + ": is " + text(found) + ", the pair is " + text(size));
+  };
+  Truth truth{disparity.string(), io::load_disparity(disparity), {}};
+  require_size(disparity, truth.disparity_px.size());
+  if (!occlusion) return truth;
+  const io::Labels labels = io::load_labels(*occlusion);
+  require_size(*occlusion, labels.ids.size());
+  truth.hidden = Image<std::uint8_t>(size);
+  for (int y = 0; y < size.height; ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + size.width, truth.hidden.row(y),
+                   [](std::uint16_t label) { return static_cast<std::uint8_t>(label == 255 ? 1 : 0); });
+  }
+  return truth;
+}
+
+Subject load(const BenchOptions& options, const Exec& exec) {
+  if (options.size)
+    throw Error("--size " + *options.size +
+                ": is for the pair that the program draws; leave LEFT and RIGHT out");
+  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+  if (frames.size() != 1) {
+    throw Error(options.input.left + ": holds " + std::to_string(frames.size()) +
+                " frames; cairn bench takes one");
+  }
+  LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
+  Subject subject;
+  subject.name = frames.front().left.string();
+  subject.left = std::move(loaded.left);
+  subject.right = std::move(loaded.right);
+  subject.rig = loaded.rig;
+  subject.config = std::move(loaded.config);
+  subject.preset = std::move(loaded.preset);
+  if (!options.truth.empty()) subject.truth = load_truth(options.truth, subject.left.gray.size());
+  return subject;
+}
+
+report::Limits limits_of(const BenchOptions& options) {
+  constexpr report::Limits kByDefault{.frames = 100, .seconds = 10};
+  if (!options.frames && !options.seconds) return kByDefault;
+  report::Limits limits;
+  if (options.frames) limits.frames = *options.frames;
+  if (options.seconds) limits.seconds = *options.seconds;
+  return limits;
+}
+
+// ---- the findings ----
+
+struct Quantiles {
+  double least = 0;
+  double median = 0;
+  double p99 = 0;
+};
+
+Quantiles quantiles(const std::vector<double>& values) {
+  return {report::percentile(values, 0), report::percentile(values, 0.5), report::percentile(values, 0.99)};
+}
+
+double median_wall(const Samples& samples) {
+  return report::percentile(samples.wall_ms, 0.5);
+}
+
+struct Accuracy {
+  std::string name;
+  DisparityErrors errors;
+};
+
+/// Ours first. Columns that no matcher can search in full are left out for all.
+struct Accuracies {
+  int from_column = 0;
+  std::vector<Accuracy> rows;
+};
+
+std::optional<Accuracies> accuracies_of(const Subject& subject, const FrameTimes& times) {
+  if (!subject.truth) return std::nullopt;
+  const MatchConfig& match = subject.config.match;
+  Accuracies all;
+  all.from_column = std::max(0, match.min_disparity + match.num_disparities);
+  const auto add = [&](std::string name, View<const float> disparity_px) {
+    all.rows.push_back({std::move(name), disparity_errors(disparity_px, subject.truth->disparity_px,
+                                                          subject.truth->hidden, all.from_column)});
+  };
+  add("cairn", times.disparity_px);
+  for (const report::PeerTimes& peer : times.peers) {
+    if (peer.refusal.empty()) add(std::string(peer.matcher->name), peer.disparity_px);
+  }
+  return all;
+}
+
+struct Findings {
+  Subject subject;
+  Exec exec;
+  FrameTimes times;
+  std::optional<Accuracies> accuracies;
+};
+
+// ---- for people ----
+
+std::string ms(double milliseconds) {
+  return text_of("%.3f", milliseconds);
+}
+
+std::string heading(const Findings& found) {
+  const Subject& subject = found.subject;
+  const int threads = found.exec.threads();
+  std::string supported;
+  for (const Target target : supported_targets()) supported += " " + std::string(name(target));
+  return "pair        " + subject.name + ", " + text(subject.left.gray.size()) + ", " +
+         std::to_string(subject.config.match.num_disparities) + " disparities\n" + "method      preset " +
+         subject.preset + ", " + std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") +
+         std::string(name(active_target(found.exec))) + " (supported:" + supported + ")\n" + "measured    " +
+         std::to_string(found.times.frames()) + (found.times.frames() == 1 ? " frame" : " frames") +
+         " after the first, which took " + text_of("%.1f ms", found.times.first_frame_ms) + ", on " +
+         report::processor() + "\n";
+}
+
+std::string stage_table(const FrameTimes& times) {
+  const double frame_ms = median_wall(times.frame);
+  Table table({"stage", "median ms", "p99 ms", "processor ms", "share"});
+  const auto add = [&](const std::string& stage, const Samples& samples) {
+    const Quantiles wall = quantiles(samples.wall_ms);
+    table.add({stage, ms(wall.median), ms(wall.p99), ms(quantiles(samples.cpu_ms).median),
+               percent(wall.median / frame_ms)});
+  };
+  for (const report::StageTimes& stage : times.stages) add(stage.name, stage.times);
+  add("disparity in all", times.disparity);
+  add("frame", times.frame);
+  return table.text();
+}
+
+std::string summary(const Findings& found) {
+  const FrameTimes& times = found.times;
+  const auto megabytes = [](std::int64_t bytes) {
+    return text_of("%.1f MB", 1e-6 * static_cast<double>(bytes));
+  };
+  return "speed       " + text_of("%.1f frames per second", 1000 / median_wall(times.frame)) + "; " +
+         std::to_string(times.objects) + " objects\n" + "memory      " + megabytes(times.pool_bytes) +
+         " of images at the peak, " + megabytes(found.times.resident_bytes) + " in the whole process; " +
+         std::to_string(times.first_allocations) + " image buffers allocated in the first frame, " +
+         std::to_string(times.later_allocations) + " in all later ones\n";
+}
+
+std::string peer_table(const Findings& found) {
+  if (report::quick_opencv_matchers().empty()) return "OpenCV's matchers are not built in.\n";
+  const FrameTimes& times = found.times;
+  if (times.peers.empty()) return {};
+  Table table({"OpenCV " + std::string(report::opencv_version()), "median ms", "p99 ms", "processor ms",
+               "our disparity", "our frame"});
+  const auto ratio = [](const Samples& ours, const Samples& theirs) {
+    return text_of("x %.2f", median_wall(ours) / median_wall(theirs));
+  };
+  std::string refusals;
+  bool some = false;
+  for (const report::PeerTimes& peer : times.peers) {
+    const std::string name(peer.matcher->name);
+    if (!peer.refusal.empty()) {
+      refusals += name + " refuses this pair: " + peer.refusal + "\n";
+      continue;
+    }
+    some = true;
+    const Quantiles wall = quantiles(peer.times.wall_ms);
+    table.add({name, ms(wall.median), ms(wall.p99), ms(quantiles(peer.times.cpu_ms).median),
+               ratio(times.disparity, peer.times), ratio(times.frame, peer.times)});
+  }
+  if (!some) return refusals;
+  return table.text() + refusals +
+         "Each ran once after each frame of ours, with as many threads; x: how many times as long ours "
+         "takes.\n";
+}
+
+std::string accuracy_table(const Findings& found) {
+  if (!found.accuracies) return {};
+  constexpr std::size_t kBad1 = 1;
+  constexpr std::size_t kBad2 = 2;
+  Table table({"accuracy", "bad-1", "bad-2", "density"});
+  for (const Accuracy& row : found.accuracies->rows) {
+    table.add({row.name, percent(row.errors.bad_of_matched(kBad1)), percent(row.errors.bad_of_matched(kBad2)),
+               percent(row.errors.density())});
+  }
+  const Truth& truth = *found.subject.truth;
+  return "\n" + table.text() + "Truth: " + truth.source +
+         (truth.hidden.empty() ? ", all of it" : ", where both cameras see") + ", from column " +
+         std::to_string(found.accuracies->from_column) +
+         " on; bad: share of the matched pixels that are off by more than 1 or 2 px.\n";
+}
+
+// ---- for programs ----
+
+/// JSON has neither NaN nor infinity: null. A nanosecond is as fine as the clocks are.
+Json json(double value) {
+  constexpr double kSteps = 1e6;
+  return std::isfinite(value) ? Json(std::round(value * kSteps) / kSteps) : Json(nullptr);
+}
+
+Json json(const std::vector<double>& milliseconds) {
+  const Quantiles q = quantiles(milliseconds);
+  return {{"median", json(q.median)}, {"p99", json(q.p99)}, {"least", json(q.least)}};
+}
+
+Json json(const Samples& samples) {
+  return {{"wall_ms", json(samples.wall_ms)}, {"cpu_ms", json(samples.cpu_ms)}};
+}
+
+Json stages_json(const FrameTimes& times) {
+  Json all = Json::array();
+  for (const report::StageTimes& stage : times.stages) {
+    Json j{{"name", stage.name}, {"for_disparity", stage.for_disparity}};
+    j.update(json(stage.times));
+    all.push_back(std::move(j));
+  }
+  return all;
+}
+
+Json opencv_json(const Findings& found) {
+  if (found.times.peers.empty()) return nullptr;
+  Json matchers = Json::array();
+  for (const report::PeerTimes& peer : found.times.peers) {
+    const bool ran = peer.refusal.empty();
+    Json j{{"name", peer.matcher->name},
+           {"settings", peer.matcher->settings},
+           {"refusal", ran ? Json(nullptr) : Json(peer.refusal)}};
+    j.update(ran ? json(peer.times) : Json{{"wall_ms", nullptr}, {"cpu_ms", nullptr}});
+    matchers.push_back(std::move(j));
+  }
+  return {{"version", report::opencv_version()}, {"matchers", matchers}};
+}
+
+Json accuracy_json(const Findings& found) {
+  if (!found.accuracies) return nullptr;
+  Json rows = Json::array();
+  for (const Accuracy& row : found.accuracies->rows) {
+    Json j{{"name", row.name}, {"known_px", row.errors.known}, {"density", json(row.errors.density())}};
+    for (std::size_t t = 0; t < kBadThresholdsPx.size(); ++t) {
+      const std::string threshold = text_of("%g", double(kBadThresholdsPx[t]));
+      j["bad_of_matched"][threshold] = json(row.errors.bad_of_matched(t));
+    }
+    rows.push_back(std::move(j));
+  }
+  const Truth& truth = *found.subject.truth;
+  return {{"truth", truth.source},
+          {"both_cameras", !truth.hidden.empty()},
+          {"from_column", found.accuracies->from_column},
+          {"matchers", rows}};
+}
+
+/// The content of --json's file (docs/formats.md).
+std::string bench_json(const Findings& found) {
+  const Subject& subject = found.subject;
+  const FrameTimes& times = found.times;
+  Json targets = Json::array();
+  for (const Target target : supported_targets()) targets.push_back(std::string(name(target)));
+  Json j;
+  j["cairn"] = CAIRN_VERSION;
+  j["pair"] = {{"name", subject.name},
+               {"drawn", subject.drawn},
+               {"width", subject.left.gray.width()},
+               {"height", subject.left.gray.height()},
+               {"colour", !subject.left.rgb.empty()},
+               {"calibrated", subject.rig.has_value()}};
+  j["preset"] = subject.preset;
+  j["config"] = Json::parse(io::config_json(subject.config));
+  j["machine"] = {{"processor", report::processor()},
+                  {"compiler", report::compiler()},
+                  {"threads", found.exec.threads()},
+                  {"target", std::string(name(active_target(found.exec)))},
+                  {"supported_targets", targets}};
+  j["frames"] = times.frames();
+  j["first_frame_ms"] = json(times.first_frame_ms);
+  j["stages"] = stages_json(times);
+  j["disparity"] = json(times.disparity);
+  j["frame"] = json(times.frame);
+  j["frames_per_second"] = json(1000 / median_wall(times.frame));
+  j["objects"] = times.objects;
+  j["memory"] = {{"pool_bytes", times.pool_bytes},
+                 {"resident_bytes", found.times.resident_bytes},
+                 {"first_frame_allocations", times.first_allocations},
+                 {"later_allocations", times.later_allocations}};
+  j["opencv"] = opencv_json(found);
+  j["accuracy"] = accuracy_json(found);
+  // A file's name may be no UTF-8, which is no reason to fail.
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+int bench(const BenchOptions& options, bool drawn) {
+  (void)resolve(options.input.config);
+  Findings found;
+  found.exec = make_exec(options.exec);
+  found.subject = drawn ? draw(options) : load(options, found.exec);
+  const Subject& subject = found.subject;
+  report::set_opencv_threads(found.exec.threads());
+  const auto peers =
+      options.no_opencv ? std::span<const report::OpenCvMatcher>() : report::quick_opencv_matchers();
+  found.times =
+      report::time_frames(subject.pair(), subject.rig, subject.config, found.exec, limits_of(options), peers);
+  found.accuracies = accuracies_of(subject, found.times);
+  if (options.json) io::write_file(*options.json, bench_json(found));
+  std::cout << heading(found) << "\n" << stage_table(found.times) << "\n" << summary(found);
+  if (!options.no_opencv) std::cout << "\n" << peer_table(found);
+  std::cout << accuracy_table(found);
+  return 0;
+}
+
+}  // namespace
+
+Work declare_bench(CLI::App& app) {
+  constexpr int kMostFrames = 1'000'000;
+  constexpr double kMostSeconds = 86'400;
+  auto options = std::make_shared<BenchOptions>();
+  add_input_options(app, options->input);
+  app.get_option("LEFT")->required(false);
+  app.add_option("--size", options->size,
+                 "of the pair that is drawn where LEFT is left out; default: 640x480")
+      ->type_name("WxH");
+  add_exec_options(app, options->exec);
+  app.add_option("--frames", options->frames, "measure so many frames after the first")
+      ->check(CLI::Range(1, kMostFrames).name(""))
+      ->type_name("N");
+  app.add_option("--seconds", options->seconds, "measure for so long, but at least three frames")
+      ->check(CLI::Range(0.0, kMostSeconds).name(""))
+      ->type_name("S");
+  app.add_option("--truth", options->truth,
+                 "true disparity of the left picture (.png, .pfm), or a folder with disp_left and perhaps "
+                 "occlusion.png: says how accurate each is")
+      ->type_name("PATH");
+  app.add_flag("--no-opencv", options->no_opencv, "leave OpenCV's matchers out");
+  app.add_option("--json", options->json, "also write all that was measured into this file, as JSON")
+      ->type_name("FILE");
+  app.footer(
+      "Without LEFT and RIGHT the program draws a room: the same pixels on every machine.\n"
+      "Without --frames and --seconds: 100 frames, or as many as 10 seconds allow.\n"
+      "Times are of the wall clock; `processor ms` adds up what all threads worked.");
+  return [options, &app] { return bench(*options, app.count("LEFT") == 0); };
+}
+
+}  // namespace cairn::cli
