@@ -28,8 +28,8 @@ struct Surface {
 };
 
 struct Room {
-  std::vector<Surface> surfaces;
-  float detail_px = 1;  // what the finest texture is wide
+  std::vector<Surface> surfaces;  // the wall first
+  float detail_px = 1;            // what the finest texture is wide
 };
 
 std::uint32_t mixed(std::uint32_t v) {
@@ -79,19 +79,22 @@ float texture(const Surface& surface, float x, float y, float detail_px) {
 /// The nearest surface that a ray of the right (or the left) camera meets, and where the left picture shows
 /// that point. Surfaces do not rise along x, so both rows are one.
 struct Hit {
-  const Surface* surface = nullptr;
-  float x_left = 0;
-  float disparity_px = -1;
+  const Surface* surface;
+  float x_left;
+  float disparity_px;
 };
 
 Hit nearest_hit(const Room& room, float x, float y, bool right) {
-  Hit hit;
-  for (const Surface& surface : room.surfaces) {
+  const auto hit_of = [&](const Surface& surface) {
     const float disparity = surface.disparity_at(y);
-    const float x_left = right ? x + disparity : x;
-    if (disparity > hit.disparity_px && surface.holds(x_left, y)) hit = {&surface, x_left, disparity};
+    return Hit{&surface, right ? x + disparity : x, disparity};
+  };
+  Hit nearest = hit_of(room.surfaces.front());  // the wall, which has no end
+  for (const Surface& surface : room.surfaces) {
+    const Hit hit = hit_of(surface);
+    if (hit.disparity_px > nearest.disparity_px && surface.holds(hit.x_left, y)) nearest = hit;
   }
-  return hit;
+  return nearest;
 }
 
 Rgb colour_of(const Hit& hit, float y, float detail_px, float noise) {
@@ -151,6 +154,11 @@ Room room_of(Size size, float largest_disparity_px) {
   const float rise = largest_disparity_px / (height - horizon);
   Room room;
   room.detail_px = std::max(1.5F, height / 240);
+  room.surfaces.push_back({.level = kWallNearness * largest_disparity_px,
+                           .colour = {165, 168, 160},
+                           .contrast = 14,
+                           .tile_px = height / 5,
+                           .seed = 200});
   room.surfaces.push_back({.rise = rise,
                            .level = -rise * horizon,
                            .y_first = horizon,
@@ -158,11 +166,6 @@ Room room_of(Size size, float largest_disparity_px) {
                            .contrast = 18,
                            .tile_px = height / 9,
                            .seed = 100});
-  room.surfaces.push_back({.level = kWallNearness * largest_disparity_px,
-                           .colour = {165, 168, 160},
-                           .contrast = 14,
-                           .tile_px = height / 5,
-                           .seed = 200});
   std::uint32_t seed = 300;
   for (const BoxPlan& box : kBoxes) {
     const float foot = horizon + box.nearness * (height - horizon);

@@ -192,7 +192,7 @@ void run(const Settings& settings) {
   for (const Section& section : registry().sections) {
     if (!settings.sections || std::string(section.title).find(settings.only) == std::string::npos) continue;
     std::fflush(stdout);
-    std::printf("\n%s\n\n%s", std::string(section.title).c_str(),
+    std::printf("\n### %s\n\n%s", std::string(section.title).c_str(),
                 section.write(settings.data, scenes).c_str());
   }
 }

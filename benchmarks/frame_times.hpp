@@ -55,10 +55,10 @@ struct Limits {
   double seconds = std::numeric_limits<double>::infinity();
 };
 
-/// Runs the method on one pair over and over, and each of the peers once after each frame, so that whatever
-/// else the machine does hits all alike. The images come from a pool that the frames share, whatever
+/// Runs the method on one pair over and over, and each of the matchers once after each frame, so that
+/// whatever else the machine does hits all alike. The images come from a pool that the frames share, whatever
 /// exec.pool is; exec.observe is not called. Throws Error where segment() does.
 FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
-                       const Exec& exec, const Limits& limits, std::span<const OpenCvMatcher> peers = {});
+                       const Exec& exec, const Limits& limits, std::span<const OpenCvMatcher> matchers = {});
 
 }  // namespace cairn::report

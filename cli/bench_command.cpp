@@ -137,9 +137,10 @@ Truth load_truth(const std::string& name, Size size) {
 }
 
 Subject load(const BenchOptions& options, const Exec& exec) {
-  if (options.size)
+  if (options.size) {
     throw Error("--size " + *options.size +
                 ": is for the pair that the program draws; leave LEFT and RIGHT out");
+  }
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   if (frames.size() != 1) {
     throw Error(options.input.left + ": holds " + std::to_string(frames.size()) +
