@@ -5,6 +5,7 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/floor_search.hpp>
 #include <cairn/disparity/plane_fit.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -49,6 +50,9 @@ struct Points {
     y.push_back(at_y);
     d.push_back(disparity);
   }
+  [[nodiscard]] kernels::PointArrays arrays() const {
+    return {x.data(), y.data(), d.data(), nullptr, static_cast<int>(size())};
+  }
   [[nodiscard]] float above(const GroundPlane& plane, std::size_t i) const {
     return d[i] - plane.disparity_px(x[i], y[i]);
   }
@@ -56,6 +60,20 @@ struct Points {
     return std::abs(above(plane, i)) <= kTolerance;
   }
 };
+
+/// The numbers of those points that `holds` is true of, in their order. Found without a branch: about a plane
+/// nothing tells the next point from the last.
+template <class Holds>
+std::vector<std::size_t> those(const Points& points, Holds holds) {
+  std::vector<std::size_t> found(points.size() + 1);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    found[count] = i;
+    count += holds(i) ? 1 : 0;
+  }
+  found.resize(count);
+  return found;
+}
 
 Points about(std::size_t count, const Points& points) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / count);
@@ -117,20 +135,9 @@ struct Tally {
   [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kLeastScore * all; }
 };
 
-Tally tally(const GroundPlane& plane, const Points& points, float infinity) {
-  Tally sum;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float floor = plane.disparity_px(points.x[i], points.y[i]);
-    const float above = points.d[i] - floor;
-    const float distance = std::abs(above);
-    const int counts = floor + infinity > 0 ? 1 : 0;
-    sum.all += counts;
-    sum.on += distance <= kTolerance ? counts : 0;
-    sum.beside += distance <= 2 * kTolerance ? counts : 0;
-    sum.below += above < -2 * kTolerance ? counts : 0;
-  }
-  sum.beside -= sum.on;
-  return sum;
+Tally tally(const GroundPlane& plane, const Points& points, float infinity, const kernels::RowKernels& run) {
+  const kernels::PlaneCounts counts = run.count_about(points.arrays(), plane, infinity, kTolerance);
+  return {counts.on, counts.near - counts.on, counts.below, 0, counts.all};
 }
 
 float radians(float degrees) {
@@ -216,9 +223,10 @@ int mirrored(const GroundPlane& plane, const Points& points, const Places& place
   const Vec3 normal = camera.normal(plane);
   const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
   int sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  const auto is_below = [&](std::size_t i) { return !(-points.above(plane, i) <= kTolerance); };
+  for (const std::size_t i : those(points, is_below)) {
     const float below = -points.above(plane, i);
-    if (below <= kTolerance || plane.disparity_px(points.x[i], points.y[i]) + camera.infinity <= 0) continue;
+    if (plane.disparity_px(points.x[i], points.y[i]) + camera.infinity <= 0) continue;
     const float twice = 2 * below / square;
     const float z = 1 - twice * normal.z;
     if (!(z > 0)) continue;
@@ -261,13 +269,13 @@ Guess guess(const Points& points, std::uint64_t draw) {
 }
 
 /// Possible floors, best first.
-std::vector<Guess> guesses(const Points& points, const Camera& camera) {
+std::vector<Guess> guesses(const Points& points, const Camera& camera, const kernels::RowKernels& run) {
   const Points few = about(kScreening, points);
   std::vector<Guess> list;
   for (int draw = 0; draw < kDraws && list.size() < kGuesses; ++draw) {
     Guess next = guess(points, static_cast<std::uint64_t>(draw));
     if (!camera.may_stand_on(next.plane)) continue;
-    next.score = tally(next.plane, few, camera.infinity).score();
+    next.score = tally(next.plane, few, camera.infinity, run).score();
     list.push_back(next);
   }
   std::stable_sort(list.begin(), list.end(),
@@ -278,13 +286,17 @@ std::vector<Guess> guesses(const Points& points, const Camera& camera) {
 /// Least squares over the matches within reach, again and again while the reach shrinks.
 template <std::size_t N>
 GroundPlane refined(GroundPlane plane, const Points& points, const std::array<float, N>& reaches) {
+  float before = 0;
+  bool moved = true;
   for (const float reach : reaches) {
+    if (reach == before && !moved) continue;  // would find the same again
     PlaneFit fit(points.x[points.size() / 2], points.y[points.size() / 2]);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (std::abs(points.above(plane, i)) <= reach * kTolerance)
-        fit.add(points.x[i], points.y[i], points.d[i]);
-    }
-    plane = fit.solve().value_or(plane);
+    const auto within = [&](std::size_t i) { return std::abs(points.above(plane, i)) <= reach * kTolerance; };
+    for (const std::size_t i : those(points, within)) fit.add(points.x[i], points.y[i], points.d[i]);
+    const GroundPlane fitted = fit.solve().value_or(plane);
+    moved = fitted.a != plane.a || fitted.b != plane.b || fitted.c != plane.c;
+    before = reach;
+    plane = fitted;
   }
   return plane;
 }
@@ -300,9 +312,9 @@ bool rises(const GroundPlane& plane, View<const float> disparity_px, const Point
   int pairs = 0;
   // Apart by more than a usual matching window, which would tie the two together, but not from one surface to
   // the next.
+  const auto on_plane = those(points, [&](std::size_t i) { return points.on(plane, i); });
   for (const int rows : {disparity_px.height() / 24 + 1, disparity_px.height() / 12 + 1}) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!points.on(plane, i)) continue;
+    for (const std::size_t i : on_plane) {
       const int y = static_cast<int>(points.y[i]) + rows;
       if (y >= disparity_px.height()) break;  // points are in raster order
       const float d = disparity_px(static_cast<int>(points.x[i]), y);
@@ -334,12 +346,12 @@ struct Candidates {
 };
 
 Candidates candidates(View<const float> disparity_px, const Points& points, const Places& places,
-                      const Camera& camera) {
+                      const Camera& camera, const kernels::RowKernels& run) {
   const Points some = about(kRefining, points);
   std::vector<GroundPlane> seen;
   std::vector<GroundPlane> walls;
   Candidates found;
-  for (const Guess& next : guesses(points, camera)) {
+  for (const Guess& next : guesses(points, camera, run)) {
     if (seen.size() == kFinalists) break;
     const auto explains = [&](const GroundPlane& plane) {
       return points.on(plane, next.i) && points.on(plane, next.j);
@@ -352,7 +364,7 @@ Candidates candidates(View<const float> disparity_px, const Points& points, cons
     if (std::any_of(walls.begin(), walls.end(), touches)) continue;
     const auto plane = refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F});
     seen.push_back(plane);
-    Tally judged = tally(plane, points, camera.infinity);
+    Tally judged = tally(plane, points, camera.infinity, run);
     judged.mirrored = mirrored(plane, points, places, camera);
     if (!judged.convincing()) continue;
     if (camera.may_stand_on(plane) && rises(plane, disparity_px, points)) {
@@ -401,12 +413,12 @@ const Candidate& choose(const std::vector<Candidate>& floors, const Points& poin
 
 /// Whether a plane that is no floor explains the picture: one that is faced squarely, at the median
 /// disparity.
-bool faces_a_wall(const Points& points, const Camera& camera) {
+bool faces_a_wall(const Points& points, const Camera& camera, const kernels::RowKernels& run) {
   std::vector<float> sorted = points.d;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const auto wall = refined({0, 0, *middle}, points, std::array{2.0F, 1.0F, 1.0F});
-  return tally(wall, points, camera.infinity).convincing();
+  return tally(wall, points, camera.infinity, run).convincing();
 }
 
 struct Support {
@@ -472,9 +484,11 @@ Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>
 
   const Camera camera(disparity_px.size(), rig);
   const Places places(points, disparity_px.size(), step);
-  const auto found = candidates(disparity_px, points, places, camera);
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const auto found = candidates(disparity_px, points, places, camera, run);
   if (found.floors.empty()) {
-    return refused(found.others || faces_a_wall(points, camera) ? Refusal::implausible : Refusal::no_plane);
+    return refused(found.others || faces_a_wall(points, camera, run) ? Refusal::implausible
+                                                                     : Refusal::no_plane);
   }
   const auto plane =
       refined(choose(found.floors, points, camera).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F});

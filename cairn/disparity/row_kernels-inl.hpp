@@ -105,16 +105,16 @@ inline void disparity_steepness(const std::int16_t* up, const std::int16_t* here
 inline void quantise(const float* disparity_px, int width, std::int16_t* CAIRN_RESTRICT out) {
   for (int x = 0; x < width; ++x) {
     const float d = disparity_px[x];
-    const bool valid = d == d;  // a hole is NaN
-    // 32767/16 is no limit in practice (kMaxDisparity); the clamp only keeps the conversion defined.
-    const float wide = (valid ? d : 0.0F) * 16.0F;
-    const float high = wide < -32767.0F ? -32767.0F : wide;
-    const float sixteenths = high > 32767.0F ? 32767.0F : high;
+    // 32767/16 is no limit in practice (kMaxDisparity); the clamp keeps the conversion defined, of NaN, too.
+    const float wide = d * 16.0F;
+    const float bounded = wide > -32767.0F ? wide : -32767.0F;
+    const float sixteenths = bounded < 32767.0F ? bounded : 32767.0F;
     // Truncation and a correction instead of std::floor, which is a call per pixel before SSE4.1.
     const int truncated = static_cast<int>(sixteenths);
     const float rest = sixteenths - static_cast<float>(truncated);
     const int rounded = truncated + (rest >= 0.5F ? 1 : 0) - (rest < -0.5F ? 1 : 0);
-    out[x] = static_cast<std::int16_t>(valid ? rounded : int{kHole16});
+    const int hole = d == d ? 0 : -1;  // a hole is NaN
+    out[x] = static_cast<std::int16_t>((rounded & ~hole) | (kHole16 & hole));
   }
 }
 
@@ -192,9 +192,27 @@ inline int count_beyond(const PointArrays& points, const GroundPlane& plane, flo
   return count;
 }
 
+inline PlaneCounts count_about(const PointArrays& points, const GroundPlane& plane, float infinity,
+                               float tolerance) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  PlaneCounts counts;
+  for (int i = 0; i < at.count; ++i) {
+    const float floor = p.a * at.x[i] + p.b * at.y[i] + p.c;
+    const float above = at.d[i] - floor;
+    const float distance = std::abs(above);
+    const int visible = floor + infinity > 0 ? 1 : 0;
+    counts.all += visible;
+    counts.on += distance <= tolerance ? visible : 0;
+    counts.near += distance <= 2 * tolerance ? visible : 0;
+    counts.below += above < -2 * tolerance ? visible : 0;
+  }
+  return counts;
+}
+
 inline constexpr RowKernels kRowKernels{smooth,   edges,    steepness,      disparity_steepness,
                                         quantise, noise,    smooth_lightly, textured,
-                                        agreed,   count_on, count_beyond};
+                                        agreed,   count_on, count_beyond,   count_about};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -26,6 +26,14 @@ struct PointArrays {
   int count;
 };
 
+/// How many points lie where to a plane, of those that are seen below its horizon.
+struct PlaneCounts {
+  int all = 0;
+  int on = 0;     // within the tolerance
+  int near = 0;   // within twice of it
+  int below = 0;  // farther away than that
+};
+
 /// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
 /// rounds in another order than it is written in, so that each gives the same bits.
 struct RowKernels {
@@ -64,6 +72,9 @@ struct RowKernels {
   int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
   /// How many points lie farther than `tolerance` behind the plane and the background.
   int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
+  PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
+                             float tolerance);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
