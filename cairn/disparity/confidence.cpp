@@ -157,7 +157,7 @@ void judge_row(const CostRows& costs, const float* disparity_px, const Counts* p
 Image<float> estimate_confidence(const Matches& matches, const DisparityMap& disparity,
                                  const ConfidenceModel& model, const ConfidenceConfig& config,
                                  const Exec& exec) {
-  if (!config.enabled || matches.mean_cost.empty()) return {};
+  if (!config.enabled || matches.runner_up.empty() || matches.mean_cost.empty()) return {};
   const View<const float> disparity_px = disparity.disparity_px;
   const Size size = disparity_px.size();
   assert(matches.runner_up.size() == size && matches.mean_cost.size() == size);
