@@ -80,43 +80,50 @@ std::vector<Arc> near_to_far(const GrowingRegions& regions) {
 
 /// The lists of a visit; they keep their memory from one visit to the next.
 struct Visit {
+  explicit Visit(const Exec& exec) : neighbours(0, exec.pool) {}
   UntriedArcs untried;
-  std::vector<std::int32_t> neighbours;  // every one that the visit saw
+  ScratchList<std::int32_t> neighbours;  // every one that the visit saw
 };
 
 void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& criteria, Visit& visit) {
   Absorption absorption(regions.sums(node), criteria);
   visit.untried.reset(absorption.mean());
   visit.neighbours.clear();
-  const auto add = [&](std::int32_t neighbour) {
-    visit.neighbours.push_back(neighbour);
-    const GrowingRegions::Brief& brief = regions.brief(neighbour);
-    if (brief.mean == brief.mean) visit.untried.add({brief.mean, brief.place, neighbour});
+  const auto add_neighbours_of = [&](std::int32_t region) {
+    const std::size_t known = visit.neighbours.size();
+    regions.append_new_neighbours(region, visit.neighbours);
+    for (std::size_t i = known; i < visit.neighbours.size(); ++i) {
+      const std::int32_t neighbour = visit.neighbours.begin()[i];
+      const GrowingRegions::Brief& brief = regions.brief(neighbour);
+      if (brief.mean == brief.mean) visit.untried.add({brief.mean, brief.place, neighbour});
+    }
   };
   regions.start_visit(node);
-  regions.for_each_new_neighbour(node, add);
+  add_neighbours_of(node);
   bool grew = false;
   while (!visit.untried.empty()) {
     const Arc arc = visit.untried.take_cheapest();
     // Once the cheapest arc is beyond Eq. (1), so are all, and as nothing fuses nothing moves the mean.
     if (!absorption.is_near(arc.mean)) break;
     if (!absorption.admits(regions.sums(arc.neighbour))) continue;
-    regions.for_each_new_neighbour(arc.neighbour, add);
+    add_neighbours_of(arc.neighbour);
     regions.absorb(node, arc.neighbour);
     absorption.update(regions.sums(node));
     visit.untried.move_mean(absorption.mean());
     grew = true;
   }
   if (!grew) return;
-  std::erase_if(visit.neighbours, [&](std::int32_t neighbour) { return !regions.is_alive(neighbour); });
-  regions.set_neighbours(node, visit.neighbours.size(), [&](std::size_t i) { return visit.neighbours[i]; });
+  const auto end = std::remove_if(visit.neighbours.begin(), visit.neighbours.end(),
+                                  [&](std::int32_t neighbour) { return !regions.is_alive(neighbour); });
+  regions.set_neighbours(node, static_cast<std::size_t>(end - visit.neighbours.begin()),
+                         [&](std::size_t i) { return visit.neighbours.begin()[i]; });
 }
 
 }  // namespace
 
 Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {
   GrowingRegions regions(graph, exec);
-  Visit visit;
+  Visit visit(exec);
   for (const Arc& entry : near_to_far(regions)) {
     if (regions.is_alive(entry.neighbour)) visit_node(regions, entry.neighbour, criteria, visit);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <bit>
 #include <cairn/regions/grow_statistical.hpp>
 #include <cairn/regions/growing_regions.hpp>
 #include <limits>
@@ -26,73 +27,124 @@ struct Neighbour {
   double mean;
   bool operator<(const Neighbour& other) const { return entry < other.entry; }
 };
-Neighbour neighbour_of(const GrowingRegions& regions, std::int32_t region) {
-  return {placed(regions, region), regions.brief(region).mean};
-}
 
-/// The lists of a visit; they keep their memory from one visit to the next.
+/// The lists of a visit and of a pass; they keep their memory from one to the next.
 struct Visit {
+  explicit Visit(const Exec& exec) : found(0, exec.pool) {}
+  ScratchList<std::int32_t> found;
   std::vector<Neighbour> neighbours;
   std::vector<Neighbour> gained;
   std::vector<Neighbour> merged;
+  std::vector<Placed> order;  // of the pass
 };
 
-bool admits(const Absorption& absorption, const GrowingRegions& regions, const Neighbour& neighbour) {
-  return absorption.is_near(neighbour.mean) && absorption.admits(regions.sums(region_of(neighbour.entry)));
+/// Lists of neighbours are short, and mostly in order as regions are numbered so.
+void sort(std::vector<Neighbour>& neighbours) {
+  constexpr std::size_t kFew = 32;
+  if (neighbours.size() > kFew) {
+    std::sort(neighbours.begin(), neighbours.end());
+    return;
+  }
+  for (std::size_t i = 1; i < neighbours.size(); ++i) {
+    const Neighbour moved = neighbours[i];
+    std::size_t at = i;
+    for (; at > 0 && moved < neighbours[at - 1]; --at) neighbours[at] = neighbours[at - 1];
+    neighbours[at] = moved;
+  }
+}
+
+/// `found` as neighbours.
+void look_at(const GrowingRegions& regions, const ScratchList<std::int32_t>& found,
+             std::vector<Neighbour>& neighbours) {
+  neighbours.resize(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::int32_t region = found.begin()[i];
+    neighbours[i] = {placed(regions, region), regions.brief(region).mean};
+  }
+}
+
+/// Which of the neighbours first … are near enough to be asked more, 64 at most. One bit each: a branch would
+/// go wrong at every other.
+std::uint64_t near_ones(const Absorption& absorption, const std::vector<Neighbour>& neighbours,
+                        std::size_t first) {
+  const std::size_t count = std::min<std::size_t>(neighbours.size() - first, 64);
+  std::uint64_t near = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    near |= std::uint64_t{absorption.is_near(neighbours[first + i].mean)} << i;
+  }
+  return near;
+}
+
+/// The first of the neighbours from `first` on that may be absorbed; their number where there is none.
+std::size_t first_admitted(const Absorption& absorption, const GrowingRegions& regions,
+                           const std::vector<Neighbour>& neighbours, std::size_t first) {
+  for (; first < neighbours.size(); first += 64) {
+    for (std::uint64_t near = near_ones(absorption, neighbours, first); near != 0; near &= near - 1) {
+      const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(near));
+      if (absorption.admits(regions.sums(region_of(neighbours[i].entry)))) return i;
+    }
+  }
+  return neighbours.size();
 }
 
 /// One round: every neighbour is tried once. Those that fuse leave the list, what they bring along joins it.
-void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorption, Visit& visit) {
-  visit.gained.clear();
-  std::size_t kept = 0;
-  for (const Neighbour& neighbour : visit.neighbours) {
-    if (!admits(absorption, regions, neighbour)) {
-      visit.neighbours[kept++] = neighbour;
-      continue;
-    }
-    const std::int32_t other = region_of(neighbour.entry);
-    regions.for_each_new_neighbour(other,
-                                   [&](std::int32_t n) { visit.gained.push_back(neighbour_of(regions, n)); });
+/// `next`: the first that fuses.
+void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorption, Visit& visit,
+              std::size_t next) {
+  std::vector<Neighbour>& neighbours = visit.neighbours;
+  visit.found.clear();
+  std::size_t kept = next;
+  while (next < neighbours.size()) {
+    const std::int32_t other = region_of(neighbours[next].entry);
+    regions.append_new_neighbours(other, visit.found);
     regions.absorb(region, other);
     absorption.update(regions.sums(region));
+    const std::size_t refused = next + 1;
+    next = first_admitted(absorption, regions, neighbours, refused);
+    for (std::size_t i = refused; i < next; ++i) neighbours[kept++] = neighbours[i];
   }
-  visit.neighbours.resize(kept);
-  std::sort(visit.gained.begin(), visit.gained.end());
+  neighbours.resize(kept);
+  if (visit.found.size() == 0) return;
+  look_at(regions, visit.found, visit.gained);
+  sort(visit.gained);
   visit.merged.resize(kept + visit.gained.size());
-  std::merge(visit.neighbours.begin(), visit.neighbours.end(), visit.gained.begin(), visit.gained.end(),
+  std::merge(neighbours.begin(), neighbours.end(), visit.gained.begin(), visit.gained.end(),
              visit.merged.begin());
-  visit.neighbours.swap(visit.merged);
+  neighbours.swap(visit.merged);
 }
 
 /// Lets `region` grow; false where nothing fused.
 bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& criteria, Visit& visit) {
   Absorption absorption(regions.sums(region), criteria);
   if (!absorption.may_absorb()) return false;
-  visit.neighbours.clear();
-  bool grows = false;
+  visit.found.clear();
   regions.start_visit(region);
-  regions.for_each_new_neighbour(region, [&](std::int32_t n) {
-    visit.neighbours.push_back(neighbour_of(regions, n));
-    grows |= admits(absorption, regions, visit.neighbours.back());
-  });
-  if (!grows) return false;  // the order would matter only after a fusion
-  std::sort(visit.neighbours.begin(), visit.neighbours.end());
-  for (std::int32_t pixels = 0; pixels != regions.brief(region).pixel_count;) {
-    pixels = regions.brief(region).pixel_count;
-    try_each(regions, region, absorption, visit);
+  regions.append_new_neighbours(region, visit.found);
+  look_at(regions, visit.found, visit.neighbours);
+  // The order matters only where one fuses.
+  if (first_admitted(absorption, regions, visit.neighbours, 0) == visit.neighbours.size()) return false;
+  sort(visit.neighbours);
+  for (;;) {
+    const std::size_t next = first_admitted(absorption, regions, visit.neighbours, 0);
+    if (next == visit.neighbours.size()) return true;
+    try_each(regions, region, absorption, visit, next);
   }
-  return true;
 }
 
 /// One pass over all living regions; false where nothing fused. Regions whose own and whose neighbours'
 /// statistics have not changed since they were last visited would refuse the same neighbours again, so they
 /// are passed over: `stale` marks the others.
 bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::uint8_t>& stale, Visit& visit) {
-  std::vector<Placed> order;
+  std::vector<Placed>& order = visit.order;
+  order.resize(slot(regions.count()) + 1);
+  std::size_t count = 0;
   for (std::int32_t i = 0; i < regions.count(); ++i) {
-    if (regions.is_alive(i) && stale[i] != 0) order.push_back(placed(regions, i));
+    order[count] = placed(regions, i);
+    count += static_cast<std::size_t>(regions.is_alive(i) & (stale[i] != 0));
   }
-  std::sort(order.begin(), order.end());
+  order.resize(count);
+  // At first they are in order, as basins are numbered so.
+  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
   bool fused = false;
   for (const Placed entry : order) {
     const std::int32_t region = region_of(entry);
@@ -107,26 +159,36 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
   return fused;
 }
 
+/// The first in raster order of the neighbours that have no valid pixel and are no floor; −1 = none.
+std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
+  std::int32_t best = -1;
+  regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
+    if (neighbour == region || regions.sums(neighbour).is_floor || regions.sums(neighbour).valid_count > 0)
+      return;
+    if (best < 0 || regions.brief(neighbour).place < regions.brief(best).place) best = neighbour;
+  });
+  return best;
+}
+
 /// The neighbour that a small region fuses with; −1 where all are floor.
 std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
   const bool has_mean = regions.sums(region).valid_count > 0;
-  const double mean = regions.brief(region).mean;
+  const double mean = has_mean ? regions.brief(region).mean : 0;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
   std::int32_t best = -1;
-  double least = 0;
-  regions.start_visit(region);
-  regions.for_each_new_neighbour(region, [&](std::int32_t neighbour) {
+  std::int32_t best_place = std::numeric_limits<std::int32_t>::max();
+  double least = kNone;
+  regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
     const GrowingRegions::Brief& brief = regions.brief(neighbour);
-    double value = has_mean ? std::abs(mean - brief.mean) : brief.mean;
-    if (brief.mean != brief.mean) {
-      if (regions.sums(neighbour).is_floor) return;
-      value = std::numeric_limits<double>::infinity();
-    }
-    if (best < 0 || value < least || (value == least && brief.place < regions.brief(best).place)) {
-      best = neighbour;
-      least = value;
-    }
+    // NaN, where it has no mean, is less than nothing.
+    const double difference = has_mean ? std::abs(mean - brief.mean) : brief.mean;
+    const double value = neighbour == region ? kNone : difference;
+    const bool better = (value < least) | ((value == least) & (brief.place < best_place));
+    least = better ? value : least;
+    best_place = better ? brief.place : best_place;
+    best = better ? neighbour : best;
   });
-  return best;
+  return least < kNone ? best : first_unseen(regions, region);
 }
 
 /// Small regions in the order in which they fuse: by size, then in raster order. A fusion always makes a
@@ -220,7 +282,7 @@ bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbo
 Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {
   GrowingRegions regions(graph, exec);
   Scratch<std::uint8_t> stale(graph.nodes.size(), 1, exec.pool);
-  Visit visit;
+  Visit visit(exec);
   while (pass(regions, criteria, stale, visit)) {
   }
   fuse_small_regions(regions, criteria.min_region_area, exec);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace cairn {
 
@@ -34,19 +35,20 @@ class GrowingRegions {
   };
 
   GrowingRegions(const RegionGraph& graph, const Exec& exec)
-      : given_arcs_(graph.arcs.data()),
-        more_arcs_(graph.arcs.size(), exec.pool),
+      : arcs_(2 * graph.arcs.size(), exec.pool),
         briefs_(graph.nodes.size(), exec.pool),
         sums_(graph.nodes.size(), exec.pool),
         lists_(graph.nodes.size(), exec.pool),
         parent_(graph.nodes.size(), exec.pool),
         seen_(graph.nodes.size(), -1, exec.pool) {
+    std::copy(graph.arcs.begin(), graph.arcs.end(), arcs_.room_for(graph.arcs.size()));
+    arcs_.grown(graph.arcs.size());
     for (std::int32_t i = 0; i < count(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const RegionGraph::Node& node = graph.nodes[at];
       sums_[i] = {node.sum, node.sum_of_squares, static_cast<std::int32_t>(node.valid_count), node.is_floor};
       briefs_[i] = {mean_of(sums_[i]), node.first_pixel, static_cast<std::int32_t>(node.pixel_count)};
-      lists_[i] = {true, graph.first_arc[at], graph.first_arc[at + 1], -1, i};
+      lists_[i] = {graph.first_arc[at], graph.first_arc[at + 1], -1, i};
       parent_[i] = i;
     }
   }
@@ -56,23 +58,35 @@ class GrowingRegions {
   [[nodiscard]] const Sums& sums(std::int32_t region) const { return sums_[region]; }
   [[nodiscard]] bool is_alive(std::int32_t region) const { return parent_[region] == region; }
 
-  /// From here on for_each_new_neighbour() names each region once.
+  /// Calls found(neighbour) for each living neighbour of `region`, for some of them more than once, and
+  /// perhaps for the region itself.
+  template <class Found>
+  void for_each_neighbour(std::int32_t region, Found found) {
+    for (std::int32_t member = region; member >= 0; member = lists_[member].next_member) {
+      for (const std::int32_t neighbour : arcs_of(member)) found(living(neighbour));
+    }
+  }
+
+  /// From here on append_new_neighbours() names each region once.
   void start_visit(std::int32_t region) {
     ++visit_;
     seen_[region] = visit_;
   }
-  /// Calls found(neighbour) for each living neighbour of `region` that this visit has not named yet.
-  template <class Found>
-  void for_each_new_neighbour(std::int32_t region, Found found) {
+  /// Appends the living neighbours of `region` that this visit has not named yet. Without a branch: one in
+  /// two or three is known already, and nothing tells which.
+  void append_new_neighbours(std::int32_t region, ScratchList<std::int32_t>& found) {
+    std::int32_t* const seen = seen_.data();
     for (std::int32_t member = region; member >= 0; member = lists_[member].next_member) {
-      const List& list = lists_[member];
-      const std::int32_t* const arcs = list.is_given ? given_arcs_ : more_arcs_.begin();
-      for (std::int32_t i = list.begin; i < list.end; ++i) {
-        const std::int32_t neighbour = living(arcs[i]);
-        if (seen_[neighbour] == visit_) continue;
-        seen_[neighbour] = visit_;
-        found(neighbour);
+      const std::span<const std::int32_t> arcs = arcs_of(member);
+      std::int32_t* const room = found.room_for(arcs.size() + 1);
+      std::size_t count = 0;
+      for (const std::int32_t arc : arcs) {
+        const std::int32_t neighbour = living(arc);
+        room[count] = neighbour;
+        count += seen[neighbour] != visit_ ? 1 : 0;
+        seen[neighbour] = visit_;
       }
+      found.grown(count);
     }
   }
 
@@ -94,11 +108,11 @@ class GrowingRegions {
   /// borders. Calls neighbour_at(i) for i = 0 … count − 1.
   template <class NeighbourAt>
   void set_neighbours(std::int32_t region, std::size_t count, NeighbourAt neighbour_at) {
-    std::int32_t* const room = more_arcs_.room_for(count);
+    std::int32_t* const room = arcs_.room_for(count);
     for (std::size_t i = 0; i < count; ++i) room[i] = neighbour_at(i);
-    const auto begin = static_cast<std::int32_t>(more_arcs_.size());
-    more_arcs_.grown(count);
-    lists_[region] = {false, begin, begin + static_cast<std::int32_t>(count), -1, region};
+    const auto begin = static_cast<std::int32_t>(arcs_.size());
+    arcs_.grown(count);
+    lists_[region] = {begin, begin + static_cast<std::int32_t>(count), -1, region};
   }
 
   [[nodiscard]] Merges merges() {
@@ -109,9 +123,8 @@ class GrowingRegions {
 
  private:
   struct List {
-    bool is_given;       // this member's neighbours stand in the graph's arcs, not in more_arcs_,
-    std::int32_t begin;  // from here
-    std::int32_t end;    // to before here
+    std::int32_t begin;  // of this member's neighbours in arcs_
+    std::int32_t end;
     std::int32_t next_member;
     std::int32_t last_member;  // kept up for living regions
   };
@@ -120,16 +133,19 @@ class GrowingRegions {
     if (sums.valid_count == 0 || sums.is_floor) return std::numeric_limits<double>::quiet_NaN();
     return static_cast<double>(sums.sum) / static_cast<double>(sums.valid_count);
   }
+  [[nodiscard]] std::span<const std::int32_t> arcs_of(std::int32_t member) const {
+    return {arcs_.begin() + lists_[member].begin, arcs_.begin() + lists_[member].end};
+  }
   std::int32_t living(std::int32_t region) {
-    while (parent_[region] != region) {
-      parent_[region] = parent_[parent_[region]];
-      region = parent_[region];
-    }
-    return region;
+    // Two steps at once, as most are there then: how many it takes cannot be foretold.
+    std::int32_t* const parent = parent_.data();
+    std::int32_t root = parent[parent[region]];
+    while (parent[root] != root) root = parent[root];
+    parent[region] = root;
+    return root;
   }
 
-  const std::int32_t* given_arcs_;
-  ScratchList<std::int32_t> more_arcs_;
+  ScratchList<std::int32_t> arcs_;  // the graph's, and behind them those stated anew
   Scratch<Brief> briefs_;
   Scratch<Sums> sums_;
   Scratch<List> lists_;
