@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <bit>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/growing_regions.hpp>
+#include <numeric>
 #include <vector>
 
 namespace cairn {
@@ -24,35 +26,46 @@ class UntriedArcs {
     above_.clear();
     mean_ = mean;
   }
-  void add(const Arc& arc) { arc.mean <= mean_ ? push(below_, arc, lower) : push(above_, arc, higher); }
+  void add(const Arc& arc) {
+    if (arc.mean <= mean_) {
+      push(below_, arc, Lower());
+    } else {
+      push(above_, arc, Higher());
+    }
+  }
   void move_mean(double mean) {
     mean_ = mean;
-    while (!above_.empty() && above_.front().mean <= mean_) push(below_, pop(above_, higher), lower);
-    while (!below_.empty() && below_.front().mean > mean_) push(above_, pop(below_, lower), higher);
+    while (!above_.empty() && above_.front().mean <= mean_) push(below_, pop(above_, Higher()), Lower());
+    while (!below_.empty() && below_.front().mean > mean_) push(above_, pop(below_, Lower()), Higher());
   }
   [[nodiscard]] bool empty() const { return below_.empty() && above_.empty(); }
   Arc take_cheapest() {
-    if (below_.empty()) return pop(above_, higher);
-    if (above_.empty()) return pop(below_, lower);
+    if (below_.empty()) return pop(above_, Higher());
+    if (above_.empty()) return pop(below_, Lower());
     const double to_below = mean_ - below_.front().mean;
     const double to_above = above_.front().mean - mean_;
     const bool tie_goes_below = to_below == to_above && below_.front().place < above_.front().place;
-    return to_below < to_above || tie_goes_below ? pop(below_, lower) : pop(above_, higher);
+    return to_below < to_above || tie_goes_below ? pop(below_, Lower()) : pop(above_, Higher());
   }
 
  private:
   // Heap orders: the arc that compares greatest is in front.
-  static bool lower(const Arc& a, const Arc& b) {
-    return a.mean < b.mean || (a.mean == b.mean && a.place > b.place);
-  }
-  static bool higher(const Arc& a, const Arc& b) {
-    return a.mean > b.mean || (a.mean == b.mean && a.place > b.place);
-  }
-  using Order = bool (*)(const Arc&, const Arc&);
+  struct Lower {
+    bool operator()(const Arc& a, const Arc& b) const {
+      return a.mean < b.mean || (a.mean == b.mean && a.place > b.place);
+    }
+  };
+  struct Higher {
+    bool operator()(const Arc& a, const Arc& b) const {
+      return a.mean > b.mean || (a.mean == b.mean && a.place > b.place);
+    }
+  };
+  template <class Order>
   static void push(std::vector<Arc>& heap, const Arc& arc, Order order) {
     heap.push_back(arc);
     std::push_heap(heap.begin(), heap.end(), order);
   }
+  template <class Order>
   static Arc pop(std::vector<Arc>& heap, Order order) {
     std::pop_heap(heap.begin(), heap.end(), order);
     const Arc arc = heap.back();
@@ -65,16 +78,49 @@ class UntriedArcs {
   double mean_ = 0;
 };
 
+/// Ascending with falling means; means that differ little may share a key.
+std::uint32_t key_of(double mean) {
+  const auto bits = std::bit_cast<std::uint64_t>(mean);
+  const std::uint64_t ascending = bits >> 63U != 0 ? ~bits : bits | (std::uint64_t{1} << 63U);
+  return static_cast<std::uint32_t>(~ascending >> 32U);
+}
+
+/// Nodes sorted by their keys, else in the order given: three rounds of counting.
+void sort_by_keys(ScratchList<Arc>& arcs, const Exec& exec) {
+  constexpr std::uint32_t kDigitBits = 11;
+  constexpr std::uint32_t kDigits = 1U << kDigitBits;
+  ScratchList<Arc> sorted(arcs.size() + 1, exec.pool);
+  std::vector<std::int32_t> first(kDigits + 1);
+  for (std::uint32_t shift = 0; shift < 32; shift += kDigitBits) {
+    const auto digit = [shift](const Arc& arc) { return (key_of(arc.mean) >> shift) & (kDigits - 1); };
+    std::fill(first.begin(), first.end(), 0);
+    for (const Arc& arc : arcs) ++first[digit(arc) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    sorted.clear();
+    Arc* const room = sorted.room_for(arcs.size());
+    for (const Arc& arc : arcs) room[first[digit(arc)]++] = arc;
+    sorted.grown(arcs.size());
+    std::swap(arcs, sorted);
+  }
+}
+
 /// From the highest mean to the lowest, ties in raster order. Nodes that cannot fuse are left out.
-std::vector<Arc> near_to_far(const GrowingRegions& regions) {
-  std::vector<Arc> order;
+ScratchList<Arc> near_to_far(const GrowingRegions& regions, const Exec& exec) {
+  ScratchList<Arc> order(slot(regions.count()) + 1, exec.pool);
   for (std::int32_t i = 0; i < regions.count(); ++i) {
     const GrowingRegions::Brief& brief = regions.brief(i);
     if (brief.mean == brief.mean) order.push_back({brief.mean, brief.place, i});
   }
-  std::sort(order.begin(), order.end(), [](const Arc& a, const Arc& b) {
-    return a.mean > b.mean || (a.mean == b.mean && a.place < b.place);
-  });
+  sort_by_keys(order, exec);
+  for (Arc* from = order.begin(); from != order.end();) {
+    Arc* const to = std::find_if(
+        from, order.end(), [key = key_of(from->mean)](const Arc& arc) { return key_of(arc.mean) != key; });
+    const auto before = [](const Arc& a, const Arc& b) {
+      return a.mean > b.mean || (a.mean == b.mean && a.place < b.place);
+    };
+    if (!std::is_sorted(from, to, before)) std::sort(from, to, before);
+    from = to;
+  }
   return order;
 }
 
@@ -86,29 +132,35 @@ struct Visit {
 };
 
 void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& criteria, Visit& visit) {
-  Absorption absorption(regions.sums(node), criteria);
-  visit.untried.reset(absorption.mean());
+  Absorption absorption(regions.brief(node), regions.squares(node), criteria);
   visit.neighbours.clear();
-  const auto add_neighbours_of = [&](std::int32_t region) {
-    const std::size_t known = visit.neighbours.size();
-    regions.append_new_neighbours(region, visit.neighbours);
-    for (std::size_t i = known; i < visit.neighbours.size(); ++i) {
+  regions.start_visit(node);
+  regions.append_new_neighbours(node, visit.neighbours);
+  const auto is_near = [&](std::int32_t neighbour) {
+    return absorption.is_near(regions.brief(neighbour).mean);
+  };
+  if (std::none_of(visit.neighbours.begin(), visit.neighbours.end(), is_near)) return;
+
+  visit.untried.reset(absorption.mean());
+  const auto add_from = [&](std::size_t first) {
+    for (std::size_t i = first; i < visit.neighbours.size(); ++i) {
       const std::int32_t neighbour = visit.neighbours.begin()[i];
       const GrowingRegions::Brief& brief = regions.brief(neighbour);
       if (brief.mean == brief.mean) visit.untried.add({brief.mean, brief.place, neighbour});
     }
   };
-  regions.start_visit(node);
-  add_neighbours_of(node);
+  add_from(0);
   bool grew = false;
   while (!visit.untried.empty()) {
     const Arc arc = visit.untried.take_cheapest();
     // Once the cheapest arc is beyond Eq. (1), so are all, and as nothing fuses nothing moves the mean.
     if (!absorption.is_near(arc.mean)) break;
-    if (!absorption.admits(regions.sums(arc.neighbour))) continue;
-    add_neighbours_of(arc.neighbour);
+    if (!absorption.admits(regions.brief(arc.neighbour))) continue;
+    const std::size_t known = visit.neighbours.size();
+    regions.append_new_neighbours(arc.neighbour, visit.neighbours);
+    add_from(known);
     regions.absorb(node, arc.neighbour);
-    absorption.update(regions.sums(node));
+    absorption.update(regions.brief(node), regions.squares(node));
     visit.untried.move_mean(absorption.mean());
     grew = true;
   }
@@ -124,7 +176,7 @@ void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& 
 Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {
   GrowingRegions regions(graph, exec);
   Visit visit(exec);
-  for (const Arc& entry : near_to_far(regions)) {
+  for (const Arc& entry : near_to_far(regions, exec)) {
     if (regions.is_alive(entry.neighbour)) visit_node(regions, entry.neighbour, criteria, visit);
   }
   fuse_small_regions(regions, criteria.min_region_area, exec);

@@ -81,7 +81,7 @@ std::size_t first_admitted(const Absorption& absorption, const GrowingRegions& r
   for (; first < neighbours.size(); first += 64) {
     for (std::uint64_t near = near_ones(absorption, neighbours, first); near != 0; near &= near - 1) {
       const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(near));
-      if (absorption.admits(regions.sums(region_of(neighbours[i].entry)))) return i;
+      if (absorption.admits(regions.brief(region_of(neighbours[i].entry)))) return i;
     }
   }
   return neighbours.size();
@@ -98,7 +98,7 @@ void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorpti
     const std::int32_t other = region_of(neighbours[next].entry);
     regions.append_new_neighbours(other, visit.found);
     regions.absorb(region, other);
-    absorption.update(regions.sums(region));
+    absorption.update(regions.brief(region), regions.squares(region));
     const std::size_t refused = next + 1;
     next = first_admitted(absorption, regions, neighbours, refused);
     for (std::size_t i = refused; i < next; ++i) neighbours[kept++] = neighbours[i];
@@ -115,7 +115,7 @@ void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorpti
 
 /// Lets `region` grow; false where nothing fused.
 bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& criteria, Visit& visit) {
-  Absorption absorption(regions.sums(region), criteria);
+  Absorption absorption(regions.brief(region), regions.squares(region), criteria);
   if (!absorption.may_absorb()) return false;
   visit.found.clear();
   regions.start_visit(region);
@@ -163,7 +163,7 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
 std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
   std::int32_t best = -1;
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
-    if (neighbour == region || regions.sums(neighbour).is_floor || regions.sums(neighbour).valid_count > 0)
+    if (neighbour == region || regions.brief(neighbour).is_floor || regions.brief(neighbour).valid_count > 0)
       return;
     if (best < 0 || regions.brief(neighbour).place < regions.brief(best).place) best = neighbour;
   });
@@ -172,7 +172,7 @@ std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
 
 /// The neighbour that a small region fuses with; −1 where all are floor.
 std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
-  const bool has_mean = regions.sums(region).valid_count > 0;
+  const bool has_mean = regions.brief(region).valid_count > 0;
   const double mean = has_mean ? regions.brief(region).mean : 0;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::int32_t best = -1;
@@ -207,8 +207,8 @@ class SmallRegions {
   }
   void enter(std::int32_t region) {
     const auto pixels = regions_.brief(region).pixel_count;
-    if (pixels >= min_region_area_ && regions_.sums(region).valid_count > 0) return;
-    if (regions_.sums(region).is_floor) return;
+    if (pixels >= min_region_area_ && regions_.brief(region).valid_count > 0) return;
+    if (regions_.brief(region).is_floor) return;
     entries_.push_back({region, first_[pixels]});
     first_[pixels] = static_cast<std::int32_t>(entries_.size()) - 1;
   }
@@ -242,7 +242,7 @@ class SmallRegions {
     for (std::int32_t i = 0; i < regions.count(); ++i) {
       if (!regions.is_alive(i)) continue;
       all_pixels += regions.brief(i).pixel_count;
-      has_unseen |= regions.sums(i).valid_count == 0;
+      has_unseen |= regions.brief(i).valid_count == 0;
     }
     // Regions without valid pixel count as small at any size.
     return static_cast<std::int32_t>(
@@ -255,10 +255,6 @@ class SmallRegions {
   Scratch<std::int32_t> first_;  // per number of pixels: the entry last made
   ScratchList<Entry> entries_;
 };
-
-GrowingRegions::Sums sums_of(const RegionGraph::Node& node) {
-  return {node.sum, node.sum_of_squares, static_cast<std::int32_t>(node.valid_count), node.is_floor};
-}
 
 }  // namespace
 
@@ -275,8 +271,8 @@ void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, c
 bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,
               const GrowCriteria& criteria) {
   if (neighbour.valid_count == 0 || neighbour.is_floor) return false;
-  const Absorption absorption(sums_of(visited), criteria);
-  return absorption.is_near(neighbour.mean()) && absorption.admits(sums_of(neighbour));
+  const Absorption absorption(GrowingRegions::Brief::of(visited), visited.sum_of_squares, criteria);
+  return absorption.is_near(neighbour.mean()) && absorption.admits(GrowingRegions::Brief::of(neighbour));
 }
 
 Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {

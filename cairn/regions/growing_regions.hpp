@@ -20,24 +20,35 @@ namespace cairn {
 /// when they are read.
 class GrowingRegions {
  public:
-  /// What every look at a neighbour needs: kept small, so that most looks find it in the cache.
-  struct Brief {
-    double mean;         // NaN where the region may not fuse by likeness: floor, or no valid pixel
+  /// What looks at a neighbour need: half a cache line.
+  struct alignas(32) Brief {
+    double mean;  // NaN where the region may not fuse by likeness: floor, or no valid pixel
+    std::int64_t sum;
     std::int32_t place;  // its first pixel: different for any two living regions, ascending in raster order
     std::int32_t pixel_count;
-  };
-  /// What only a fusion needs.
-  struct Sums {
-    std::int64_t sum;
-    std::int64_t sum_of_squares;
     std::int32_t valid_count;
     bool is_floor;
+
+    static Brief of(const RegionGraph::Node& node) {
+      Brief brief{0,
+                  node.sum,
+                  node.first_pixel,
+                  static_cast<std::int32_t>(node.pixel_count),
+                  static_cast<std::int32_t>(node.valid_count),
+                  node.is_floor};
+      brief.find_mean();
+      return brief;
+    }
+    void find_mean() {
+      mean = valid_count == 0 || is_floor ? std::numeric_limits<double>::quiet_NaN()
+                                          : static_cast<double>(sum) / static_cast<double>(valid_count);
+    }
   };
 
   GrowingRegions(const RegionGraph& graph, const Exec& exec)
       : arcs_(2 * graph.arcs.size(), exec.pool),
         briefs_(graph.nodes.size(), exec.pool),
-        sums_(graph.nodes.size(), exec.pool),
+        squares_(graph.nodes.size(), exec.pool),
         lists_(graph.nodes.size(), exec.pool),
         parent_(graph.nodes.size(), exec.pool),
         seen_(graph.nodes.size(), -1, exec.pool) {
@@ -46,8 +57,8 @@ class GrowingRegions {
     for (std::int32_t i = 0; i < count(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const RegionGraph::Node& node = graph.nodes[at];
-      sums_[i] = {node.sum, node.sum_of_squares, static_cast<std::int32_t>(node.valid_count), node.is_floor};
-      briefs_[i] = {mean_of(sums_[i]), node.first_pixel, static_cast<std::int32_t>(node.pixel_count)};
+      briefs_[i] = Brief::of(node);
+      squares_[i] = node.sum_of_squares;
       lists_[i] = {graph.first_arc[at], graph.first_arc[at + 1], -1, i};
       parent_[i] = i;
     }
@@ -55,7 +66,8 @@ class GrowingRegions {
 
   [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(parent_.size()); }
   [[nodiscard]] const Brief& brief(std::int32_t region) const { return briefs_[region]; }
-  [[nodiscard]] const Sums& sums(std::int32_t region) const { return sums_[region]; }
+  /// The sum of the squares of its values.
+  [[nodiscard]] std::int64_t squares(std::int32_t region) const { return squares_[region]; }
   [[nodiscard]] bool is_alive(std::int32_t region) const { return parent_[region] == region; }
 
   /// Calls found(neighbour) for each living neighbour of `region`, for some of them more than once, and
@@ -91,14 +103,14 @@ class GrowingRegions {
   }
 
   void absorb(std::int32_t survivor, std::int32_t other) {
-    Sums& sums = sums_[survivor];
-    sums.sum += sums_[other].sum;
-    sums.sum_of_squares += sums_[other].sum_of_squares;
-    sums.valid_count += sums_[other].valid_count;
     Brief& brief = briefs_[survivor];
-    brief.mean = mean_of(sums);
-    brief.place = std::min(brief.place, briefs_[other].place);
-    brief.pixel_count += briefs_[other].pixel_count;
+    const Brief& absorbed = briefs_[other];
+    brief.sum += absorbed.sum;
+    brief.place = std::min(brief.place, absorbed.place);
+    brief.pixel_count += absorbed.pixel_count;
+    brief.valid_count += absorbed.valid_count;
+    brief.find_mean();
+    squares_[survivor] += squares_[other];
     parent_[other] = survivor;
     lists_[lists_[survivor].last_member].next_member = other;
     lists_[survivor].last_member = lists_[other].last_member;
@@ -129,10 +141,6 @@ class GrowingRegions {
     std::int32_t last_member;  // kept up for living regions
   };
 
-  static double mean_of(const Sums& sums) {
-    if (sums.valid_count == 0 || sums.is_floor) return std::numeric_limits<double>::quiet_NaN();
-    return static_cast<double>(sums.sum) / static_cast<double>(sums.valid_count);
-  }
   [[nodiscard]] std::span<const std::int32_t> arcs_of(std::int32_t member) const {
     return {arcs_.begin() + lists_[member].begin, arcs_.begin() + lists_[member].end};
   }
@@ -147,7 +155,7 @@ class GrowingRegions {
 
   ScratchList<std::int32_t> arcs_;  // the graph's, and behind them those stated anew
   Scratch<Brief> briefs_;
-  Scratch<Sums> sums_;
+  Scratch<std::int64_t> squares_;
   Scratch<List> lists_;
   Scratch<std::int32_t> parent_;
   Scratch<std::int32_t> seen_;  // the last visit that named the region
@@ -157,18 +165,20 @@ class GrowingRegions {
 /// Equations (1) to (3) for one visited region and many neighbours: what depends on the visited one is kept.
 class Absorption {
  public:
-  using Sums = GrowingRegions::Sums;
+  using Brief = GrowingRegions::Brief;
 
-  Absorption(const Sums& visited, const GrowCriteria& criteria) : criteria_(criteria) { update(visited); }
+  Absorption(const Brief& visited, std::int64_t squares, const GrowCriteria& criteria) : criteria_(criteria) {
+    update(visited, squares);
+  }
 
   /// After a fusion.
-  void update(const Sums& visited) {
+  void update(const Brief& visited, std::int64_t squares) {
     sum_ = visited.sum;
     valid_count_ = visited.valid_count;
     if (valid_count_ == 0 || visited.is_floor) return;  // mean_ stays NaN: is near to nothing
     const auto n = static_cast<double>(valid_count_);
     mean_ = static_cast<double>(sum_) / n;
-    const double variance = std::max(0.0, static_cast<double>(visited.sum_of_squares) / n - mean_ * mean_);
+    const double variance = std::max(0.0, static_cast<double>(squares) / n - mean_ * mean_);
     sigma_ = std::max(std::sqrt(variance), criteria_.sigma_min);
   }
   [[nodiscard]] double mean() const { return mean_; }
@@ -178,7 +188,7 @@ class Absorption {
     return std::abs(mean_ - neighbour_mean) <= criteria_.mean_difference_max;
   }
   /// Eq. (2) and (3), for a neighbour that is_near().
-  [[nodiscard]] bool admits(const Sums& neighbour) const {
+  [[nodiscard]] bool admits(const Brief& neighbour) const {
     const double new_mean = static_cast<double>(sum_ + neighbour.sum) /
                             static_cast<double>(std::int64_t{valid_count_} + neighbour.valid_count);
     return std::abs(new_mean - mean_) / sigma_ <= criteria_.deviation_max;
