@@ -2,8 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
 #include <cairn/objects/fuse.hpp>
+#include <cairn/regions/label_kernels.hpp>
+#include <cairn/regions/scratch.hpp>
 #include <cassert>
 #include <numeric>
+#include <span>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -17,56 +21,62 @@ struct Overlap {
   std::int32_t pixels;
 };
 
-std::vector<Overlap> overlaps(View<const RegionId> by_intensity, View<const RegionId> by_disparity) {
-  std::vector<Overlap> result;
+ScratchList<Overlap> overlaps(View<const RegionId> by_intensity, View<const RegionId> by_disparity,
+                              const Exec& exec) {
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
   const int width = by_intensity.width();
+  ScratchList<Overlap> result(static_cast<std::size_t>(by_intensity.size().area() / 8), exec.pool);
+  std::vector<std::int32_t> ends(slot(width) + kernels::kListSlack);
   for (int y = 0; y < by_intensity.height(); ++y) {
     const RegionId* const i = by_intensity.row(y);
     const RegionId* const d = by_disparity.row(y);
-    for (int x = 0; x < width;) {
-      const int start = x;
-      do ++x;
-      while (x < width && i[x] == i[start] && d[x] == d[start]);
-      result.push_back({i[start], d[start], x - start});
+    const auto runs = slot(run.find_runs(i, d, width, ends.data()));
+    Overlap* const room = result.room_for(runs);
+    std::int32_t start = 0;
+    for (std::size_t k = 0; k < runs; ++k) {
+      room[k] = {i[start], d[start], ends[k] - start};
+      start = ends[k];
     }
+    result.grown(runs);
   }
   return result;
 }
 
 /// Sorted by intensity region, each one's overlaps together; first[i] … first[i + 1] − 1 are region i's.
-std::vector<Overlap> grouped(const std::vector<Overlap>& found, std::size_t regions,
-                             std::vector<std::size_t>& first) {
+Scratch<Overlap> grouped(const ScratchList<Overlap>& found, std::size_t regions,
+                         std::vector<std::int32_t>& first, const Exec& exec) {
   first.assign(regions + 1, 0);
   for (const Overlap& o : found) ++first[index(o.by_intensity) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  std::vector<Overlap> result(found.size());
+  std::vector<std::int32_t> next(first.begin(), first.end() - 1);
+  Scratch<Overlap> result(found.size(), exec.pool);
   for (const Overlap& o : found) result[next[index(o.by_intensity)]++] = o;
   return result;
 }
 
 /// Equation (4): the disparity region that each intensity region overlaps most.
-std::vector<RegionId> best_overlaps(const Segmentation& by_intensity, const Segmentation& by_disparity) {
-  std::vector<std::size_t> first;
-  const std::vector<Overlap> found =
-      grouped(overlaps(by_intensity.labels, by_disparity.labels), by_intensity.regions.size(), first);
+std::vector<RegionId> best_overlaps(const Segmentation& by_intensity, const Segmentation& by_disparity,
+                                    const Exec& exec) {
+  std::vector<std::int32_t> first;
+  const Scratch<Overlap> found = grouped(overlaps(by_intensity.labels, by_disparity.labels, exec),
+                                         by_intensity.regions.size(), first, exec);
   const auto mean = [&](RegionId id) { return by_disparity.regions[index(id)].mean; };
 
   std::vector<RegionId> chosen(by_intensity.regions.size());
-  std::vector<std::int64_t> area(by_disparity.regions.size(), 0);  // A(I_i ∩ D_j) of one i
+  std::vector<std::int32_t> area(by_disparity.regions.size(), 0);  // A(I_i ∩ D_j) of one i
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    for (std::size_t k = first[i]; k < first[i + 1]; ++k)
-      area[index(found[k].by_disparity)] += found[k].pixels;
-    RegionId best = first[i] < first[i + 1] ? found[first[i]].by_disparity : RegionId{0};
+    const std::span<const Overlap> of_region(found.begin() + first[i], found.begin() + first[i + 1]);
+    for (const Overlap& o : of_region) area[index(o.by_disparity)] += o.pixels;
+    RegionId best = of_region.empty() ? RegionId{0} : of_region.front().by_disparity;
     const auto better = [&](RegionId a, RegionId b) {
       if (area[index(a)] != area[index(b)]) return area[index(a)] > area[index(b)];
       if (mean(a) != mean(b)) return mean(a) > mean(b);
       return a < b;
     };
-    for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
-      if (better(found[k].by_disparity, best)) best = found[k].by_disparity;
+    for (const Overlap& o : of_region) {
+      if (o.by_disparity != best && better(o.by_disparity, best)) best = o.by_disparity;
     }
-    for (std::size_t k = first[i]; k < first[i + 1]; ++k) area[index(found[k].by_disparity)] = 0;
+    for (const Overlap& o : of_region) area[index(o.by_disparity)] = 0;
     chosen[i] = best;
   }
   return chosen;
@@ -76,7 +86,7 @@ std::vector<RegionId> best_overlaps(const Segmentation& by_intensity, const Segm
 
 Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity, const Exec& exec) {
   assert(by_intensity.labels.size() == by_disparity.labels.size());
-  const std::vector<RegionId> chosen = best_overlaps(by_intensity, by_disparity);
+  const std::vector<RegionId> chosen = best_overlaps(by_intensity, by_disparity, exec);
 
   Fusion fusion{Image<RegionId>(by_intensity.labels.size(), exec.pool), {}, {}};
   std::vector<std::vector<RegionId>> parts(by_disparity.regions.size());

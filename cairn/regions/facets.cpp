@@ -5,6 +5,7 @@
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cairn/regions/gradient.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
@@ -125,10 +126,11 @@ class Contacts {
         edges_(edges),
         first_(count, -1, exec.pool),
         contacts_(static_cast<std::size_t>(labels.size().area()) / 4 * 3 + 1, exec.pool) {
-    std::vector<std::int32_t> columns(slot(labels.width()));
+    const kernels::LabelKernels& run = kernels::label_kernels(exec);
+    std::vector<std::int32_t> columns(slot(labels.width()) + kernels::kListSlack);
     for (int y = 0; y < labels.height(); ++y) {
-      meet(y, y, 1, labels.width() - 1, columns);
-      if (y + 1 < labels.height()) meet(y, y + 1, 0, labels.width(), columns);
+      meet(run, y, y, 1, labels.width() - 1, columns);
+      if (y + 1 < labels.height()) meet(run, y, y + 1, 0, labels.width(), columns);
     }
   }
   void sum_up(ScratchList<Border>& borders, const Exec& exec) const {
@@ -137,15 +139,11 @@ class Contacts {
 
  private:
   /// Each of the first `width` pixels of row y with the one `right` of it in row v.
-  void meet(int y, int v, int right, int width, std::vector<std::int32_t>& columns) {
+  void meet(const kernels::LabelKernels& run, int y, int v, int right, int width,
+            std::vector<std::int32_t>& columns) {
     const RegionId* const here = labels_.row(y);
     const RegionId* const there = labels_.row(v) + right;
-    // Borders come irregularly: gathered without a branch.
-    std::size_t found = 0;
-    for (int x = 0; x < width; ++x) {
-      columns[found] = x;
-      found += here[x] != there[x] ? 1 : 0;
-    }
+    const auto found = slot(run.differing(here, there, width, columns.data()));
     const std::uint16_t* const edge_here = edges_.row(y);
     const std::uint16_t* const edge_there = edges_.row(v) + right;
     auto next = static_cast<std::int32_t>(contacts_.size());

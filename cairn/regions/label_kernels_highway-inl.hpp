@@ -59,21 +59,41 @@ void count_up(const Word* HWY_RESTRICT bits, int width, std::int32_t first, Regi
   }
 }
 
-int find_runs(const RegionId* HWY_RESTRICT label, int width, std::int32_t* HWY_RESTRICT ends) {
+int find_runs(const RegionId* label, const RegionId* other, int width, std::int32_t* HWY_RESTRICT ends) {
   const Labels d;
   const auto step = static_cast<int>(hn::Lanes(d));
-  const auto* const at = reinterpret_cast<const std::int32_t*>(label);
+  const auto* const p = reinterpret_cast<const std::int32_t*>(label);
+  const auto* const q = reinterpret_cast<const std::int32_t*>(other);
   const auto steps = hn::Set(d, step);
   auto next = hn::Iota(d, 1);
   int runs = 0;
   int x = 0;
   for (; x + step < width; x += step) {
-    const auto changes = hn::Ne(hn::LoadU(d, at + x), hn::LoadU(d, at + x + 1));
+    const auto changes = hn::Or(hn::Ne(hn::LoadU(d, p + x), hn::LoadU(d, p + x + 1)),
+                                hn::Ne(hn::LoadU(d, q + x), hn::LoadU(d, q + x + 1)));
     hn::StoreU(hn::Compress(next, changes), d, ends + runs);
     runs += static_cast<int>(hn::CountTrue(d, changes));
     next = hn::Add(next, steps);
   }
-  return plain_labels::find_runs_from(x, runs, label, width, ends);
+  return plain_labels::find_runs_from(x, runs, label, other, width, ends);
+}
+
+int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* HWY_RESTRICT pixels) {
+  const Labels d;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  const auto* const p = reinterpret_cast<const std::int32_t*>(row);
+  const auto* const q = reinterpret_cast<const std::int32_t*>(other);
+  const auto steps = hn::Set(d, step);
+  auto here = hn::Iota(d, 0);
+  int count = 0;
+  int x = 0;
+  for (; x + step <= width; x += step) {
+    const auto differ = hn::Ne(hn::LoadU(d, p + x), hn::LoadU(d, q + x));
+    hn::StoreU(hn::Compress(here, differ), d, pixels + count);
+    count += static_cast<int>(hn::CountTrue(d, differ));
+    here = hn::Add(here, steps);
+  }
+  return plain_labels::differing_from(x, count, row, other, width, pixels);
 }
 
 /// Appends the pairs of `found`; returns how many there are then.
@@ -128,7 +148,7 @@ int touches_below(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRI
   return plain_labels::touches_below_in(x, width, count, above, row, width, pairs);
 }
 
-constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_beside, touches_below};
+constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, differing, touches_beside, touches_below};
 
 }  // namespace
 }  // namespace cairn::kernels::HWY_NAMESPACE

@@ -60,17 +60,32 @@ inline void count_up(const Word* bits, int width, std::int32_t first, RegionId* 
 // The loops below have no branch that depends on a label: no processor can foretell where labels change.
 
 /// find_runs() from pixel `x` on, `runs` of them found already.
-inline int find_runs_from(int x, int runs, const RegionId* label, int width, std::int32_t* ends) {
+inline int find_runs_from(int x, int runs, const RegionId* label, const RegionId* other, int width,
+                          std::int32_t* ends) {
   for (; x + 1 < width; ++x) {
     ends[runs] = x + 1;
-    runs += label[x] != label[x + 1] ? 1 : 0;
+    runs += static_cast<int>((label[x] != label[x + 1]) | (other[x] != other[x + 1]));
   }
   ends[runs] = width;
   return runs + 1;
 }
 
-inline int find_runs(const RegionId* label, int width, std::int32_t* ends) {
-  return find_runs_from(0, 0, label, width, ends);
+inline int find_runs(const RegionId* label, const RegionId* other, int width, std::int32_t* ends) {
+  return find_runs_from(0, 0, label, other, width, ends);
+}
+
+/// differing() from pixel `x` on, `count` of them found already.
+inline int differing_from(int x, int count, const RegionId* row, const RegionId* other, int width,
+                          std::int32_t* pixels) {
+  for (; x < width; ++x) {
+    pixels[count] = x;
+    count += row[x] != other[x] ? 1 : 0;
+  }
+  return count;
+}
+
+inline int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels) {
+  return differing_from(0, 0, row, other, width, pixels);
 }
 
 inline void put_pair(LabelPairs pairs, int at, RegionId p, RegionId q) {
@@ -118,6 +133,7 @@ inline int touches_below(const RegionId* above, const RegionId* row, int width, 
   return touches_below_in(0, width, 0, above, row, width, pairs);
 }
 
-inline constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, touches_beside, touches_below};
+inline constexpr LabelKernels kLabelKernels{compare,   count_up,       find_runs,
+                                            differing, touches_beside, touches_below};
 
 }  // namespace cairn::kernels::plain_labels

@@ -115,7 +115,7 @@ Touches count_and_touch(View<const RegionId> labels, std::vector<RegionGraph::No
       sums += sums_at(x, y);
     }
     up_to[slot(width)] = sums;
-    const int runs = run.find_runs(row, width, ends.data());
+    const int runs = run.find_runs(row, row, width, ends.data());
     count_row<Sums>(row, y, width, up_to.data(), ends.data(), runs, nodes.data());
     const RegionId* const above = y > 0 ? labels.row(y - 1) : nothing.data();
     touches.append(slot(width),
