@@ -46,8 +46,8 @@ inline constexpr int kConfidenceWindow = 13;
 /// How likely each disparity is within 1 px of the truth, 0 … 1; 0 where there is none. It is a logistic
 /// function of four signs (ConfidenceModel) which the matching and the checks leave behind: no cost is
 /// computed anew. A pixel is a jump where its disparity and that of the pixel to the right or below differ by
-/// more than 1 px. Empty where it is switched off, and where `matches` lacks runner-up or mean (Evidence::full has both).
-/// (beyond the paper)
+/// more than 1 px. Empty where it is switched off, and where `matches` lacks runner-up or mean
+/// (Evidence::full has both). (beyond the paper)
 Image<float> estimate_confidence(const Matches& matches, const DisparityMap& disparity,
                                  const ConfidenceModel& model, const ConfidenceConfig& config,
                                  const Exec& exec);
