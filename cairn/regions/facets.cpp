@@ -58,28 +58,21 @@ class Sets {
   std::int32_t count_ = 0;
 };
 
-/// One addend of a border. It hangs in the list of its larger region `b`, which the list knows.
-struct Contact {
-  std::int32_t next = 0;  // in the list; −1 = the last
-  std::int32_t a = 0;
-  std::int32_t edge = 0;
-  std::int32_t x2 = 0;
-  std::int32_t y2 = 0;
-};
-
-/// The same for borders that meet when regions fuse.
+/// Part of a border. It hangs in the list of its larger region `b`, which the list knows.
 struct Part {
-  std::int32_t next = 0;
+  std::int32_t next = 0;  // in the list; −1 = the last
   std::int32_t a = 0;
   Border border;
 };
 
-void add_to(Border& sum, const Contact& contact) {
-  ++sum.length;
-  sum.edge_sum += contact.edge;
-  sum.x2_sum += contact.x2;
-  sum.y2_sum += contact.y2;
-}
+/// The same for a short piece, small: sums share words.
+struct Piece {
+  static constexpr std::int32_t kLongest = 1 << 12;  // so that no sum leaves its half, whatever the image
+  std::int32_t next = 0;
+  std::int32_t a = 0;
+  std::uint64_t edge_and_length = 0;
+  std::uint64_t x2_and_y2 = 0;
+};
 
 void add_to(Border& sum, const Part& part) {
   sum.length += part.border.length;
@@ -88,27 +81,35 @@ void add_to(Border& sum, const Part& part) {
   sum.y2_sum += part.border.y2_sum;
 }
 
-/// Sums addends to borders, sorted by (a, b). `first`: where the list of each region b begins, −1 = nowhere.
+void add_to(Border& sum, const Piece& piece) {
+  constexpr std::uint64_t kLow = 0xFFFFFFFF;
+  sum.length += static_cast<std::int64_t>(piece.edge_and_length & kLow);
+  sum.edge_sum += static_cast<std::int64_t>(piece.edge_and_length >> 32U);
+  sum.x2_sum += static_cast<std::int64_t>(piece.x2_and_y2 >> 32U);
+  sum.y2_sum += static_cast<std::int64_t>(piece.x2_and_y2 & kLow);
+}
+
+/// Sums parts to borders, sorted by (a, b). `first`: where the list of each region b begins, −1 = nowhere.
 /// Nothing is compared: the lists come in the order of b, one array finds the sum for each a of a list, and
 /// then counting sorts by a.
 template <class Addend>
-void sum_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& addends,
+void sum_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& parts,
             ScratchList<Border>& borders, const Exec& exec) {
   const std::size_t count = first.size();
   Scratch<std::int32_t> place(count, -1, exec.pool);     // in `sums`, of the border with a
   Scratch<std::int32_t> start(count + 1, 0, exec.pool);  // in `borders`, of those with a
-  ScratchList<Border> sums(std::max<std::size_t>(addends.size() / 2, 1), exec.pool);
-  const Addend* const addend = addends.begin();
+  ScratchList<Border> sums(parts.size() + 1, exec.pool);
+  const Addend* const part = parts.begin();
   for (std::size_t b = 0; b < count; ++b) {
     const auto begin = static_cast<std::int32_t>(sums.size());
-    for (std::int32_t i = first[signed_slot(b)]; i >= 0; i = addend[i].next) {
-      const std::int32_t a = addend[i].a;
+    for (std::int32_t i = first[signed_slot(b)]; i >= 0; i = part[i].next) {
+      const std::int32_t a = part[i].a;
       if (place[a] < begin) {
         place[a] = static_cast<std::int32_t>(sums.size());
         sums.push_back({a, static_cast<std::int32_t>(b), 0, 0, 0, 0});
         ++start[a + 1];
       }
-      add_to(sums.data()[place[a]], addend[i]);
+      add_to(sums.data()[place[a]], part[i]);
     }
   }
   std::partial_sum(start.begin(), start.end(), start.begin());
@@ -118,49 +119,82 @@ void sum_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& adden
   borders.grown(sums.size());
 }
 
-/// The places where neighbouring pixels belong to different regions, `count` of them at most.
+/// The places where neighbouring pixels belong to different regions, `count` of them at most. What follows
+/// along one border goes to one piece, as long as it is remembered.
 class Contacts {
  public:
   Contacts(View<const RegionId> labels, View<const std::uint16_t> edges, std::size_t count, const Exec& exec)
       : labels_(labels),
         edges_(edges),
         first_(count, -1, exec.pool),
-        contacts_(static_cast<std::size_t>(labels.size().area()) / 4 * 3 + 1, exec.pool) {
+        pieces_(static_cast<std::size_t>(labels.size().area()) / 2 + 1, exec.pool),
+        recent_(std::size_t{1} << kBits) {
     const kernels::LabelKernels& run = kernels::label_kernels(exec);
-    std::vector<std::int32_t> columns(slot(labels.width()) + kernels::kListSlack);
+    Found found(slot(labels.width()) + kernels::kListSlack);
     for (int y = 0; y < labels.height(); ++y) {
-      meet(run, y, y, 1, labels.width() - 1, columns);
-      if (y + 1 < labels.height()) meet(run, y, y + 1, 0, labels.width(), columns);
+      meet(run, y, y, 1, labels.width() - 1, found);
+      if (y + 1 < labels.height()) meet(run, y, y + 1, 0, labels.width(), found);
     }
   }
   void sum_up(ScratchList<Border>& borders, const Exec& exec) const {
-    cairn::sum_up(first_, contacts_, borders, exec);
+    cairn::sum_up(first_, pieces_, borders, exec);
   }
 
  private:
+  static constexpr unsigned kBits = 11;  // several times the borders of two rows; fits the first-level cache
+  struct Recent {
+    std::int32_t a = -1;
+    std::int32_t b = -1;
+    std::int32_t piece = 0;
+    std::int32_t length = 0;
+  };
+
+  /// The contacts of a row.
+  struct Found {
+    explicit Found(std::size_t length) : columns(length), a(length), b(length) {}
+    std::vector<std::int32_t> columns, a, b;
+  };
+
   /// Each of the first `width` pixels of row y with the one `right` of it in row v.
-  void meet(const kernels::LabelKernels& run, int y, int v, int right, int width,
-            std::vector<std::int32_t>& columns) {
-    const RegionId* const here = labels_.row(y);
-    const RegionId* const there = labels_.row(v) + right;
-    const auto found = slot(run.differing(here, there, width, columns.data()));
+  void meet(const kernels::LabelKernels& run, int y, int v, int right, int width, Found& found) {
+    const auto count = slot(run.differing(labels_.row(y), labels_.row(v) + right, width, found.columns.data(),
+                                          {found.a.data(), found.b.data()}));
     const std::uint16_t* const edge_here = edges_.row(y);
     const std::uint16_t* const edge_there = edges_.row(v) + right;
-    auto next = static_cast<std::int32_t>(contacts_.size());
-    Contact* contact = contacts_.room_for(found);
-    for (std::size_t i = 0; i < found; ++i) {
-      const std::int32_t x = columns[i];
-      const auto [a, b] = std::minmax({number(here[x]), number(there[x])});
-      *contact++ = {first_[b], a, std::max(edge_here[x], edge_there[x]), 2 * x + right, y + v};
-      first_[b] = next++;
+    Piece* const piece = pieces_.room_for(count + 1) - pieces_.size();
+    std::int32_t* const first = first_.data();
+    Recent* const known = recent_.data();
+    auto next = static_cast<std::int32_t>(pieces_.size());
+    const std::int32_t before = next;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t x = found.columns[i];
+      const std::int32_t a = found.a[i];
+      const std::int32_t b = found.b[i];
+      Recent& recent =
+          known[(static_cast<std::uint32_t>(a) * 0x9E3779B1U + static_cast<std::uint32_t>(b) * 0x85EBCA6BU) >>
+                (32U - kBits)];
+      // Without a branch: every other contact begins a piece, and nothing tells which. All bits set where one
+      // goes on.
+      const auto other =
+          static_cast<std::uint32_t>((recent.a ^ a) | (recent.b ^ b) | (recent.length / Piece::kLongest));
+      const std::int32_t goes_on = static_cast<std::int32_t>((other | (0U - other)) >> 31U) - 1;
+      const std::int32_t at = (recent.piece & goes_on) | (next & ~goes_on);
+      recent = {a, b, at, (recent.length & goes_on) + 1};
+      piece[next] = {first[b], a, 0, 0};
+      first[b] = (first[b] & goes_on) | (next & ~goes_on);
+      next += 1 + goes_on;
+      piece[at].edge_and_length += (std::uint64_t{std::max(edge_here[x], edge_there[x])} << 32U) + 1;
+      piece[at].x2_and_y2 +=
+          (static_cast<std::uint64_t>(2 * x + right) << 32U) + static_cast<std::uint64_t>(y + v);
     }
-    contacts_.grown(found);
+    pieces_.grown(static_cast<std::size_t>(next - before));
   }
 
   View<const RegionId> labels_;
   View<const std::uint16_t> edges_;
   Scratch<std::int32_t> first_;
-  ScratchList<Contact> contacts_;
+  ScratchList<Piece> pieces_;
+  std::vector<Recent> recent_;
 };
 
 /// Regions that fuse, round by round, numbered anew each time so that all stays small; their order is kept.

@@ -45,8 +45,9 @@ struct LabelKernels {
   /// Where the runs of equal labels in two rows end, of which one changes, the other, or both: ends[i] is one
   /// past the last pixel of run i. The rows may be the same. Returns how many runs there are.
   int (*find_runs)(const RegionId* label, const RegionId* other, int width, std::int32_t* ends);
-  /// The pixels of two rows whose labels differ. Returns how many.
-  int (*differing)(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels);
+  /// The pixels of two rows whose labels differ, and these labels. Returns how many.
+  int (*differing)(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels,
+                   LabelPairs pairs);
   /// The pairs of different labels side by side in a row, and one above the other in two. What has its like
   /// one row higher, or side by side close by, is left out: every pair of labels that touch somewhere in an
   /// image shows up somewhere, and most of them seldom. `above` of the first row: labels that there are not.

@@ -78,7 +78,16 @@ int find_runs(const RegionId* label, const RegionId* other, int width, std::int3
   return plain_labels::find_runs_from(x, runs, label, other, width, ends);
 }
 
-int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* HWY_RESTRICT pixels) {
+/// Appends the pairs of `found`; returns how many there are then.
+template <class D, class M>
+HWY_INLINE int put_pairs(D d, hn::Vec<D> p, hn::Vec<D> q, M found, LabelPairs pairs, int count) {
+  hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
+  hn::StoreU(hn::Compress(hn::Max(p, q), found), d, pairs.b + count);
+  return count + static_cast<int>(hn::CountTrue(d, found));
+}
+
+int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* HWY_RESTRICT pixels,
+              LabelPairs pairs) {
   const Labels d;
   const auto step = static_cast<int>(hn::Lanes(d));
   const auto* const p = reinterpret_cast<const std::int32_t*>(row);
@@ -88,20 +97,14 @@ int differing(const RegionId* row, const RegionId* other, int width, std::int32_
   int count = 0;
   int x = 0;
   for (; x + step <= width; x += step) {
-    const auto differ = hn::Ne(hn::LoadU(d, p + x), hn::LoadU(d, q + x));
+    const auto label = hn::LoadU(d, p + x);
+    const auto beside = hn::LoadU(d, q + x);
+    const auto differ = hn::Ne(label, beside);
     hn::StoreU(hn::Compress(here, differ), d, pixels + count);
-    count += static_cast<int>(hn::CountTrue(d, differ));
+    count = put_pairs(d, label, beside, differ, pairs, count);
     here = hn::Add(here, steps);
   }
-  return plain_labels::differing_from(x, count, row, other, width, pixels);
-}
-
-/// Appends the pairs of `found`; returns how many there are then.
-template <class D, class M>
-HWY_INLINE int put_pairs(D d, hn::Vec<D> p, hn::Vec<D> q, M found, LabelPairs pairs, int count) {
-  hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
-  hn::StoreU(hn::Compress(hn::Max(p, q), found), d, pairs.b + count);
-  return count + static_cast<int>(hn::CountTrue(d, found));
+  return plain_labels::differing_from(x, count, row, other, width, pixels, pairs);
 }
 
 int touches_beside(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,

@@ -74,23 +74,25 @@ inline int find_runs(const RegionId* label, const RegionId* other, int width, st
   return find_runs_from(0, 0, label, other, width, ends);
 }
 
+inline void put_pair(LabelPairs pairs, int at, RegionId p, RegionId q) {
+  pairs.a[at] = std::min(number(p), number(q));
+  pairs.b[at] = std::max(number(p), number(q));
+}
+
 /// differing() from pixel `x` on, `count` of them found already.
 inline int differing_from(int x, int count, const RegionId* row, const RegionId* other, int width,
-                          std::int32_t* pixels) {
+                          std::int32_t* pixels, LabelPairs pairs) {
   for (; x < width; ++x) {
     pixels[count] = x;
+    put_pair(pairs, count, row[x], other[x]);
     count += row[x] != other[x] ? 1 : 0;
   }
   return count;
 }
 
-inline int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels) {
-  return differing_from(0, 0, row, other, width, pixels);
-}
-
-inline void put_pair(LabelPairs pairs, int at, RegionId p, RegionId q) {
-  pairs.a[at] = std::min(number(p), number(q));
-  pairs.b[at] = std::max(number(p), number(q));
+inline int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels,
+                     LabelPairs pairs) {
+  return differing_from(0, 0, row, other, width, pixels, pairs);
 }
 
 /// touches_beside() for the pixels first … last − 1 and their left neighbours, `count` pairs found already.
