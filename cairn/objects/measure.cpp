@@ -117,14 +117,15 @@ class Gathered {
   [[nodiscard]] std::size_t valid_count() const { return valid_count_; }
   [[nodiscard]] const std::array<std::int64_t, 3>& colour_sum() const { return colour_sum_; }
   [[nodiscard]] const Rim& rim() const { return rim_; }
-  [[nodiscard]] std::vector<float> disparities() && {
-    disparities_.resize(valid_count_);
-    return std::move(disparities_);
-  }
-  /// Coordinates in the camera's frame of the valid pixels before infinity, one list per axis.
-  [[nodiscard]] std::array<std::vector<float>, 3> points() && {
+  struct Lists {
+    std::array<std::vector<float>, 3> points;  // in the camera's frame, before infinity; one list per axis
+    std::vector<float> disparities;
+  };
+  /// Of the valid pixels.
+  [[nodiscard]] Lists lists() && {
     for (std::vector<float>& axis : points_) axis.resize(point_count_);
-    return std::move(points_);
+    disparities_.resize(valid_count_);
+    return {std::move(points_), std::move(disparities_)};
   }
 
  private:
@@ -203,19 +204,18 @@ Rgb mean_colour(const std::array<std::int64_t, 3>& sum, std::int64_t pixels) {
 }
 
 /// Position and extent from the coordinates of an object's points, one list per axis.
-void place(Object& object, std::array<std::vector<float>, 3> points) {
+void place(Object& object, std::array<std::vector<float>, 3>& points) {
   auto& [x, y, z] = points;
   if (x.empty()) return;
   std::array<double, 3> sum{};
-  for (std::size_t i = 0; i < x.size();
-       ++i) {  // three chains, of which each alone would wait for its additions
+  // Three chains, of which each alone would wait for its additions.
+  for (std::size_t i = 0; i < x.size(); ++i) {
     sum[0] += x[i];
     sum[1] += y[i];
     sum[2] += z[i];
   }
-  const auto mean = [&](std::size_t axis) {
-    return static_cast<float>(sum[axis] / static_cast<double>(x.size()));
-  };
+  const auto count = static_cast<double>(x.size());
+  const auto mean = [&](std::size_t axis) { return static_cast<float>(sum.at(axis) / count); };
   object.position_in_camera_m = Vec3{mean(0), mean(1), mean(2)};
   object.extent_in_camera_m = Vec3{span_without_tails(x), span_without_tails(y), span_without_tails(z)};
 }
@@ -242,9 +242,9 @@ std::optional<Object> measured(const Outline& outline, Gathered gathered, Size i
   object.edge_share = share(rim.at_edge);
   object.cut_share = share(rim.cut);
   object.confidence = confidence_of(object, image);
-  place(object, std::move(gathered).points());
-  std::vector<float> disparities = std::move(gathered).disparities();
-  object.disparity_px = median(disparities);
+  Gathered::Lists lists = std::move(gathered).lists();
+  place(object, lists.points);
+  object.disparity_px = median(lists.disparities);
   return object;
 }
 
