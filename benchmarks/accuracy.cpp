@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "ablations.hpp"
+#include "clock.hpp"
 #include "machine.hpp"
 #include "markdown_table.hpp"
 #include "opencv_matchers.hpp"
@@ -438,9 +439,9 @@ std::vector<DisparityScore> scores_of(const Matcher& matcher, const std::vector<
   std::vector<DisparityScore> scores(frames.size());
   for_each_index(frames.size(), threads, [&](std::size_t i, const Exec& exec) {
     const TrueFrame& frame = frames[i];
-    const double start = thread_milliseconds();
+    const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
     const Image<float> found_px = matcher.match(frame, exec);
-    scores[i].milliseconds = thread_milliseconds() - start;
+    scores[i].milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
     scores[i].all_columns = disparity_errors(found_px, frame.truth_px, frame.hidden, 0);
     scores[i].from_range = disparity_errors(found_px, frame.truth_px, frame.hidden, frame.num_disparities);
   });

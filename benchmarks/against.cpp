@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <charconv>
+#include <cairn/evaluation/object_error.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -30,7 +30,9 @@
 #include <utility>
 #include <vector>
 
+#include "arguments.hpp"
 #include "drawn_pair.hpp"
+#include "markdown_table.hpp"
 #include "statistics.hpp"
 
 namespace {
@@ -175,23 +177,18 @@ void add_round(Comparison& all, const std::array<Times, 2>& round) {
   for (const auto& [stage, ms] : by_stage) all.rows[stage].ratios.push_back(ms[1] / ms[0]);
 }
 
-std::string cell(const char* format, double value) {
-  if (std::isnan(value)) return "-";
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
 void print(const Comparison& all, bool processor_time) {
   std::printf("%-22s %12s %12s %8s   %s\n", processor_time ? "processor time" : "wall time", "first ms",
               "second ms", "ratio", "middle half of the rounds");
   const auto line = [&](const std::string& stage) {
     const Row& row = all.rows.at(stage);
-    const auto ratio = [&](double share) { return cell("%.3f", report::percentile(row.ratios, share)); };
+    const auto ratio = [&](double share) {
+      return report::text_of("%.3f", report::percentile(row.ratios, share));
+    };
     std::printf("%-22s %12s %12s %8s   %s ... %s\n", stage.c_str(),
-                cell("%.3f", report::percentile(row.ms[0], 0.5)).c_str(),
-                cell("%.3f", report::percentile(row.ms[1], 0.5)).c_str(), ratio(0.5).c_str(),
-                ratio(0.25).c_str(), ratio(0.75).c_str());
+                report::text_of("%.3f", median(row.ms[0])).c_str(),
+                report::text_of("%.3f", median(row.ms[1])).c_str(), ratio(0.5).c_str(), ratio(0.25).c_str(),
+                ratio(0.75).c_str());
   };
   for (const std::string& stage : all.order) {
     if (stage != kWhole) line(stage);
@@ -215,22 +212,13 @@ fs::path draw_into(const fs::path& folder) {
   return folder;
 }
 
-int number_in(const std::string& word) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 1) {
-    throw Error("found '" + word + "', expected a positive number");
-  }
-  return value;
-}
-
 Settings parse(const std::vector<std::string>& words) {
   if (words.size() < 2) throw Error("usage: against FIRST SECOND [--rounds N] [FOLDER] [OPTIONS]");
   Settings settings;
   settings.programs = {words[0], words[1]};
   for (std::size_t i = 2; i < words.size(); ++i) {
     if (words[i] == "--rounds" && i + 1 < words.size()) {
-      settings.rounds = number_in(words[++i]);
+      settings.rounds = report::positive_number(words[++i]);
     } else if (settings.folder.empty() && settings.options.empty() && !words[i].starts_with('-')) {
       settings.folder = words[i];
     } else {

@@ -12,8 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <charconv>
-#include <chrono>
+#include <cairn/evaluation/object_error.hpp>
 #include <cstdio>
 #include <ctime>
 #include <io/image_files.hpp>
@@ -21,6 +20,8 @@
 #include <set>
 #include <utility>
 
+#include "arguments.hpp"
+#include "clock.hpp"
 #include "markdown_table.hpp"
 
 namespace cairn::engines {
@@ -35,20 +36,17 @@ std::string Scene::extent() const {
 }
 
 double milliseconds(const Run& run, Clock clock) {
-  const auto now = [clock] {
-    timespec time{};
-    clock_gettime(clock == Clock::cpu ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &time);
-    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-  };
-  const double start = now();
+  const clockid_t id = clock == Clock::cpu ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
+  const double start = report::now_ms(id);
   run();
-  return now() - start;
+  return report::now_ms(id) - start;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+const Engine& engine_named(std::string_view name) {
+  for (const Engine& engine : registry().engines) {
+    if (engine.name == name) return engine;
+  }
+  throw Error("no engine is called '" + std::string(name) + "'");
 }
 
 namespace {
@@ -82,13 +80,6 @@ std::vector<Scene> load_scenes(const std::filesystem::path& data) {
     }
   }
   return scenes;
-}
-
-const Engine& engine_named(std::string_view name) {
-  for (const Engine& engine : registry().engines) {
-    if (engine.name == name) return engine;
-  }
-  throw Error("no engine is called '" + std::string(name) + "'");
 }
 
 /// One engine's times on one scene.
@@ -155,15 +146,6 @@ void print_races(const std::vector<Scene>& scenes, const Settings& settings) {
   std::printf("%s", table.text().c_str());
 }
 
-int number_in(const std::string& word) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 1) {
-    throw Error("found '" + word + "', expected a positive number");
-  }
-  return value;
-}
-
 Settings parse(const std::vector<std::string>& words) {
   Settings settings;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -174,7 +156,7 @@ Settings parse(const std::vector<std::string>& words) {
     if (i + 1 == words.size()) throw Error("'" + words[i] + "' needs a value behind it");
     const std::string& option = words[i++];
     if (option == "--repeats") {
-      settings.repeats = number_in(words[i]);
+      settings.repeats = report::positive_number(words[i]);
     } else if (option == "--only") {
       settings.only = words[i];
     } else if (option == "--sections") {

@@ -76,7 +76,9 @@ struct Registration {
 
 /// Milliseconds of `run`, by either clock.
 double milliseconds(const Run& run, Clock clock);
-double median(std::vector<double> values);
+
+/// Throws Error where none is called so.
+const Engine& engine_named(std::string_view name);
 
 // Of engines_opencv.cpp:
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cairn/cairn.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
+#include <cairn/evaluation/object_error.hpp>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>

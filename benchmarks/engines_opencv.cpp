@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // OpenCV's engines. One thread each, but where the name says two.
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -11,19 +9,12 @@
 #include <utility>
 
 #include "engines.hpp"
+#include "opencv_matrix.hpp"
 
 namespace cairn::engines {
 namespace {
 
-// OpenCV has no matrix of constant pixels; its functions only read.
-cv::Mat matrix(View<const Gray> image) {
-  return {image.height(), image.width(), CV_8UC1, const_cast<Gray*>(image.row(0)),
-          static_cast<std::size_t>(image.stride())};
-}
-cv::Mat matrix(View<const Rgb> image) {
-  return {image.height(), image.width(), CV_8UC3, const_cast<Rgb*>(image.row(0)),
-          static_cast<std::size_t>(image.stride()) * sizeof(Rgb)};
-}
+using report::matrix;
 
 template <class T>
 Image<T> resized_by_opencv(const Image<T>& image, Size size) {
@@ -74,20 +65,10 @@ const Registration kOpenCv([](Registry& all) {
 }  // namespace
 
 Image<float> block_matched(const StereoPair& pair, int num_disparities, int window) {
-  constexpr auto kSubpixels = static_cast<float>(cv::StereoMatcher::DISP_SCALE);
   cv::Mat sixteenths;
   block_matcher(num_disparities, window, true)
       ->compute(matrix(pair.left()), matrix(pair.right()), sixteenths);
-  Image<float> disparity_px(pair.size());
-  for (int y = 0; y < disparity_px.height(); ++y) {
-    for (int x = 0; x < disparity_px.width(); ++x) {
-      const auto value = sixteenths.at<std::int16_t>(y, x);
-      // OpenCV's mark of a hole lies below the least disparity, which is 0 here.
-      disparity_px(x, y) =
-          value < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / kSubpixels;
-    }
-  }
-  return disparity_px;
+  return report::disparity_px_of(sixteenths, 0);
 }
 
 Image<Gray> resized(const Image<Gray>& image, Size size) {

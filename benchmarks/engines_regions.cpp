@@ -8,17 +8,16 @@
 #include <cairn/regions/gradient.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cstdint>
-#include <ctime>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "clock.hpp"
 #include "engines.hpp"
 #include "markdown_table.hpp"
 
 #if CAIRN_WITH_XIMGPROC
-#include <opencv2/calib3d.hpp>
 #include <opencv2/ximgproc/segmentation.hpp>
 #endif
 
@@ -119,19 +118,9 @@ Run graph_segmentation(const Scene& scene) {
 
 /// What one would put together from OpenCV for the same purpose.
 Run opencv_chain(const Scene& scene) {
-  constexpr int kBlock = 5;
-  const auto matcher =
-      cv::StereoSGBM::create(0, scene.num_disparities, kBlock, 8 * kBlock * kBlock, 32 * kBlock * kBlock, 1,
-                             63, 10, 0, 0, cv::StereoSGBM::MODE_SGBM_3WAY);
-  const auto grey = [](View<const Gray> image) {
-    cv::Mat matrix(image.height(), image.width(), CV_8U);
-    for (int y = 0; y < image.height(); ++y) std::copy_n(image.row(y), image.width(), matrix.ptr(y));
-    return matrix;
-  };
-  return [=, left = grey(scene.left), right = grey(scene.right), segment = graph_segmentation(scene),
-          disparity = std::make_shared<cv::Mat>()] {
+  return [segment = graph_segmentation(scene), match = engine_named("StereoSGBM 3WAY").prepare(scene)] {
     segment();
-    matcher->compute(left, right, *disparity);
+    match();
   };
 }
 #endif
@@ -175,9 +164,7 @@ void add_comparisons(Registry& all) {
 }
 
 double processor_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  return report::now_ms(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /// The least processor time of each stage over some frames, in their order, and of all but matching.

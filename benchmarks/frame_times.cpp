@@ -8,11 +8,12 @@
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segmenter.hpp>
 #include <chrono>
-#include <ctime>
 #include <functional>
 #include <set>
 #include <string_view>
 #include <utility>
+
+#include "clock.hpp"
 
 namespace cairn::report {
 namespace {
@@ -20,9 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double process_ms() {
-  std::timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  return now_ms(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 std::int64_t most_resident_bytes() {

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cairn/core/error.hpp>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <utility>
+
+#include "opencv_matrix.hpp"
 
 namespace cairn::report {
 
@@ -19,12 +19,6 @@ struct ReadyMatcher::State {
 };
 
 namespace {
-
-cv::Mat matrix(View<const Gray> image) {
-  // OpenCV has no matrix of constant pixels; the matchers only read.
-  return {image.height(), image.width(), CV_8UC1, const_cast<Gray*>(image.row(0)),
-          static_cast<std::size_t>(image.stride())};
-}
 
 int rounded_up(int num_disparities) {
   constexpr int kStep = 16;
@@ -98,19 +92,7 @@ void ReadyMatcher::compute(const StereoPair& pair) const {
 }
 
 Image<float> ReadyMatcher::disparity_px() const {
-  constexpr auto kSubpixels = static_cast<float>(cv::StereoMatcher::DISP_SCALE);
-  const cv::Mat& sixteenths = state_->sixteenths;
-  // OpenCV's mark of a hole lies below the least disparity.
-  const int least = state_->matcher->getMinDisparity() * cv::StereoMatcher::DISP_SCALE;
-  Image<float> disparity_px(Size{sixteenths.cols, sixteenths.rows});
-  for (int y = 0; y < disparity_px.height(); ++y) {
-    for (int x = 0; x < disparity_px.width(); ++x) {
-      const auto value = sixteenths.at<std::int16_t>(y, x);
-      disparity_px(x, y) =
-          value < least ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / kSubpixels;
-    }
-  }
-  return disparity_px;
+  return disparity_px_of(state_->sixteenths, state_->matcher->getMinDisparity());
 }
 
 std::span<const OpenCvMatcher> quick_opencv_matchers() {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/evaluation/object_error.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -45,10 +46,6 @@ struct Extent {
 };
 constexpr std::array kExtents{Extent{{320, 240}, 64}, Extent{{640, 480}, 64}, Extent{{1280, 720}, 128}};
 constexpr std::array<std::string_view, 2> kPresets{"default", "paper"};
-
-double median(const std::vector<double>& values) {
-  return percentile(values, 0.5);
-}
 
 FrameTimes measured(const DrawnPair& drawn, std::string_view preset, int num_disparities, int threads,
                     double seconds) {

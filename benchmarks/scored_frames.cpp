@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ctime>
 #include <exception>
 #include <io/calibration_files.hpp>
 #include <io/disparity_files.hpp>
 #include <mutex>
 #include <thread>
+
+#include "clock.hpp"
 
 namespace cairn::report {
 namespace {
@@ -80,10 +81,10 @@ Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec
 }
 
 Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec& exec) {
-  const double start = thread_milliseconds();
+  const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
   const Frame found = segment_frame(frame, config, grey, exec);
   Score result;
-  result.milliseconds = thread_milliseconds() - start;
+  result.milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
   if (!frame.objects.empty())
     result.objects = {object_errors(found.objects.labels, frame.objects, {}), frame.partial};
   if (!frame.truth_px.empty())
@@ -123,12 +124,6 @@ void for_each_index(std::size_t count, int threads,
     work();
   }
   if (failure) std::rethrow_exception(failure);
-}
-
-double thread_milliseconds() {
-  std::timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace cairn::report

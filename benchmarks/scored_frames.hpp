@@ -53,7 +53,4 @@ std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config&
 void for_each_index(std::size_t count, int threads,
                     const std::function<void(std::size_t index, const Exec& exec)>& body);
 
-/// Processor time of the calling thread so far: what other programs do on the machine hardly shows in it.
-double thread_milliseconds();
-
 }  // namespace cairn::report

@@ -24,7 +24,7 @@ bool runs_here(Target target) {
   if (target == Target::scalar) return true;
 #if CAIRN_WITH_HWY && HWY_ARCH_ARM_A64
   // Every 64-bit ARM processor has it. Highway asks for AES as well, which is not used here.
-  return target == Target::neon;
+  if (target == Target::neon) return true;
 #elif CAIRN_WITH_HWY
   // Asked once: in a virtual machine the processor's answer takes as long as some rows of an image.
   static const std::int64_t supported = hwy::SupportedTargets();
@@ -36,10 +36,8 @@ bool runs_here(Target target) {
 #elif HWY_ARCH_ARM
   if (target == Target::neon) return has(HWY_NEON);
 #endif
-  return false;
-#else
-  return false;
 #endif
+  return false;
 }
 
 }  // namespace
