@@ -6,7 +6,8 @@
 # are stale.
 #   docs/options.md                         `cairn config --markdown`
 #   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]`
-#   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout
+#   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout, without the time it took;
+#                                           SCRATCH among ARGUMENTS is a folder for its files
 # Each marker is followed by a fenced block, which is what is replaced. docs/images is made with --pictures only: every new
 # picture stays in the repository's history for ever.
 set -euo pipefail
@@ -17,6 +18,8 @@ case $1 in
 esac
 build_dir=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
 
 options_page() {
   cat <<'TEXT'
@@ -52,8 +55,8 @@ code_of() {  # FILE#NAME
 
 output_of() {  # COMMAND ARGUMENTS
   local words
-  read -ra words <<<"$1"
-  "$build_dir/${words[0]}" "${words[@]:1}"
+  read -ra words <<<"${1//SCRATCH/$scratch}"
+  "$build_dir/${words[0]}" "${words[@]:1}" | sed -E 's/, [0-9.]+ ms$//'
 }
 
 # The page with the block after each marker replaced by what it should be.
@@ -96,8 +99,6 @@ while read -r page; do
 done < <(find . -name '*.md' -not -path './build/*' | xargs grep -lE '^<!-- (code|output): ' | sort)
 
 if [[ $pictures == yes ]]; then
-  scratch=$(mktemp -d)
-  trap 'rm -rf "$scratch"' EXIT
   "$build_dir/cairn" segment samples/four_in_a_row -o "$scratch" >/dev/null
   mkdir -p docs/images
   for kind in overlay disparity_view; do

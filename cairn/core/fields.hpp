@@ -9,9 +9,9 @@
 
 /// The vocabulary of a config's fields() function. Each stage's header has, beside its config struct,
 ///
-///   template <class V> void fields(LeftRightConfig& c, V&& v) {
-///     v("max_diff", c.max_diff, "px", "largest left-right disagreement", off_or(0.0F, 64.0F));
-///   }
+///     template <class V> void fields(LeftRightConfig& c, V&& v) {
+///       v("max_diff", c.max_diff, "px", "largest left-right disagreement", off_or(0.0F, 64.0F));
+///     }
 ///
 /// and everything else that knows about options (command line, config file, validation, reference page,
 /// Python) visits it. Field types: bool, int, float, an enum with choices(), std::vector<PointPair>.

@@ -27,8 +27,8 @@ struct ConfidenceModel {
   float holes = 0;   // root of the share of pixels around without disparity
 };
 
-/// The numbers for the costs of a method, fitted to the rendered development frames (`./dev bench
-/// confidence`).
+/// The numbers for the costs of a method, fitted to the rendered development frames by
+/// benchmarks/confidence_study.cpp.
 constexpr ConfidenceModel confidence_model(MatchMethod method) {
   return method == MatchMethod::semi_global
              ? ConfidenceModel{.bias = 4.55F,

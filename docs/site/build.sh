@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# build.sh BUILD_DIR: the pages, the C++ reference and, where BUILD_DIR has the module, the Python reference as a site in
+# build/docs/site; every link of it is followed.
+set -euo pipefail
+build_dir=$(cd "$1" && pwd)
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+for program in mkdocs doxygen; do
+  command -v "$program" >/dev/null || { echo "skipped: there is no $program"; exit 77; }
+done
+python=/usr/bin/python3  # Debian's, for which the module and mkdocs are installed
+
+module=()
+compgen -G "$build_dir/python/cairn/*.so" >/dev/null && module=("$build_dir")
+config=build/docs/mkdocs.yml
+"$python" docs/site/assemble.py . build/docs/pages "${module[@]}"
+# Without the module its page is not in the contents.
+sed -e "s|\.\./\.\./build/docs/||" ${module[0]:+-e 's|^\( *\)- C++: .*|&\n\1- Python: api/python.md|'} docs/site/mkdocs.yml >"$config"
+mkdir -p build/docs/pages/api
+doxygen docs/site/Doxyfile
+mkdocs build --strict --config-file "$config" >build/docs/mkdocs.log 2>&1 || {
+  grep -v INFO build/docs/mkdocs.log >&2
+  exit 1
+}
+"$python" docs/site/check_links.py build/docs/site

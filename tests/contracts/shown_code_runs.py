@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""shown_code_runs.py SOURCE_DIR BUILD_DIR COMPILER: what the pages show as code works as it stands there.
+
+A fenced block of a page is
+  sh      run by bash, block after block, in one folder for each page
+  python  run by this interpreter, all blocks of a page together, where the module was built
+  cpp     declarations of the library, which the compiler must know already, word for word
+unless one of these stands in the line before it:
+  <!-- code: ... -->, <!-- output: ... -->   it is generated; docs/update.sh --check looks after it
+  <!-- not run: WHY -->                      it is let alone
+That folder holds left.png, right.png and calib.txt of a sample, frames/ with all samples and truth/, the same.
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+GENERATED = re.compile(r"<!-- (code|output): .* -->")
+NOT_RUN = re.compile(r"<!-- not run: \S.* -->")
+
+
+class Block:
+    def __init__(self, page, line, language, before):
+        self.page, self.line, self.language, self.before = page, line, language, before
+        self.text = ""
+
+    @property
+    def place(self):
+        return f"{self.page}:{self.line}"
+
+    @property
+    def is_checked_here(self):
+        return not (GENERATED.fullmatch(self.before) or NOT_RUN.fullmatch(self.before))
+
+
+def blocks_of(page):
+    block, before = None, ""
+    for number, line in enumerate(page.read_text().splitlines(), 1):
+        fence = re.fullmatch(r"\s*```(\w*)", line)
+        if fence and block is None:
+            block = Block(page, number, fence[1], before.strip())
+        elif fence:
+            yield block
+            block = None
+        elif block is not None:
+            block.text += line + "\n"
+        before = line
+
+
+def pages(source):
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"], cwd=source,
+                            capture_output=True, text=True)
+    found = listed.stdout.split() if listed.returncode == 0 else [
+        p for p in map(str, source.rglob("*.md")) if "/build/" not in p]
+    return sorted(source / p for p in found if (source / p).exists())
+
+
+def scene(source, folder):
+    for name in ("left.png", "right.png", "calib.txt"):
+        shutil.copy(source / "samples/four_in_a_row" / name, folder)
+    for name in ("frames", "truth"):
+        shutil.copytree(source / "samples", folder / name)
+    (folder / "samples").symlink_to(source / "samples")
+
+
+def failure(block, run):
+    return f"{block.place}: exit {run.returncode}\n{block.text}\n{run.stdout}{run.stderr}" if run.returncode else None
+
+
+def run_shell(block, folder, environment):
+    return failure(block, subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder, env=environment,
+                                         stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120))
+
+
+def run_python(blocks, folder, environment):
+    whole = blocks[0]
+    whole.text = "\n".join(block.text for block in blocks)
+    return failure(whole, subprocess.run([sys.executable, "-c", whole.text], cwd=folder, env=environment,
+                                         capture_output=True, text=True, timeout=120))
+
+
+def check_declarations(block, compiler, source):
+    """A declaration that the headers have already is redundant, and the compiler says so; one that differs is not."""
+    code = "#include <cairn/cairn.hpp>\n" + "".join(
+        f"#include <{name}>\n" for name in re.findall(r"//.*?((?:cairn|io)/\w+(?:/\w+)*\.hpp)", block.text))
+    code += f"namespace cairn {{\n{block.text}}}\n"
+    run = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-Wredundant-decls", f"-I{source}", "-xc++", "-"],
+                         input=code, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
+    known = len(re.findall(r"redundant redeclaration of", run.stderr))
+    shown = len(re.sub(r"//.*", "", block.text).split(";")) - 1
+    if run.returncode == 0 and shown > 0 and known == shown:
+        return None
+    return f"{block.place}: {shown} declarations shown, {known} of them in the headers\n{block.text}\n{run.stderr}"
+
+
+def main(source, build, compiler):
+    environment = {**os.environ, "PATH": f"{build}:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python"}
+    has_module = any((build / "python/cairn").glob("*.so"))
+    failures, counts = [], {"sh": 0, "python": 0, "cpp": 0}
+    for page in pages(source):
+        checked = [b for b in blocks_of(page) if b.is_checked_here and b.language in counts]
+        python = [b for b in checked if b.language == "python"] if has_module else []
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(scratch)
+            if any(b.language != "cpp" for b in checked):
+                scene(source, folder)
+            results = [run_shell(b, folder, environment) for b in checked if b.language == "sh"]
+            results += [run_python(python, folder, environment)] if python else []
+            results += [check_declarations(b, compiler, source) for b in checked if b.language == "cpp"]
+        failures += [r for r in results if r]
+        for block in checked:
+            counts[block.language] += block.language != "python" or has_module
+    print("\n".join(failures))
+    print(", ".join(f"{n} blocks of {language}" for language, n in counts.items()),
+          "" if has_module else "(the Python module is not built)")
+    return 1 if failures or not counts["sh"] or not counts["cpp"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3]))
