@@ -146,10 +146,13 @@ std::vector<double> counted(const std::vector<Look>& looks, const std::vector<st
 }
 
 /// What each facet counts as ground, and what as figure: one of both is 0.
-std::pair<std::vector<double>, std::vector<double>> parted(const std::vector<double>& counted,
-                                                           const std::vector<std::int32_t>& figure) {
-  std::pair<std::vector<double>, std::vector<double>> parts(counted, counted);
-  for (std::size_t i = 0; i < figure.size(); ++i) (figure[i] != 0 ? parts.first : parts.second)[i] = 0;
+struct Counted {
+  std::vector<double> ground;
+  std::vector<double> figure;
+};
+Counted parted(const std::vector<double>& counted, const std::vector<std::int32_t>& figure) {
+  Counted parts{counted, counted};
+  for (std::size_t i = 0; i < figure.size(); ++i) (figure[i] != 0 ? parts.ground : parts.figure)[i] = 0;
   return parts;
 }
 
@@ -237,16 +240,15 @@ class Continuation {
   };
 
   /// 0 … 1: how much ground of its colour lies beside facet i, more than there is seen figure of that colour,
-  /// compared with its own size. `ground`, `figure`: what each facet counts as the one or the other.
-  double operator()(std::size_t i, const std::vector<double>& ground, const std::vector<double>& figure,
-                    Like& like) const {
+  /// compared with its own size.
+  double operator()(std::size_t i, const Counted& counted, Like& like) const {
     find_like(i, like);
     double near_ground = 0;
     double near_figure = 0;
     for (std::size_t k = 0; k < like.count; ++k) {
       const std::size_t other = slot(like.others[k]);
-      near_ground += like.likeness[k] * ground[other];
-      near_figure += like.likeness[k] * figure[other];
+      near_ground += like.likeness[k] * counted.ground[other];
+      near_figure += like.likeness[k] * counted.figure[other];
     }
     const double pixels = looks_[i].pixels;
     return std::max(std::min(near_ground / pixels, 1.0) - std::min(near_figure / pixels, 1.0), 0.0);
@@ -475,14 +477,14 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     const std::vector<bool> asked = around(figure, facets.borders);
     const std::vector<double> pixels = counted(looks, figure, asked, largest_part);
     const ColourModel model(looks, figure, pixels, exec);
-    const auto [as_ground, as_figure] = parted(pixels, figure);
+    const Counted pixels_of = parted(pixels, figure);
     parallel_for(exec, facets.count, kGrain, [&](int first, int last) {
       Continuation::Like like(goes_on);
       std::vector<double> work;
       for (auto i = slot(first); i < slot(last); ++i) {
         if (!asked[i] || looks[i].seen) continue;
         const double colour = config.colour_weight * model.ground_over_figure(looks[i].colour, work);
-        const double on = config.continuation_weight * goes_on(i, as_ground, as_figure, like);
+        const double on = config.continuation_weight * goes_on(i, pixels_of, like);
         if (!at_foot[i])
           with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
         with_colour_figure[i] += std::llround(kUnit * looks[i].pixels * (std::max(colour, 0.0) + on));

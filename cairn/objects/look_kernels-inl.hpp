@@ -5,7 +5,7 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-constexpr int kBlock = 64;  // facets that are tested at once
+inline constexpr int kBlock = 64;  // facets that are tested at once
 
 /// hits[k] = 1 where facet first + k is within the window.
 inline void test_block(const LookArrays& looks, const LookWindow& window, int first,
