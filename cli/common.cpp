@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
 #include <cmath>
 #include <cstdio>
@@ -75,23 +74,8 @@ Target wanted_target(const std::string& option) {
   const char* variable = std::getenv("CAIRN_TARGET");
   const bool from_environment = option.empty() && variable != nullptr && *variable != '\0';
   if (option.empty() && !from_environment) return Target::best;
-  const std::string wanted = from_environment ? variable : option;
-  const std::string source = from_environment ? "CAIRN_TARGET" : "--target";
-
-  const std::vector<Target> supported = supported_targets();
-  std::string names = "best";
-  for (const Target target : supported) names += ", " + std::string(name(target));
-  const std::optional<Target> target = target_named(wanted);
-  if (!target) {
-    const std::string close = nearest(wanted, {"best", "scalar", "sse4", "avx2", "avx512", "neon"});
-    throw Error(source + ": unknown instruction set '" + wanted + "', expected one of " + names +
-                (close.empty() ? "" : "; did you mean '" + close + "'?"));
-  }
-  if (*target != Target::best && std::find(supported.begin(), supported.end(), *target) == supported.end()) {
-    throw Error(source + ": instruction set " + wanted +
-                " is not there in this build or on this processor, expected one of " + names);
-  }
-  return *target;
+  return cairn::wanted_target(from_environment ? std::string_view(variable) : option,
+                              from_environment ? "CAIRN_TARGET" : "--target");
 }
 
 Exec make_exec(const ExecOptions& options) {
@@ -172,16 +156,6 @@ DisparityMap load_given(const fs::path& path, Size size, const fs::path& left, c
   }
 }
 
-void check_search_range(const io::Calibration& calibration, const fs::path& path) {
-  if (!calibration.num_disparities) return;
-  try {
-    Config config;
-    set(config, "match.num_disparities", std::to_string(*calibration.num_disparities));
-  } catch (const Error& error) {
-    throw Error(path.string() + ": ndisp, the default of " + error.what());
-  }
-}
-
 }  // namespace
 
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec) {
@@ -202,7 +176,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   if (calib) {
     calibration = io::load_calibration(*calib);
     io::check_size(calibration, frame.left.gray.size(), *calib);
-    check_search_range(calibration, *calib);
+    io::check_search_range(calibration, *calib);
   }
   frame.rig = calibration.rig;
   ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);

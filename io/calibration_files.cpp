@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/pipeline/config.hpp>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -340,6 +341,16 @@ void check_size(const Calibration& calibration, Size image, const fs::path& path
   if (!calibration.image_size || *calibration.image_size == image) return;
   throw Error(path.string() + ": the calibration is for " + text(*calibration.image_size) +
               ", the images are " + text(image));
+}
+
+void check_search_range(const Calibration& calibration, const fs::path& path) {
+  if (!calibration.num_disparities) return;
+  try {
+    Config config;
+    set(config, "match.num_disparities", std::to_string(*calibration.num_disparities));
+  } catch (const Error& error) {
+    throw Error(path.string() + ": ndisp, the default of " + error.what());
+  }
 }
 
 }  // namespace cairn::io

@@ -24,5 +24,7 @@ Calibration load_calibration(const std::filesystem::path& path);
 
 /// Throws Error where the calibration was made for pictures of another size.
 void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);
+/// Throws Error where its number of disparities is none that match.num_disparities takes.
+void check_search_range(const Calibration& calibration, const std::filesystem::path& path);
 
 }  // namespace cairn::io

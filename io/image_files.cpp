@@ -75,14 +75,18 @@ Picture picture_of(const Raster& raster, int depth, const Pool& pool) {
 }
 
 template <class T>
-void save(const fs::path& path, View<const T> image, int channels) {
-  if (image.empty()) throw Error(path.string() + ": cannot be written: the image is empty");
+std::string encoded(View<const T> image, int channels) {
+  if (image.empty()) throw Error("cannot be written: the image is empty");
   constexpr auto kBytes = static_cast<std::ptrdiff_t>(sizeof(T));
-  const PngRows rows{image.size(), channels, static_cast<int>(kBytes) / channels,
-                     reinterpret_cast<const std::uint8_t*>(image.data()), image.stride() * kBytes};
+  return encode_png({image.size(), channels, static_cast<int>(kBytes) / channels,
+                     reinterpret_cast<const std::uint8_t*>(image.data()), image.stride() * kBytes});
+}
+
+template <class T>
+void save(const fs::path& path, View<const T> image, int channels) {
   std::string file;
   try {
-    file = encode_png(rows);
+    file = encoded(image, channels);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
@@ -109,6 +113,15 @@ PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& p
   }
   const int depth = std::max(depth_of(first), depth_of(second));
   return {picture_of(first, depth, pool), picture_of(second, depth, pool)};
+}
+
+Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool) {
+  Image<Gray> grey(colours.size(), pool);
+  for (int y = 0; y < grey.height(); ++y) {
+    const Rgb* from = colours.row(y);
+    std::transform(from, from + grey.width(), grey.row(y), [](Rgb c) { return grey_of(c); });
+  }
+  return grey;
 }
 
 Labels load_labels(const fs::path& path, const Pool& pool) {
@@ -142,6 +155,10 @@ void save_png(const fs::path& path, View<const Rgb> image) {
 
 void save_png(const fs::path& path, View<const Reject> image) {
   save(path, image, 1);
+}
+
+std::string png_bytes(View<const Rgb> image) {
+  return encoded(image, 3);
 }
 
 }  // namespace cairn::io

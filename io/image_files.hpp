@@ -6,6 +6,7 @@
 #include <cairn/disparity/reject.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 /// Pictures in and out. Read: PNG, JPEG, PGM/PPM (P2, P3, P5, P6), TIFF; 8 or 16 bits; grey or colour; by
 /// content, not by extension. Every function throws Error with one line that names the file: missing, a
@@ -37,6 +38,9 @@ Picture load_picture(const std::filesystem::path& path, const Pool& pool = {});
 PicturePair load_pair(const std::filesystem::path& left, const std::filesystem::path& right,
                       const Pool& pool = {});
 
+/// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
+Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});
+
 /// Numbers per pixel as they stand in the file: ids, masks.
 struct Labels {
   Image<std::uint16_t> ids;
@@ -51,5 +55,8 @@ void save_png(const std::filesystem::path& path, View<const std::uint8_t> image)
 void save_png(const std::filesystem::path& path, View<const std::uint16_t> image);
 void save_png(const std::filesystem::path& path, View<const Rgb> image);
 void save_png(const std::filesystem::path& path, View<const Reject> image);
+
+/// The bytes of a PNG file that shows `image`. Throws Error where that is empty.
+std::string png_bytes(View<const Rgb> image);
 
 }  // namespace cairn::io

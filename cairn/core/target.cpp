@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/error.hpp>
+#include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
 #include <cairn/matching/kernels.hpp>
+#include <string>
 #include <utility>
 
 #if CAIRN_WITH_HWY
@@ -75,6 +78,25 @@ std::optional<Target> target_named(std::string_view name) {
     if (text == name) return target;
   }
   return std::nullopt;
+}
+
+Target wanted_target(std::string_view wanted, std::string_view source) {
+  const std::vector<Target> supported = supported_targets();
+  std::string expected = "best";
+  for (const Target target : supported) expected += ", " + std::string(name(target));
+  const std::optional<Target> target = target_named(wanted);
+  if (!target) {
+    std::vector<std::string> names;
+    for (const auto& [unused, text] : kNames) names.emplace_back(text);
+    const std::string close = nearest(wanted, names);
+    throw Error(std::string(source) + ": unknown instruction set '" + std::string(wanted) +
+                "', expected one of " + expected + (close.empty() ? "" : "; did you mean '" + close + "'?"));
+  }
+  if (*target != Target::best && std::find(supported.begin(), supported.end(), *target) == supported.end()) {
+    throw Error(std::string(source) + ": instruction set " + std::string(wanted) +
+                " is not there in this build or on this processor, expected one of " + expected);
+  }
+  return *target;
 }
 
 }  // namespace cairn

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace cairn::python {
+
+// One file each, in the order in which the types need each other.
+void bind_options(pybind11::module_& m);     // Option, Config, Exec
+void bind_rig(pybind11::module_& m);         // Rig, Calibration
+void bind_matching(pybind11::module_& m);    // correct_epipolar … refine_subpixel
+void bind_disparity(pybind11::module_& m);   // the checks, combine, evidence, confidence
+void bind_ground(pybind11::module_& m);      // floor and walls
+void bind_regions(pybind11::module_& m);     // watershed … segment_facets
+void bind_objects(pybind11::module_& m);     // separate_figure … measure
+void bind_frame(pybind11::module_& m);       // segment, estimate_disparity, Segmenter
+void bind_evaluation(pybind11::module_& m);  // comparison with truth
+void bind_io(pybind11::module_& m);          // files and pictures
+
+}  // namespace cairn::python

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <pybind11/stl/filesystem.h>
+
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segmenter.hpp>
+#include <io/image_files.hpp>
+#include <io/overlay.hpp>
+#include <io/results.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "disparity.hpp"
+#include "objects.hpp"
+#include "options.hpp"
+#include "rig.hpp"
+
+namespace cairn::python {
+namespace {
+
+/// A frame, what it was made of and how.
+struct PyFrame {
+  Picture left;
+  Frame frame;
+  io::Provenance provenance;
+};
+
+/// Everything that a call needs to know besides its pictures.
+struct Recipe {
+  PyConfig config;
+  PyCalibration calibration;
+
+  /// Throws Error where the calibration is for other pictures.
+  [[nodiscard]] Config for_size(Size size) const {
+    io::check_size(calibration.calibration, size, calibration.path);
+    io::check_search_range(calibration.calibration, calibration.path);
+    return config.with_range(calibration.calibration.num_disparities);
+  }
+};
+
+/// Keeps the times of the stages.
+void time_stages(Exec& exec, std::vector<io::StageTime>& times) {
+  exec.observe = [&times](std::string_view stage, const Artifact&, double milliseconds) {
+    times.push_back({std::string(stage), milliseconds});
+  };
+}
+
+std::unique_ptr<PyFrame> segment_pair(const ImageArgument& left, const ImageArgument& right, bool bgr,
+                                      const Recipe& recipe, Exec exec) {
+  Picture l(left, "left", bgr, exec.pool);
+  const Picture r(right, "right", bgr, exec.pool);
+  const auto pair = StereoPair::from(l.gray(), r.gray(), l.rgb());
+  io::Provenance provenance{
+      recipe.config.preset, recipe.for_size(pair.size()), recipe.calibration.calibration.rig, {}};
+  time_stages(exec, provenance.timings);
+  Frame frame = released([&] { return segment(pair, provenance.rig, provenance.config, exec); });
+  return std::make_unique<PyFrame>(PyFrame{std::move(l), std::move(frame), std::move(provenance)});
+}
+
+std::unique_ptr<PyFrame> segment_given(const ImageArgument& left, const DisparityArgument& map, bool bgr,
+                                       const Recipe& recipe, Exec exec) {
+  Picture l(left, "left", bgr, exec.pool);
+  DisparityInput disparity(map, "disparity_map", exec);
+  io::Provenance provenance{
+      recipe.config.preset, recipe.for_size(l.size()), recipe.calibration.calibration.rig, {}, true};
+  time_stages(exec, provenance.timings);
+  Frame frame = released([&] {
+    return segment(l.gray(), l.rgb(), disparity.taken(exec), provenance.rig, provenance.config, exec);
+  });
+  return std::make_unique<PyFrame>(PyFrame{std::move(l), std::move(frame), std::move(provenance)});
+}
+
+std::unique_ptr<PyFrame> segment_any(const ImageArgument& left, const ImageArgument& right,
+                                     const RigArgument& rig, const std::string& preset,
+                                     const py::object& config, const py::object& exec, bool bgr,
+                                     const DisparityArgument& disparity_map, const py::kwargs& options) {
+  const Recipe recipe{config_of(config, preset, options), calibration_of(rig)};
+  if (disparity_map.is_none()) return segment_pair(left, right, bgr, recipe, exec_of(exec));
+  if (!right.is_none()) throw Error("right: found a picture beside disparity_map, expected one of the two");
+  return segment_given(left, disparity_map, bgr, recipe, exec_of(exec));
+}
+
+std::unique_ptr<SceneDisparity> disparity_of_pair(const ImageArgument& left, const ImageArgument& right,
+                                                  const RigArgument& rig, const std::string& preset,
+                                                  const py::object& config, const py::object& exec, bool bgr,
+                                                  const py::kwargs& options) {
+  const Recipe recipe{config_of(config, preset, options), calibration_of(rig)};
+  const Exec how = exec_of(exec);
+  const Picture l(left, "left", bgr, how.pool);
+  const Picture r(right, "right", bgr, how.pool);
+  const auto pair = StereoPair::from(l.gray(), r.gray(), l.rgb());
+  const Config wanted = recipe.for_size(pair.size());
+  return std::make_unique<SceneDisparity>(
+      released([&] { return estimate_disparity(pair, recipe.calibration.calibration.rig, wanted, how); }));
+}
+
+/// segment() for video; the pool and the threads are a Segmenter's own.
+class PySegmenter {
+ public:
+  PySegmenter(const RigArgument& rig, const std::string& preset, const py::object& config,
+              const py::object& exec, const py::kwargs& options)
+      : recipe_{config_of(config, preset, options), calibration_of(rig)},
+        segmenter_(recipe_.config.config, recipe_.calibration.calibration.rig, exec_of(exec)) {}
+
+  [[nodiscard]] std::unique_ptr<PyFrame> segment(const ImageArgument& left, const ImageArgument& right,
+                                                 bool bgr) const {
+    return segment_pair(left, right, bgr, recipe_, segmenter_.exec());
+  }
+  [[nodiscard]] const PyConfig& config() const { return recipe_.config; }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const { return segmenter_.rig(); }
+  [[nodiscard]] const Exec& exec() const { return segmenter_.exec(); }
+
+ private:
+  Recipe recipe_;
+  Segmenter segmenter_;
+};
+
+// ---- what the classes show ----
+
+/// A property that shows an image of the frame, read-only.
+template <class T, class Find>
+auto image_of(Find find) {
+  return [find](const py::object& self) -> std::optional<ArrayOf<T>> {
+    const Image<T>& image = find(self.cast<const PyFrame&>());
+    if (image.empty()) return std::nullopt;
+    return array_over(image, self, false);
+  };
+}
+
+Size size_of(const PyFrame& self) {
+  return self.frame.disparity.disparity_px.size();
+}
+
+std::string frame_repr(const PyFrame& self) {
+  const Objects& objects = self.frame.objects;
+  const std::size_t count = objects.list.size();
+  std::string text = "<cairn.Frame " + cairn::text(size_of(self)) + ", " + std::to_string(count) +
+                     (count == 1 ? " object" : " objects") +
+                     (self.frame.ground.plane ? ", ground found" : ", no ground");
+  for (const Object& object : objects.list) text += "\n  " + object_repr(object);
+  return text + ">";
+}
+
+Image<Rgb> overlay(const PyFrame& self) {
+  return io::draw_objects(self.left.gray(), self.left.rgb(), self.frame.objects, self.frame.floor);
+}
+
+py::bytes overlay_png(const PyFrame& self) {
+  const std::string png = released([&] {
+    const Image<Rgb> picture = overlay(self);
+    return io::png_bytes(picture);
+  });
+  return py::bytes(png);
+}
+
+py::dict timings(const PyFrame& self) {
+  py::dict times;
+  for (const io::StageTime& time : self.provenance.timings) times[py::str(time.stage)] = time.milliseconds;
+  return times;
+}
+
+void save(const PyFrame& self, const std::filesystem::path& folder) {
+  released([&] { io::write_result(folder, self.left.gray(), self.left.rgb(), self.frame, self.provenance); });
+}
+
+template <class Member>
+auto part(Member Frame::*member) {
+  return [member](const PyFrame& self) -> const Member& { return self.frame.*member; };
+}
+
+void bind_frame_class(py::module_& m) {
+  constexpr auto kInside = py::return_value_policy::reference_internal;
+  py::class_<PyFrame>(
+      m, "Frame",
+      "All that is known of one pair. Arrays (H, W) are read-only and the frame's own memory, without a "
+      "copy; rows may "
+      "be padded, so ask array.copy() for one that may be written to. Keeps the left picture that it was "
+      "made of, for "
+      "overlay(): the array itself, not a copy of it. In a notebook it shows itself as overlay().")
+      .def_property_readonly("disparity", image_of<float>([](const PyFrame& f) -> auto& {
+                               return f.frame.disparity.disparity_px;
+                             }),
+                             "float32, px; NaN = hole, see `reject`")
+      .def_property_readonly(
+          "reject", image_of<Reject>([](const PyFrame& f) -> auto& { return f.frame.disparity.reject; }),
+          "uint8, why there is no disparity: bits of cairn.Reject; 0 = there is one")
+      .def_property_readonly(
+          "confidence", image_of<float>([](const PyFrame& f) -> auto& { return f.frame.confidence; }),
+          "float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where "
+          "nothing was matched or the option is off")
+      .def_property_readonly("floor",
+                             image_of<std::uint8_t>([](const PyFrame& f) -> auto& { return f.frame.floor; }),
+                             "uint8, 255 = floor, else 0; None where no floor was labelled")
+      .def_property_readonly(
+          "objects_map", image_of<ObjectId>([](const PyFrame& f) -> auto& { return f.frame.objects.labels; }),
+          "int32, the object that each pixel belongs to; 0 = none. `frame.objects_map == object.id` is a "
+          "mask")
+      .def_property_readonly("objects", part(&Frame::objects), kInside, "the Objects, nearest first")
+      .def_property_readonly("disparity_map", part(&Frame::disparity), kInside,
+                             "disparity and reject as the DisparityMap that stages take")
+      .def_property_readonly("ground", part(&Frame::ground), kInside,
+                             "the floor as a plane, or why there is none")
+      .def_property_readonly("by_intensity", part(&Frame::by_intensity), kInside,
+                             "Segmentation of the picture: by intensity, or the facets")
+      .def_property_readonly("by_disparity", part(&Frame::by_disparity), kInside,
+                             "Segmentation by disparity, or the groups of facets")
+      .def_property_readonly("fusion", part(&Frame::fusion), kInside, "both fused")
+      .def_property_readonly("epipolar", part(&Frame::epipolar), kInside,
+                             "how far the right picture's rows were off")
+      .def_property_readonly(
+          "rig", [](const PyFrame& self) { return self.provenance.rig; },
+          "the Rig that it was made with, or None")
+      .def_property_readonly(
+          "config",
+          [](const PyFrame& self) {
+            return PyConfig{self.provenance.preset, self.provenance.config, true};
+          },
+          "the Config that it was made with")
+      .def_property_readonly("timings", &timings, "milliseconds by stage")
+      .def_property_readonly(
+          "shape",
+          [](const PyFrame& self) {
+            return std::pair{size_of(self).height, size_of(self).width};
+          },
+          "(H, W)")
+      .def(
+          "overlay", [](const PyFrame& self) { return array_from(released([&] { return overlay(self); })); },
+          "The left picture with the objects drawn in, each with its id and distance: (h, w, 3) uint8, RGB; "
+          "small "
+          "frames are enlarged.")
+      .def(
+          "disparity_view",
+          [](const PyFrame& self) {
+            return array_from(
+                released([&] { return io::draw_disparity(self.frame.disparity, self.provenance.rig); }));
+          },
+          "Disparity as colour, holes in colours that tell the reason, with a legend: (h, w, 3) uint8, RGB.")
+      .def(
+          "to_json", [](const PyFrame& self) { return io::objects_json(self.frame, self.provenance); },
+          "The text of objects.json: objects with masks, ground, configuration, timings (docs/formats.md).")
+      .def("save", &save, py::arg("folder"),
+           "Writes what `cairn segment -o FOLDER` does: disparity, reject, confidence, objects and floor as "
+           "pictures, "
+           "overlay.png, disparity_view.png and objects.json; whole or not at all.")
+      .def("_repr_png_", &overlay_png)
+      .def("__repr__", &frame_repr);
+
+  py::class_<SceneDisparity>(m, "SceneDisparity",
+                             "Disparity with everything that speaks against it, ground and speckle included.")
+      .def_readonly("disparity_map", &SceneDisparity::disparity)
+      .def_property_readonly(
+          "disparity",
+          [](const py::object& self) {
+            return array_over(self.cast<const SceneDisparity&>().disparity.disparity_px, self, false);
+          },
+          "(H, W) float32, px, read-only; NaN = hole")
+      .def_property_readonly(
+          "reject",
+          [](const py::object& self) {
+            return array_over(self.cast<const SceneDisparity&>().disparity.reject, self, false);
+          },
+          "(H, W) uint8, bits of cairn.Reject")
+      .def_readonly("ground", &SceneDisparity::ground)
+      .def_property_readonly("floor", shown(&SceneDisparity::floor),
+                             "(H, W) uint8, 255 = floor; None where there is none")
+      .def_readonly("epipolar", &SceneDisparity::epipolar)
+      .def_property_readonly("confidence", shown(&SceneDisparity::confidence),
+                             "(H, W) float32, 0 to 1; or None")
+      .def("__repr__", [](const SceneDisparity& self) {
+        return "<cairn.SceneDisparity " + text(self.disparity.disparity_px.size()) +
+               (self.ground.plane ? ", ground found>" : ", no ground>");
+      });
+}
+
+}  // namespace
+
+void bind_frame(py::module_& m) {
+  using py::literals::operator""_a;
+  bind_frame_class(m);
+
+  const std::string about =
+      "left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's order): "
+      "what stands at "
+      "(x, y) on the left stands at (x - d, y) on the right. Grey arrays whose rows are dense are used where "
+      "they lie, "
+      "without a copy; do not write to them meanwhile. rig: a Rig, a Calibration, or None: no metres then. "
+      "preset, then "
+      "config (a Config or a file's name), then the options; later ones win. Other Python threads run "
+      "meanwhile. "
+      "Raises cairn.Error for what cannot be used.";
+  const std::string segment_doc =
+      with_options("Objects from a stereo pair: the whole method. Returns a Frame.\n" + about +
+                       " disparity_map instead of right: a map from elsewhere, (H, W) float32 in px, NaN = "
+                       "hole, or a DisparityMap.",
+                   all_groups(), true);
+  m.def("segment", &segment_any, "left"_a, "right"_a = py::none(), "rig"_a = py::none(), py::kw_only(),
+        "preset"_a = "default", "config"_a = py::none(), "exec"_a = py::none(), "bgr"_a = false,
+        "disparity_map"_a = py::none(), segment_doc.c_str());
+  note_groups(m, "segment", all_groups(), true);
+
+  const std::string disparity_doc = with_options(
+      "The method's first half: matching and every check, ground and speckle included. Returns a "
+      "SceneDisparity.\n" +
+          about,
+      all_groups(), true);
+  m.def("estimate_disparity", &disparity_of_pair, "left"_a, "right"_a, "rig"_a = py::none(), py::kw_only(),
+        "preset"_a = "default", "config"_a = py::none(), "exec"_a = py::none(), "bgr"_a = false,
+        disparity_doc.c_str());
+  note_groups(m, "estimate_disparity", all_groups(), true);
+
+  py::class_<PySegmenter>(
+      m, "Segmenter",
+      "segment() for video: keeps threads and image buffers from frame to frame, so that from the "
+      "second frame on no image is allocated (as long as earlier frames, and arrays of them, have "
+      "died). Every frame is what segment() would give. Several threads may use one.")
+      .def(py::init<const RigArgument&, const std::string&, const py::object&, const py::object&,
+                    const py::kwargs&>(),
+           "rig"_a = py::none(), py::kw_only(), "preset"_a = "default", "config"_a = py::none(),
+           "exec"_a = py::none(), "The arguments are those of segment().")
+      .def("segment", &PySegmenter::segment, "left"_a, "right"_a, py::kw_only(), "bgr"_a = false,
+           "One frame.")
+      .def_property_readonly("config", &PySegmenter::config)
+      .def_property_readonly("rig", &PySegmenter::rig)
+      .def_property_readonly("exec", &PySegmenter::exec)
+      .def("__repr__", [](const PySegmenter& self) {
+        return "<cairn.Segmenter " + py::repr(py::cast(self.config())).cast<std::string>() + ", " +
+               (self.rig() ? py::repr(py::cast(*self.rig())).cast<std::string>() : "no rig") + ">";
+      });
+  note_groups(m, "Segmenter", all_groups(), true);
+}
+
+}  // namespace cairn::python

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <cairn/disparity/background.hpp>
+#include <cairn/disparity/ground_plane.hpp>
+#include <string>
+
+#include "bindings.hpp"
+#include "disparity.hpp"
+#include "options.hpp"
+#include "rig.hpp"
+
+namespace cairn::python {
+namespace {
+
+Ground fit(const Config& config, const Exec& exec, const DisparityArgument& disparity,
+           const RigArgument& rig) {
+  if (config.ground.source == GroundSource::points) (void)ground_from_points(config.ground.points);
+  const auto known = rig_of(rig);
+  if (py::isinstance<DisparityMap>(disparity)) {
+    const auto& map = disparity.cast<const DisparityMap&>();
+    return released([&] { return fit_ground(map, known, config.ground, exec); });
+  }
+  const BorrowedDisparities in(disparity, "disparity");
+  return released([&] { return fit_ground(in.view(), known, config.ground, exec); });
+}
+
+DisparityMap without_reflections(const Config& config, const Exec& exec, const DisparityArgument& disparity,
+                                 const Ground& ground, const RigArgument& rig) {
+  const auto known = rig_of(rig);
+  DisparityInput map(disparity, "disparity", exec);
+  return released([&] { return reject_below_ground(map.taken(exec), ground, known, config.ground, exec); });
+}
+
+std::optional<ArrayOf<std::uint8_t>> floor_of(const Config& config, const Exec& exec,
+                                              const DisparityArgument& disparity, const Ground& ground,
+                                              const RigArgument& rig) {
+  const auto known = rig_of(rig);
+  const DisparityInput map(disparity, "disparity", exec);
+  return array_or_none(released([&] { return label_floor(map.map(), ground, known, config.ground, exec); }));
+}
+
+Background walls(const Config& config, const Exec& exec, const FloatsArgument& evidence_px,
+                 const Ground& ground, const RigArgument& rig) {
+  const auto known = rig_of(rig);
+  const BorrowedDisparities in(evidence_px, "evidence_px");
+  return released([&] { return fit_background(in.view(), ground, known, config.background, exec); });
+}
+
+std::string refusal(const Ground& self) {
+  return std::string(kRefusals.at(static_cast<std::size_t>(self.refusal)).name);
+}
+
+std::string plane_text(const GroundPlane& p) {
+  return "d = " + std::to_string(p.a) + " x + " + std::to_string(p.b) + " y + " + std::to_string(p.c);
+}
+
+}  // namespace
+
+void bind_ground(py::module_& m) {
+  using py::literals::operator""_a;
+
+  py::class_<GroundPlane>(m, "GroundPlane",
+                          "A plane as the left picture's disparity: d = a * x + b * y + c, all in px.")
+      .def_readonly("a", &GroundPlane::a)
+      .def_readonly("b", &GroundPlane::b)
+      .def_readonly("c", &GroundPlane::c)
+      .def("disparity_px", &GroundPlane::disparity_px, "x"_a, "y"_a)
+      .def("__iter__",
+           [](const GroundPlane& self) { return py::iter(py::make_tuple(self.a, self.b, self.c)); })
+      .def("__repr__",
+           [](const GroundPlane& self) { return "<cairn.GroundPlane " + plane_text(self) + ">"; });
+  py::class_<Ground>(m, "Ground", "The floor, or why there is none.")
+      .def_readonly("plane", &Ground::plane, "a GroundPlane, or None")
+      .def_readonly("support", &Ground::support,
+                    "0 to 1: share of the valid pixels under the horizon that lie on it")
+      .def_readonly("residual_px", &Ground::residual_px, "root mean square distance of these from it, px")
+      .def_property_readonly("refusal", &refusal,
+                             "why there is no plane, in words; 'none' where there is one")
+      .def("__bool__", [](const Ground& self) { return self.plane.has_value(); })
+      .def("__repr__", [](const Ground& self) {
+        if (!self.plane) return "<cairn.Ground none: " + refusal(self) + ">";
+        return "<cairn.Ground " + plane_text(*self.plane) + ", support " + std::to_string(self.support) + ">";
+      });
+  py::class_<Background>(m, "Background", "The planes that bound the scene from behind: floor and walls.")
+      .def_readonly("planes", &Background::planes, "a list of GroundPlane")
+      .def_readonly("has_floor", &Background::has_floor, "whether the first of them is the floor")
+      .def("disparity_px", &Background::disparity_px, "x"_a, "y"_a, "Of the nearest of them, at least 0; px.")
+      .def("__repr__", [](const Background& self) {
+        return "<cairn.Background " + std::to_string(self.planes.size()) + " planes" +
+               (self.has_floor ? ", the first is the floor>" : ">");
+      });
+
+  def_stage(
+      m, "fit_ground", {"ground"},
+      "Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve trust).",
+      &fit, "disparity"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "reject_below_ground", {"ground"}, "Rejects matches under the floor, which are reflections.",
+            &without_reflections, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "label_floor", {"ground"},
+            "(H, W) uint8: 255 where the disparity is the floor's, else 0. None where there is no ground or "
+            "label_floor is "
+            "off.",
+            &floor_of, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "fit_background", {"background"},
+            "Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as "
+            "find_evidence() "
+            "gives it.",
+            &walls, "evidence_px"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
+}
+
+}  // namespace cairn::python

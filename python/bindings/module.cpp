@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_cairn, m) {
+  // Users know these by the package's name, and so do error messages and help().
+  const py::object own_name = m.attr("__name__");
+  m.attr("__name__") = "cairn";
+
+  // numpy is found when the first array is made; a missing one is better told now.
+  py::module_::import("numpy");
+  py::register_exception<cairn::Error>(m, "Error", PyExc_ValueError);
+  m.attr("Error").attr("__doc__") =
+      "Bad input: what was found, what was expected, which argument, option or file. The command says the "
+      "same.";
+  m.attr("__version__") = CAIRN_VERSION;
+
+  cairn::python::bind_options(m);
+  cairn::python::bind_rig(m);
+  cairn::python::bind_matching(m);
+  cairn::python::bind_disparity(m);
+  cairn::python::bind_ground(m);
+  cairn::python::bind_regions(m);
+  cairn::python::bind_objects(m);
+  cairn::python::bind_frame(m);
+  cairn::python::bind_evaluation(m);
+  cairn::python::bind_io(m);
+
+  m.attr("__name__") = own_name;
+}

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "objects.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <cairn/objects/figure.hpp>
+#include <cairn/objects/fuse.hpp>
+#include <cairn/objects/group.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "disparity.hpp"
+#include "options.hpp"
+#include "rig.hpp"
+
+namespace cairn::python {
+namespace {
+
+// ---- stages ----
+
+Array<std::int32_t> figure_of(const Config& config, const Exec& exec, const Facets& facets,
+                              const ImageArgument& left, const FloatsArgument& evidence_px,
+                              const Background& background, bool bgr) {
+  const Picture in(left, "left", bgr, exec.pool);
+  const BorrowedDisparities evidence(evidence_px, "evidence_px");
+  expect_size(in.size(), "left", facets.labels.size(), "facets");
+  expect_size(evidence.size(), "evidence_px", facets.labels.size(), "facets");
+  return array_from(released([&] {
+    return separate_figure(facets, in.gray(), in.rgb(), evidence.view(), background, config.figure, exec);
+  }));
+}
+
+Segmentation groups_of(const Config& config, const Exec& exec, const Facets& facets,
+                       const std::vector<std::int32_t>& figure, const DisparityArgument& disparity,
+                       const FloatsArgument& evidence_px, const Background& background,
+                       const RigArgument& rig) {
+  const auto known = rig_of(rig);
+  const DisparityInput map(disparity, "disparity", exec);
+  const BorrowedDisparities evidence(evidence_px, "evidence_px");
+  expect_size(map.size(), "disparity", facets.labels.size(), "facets");
+  expect_size(evidence.size(), "evidence_px", facets.labels.size(), "facets");
+  const bool is_binary =
+      std::all_of(figure.begin(), figure.end(), [](std::int32_t f) { return f == 0 || f == 1; });
+  if (figure.size() != static_cast<std::size_t>(facets.count) || !is_binary) {
+    throw Error("figure: found " + std::to_string(figure.size()) + (is_binary ? "" : " other") +
+                " numbers, expected 0 or 1 for each of the " + std::to_string(facets.count) + " facets");
+  }
+  return released([&] {
+    return group_facets(facets, figure, map.map(), evidence.view(), background, known, config.figure,
+                        config.group, exec);
+  });
+}
+
+Fusion fused(const Config&, const Exec& exec, const Segmentation& by_intensity,
+             const Segmentation& by_disparity) {
+  expect_size(by_disparity.labels.size(), "by_disparity", by_intensity.labels.size(), "by_intensity");
+  return released([&] { return fuse(by_intensity, by_disparity, exec); });
+}
+
+Objects measured(const Config& config, const Exec& exec, const Fusion& fusion,
+                 const Segmentation& by_disparity, const DisparityArgument& disparity,
+                 const ImageArgument& left, const RigArgument& rig, bool bgr) {
+  const auto known = rig_of(rig);
+  const DisparityInput map(disparity, "disparity", exec);
+  const Picture in(left, "left", bgr, exec.pool);
+  expect_size(map.size(), "disparity", fusion.labels.size(), "fusion");
+  expect_size(in.size(), "left", fusion.labels.size(), "fusion");
+  expect_size(by_disparity.labels.size(), "by_disparity", fusion.labels.size(), "fusion");
+  const bool fits = std::all_of(fusion.disparity_region.begin(), fusion.disparity_region.end(),
+                                [&](RegionId id) { return index(id) < by_disparity.regions.size(); });
+  if (!fits) throw Error("by_disparity: found another segmentation than the fusion's, expected that");
+  return released([&] {
+    return measure(fusion, by_disparity, map.map(), in.gray(), in.rgb(), known, config.objects, exec);
+  });
+}
+
+// ---- what the classes show ----
+
+std::string decimal(const char* format, double value) {
+  std::array<char, 64> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
+std::string objects_repr(const Objects& self) {
+  std::string text = "<cairn.Objects " + std::to_string(self.list.size());
+  for (const Object& object : self.list) text += "\n  " + object_repr(object);
+  return text + ">";
+}
+
+const Object& object_at(const Objects& self, py::ssize_t i) {
+  const auto count = static_cast<py::ssize_t>(self.list.size());
+  if (i < 0) i += count;
+  if (i < 0 || i >= count)
+    throw py::index_error("object " + std::to_string(i) + " of " + std::to_string(count));
+  return self.list[static_cast<std::size_t>(i)];
+}
+
+std::vector<std::vector<std::int32_t>> parts(const Fusion& self) {
+  std::vector<std::vector<std::int32_t>> all;
+  for (const auto& regions : self.parts) {
+    auto& part = all.emplace_back();
+    std::transform(regions.begin(), regions.end(), std::back_inserter(part),
+                   [](RegionId id) { return number(id); });
+  }
+  return all;
+}
+
+std::vector<std::int32_t> disparity_region(const Fusion& self) {
+  std::vector<std::int32_t> all;
+  for (const RegionId id : self.disparity_region) all.push_back(number(id));
+  return all;
+}
+
+void bind_classes(py::module_& m) {
+  py::class_<Fusion>(m, "Fusion",
+                     "Which intensity regions make up each fused region: the candidates for objects.")
+      .def_property_readonly("labels", always_shown(&Fusion::labels),
+                             "(H, W) int32, read-only: indexes `parts`")
+      .def_property_readonly("parts", &parts, "for each fused region its intensity regions, ascending")
+      .def_property_readonly("disparity_region", &disparity_region,
+                             "for each fused region the disparity region that it follows")
+      .def("__len__", [](const Fusion& self) { return self.parts.size(); })
+      .def("__repr__", [](const Fusion& self) {
+        return "<cairn.Fusion " + text(self.labels.size()) + ", " + std::to_string(self.parts.size()) +
+               " regions>";
+      });
+
+  py::class_<Object>(m, "Object", "Something that stands or hangs in front of the background.")
+      .def_property_readonly(
+          "id", [](const Object& self) { return number(self.id); },
+          "from 1, the nearest, on; its pixels in the map of objects")
+      .def_property_readonly(
+          "box_px", [](const Object& self) { return box(self.box_px); }, "(x, y, width, height), px")
+      .def_readonly("pixel_count", &Object::pixel_count, "area of its mask, px")
+      .def_readonly("disparity_px", &Object::disparity_px, "median of its valid pixels, px")
+      .def_readonly("valid_share", &Object::valid_share, "0 to 1: pixels of the mask that have a disparity")
+      .def_property_readonly(
+          "mean_colour",
+          [](const Object& self) {
+            return std::tuple<int, int, int>{self.mean_colour.r, self.mean_colour.g, self.mean_colour.b};
+          },
+          "(red, green, blue), 0 to 255; grey where the input had no colour")
+      .def_property_readonly(
+          "position_in_camera_m", [](const Object& self) { return triple(self.position_in_camera_m); },
+          "(x right, y down, z forward), m: mean of its valid points; None without a rig")
+      .def_property_readonly(
+          "extent_in_camera_m", [](const Object& self) { return triple(self.extent_in_camera_m); },
+          "(x, y, z), m: the box around its points, 2nd to 98th percentile; None without a rig")
+      .def_property_readonly(
+          "distance_m",
+          [](const Object& self) -> std::optional<float> {
+            if (!self.position_in_camera_m) return std::nullopt;
+            return self.position_in_camera_m->z;
+          },
+          "z of its position, m; None without a rig")
+      .def_readonly("edge_share", &Object::edge_share,
+                    "0 to 1: of its outline, where the picture shows an edge")
+      .def_readonly("cut_share", &Object::cut_share,
+                    "0 to 1: of its outline, what lies at the picture's border")
+      .def_readonly("confidence", &Object::confidence,
+                    "0 to 1: how likely it covers a true object by more than half")
+      .def("__repr__", &object_repr);
+
+  py::class_<Objects>(m, "Objects",
+                      "The objects of a frame, nearest first: a sequence of Object, and their map.")
+      .def_property_readonly("labels", always_shown(&Objects::labels),
+                             "(H, W) int32, read-only: ids, 0 = no object")
+      .def("__len__", [](const Objects& self) { return self.list.size(); })
+      .def("__getitem__", &object_at, py::arg("index"), py::return_value_policy::reference_internal)
+      .def(
+          "__getitem__",
+          [](const Objects& self, const py::slice& range) {
+            std::size_t start = 0, stop = 0, step = 0, length = 0;
+            if (!range.compute(self.list.size(), &start, &stop, &step, &length))
+              throw py::error_already_set();
+            std::vector<Object> chosen;
+            for (; length > 0; --length, start += step) chosen.push_back(self.list[start]);
+            return chosen;
+          },
+          py::arg("range"))
+      .def(
+          "__iter__",
+          [](const Objects& self) { return py::make_iterator(self.list.begin(), self.list.end()); },
+          py::keep_alive<0, 1>())
+      .def("__repr__", &objects_repr);
+}
+
+}  // namespace
+
+std::string object_repr(const Object& o) {
+  std::string text = "<cairn.Object " + std::to_string(number(o.id)) + ": ";
+  if (o.position_in_camera_m) {
+    const Vec3 at = *o.position_in_camera_m;
+    text += decimal("%.2f m away at (", double(at.z)) + decimal("%.2f, ", double(at.x)) +
+            decimal("%.2f, ", double(at.y)) + decimal("%.2f) m", double(at.z));
+    if (o.extent_in_camera_m) {
+      const Vec3 size = *o.extent_in_camera_m;
+      text += decimal(", size (%.2f, ", double(size.x)) + decimal("%.2f, ", double(size.y)) +
+              decimal("%.2f) m", double(size.z));
+    }
+    text += ", ";
+  }
+  return text + decimal("disparity %.1f px, ", double(o.disparity_px)) + std::to_string(o.pixel_count) +
+         " px in box (" + std::to_string(o.box_px.x) + ", " + std::to_string(o.box_px.y) + ", " +
+         std::to_string(o.box_px.width) + ", " + std::to_string(o.box_px.height) + "), " +
+         decimal("confidence %.2f>", double(o.confidence));
+}
+
+void bind_objects(py::module_& m) {
+  using py::literals::operator""_a;
+  bind_classes(m);
+
+  def_stage(m, "separate_figure", {"figure"},
+            "For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, "
+            "one number for "
+            "each facet.",
+            &figure_of, "facets"_a, "left"_a, "evidence_px"_a, "background"_a, py::kw_only(),
+            "bgr"_a = false);
+  def_stage(m, "group_facets", {"group", "figure"},
+            "Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the "
+            "background "
+            "(is_floor), the others are groups. Means in px.",
+            &groups_of, "facets"_a, "figure"_a, "disparity"_a, "evidence_px"_a, "background"_a,
+            "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "fuse", {},
+            "Each intensity region goes to the disparity region with the greatest overlap (paper, Eq. 4).",
+            &fused, "by_intensity"_a, "by_disparity"_a, py::kw_only());
+  def_stage(
+      m, "measure", {"objects"},
+      "Turns fused regions into objects: what is floor, background, too small, unseen or unlikely is none.",
+      &measured, "fusion"_a, "by_disparity"_a, "disparity"_a, "left"_a, "rig"_a = py::none(), py::kw_only(),
+      "bgr"_a = false);
+}
+
+}  // namespace cairn::python

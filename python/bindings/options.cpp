@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "options.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/core/target.hpp>
+#include <io/config_files.hpp>
+#include <sstream>
+
+#include "bindings.hpp"
+
+namespace cairn::python {
+namespace {
+
+/// A value as the library reads it from a command line.
+std::string option_text(const py::handle& value) {
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::hasattr(value, "item") && py::hasattr(value, "dtype")) return option_text(value.attr("item")());
+  if (!py::isinstance<py::sequence>(value)) return py::str(value).cast<std::string>();
+  std::string text;  // points: [(x_left, y_left, x_right, y_right), …]
+  for (const py::handle& entry : value) {
+    const bool nested = py::isinstance<py::sequence>(entry) && !py::isinstance<py::str>(entry);
+    if (!text.empty()) text += nested ? ';' : ',';
+    text += option_text(entry);
+  }
+  return text;
+}
+
+/// An option's text as a Python value of its type.
+py::object option_value(const OptionInfo& option) {
+  if (option.type == "bool") return py::bool_(option.value == "true");
+  if (option.type == "int") return py::int_(py::str(option.value));
+  if (option.type == "float") return py::float_(py::str(option.value));
+  if (option.type != "points") return py::str(option.value);
+  py::list points;
+  std::istringstream pairs(option.value);
+  for (std::string pair; std::getline(pairs, pair, ';');) {
+    py::list numbers;
+    std::istringstream cells(pair);
+    for (std::string cell; std::getline(cells, cell, ',');) numbers.append(py::float_(py::str(cell)));
+    points.append(py::tuple(numbers));
+  }
+  return points;
+}
+
+std::string group_of(const OptionInfo& option) {
+  return option.name.substr(0, option.name.find('.'));
+}
+std::string name_in_group(const OptionInfo& option) {
+  return option.name.substr(option.name.find('.') + 1);
+}
+
+bool is_group(const std::string& name) {
+  const std::vector<OptionInfo> all = options(Config{});
+  return std::any_of(all.begin(), all.end(), [&](const OptionInfo& o) { return group_of(o) == name; });
+}
+
+void set_groups(Config& config, const py::kwargs& groups) {
+  for (const auto& [key, value] : groups) {
+    const auto group = key.cast<std::string>();
+    if (!py::isinstance<py::dict>(value)) {
+      if (!is_group(group)) throw py::type_error("there is no keyword argument '" + group + "'");
+      throw Error("options " + group + ": found " + py::type::of(value).attr("__name__").cast<std::string>() +
+                  ", expected a dict such as match={\"num_disparities\": 64}");
+    }
+    const auto entries = py::reinterpret_borrow<py::dict>(value);
+    if (entries.empty() && !is_group(group))
+      throw py::type_error("there is no keyword argument '" + group + "'");
+    for (const auto& [name, setting] : entries) {
+      set(config, group + "." + py::str(name).cast<std::string>(), option_text(setting));
+    }
+  }
+}
+
+PyConfig built(const std::string& preset, const std::optional<std::string>& file, const py::kwargs& groups,
+               std::optional<int> range) {
+  PyConfig made;
+  const auto from_preset = [&](std::string_view name) {
+    made.preset = name;
+    Config config = Config::preset(name);
+    if (range) config.match.num_disparities = *range;
+    return config;
+  };
+  made.config = from_preset(preset);
+  if (file) io::load_config(*file, made.config, from_preset);
+  set_groups(made.config, groups);
+  return made;
+}
+
+py::dict as_dict(const PyConfig& self) {
+  py::dict groups;
+  for (const OptionInfo& option : options(self.config)) {
+    const py::str group(group_of(option));
+    if (!groups.contains(group)) groups[group] = py::dict();
+    groups[group][py::str(name_in_group(option))] = option_value(option);
+  }
+  return groups;
+}
+
+/// What differs from the preset, as the constructor would take it.
+std::string config_repr(const PyConfig& self) {
+  const std::vector<OptionInfo> base = options(Config::preset(self.preset));
+  const std::vector<OptionInfo> mine = options(self.config);
+  py::dict groups;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    if (mine[i].value == base[i].value) continue;
+    const py::str group(group_of(mine[i]));
+    if (!groups.contains(group)) groups[group] = py::dict();
+    groups[group][py::str(name_in_group(mine[i]))] = option_value(mine[i]);
+  }
+  std::string text = "Config('" + self.preset + "'";
+  for (const auto& [group, entries] : groups) {
+    text += ", " + group.cast<std::string>() + "=" + py::repr(entries).cast<std::string>();
+  }
+  return text + ")";
+}
+
+py::object option_of(const PyConfig& self, const std::string& name) {
+  for (const OptionInfo& option : options(self.config)) {
+    if (option.name == name) return option_value(option);
+  }
+  Config copy;
+  set(copy, name, "");  // throws, with the nearest name
+  return py::none();
+}
+
+std::string option_repr(const OptionInfo& o) {
+  return "<cairn.Option " + o.name + " = " + o.value + (o.unit.empty() ? "" : " " + o.unit) + " (" +
+         o.domain + "): " + o.help + ">";
+}
+
+std::string exec_repr(const Exec& exec) {
+  return "Exec(threads=" + std::to_string(exec.threads()) + ", target='" + std::string(name(exec.target)) +
+         "')";
+}
+
+Exec make_exec(int threads, const std::string& target) {
+  constexpr int kMostThreads = 1024;
+  if (threads < 0 || threads > kMostThreads) {
+    throw Error("threads: found " + std::to_string(threads) + ", expected 0 … " +
+                std::to_string(kMostThreads) + "; 0 = one for each processor");
+  }
+  Exec exec = Exec::with_threads(threads, wanted_target(target, "target"));
+  exec.pool = Pool::make();
+  return exec;
+}
+
+std::vector<std::string> names_of(const std::vector<Target>& targets) {
+  std::vector<std::string> names;
+  for (const Target target : targets) names.emplace_back(name(target));
+  return names;
+}
+
+}  // namespace
+
+Config PyConfig::with_range(std::optional<int> num_disparities) const {
+  Config wanted = config;
+  if (num_disparities && !range_given) set(wanted, "match.num_disparities", std::to_string(*num_disparities));
+  return wanted;
+}
+
+PyConfig make_config(const std::string& preset, const std::optional<std::string>& file,
+                     const py::kwargs& groups) {
+  PyConfig made = built(preset, file, groups, std::nullopt);
+  // Given is what does not follow the default.
+  const int other = made.config.match.num_disparities + 1;
+  made.range_given = built(preset, file, groups, other).config.match.num_disparities != other;
+  return made;
+}
+
+PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups) {
+  if (config.is_none()) return make_config(preset, std::nullopt, groups);
+  if (!py::isinstance<PyConfig>(config)) {
+    if (py::isinstance<py::str>(config) || py::hasattr(config, "__fspath__")) {
+      return make_config(preset, py::str(config).cast<std::string>(), groups);
+    }
+    throw Error("config: found a " + py::type::of(config).attr("__name__").cast<std::string>() +
+                ", expected a cairn.Config, the name of a file, or None");
+  }
+  auto made = config.cast<PyConfig>();
+  if (preset != "default" && preset != made.preset) {
+    throw Error("preset: found '" + preset + "' beside a config of preset '" + made.preset +
+                "', expected one of the two");
+  }
+  set_groups(made.config, groups);
+  if (groups.contains("match") && py::dict(groups["match"]).contains("num_disparities"))
+    made.range_given = true;
+  return made;
+}
+
+void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) {
+  const std::vector<OptionInfo> all = options(config);
+  for (const auto& [key, value] : keywords) {
+    const auto name = key.cast<std::string>();
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const std::string& candidate) {
+      return std::any_of(all.begin(), all.end(),
+                         [&](const OptionInfo& o) { return o.name == candidate + "." + name; });
+    });
+    if (group == groups.end() && groups.empty())
+      throw py::type_error("there is no keyword argument '" + name + "'");
+    set(config, (group == groups.end() ? groups.front() : *group) + "." + name, option_text(value));
+  }
+}
+
+Exec exec_of(const py::object& exec) {
+  if (exec.is_none()) return Exec::with_threads(0);
+  if (py::isinstance<Exec>(exec)) return exec.cast<Exec>();
+  throw Error("exec: found a " + py::type::of(exec).attr("__name__").cast<std::string>() +
+              ", expected a cairn.Exec or None");
+}
+
+Config stage_config(const py::object& config) {
+  if (config.is_none()) return {};
+  if (py::isinstance<PyConfig>(config)) return config.cast<const PyConfig&>().config;
+  throw Error("config: found a " + py::type::of(config).attr("__name__").cast<std::string>() +
+              ", expected a cairn.Config or None");
+}
+
+std::string with_options(const std::string& doc, const Groups& groups, bool grouped) {
+  std::string text = doc + "\n\n";
+  if (grouped) {
+    text += "Options, a dict for each group of cairn.options(), e.g. match={\"num_disparities\": 64}:\n";
+  } else if (!groups.empty()) {
+    text += "Options, as keywords (defaults: those of `config`, shown is the preset default):\n";
+  }
+  for (const std::string& group : groups) {
+    if (grouped) text += "    " + group + "\n";
+    for (const OptionInfo& o : options(Config{})) {
+      if (group_of(o) != group) continue;
+      text += (grouped ? "        " : "    ") + name_in_group(o) + " = " + o.value +
+              (o.unit.empty() ? "" : " " + o.unit) + " (" + o.domain + "): " + o.help + "\n";
+    }
+  }
+  return text +
+         "\nconfig: a cairn.Config; None is the preset default. exec: a cairn.Exec; None is all processors.";
+}
+
+void note_groups(const py::module_& module, const char* function, const Groups& groups, bool grouped) {
+  if (!py::hasattr(module, "_options_of")) module.attr("_options_of") = py::dict();
+  module.attr("_options_of")[function] = py::make_tuple(grouped, groups);
+}
+
+void bind_options(py::module_& m) {
+  py::class_<OptionInfo>(m, "Option",
+                         "One option of the method, as the command and the reference page name it.")
+      .def_readonly("name", &OptionInfo::name, "its group and name, 'match.window_size'")
+      .def_property_readonly("group", [](const OptionInfo& self) { return group_of(self); })
+      .def_readonly("type", &OptionInfo::type, "'int', 'float', 'bool', 'choice' or 'points'")
+      .def_property_readonly(
+          "default", [](const OptionInfo& self) { return option_value(self); },
+          "value in the preset asked for")
+      .def_readonly("unit", &OptionInfo::unit, "may be empty")
+      .def_readonly("range", &OptionInfo::domain, "'3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'")
+      .def_readonly("help", &OptionInfo::help, "what it does")
+      .def("__repr__", &option_repr);
+  m.def(
+      "options", [](const std::string& preset) { return options(Config::preset(preset)); },
+      py::arg("preset") = "default", "Every option with its value in a preset, in the order of the stages.");
+  m.def("preset_names", &preset_names, "The presets by name: 'default', 'paper'.");
+
+  py::class_<PyConfig>(
+      m, "Config",
+      "What is computed: every option's value. Made from a preset, then a file (as `cairn config` "
+      "prints it), then keywords; later ones win:\n"
+      "    cairn.Config('paper', match={'window_size': 11})\n"
+      "Raises cairn.Error for an unknown name or a value out of range.")
+      .def(py::init([](const std::string& preset, const py::object& file, const py::kwargs& groups) {
+             std::optional<std::string> path;
+             if (!file.is_none()) path = py::str(file).cast<std::string>();
+             return make_config(preset, path, groups);
+           }),
+           py::arg("preset") = "default", py::arg("file") = py::none())
+      .def_readonly("preset", &PyConfig::preset, "what it started from")
+      .def("__getitem__", &option_of, py::arg("name"),
+           "The value of an option by its full name, 'match.window_size'.")
+      .def("as_dict", &as_dict,
+           "All values: a dict of the groups' dicts. Config(**config.as_dict()) is its equal.")
+      .def(
+          "yaml", [](const PyConfig& self) { return io::config_yaml(self.config); },
+          "The text of a configuration file, one comment for each option.")
+      .def(
+          "__eq__",
+          [](const PyConfig& self, const PyConfig& other) {
+            return io::config_yaml(self.config) == io::config_yaml(other.config);
+          },
+          py::is_operator())
+      .def("__repr__", &config_repr);
+  note_groups(m, "Config", all_groups(), true);
+
+  py::class_<Exec>(
+      m, "Exec",
+      "How the work is done: threads, instruction set, a pool of image buffers. Never changes a result.")
+      .def(py::init(&make_exec), py::arg("threads") = 0, py::arg("target") = "best",
+           "threads: 0 = one for each processor. target: 'best' or one of supported_targets().")
+      .def_property_readonly("threads", &Exec::threads)
+      .def_property_readonly(
+          "target", [](const Exec& self) { return std::string(name(active_target(self))); },
+          "the instruction set that the kernels run on")
+      .def_property_readonly(
+          "heap_allocations", [](const Exec& self) { return self.pool.heap_allocations(); },
+          "how many image buffers its pool has asked the heap for")
+      .def("__repr__", &exec_repr);
+  m.def(
+      "compiled_targets", [] { return names_of(compiled_targets()); },
+      "The instruction sets in this build, slowest first.");
+  m.def(
+      "supported_targets", [] { return names_of(supported_targets()); },
+      "Those of them that this processor has, slowest first.");
+}
+
+Groups all_groups() {
+  Groups groups;
+  for (const OptionInfo& option : options(Config{})) {
+    if (groups.empty() || groups.back() != group_of(option)) groups.push_back(group_of(option));
+  }
+  return groups;
+}
+
+}  // namespace cairn::python
