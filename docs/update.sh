@@ -5,9 +5,10 @@
 # update.sh [--check|--pictures] BUILD_DIR: writes the generated parts of the pages anew, or with --check only says which
 # are stale.
 #   docs/options.md                         `cairn config --markdown`
-#   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]`
+#   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]` (Python: `# [NAME]`)
 #   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout, without the time it took;
 #                                           SCRATCH among ARGUMENTS is a folder for its files
+#   python/cairn/__init__.pyi               the Python module's types, where BUILD_DIR has one
 # Each marker is followed by a fenced block, which is what is replaced. docs/images is made with --pictures only: every new
 # picture stays in the repository's history for ever.
 set -euo pipefail
@@ -46,10 +47,12 @@ TEXT
 }
 
 code_of() {  # FILE#NAME
-  awk -v name="${1#*#}" '
-    index($0, "// [/" name "]") { shown = 0 }
+  local mark='//'
+  [[ ${1%%#*} != *.py ]] || mark='#'
+  awk -v name="${1#*#}" -v mark="$mark" '
+    index($0, mark " [/" name "]") { shown = 0 }
     shown { print substr($0, match($0, /[^ ]/) > indent ? indent + 1 : 1); found = 1 }
-    index($0, "// [" name "]") { shown = 1; indent = match($0, /[^ ]/) - 1 }
+    index($0, mark " [" name "]") { shown = 1; indent = match($0, /[^ ]/) - 1 }
     END { exit !found }' "${1%%#*}"
 }
 
@@ -93,6 +96,11 @@ put() {  # FILE < its contents as they should be
 
 contents=$(options_page)
 put docs/options.md <<<"$contents"
+if compgen -G "$build_dir/python/cairn/_cairn.*" >/dev/null; then
+  python=$(sed -n 's/^Python_EXECUTABLE:[A-Z]*=//p' "$build_dir/CMakeCache.txt")
+  contents=$(PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$build_dir/python "${python:-python3}" python/tools/make_stubs.py)
+  put python/cairn/__init__.pyi <<<"$contents"
+fi
 while read -r page; do
   contents=$(page_anew "$page")
   put "$page" <<<"$contents"

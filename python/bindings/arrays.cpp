@@ -35,7 +35,7 @@ py::array array_like(const py::object& value, const char* name, const std::strin
   if (is_like && !py::isinstance<py::bytes>(value)) {
     if (py::array array = py::array::ensure(value)) return array;
   }
-  refuse(name, value.is_none() ? "None" : "a " + type_of(value), expected);
+  refuse(name, value.is_none() ? "None" : "a value of type " + type_of(value), expected);
 }
 
 /// An image's sides as the library counts them.

@@ -119,9 +119,15 @@ class PySegmenter {
 
 // ---- what the classes show ----
 
-/// A property that shows an image of the frame, read-only.
+/// A property that shows an image of the frame, read-only; `image_of_some` where it may be missing.
 template <class T, class Find>
 auto image_of(Find find) {
+  return [find](const py::object& self) -> ArrayOf<T> {
+    return array_over(find(self.cast<const PyFrame&>()), self, false);
+  };
+}
+template <class T, class Find>
+auto image_of_some(Find find) {
   return [find](const py::object& self) -> std::optional<ArrayOf<T>> {
     const Image<T>& image = find(self.cast<const PyFrame&>());
     if (image.empty()) return std::nullopt;
@@ -187,12 +193,12 @@ void bind_frame_class(py::module_& m) {
           "reject", image_of<Reject>([](const PyFrame& f) -> auto& { return f.frame.disparity.reject; }),
           "uint8, why there is no disparity: bits of cairn.Reject; 0 = there is one")
       .def_property_readonly(
-          "confidence", image_of<float>([](const PyFrame& f) -> auto& { return f.frame.confidence; }),
+          "confidence", image_of_some<float>([](const PyFrame& f) -> auto& { return f.frame.confidence; }),
           "float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where "
           "nothing was matched or the option is off")
-      .def_property_readonly("floor",
-                             image_of<std::uint8_t>([](const PyFrame& f) -> auto& { return f.frame.floor; }),
-                             "uint8, 255 = floor, else 0; None where no floor was labelled")
+      .def_property_readonly(
+          "floor", image_of_some<std::uint8_t>([](const PyFrame& f) -> auto& { return f.frame.floor; }),
+          "uint8, 255 = floor, else 0; None where no floor was labelled")
       .def_property_readonly(
           "objects_map", image_of<ObjectId>([](const PyFrame& f) -> auto& { return f.frame.objects.labels; }),
           "int32, the object that each pixel belongs to; 0 = none. `frame.objects_map == object.id` is a "

@@ -17,7 +17,7 @@ namespace {
 std::string option_text(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::hasattr(value, "item") && py::hasattr(value, "dtype")) return option_text(value.attr("item")());
+  if (py::hasattr(value, "dtype") && py::hasattr(value, "tolist")) return option_text(value.attr("tolist")());
   if (!py::isinstance<py::sequence>(value)) return py::str(value).cast<std::string>();
   std::string text;  // points: [(x_left, y_left, x_right, y_right), …]
   for (const py::handle& entry : value) {
@@ -62,7 +62,8 @@ void set_groups(Config& config, const py::kwargs& groups) {
     const auto group = key.cast<std::string>();
     if (!py::isinstance<py::dict>(value)) {
       if (!is_group(group)) throw py::type_error("there is no keyword argument '" + group + "'");
-      throw Error("options " + group + ": found " + py::type::of(value).attr("__name__").cast<std::string>() +
+      throw Error("options " + group + ": found a value of type " +
+                  py::type::of(value).attr("__name__").cast<std::string>() +
                   ", expected a dict such as match={\"num_disparities\": 64}");
     }
     const auto entries = py::reinterpret_borrow<py::dict>(value);
@@ -176,7 +177,7 @@ PyConfig config_of(const py::object& config, const std::string& preset, const py
     if (py::isinstance<py::str>(config) || py::hasattr(config, "__fspath__")) {
       return make_config(preset, py::str(config).cast<std::string>(), groups);
     }
-    throw Error("config: found a " + py::type::of(config).attr("__name__").cast<std::string>() +
+    throw Error("config: found a value of type " + py::type::of(config).attr("__name__").cast<std::string>() +
                 ", expected a cairn.Config, the name of a file, or None");
   }
   auto made = config.cast<PyConfig>();
@@ -207,14 +208,14 @@ void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) 
 Exec exec_of(const py::object& exec) {
   if (exec.is_none()) return Exec::with_threads(0);
   if (py::isinstance<Exec>(exec)) return exec.cast<Exec>();
-  throw Error("exec: found a " + py::type::of(exec).attr("__name__").cast<std::string>() +
+  throw Error("exec: found a value of type " + py::type::of(exec).attr("__name__").cast<std::string>() +
               ", expected a cairn.Exec or None");
 }
 
 Config stage_config(const py::object& config) {
   if (config.is_none()) return {};
   if (py::isinstance<PyConfig>(config)) return config.cast<const PyConfig&>().config;
-  throw Error("config: found a " + py::type::of(config).attr("__name__").cast<std::string>() +
+  throw Error("config: found a value of type " + py::type::of(config).attr("__name__").cast<std::string>() +
               ", expected a cairn.Config or None");
 }
 

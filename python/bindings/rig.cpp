@@ -59,7 +59,7 @@ PyCalibration calibration_of(const RigArgument& rig) {
   if (rig.is_none()) return {};
   if (py::isinstance<PyCalibration>(rig)) return rig.cast<PyCalibration>();
   if (py::isinstance<StereoRig>(rig)) return {{rig.cast<StereoRig>(), {}, {}}, {}};
-  throw Error("rig: found a " + py::type::of(rig).attr("__name__").cast<std::string>() +
+  throw Error("rig: found a value of type " + py::type::of(rig).attr("__name__").cast<std::string>() +
               ", expected a cairn.Rig, a cairn.Calibration or None");
 }
 

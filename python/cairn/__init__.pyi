@@ -1,0 +1,1395 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+# Written by python/tools/make_stubs.py; do not edit.
+"""Objects from a rectified stereo pair, in metres, with a reason for every pixel that was refused."""
+
+import enum
+import os
+from typing import Any, Dict, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
+
+import numpy
+from numpy.typing import NDArray
+
+ImageLike = NDArray[numpy.uint8]  # (H, W) or (H, W, 3)
+FloatsLike = NDArray[numpy.floating[Any]]  # (H, W), px
+DisparityLike = Union["DisparityMap", FloatsLike]
+MaskLike = Union[NDArray[numpy.uint8], NDArray[numpy.bool_], None]  # (H, W)
+LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)
+NumbersLike = NDArray[Any]  # (H, W)
+RigLike = Union["Rig", "Calibration", None]
+PathLike = Union[str, "os.PathLike[str]"]
+Points = Sequence[Tuple[float, float, float, float]]  # x_left, y_left, x_right, y_right; px
+
+__version__: str
+
+class EpipolarCorrectionOptions(TypedDict, total=False):
+    max_rows: float  # rows, −1 = off, 0.5 … 8: largest misalignment of the right image's rows that is looked for and taken back (vibration)
+
+class MatchOptions(TypedDict, total=False):
+    method: Literal["window", "semi_global"]  # window|semi_global: window: correlation alone; semi_global: neighbours agree along paths
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"]  # sad|ssd|zsad|zssd|nssd|zncc: correlation operator
+    window_size: int  # px, 3 … 31, odd: side of the square correlation window, odd
+    min_disparity: int  # px, -1024 … 1023: first disparity tried; may be negative
+    num_disparities: int  # px, 1 … 1024: how many disparities are tried; a calibration's ndisp replaces the default
+    row_band: int  # rows, 0 … 8: also search k rows above and below (vibration)
+    prefilter: Literal["none", "xsobel"]  # none|xsobel: filter both images before matching
+    prefilter_cap: int  # grey levels, 1 … 63: clip the x-Sobel response to ±cap
+    evidence: Literal["winner", "minimum", "full"]  # winner|minimum|full: winner: best and cost only; minimum: also its neighbours and the runner-up, all that sub-pixel, uniqueness and left_right.method=vote need; full: all that the checks need
+
+class SemiGlobalOptions(TypedDict, total=False):
+    penalty_small: float  # greatest cost, 0 … 2.3: for a change of disparity by one pixel
+    penalty_large: float  # greatest cost, 0 … 2.3: for a larger change of disparity
+    penalty_edge: float  # 1/grey level, 0 … 10: how fast the large penalty falls where the intensity changes
+
+class SubpixelOptions(TypedDict, total=False):
+    enabled: bool  # true|false: refine each winner by a curve through its cost and its neighbours'
+    method: Literal["parabola", "equiangular"]  # parabola|equiangular: the curve: round for squares, pointed for absolute differences and semi_global
+
+class LeftRightOptions(TypedDict, total=False):
+    max_diff: float  # px, −1 = off, 0 … 64: largest left-right disagreement still accepted
+    method: Literal["true", "vote"]  # true|vote: true: the right image's own winner over all candidates; vote: the right pixel takes the best left winner (OpenCV)
+
+class UniquenessOptions(TypedDict, total=False):
+    ratio: float  # %, −1 = off, 0 … 100: by how much the best cost must beat the runner-up (OpenCV's uniquenessRatio)
+
+class FlatnessOptions(TypedDict, total=False):
+    threshold: float  # share, −1 = off, 0 … 1: least depth of the best cost below the mean cost
+
+class TextureOptions(TypedDict, total=False):
+    window_size: int  # px, 3 … 31, odd: side of the Moravec operator's window, odd
+    threshold: float  # grey levels², −1 = off, 0 … 65025: least mean squared difference to the most similar shift
+
+class GroundOptions(TypedDict, total=False):
+    source: Literal["off", "automatic", "points", "pose"]  # off|automatic|points|pose: where the floor comes from: fitted to each frame, hand-given points, the camera's pose, nowhere
+    points: Points  # px, x_left,y_left,x_right,y_right;…: floor points as x_left,y_left,x_right,y_right; at least four, separated by ;
+    height: float  # m, 0.01 … 100: height of the left camera above the floor (source pose)
+    pitch: float  # degrees, -89 … 89: camera pitch, positive looks down (source pose)
+    roll: float  # degrees, -89 … 89: camera roll, positive lowers the camera's right side (source pose)
+    margin: float  # px, 0 … 64: how far a disparity may lie from the floor's and still be floor
+    label_floor: bool  # true|false: label matches on the floor; the floor is no object
+
+class SpeckleOptions(TypedDict, total=False):
+    size: int  # px, −1 = off, 0 … 1000000: islands of up to this many pixels are rejected (OpenCV's speckleWindowSize)
+    range: float  # px, 0 … 64: largest step of disparity between neighbours of one island
+
+class ConfidenceOptions(TypedDict, total=False):
+    enabled: bool  # true|false: say of each disparity how likely it is right; changes nothing else
+
+class EvidenceOptions(TypedDict, total=False):
+    noise_factor: float  # σ of the noise, 0 … 100: least horizontal gradient of a pixel that counts as evidence: this many deviations of the image noise …
+    gradient_min: float  # grey levels, 0 … 255: … plus this
+    agreement: float  # ‰ of the width, 0 … 100: how far the disparities of neighbouring evidence may lie apart
+
+class BackgroundOptions(TypedDict, total=False):
+    max_walls: int  # 0 … 8: how many walls are looked for besides the floor
+    tolerance: float  # ‰ of the width, 0 … 100: how far a disparity may lie from a wall's and still support it
+    min_share: float  # % of the evidence, 0 … 100: least support of a wall
+    min_share_square: float  # % of the evidence, 0 … 100: the same of a wall square on the first one
+    max_behind: float  # % of the support, 0 … 100: most evidence that may lie behind a wall
+
+class IntensityOptions(TypedDict, total=False):
+    smoothing_sigma: float  # px, 0 … 5: Gaussian smoothing before the gradient
+    mean_difference_max: float  # grey levels, 0 … 255: Eq. 1: largest difference of two means that fuse
+    deviation_max: float  # σ, 0 … 100: Eq. 2: how many deviations a fusion may move the mean
+    sigma_min: float  # grey levels, 0.01 … 255: least deviation used in Eq. 2
+    min_region_area: float  # % of the image, 0 … 100: smaller regions fuse with the most similar neighbour
+
+class DisparityOptions(TypedDict, total=False):
+    smoothing_sigma: float  # px, 0 … 5: Gaussian smoothing before the gradient
+    mean_difference_max: float  # px of disparity, 0 … 64: Eq. 1: largest difference of two means that fuse
+    deviation_max: float  # σ, 0 … 100: Eq. 2: how many deviations a fusion may move the mean
+    sigma_min: float  # px of disparity, 0.01 … 64: least deviation used in Eq. 2
+    min_region_area: float  # % of the image, 0 … 100: smaller regions fuse with the most similar neighbour
+
+class FusionOptions(TypedDict, total=False):
+    method: Literal["overlap", "evidence"]  # overlap|evidence: overlap: the paper's two segmentations; evidence: facets that texture vouches for
+
+class FacetsOptions(TypedDict, total=False):
+    smoothing_sigma: float  # px, 0 … 5: Gaussian smoothing before the edges
+    edge_min: float  # grey levels, 0 … 255: basins fuse across borders whose mean edge is weaker than this …
+    noise_factor: float  # σ of the noise, 0 … 100: … plus this many deviations of the image noise …
+    contrast_share: float  # % of a clear edge, 0 … 100: … plus this share of the edge that 2 % of the pixels exceed
+
+class FigureOptions(TypedDict, total=False):
+    margin: float  # ‰ of the width, 0 … 100: how far a disparity must stand before the background to be figure
+    agreement: float  # ‰ of the width, 0 … 100: largest difference of the disparities on both sides of a plain stretch that still belongs to one surface
+    longest_bridge: float  # % of the width, 0 … 100: plain stretches longer than this hardly count
+    border_weight: float  # px of evidence, 0 … 1: what a pixel beside a facet's border counts that is seen before the background: the matcher gives the nearer surface's disparity to both sides of its edge; 1 = as much as any
+    skirting: float  # % of the width, 0 … 100: a plain facet within this above the foot of a wall is figure only where that is seen; 0 = anywhere
+    smoothness: float  # px of evidence, 0 … 100: what it costs, for each pixel of a border without an edge, to part figure and ground there
+    colour_weight: float  # px of evidence, 0 … 10: what a plain pixel's colour says, when it is e times as common in the figure as in the ground; 0 = nothing
+    continuation_weight: float  # px of evidence, 0 … 10: what it says for ground that ground of its colour goes on beside it; 0 = nothing
+    largest_part: float  # % of the image, 0 … 100: ground that touches figure speaks for its colour only with what it is larger than this: it may be a part of an object without evidence; 0 = with all
+
+class GroupOptions(TypedDict, total=False):
+    step: float  # ‰ of the width, 0 … 1000: largest step of disparity across a border within one object …
+    step_share: float  # % of the disparity, 0 … 100: … or this share of the disparity, if that is more
+    deviation: float  # ‰ of the width, 0 … 1000: how far a facet may lie off the plane of the object that it joins …
+    deviation_share: float  # % of the disparity, 0 … 100: … or this share of the disparity, if that is more
+    gap_share: float  # % of its border, 0 … 100: a facet without evidence that has more ground around it than this connects nothing
+    min_area: float  # % of the image, 0 … 100: smaller groups join a neighbour
+    occluded_gap: float  # % of the width, 0 … 100: groups of one depth this close to each other behind a common nearer one are one object; 0 = never
+
+class ObjectsOptions(TypedDict, total=False):
+    min_area: float  # % of the image, 0 … 100: smaller regions are no objects
+    max_area: float  # % of the image, 0 … 100: larger regions are background
+    min_confidence: float  # 0 … 1: regions less likely than this to be an object are none
+
+class Background:
+    """The planes that bound the scene from behind: floor and walls."""
+    @property
+    def planes(self) -> List[GroundPlane]:
+        """a list of GroundPlane"""
+    @property
+    def has_floor(self) -> bool:
+        """whether the first of them is the floor"""
+    def disparity_px(self, x: float, y: float) -> float:
+        """Of the nearest of them, at least 0; px."""
+
+class Basins:
+    """What watershed() makes."""
+    @property
+    def labels(self) -> NDArray[numpy.int32]:
+        """(H, W) int32, read-only: 0 to count - 1"""
+    @property
+    def count(self) -> int: ...
+
+class Calibration:
+    """What a calibration file says of a rectified pair. Stands wherever a Rig does; segment() then also checks the pictures' size and takes the file's number of disparities as default."""
+    @property
+    def rig(self) -> Optional[Rig]:
+        """None where the file has no focal length or no baseline"""
+    @property
+    def image_size(self) -> Optional[Tuple[int, int]]:
+        """(width, height) of the pictures that it was made for, or None"""
+    @property
+    def num_disparities(self) -> Optional[int]:
+        """the default of match.num_disparities, or None"""
+
+class Config:
+    """What is computed: every option's value. Made from a preset, then a file (as `cairn config` prints it), then keywords; later ones win:
+        cairn.Config('paper', match={'window_size': 11})
+    Raises cairn.Error for an unknown name or a value out of range."""
+    def __init__(
+        self,
+        preset: str = 'default',
+        file: Optional[PathLike] = None,
+        *,
+        epipolar_correction: EpipolarCorrectionOptions = ...,
+        match: MatchOptions = ...,
+        semi_global: SemiGlobalOptions = ...,
+        subpixel: SubpixelOptions = ...,
+        left_right: LeftRightOptions = ...,
+        uniqueness: UniquenessOptions = ...,
+        flatness: FlatnessOptions = ...,
+        texture: TextureOptions = ...,
+        ground: GroundOptions = ...,
+        speckle: SpeckleOptions = ...,
+        confidence: ConfidenceOptions = ...,
+        evidence: EvidenceOptions = ...,
+        background: BackgroundOptions = ...,
+        intensity: IntensityOptions = ...,
+        disparity: DisparityOptions = ...,
+        fusion: FusionOptions = ...,
+        facets: FacetsOptions = ...,
+        figure: FigureOptions = ...,
+        group: GroupOptions = ...,
+        objects: ObjectsOptions = ...,
+    ) -> None: ...
+    @property
+    def preset(self) -> str:
+        """what it started from"""
+    def __getitem__(self, name: str) -> object:
+        """The value of an option by its full name, 'match.window_size'."""
+    def as_dict(self) -> Dict[str, Dict[str, Any]]:
+        """All values: a dict of the groups' dicts. Config(**config.as_dict()) is its equal."""
+    def yaml(self) -> str:
+        """The text of a configuration file, one comment for each option."""
+    def __eq__(self, other: object) -> bool: ...
+
+class DisparityErrors:
+    """Counts over the pixels whose true disparity is known. Several frames' add up with +=."""
+    @property
+    def known(self) -> int:
+        """pixels with truth"""
+    @property
+    def matched(self) -> int:
+        """of these, pixels with a disparity of ours"""
+    @property
+    def density(self) -> float:
+        """0 to 1: matched / known"""
+    @property
+    def bad_of_matched(self) -> Dict[float, float]:
+        """by threshold in px: share of the matched that is off by more"""
+    @property
+    def bad_of_known(self) -> Dict[float, float]:
+        """the same of the known; a hole counts as bad"""
+    @property
+    def mean_absolute_px(self) -> float: ...
+    @property
+    def root_mean_square_px(self) -> float: ...
+    def __iadd__(self, arg0: DisparityErrors) -> DisparityErrors: ...
+
+class DisparityMap:
+    """Disparity for each pixel of the left picture, and for each one without the reason. Arrays (H, W), read-only. A hole is where reject is not 0, and there disparity_px is NaN."""
+    @property
+    def disparity_px(self) -> NDArray[numpy.float32]:
+        """float32, px; NaN = hole"""
+    @property
+    def reject(self) -> NDArray[numpy.uint8]:
+        """uint8, the bits of cairn.Reject; 0 = none"""
+
+class EpipolarCorrection:
+    """What correct_epipolar() makes."""
+    @property
+    def offset(self) -> EpipolarOffset: ...
+    @property
+    def right(self) -> Optional[NDArray[numpy.uint8]]:
+        """(H, W) uint8, the right picture moved; None where the pair is to be matched as it is"""
+
+class EpipolarOffset:
+    """How far the right picture's rows are off: what the left one shows in row y stands in column x of the right one at row y + rows + rows_per_px * (x - (width - 1) / 2)."""
+    def __init__(self, rows: float = 0.0, rows_per_px: float = 0.0) -> None: ...
+    @property
+    def rows(self) -> float:
+        """rows, in the middle column"""
+    @property
+    def rows_per_px(self) -> float:
+        """tangent of the roll"""
+    @property
+    def points(self) -> int:
+        """textured points found again in the right picture"""
+    @property
+    def agreeing(self) -> int:
+        """those of them within half a row of this offset"""
+    @property
+    def outcome(self) -> str:
+        """'off', 'too few textured points', 'the points do not agree', 'aligned' or 'corrected'"""
+
+class Error(ValueError):
+    """Bad input: what was found, what was expected, which argument, option or file. The command says the same."""
+
+class Exec:
+    """How the work is done: threads, instruction set, a pool of image buffers. Never changes a result."""
+    def __init__(self, threads: int = 0, target: str = 'best') -> None:
+        """threads: 0 = one for each processor. target: 'best' or one of supported_targets()."""
+    @property
+    def threads(self) -> int: ...
+    @property
+    def target(self) -> str:
+        """the instruction set that the kernels run on"""
+    @property
+    def heap_allocations(self) -> int:
+        """how many image buffers its pool has asked the heap for"""
+
+class Facets:
+    """The picture cut into connected pieces that no clear edge runs through."""
+    @property
+    def labels(self) -> NDArray[numpy.int32]:
+        """(H, W) int32, read-only: 0 to count - 1"""
+    @property
+    def count(self) -> int: ...
+
+class FoundObjectScore:
+    """What became of one object of ours."""
+    @property
+    def id(self) -> int: ...
+    @property
+    def pixel_count(self) -> int: ...
+    @property
+    def best(self) -> int:
+        """the true object of greatest IoU; 0 = none"""
+    @property
+    def iou(self) -> float: ...
+    @property
+    def phantom(self) -> bool:
+        """large enough, and hardly on any true object"""
+
+class Frame:
+    """All that is known of one pair. Arrays (H, W) are read-only and the frame's own memory, without a copy; rows may be padded, so ask array.copy() for one that may be written to. Keeps the left picture that it was made of, for overlay(): the array itself, not a copy of it. In a notebook it shows itself as overlay()."""
+    @property
+    def disparity(self) -> NDArray[numpy.float32]:
+        """float32, px; NaN = hole, see `reject`"""
+    @property
+    def reject(self) -> NDArray[numpy.uint8]:
+        """uint8, why there is no disparity: bits of cairn.Reject; 0 = there is one"""
+    @property
+    def confidence(self) -> Optional[NDArray[numpy.float32]]:
+        """float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where
+        nothing was matched or the option is off
+        """
+    @property
+    def floor(self) -> Optional[NDArray[numpy.uint8]]:
+        """uint8, 255 = floor, else 0; None where no floor was labelled"""
+    @property
+    def objects_map(self) -> NDArray[numpy.int32]:
+        """int32, the object that each pixel belongs to; 0 = none. `frame.objects_map == object.id` is a mask"""
+    @property
+    def objects(self) -> Objects:
+        """the Objects, nearest first"""
+    @property
+    def disparity_map(self) -> DisparityMap:
+        """disparity and reject as the DisparityMap that stages take"""
+    @property
+    def ground(self) -> Ground:
+        """the floor as a plane, or why there is none"""
+    @property
+    def by_intensity(self) -> Segmentation:
+        """Segmentation of the picture: by intensity, or the facets"""
+    @property
+    def by_disparity(self) -> Segmentation:
+        """Segmentation by disparity, or the groups of facets"""
+    @property
+    def fusion(self) -> Fusion:
+        """both fused"""
+    @property
+    def epipolar(self) -> EpipolarOffset:
+        """how far the right picture's rows were off"""
+    @property
+    def rig(self) -> Optional[Rig]:
+        """the Rig that it was made with, or None"""
+    @property
+    def config(self) -> Config:
+        """the Config that it was made with"""
+    @property
+    def timings(self) -> Dict[str, float]:
+        """milliseconds by stage"""
+    @property
+    def shape(self) -> Tuple[int, int]:
+        """(H, W)"""
+    def overlay(self) -> NDArray[numpy.uint8]:
+        """The left picture with the objects drawn in, each with its id and distance: (h, w, 3) uint8, RGB;
+        small frames are enlarged.
+        """
+    def disparity_view(self) -> NDArray[numpy.uint8]:
+        """Disparity as colour, holes in colours that tell the reason, with a legend: (h, w, 3) uint8, RGB."""
+    def to_json(self) -> str:
+        """The text of objects.json: objects with masks, ground, configuration, timings (docs/formats.md)."""
+    def save(self, folder: PathLike) -> None:
+        """Writes what `cairn segment -o FOLDER` does: disparity, reject, confidence, objects and floor as
+        pictures, overlay.png, disparity_view.png and objects.json; whole or not at all.
+        """
+    def _repr_png_(self) -> bytes: ...
+
+class Fusion:
+    """Which intensity regions make up each fused region: the candidates for objects."""
+    @property
+    def labels(self) -> NDArray[numpy.int32]:
+        """(H, W) int32, read-only: indexes `parts`"""
+    @property
+    def parts(self) -> List[List[int]]:
+        """for each fused region its intensity regions, ascending"""
+    @property
+    def disparity_region(self) -> List[int]:
+        """for each fused region the disparity region that it follows"""
+    def __len__(self) -> int: ...
+
+class Ground:
+    """The floor, or why there is none."""
+    @property
+    def plane(self) -> Optional[GroundPlane]:
+        """a GroundPlane, or None"""
+    @property
+    def support(self) -> float:
+        """0 to 1: share of the valid pixels under the horizon that lie on it"""
+    @property
+    def residual_px(self) -> float:
+        """root mean square distance of these from it, px"""
+    @property
+    def refusal(self) -> str:
+        """why there is no plane, in words; 'none' where there is one"""
+    def __bool__(self) -> bool: ...
+
+class GroundPlane:
+    """A plane as the left picture's disparity: d = a * x + b * y + c, all in px."""
+    @property
+    def a(self) -> float: ...
+    @property
+    def b(self) -> float: ...
+    @property
+    def c(self) -> float: ...
+    def disparity_px(self, x: float, y: float) -> float: ...
+    def __iter__(self) -> Iterator[float]: ...
+
+HOLE_16: int
+
+class Matches:
+    """The outcome of correlation for each pixel of the left picture (best_right: of the right one). Arrays (H, W), read-only; None where match.evidence or match.row_band left them out."""
+    @property
+    def best(self) -> NDArray[numpy.int16]:
+        """int16, disparity of least cost in px; NO_MATCH = none"""
+    @property
+    def best_right(self) -> Optional[NDArray[numpy.int16]]:
+        """int16, the same seen from the right picture"""
+    @property
+    def row_offset(self) -> Optional[NDArray[numpy.int8]]:
+        """int8, row of the match minus y"""
+    @property
+    def cost(self) -> NDArray[numpy.float32]:
+        """float32, of best; inf where there is no match"""
+    @property
+    def runner_up(self) -> Optional[NDArray[numpy.float32]]:
+        """float32, least cost with |d - best| > 1; inf = none"""
+    @property
+    def mean_cost(self) -> Optional[NDArray[numpy.float32]]:
+        """float32, over all candidates of the pixel"""
+    @property
+    def cost_before(self) -> Optional[NDArray[numpy.float32]]:
+        """float32, at best - 1; inf = no such candidate"""
+    @property
+    def cost_after(self) -> Optional[NDArray[numpy.float32]]:
+        """float32, at best + 1; inf = no such candidate"""
+
+NO_MATCH: int
+
+class Object:
+    """Something that stands or hangs in front of the background."""
+    @property
+    def id(self) -> int:
+        """from 1, the nearest, on; its pixels in the map of objects"""
+    @property
+    def box_px(self) -> Tuple[int, int, int, int]:
+        """(x, y, width, height), px"""
+    @property
+    def pixel_count(self) -> int:
+        """area of its mask, px"""
+    @property
+    def disparity_px(self) -> float:
+        """median of its valid pixels, px"""
+    @property
+    def valid_share(self) -> float:
+        """0 to 1: pixels of the mask that have a disparity"""
+    @property
+    def mean_colour(self) -> Tuple[int, int, int]:
+        """(red, green, blue), 0 to 255; grey where the input had no colour"""
+    @property
+    def position_in_camera_m(self) -> Optional[Tuple[float, float, float]]:
+        """(x right, y down, z forward), m: mean of its valid points; None without a rig"""
+    @property
+    def extent_in_camera_m(self) -> Optional[Tuple[float, float, float]]:
+        """(x, y, z), m: the box around its points, 2nd to 98th percentile; None without a rig"""
+    @property
+    def distance_m(self) -> Optional[float]:
+        """z of its position, m; None without a rig"""
+    @property
+    def edge_share(self) -> float:
+        """0 to 1: of its outline, where the picture shows an edge"""
+    @property
+    def cut_share(self) -> float:
+        """0 to 1: of its outline, what lies at the picture's border"""
+    @property
+    def confidence(self) -> float:
+        """0 to 1: how likely it covers a true object by more than half"""
+
+class ObjectErrors:
+    """One frame against its truth."""
+    @property
+    def truth(self) -> List[TrueObjectScore]:
+        """a list of TrueObjectScore"""
+    @property
+    def ours(self) -> List[FoundObjectScore]:
+        """a list of FoundObjectScore"""
+
+class ObjectSummary:
+    """Many frames as one: counts, and means over all their objects."""
+    @property
+    def frames(self) -> int: ...
+    @property
+    def true_objects(self) -> int: ...
+    @property
+    def our_objects(self) -> int: ...
+    @property
+    def phantoms(self) -> int: ...
+    @property
+    def mean_error(self) -> float:
+        """of the paper's E, each capped at 2"""
+    @property
+    def median_error(self) -> float: ...
+    @property
+    def mean_iou(self) -> float: ...
+    @property
+    def mean_boundary_f(self) -> float: ...
+    @property
+    def recall_50(self) -> float:
+        """share of the true objects found with IoU >= 0.5"""
+    @property
+    def precision_50(self) -> float:
+        """share of ours with IoU >= 0.5"""
+
+class Objects:
+    """The objects of a frame, nearest first: a sequence of Object, and their map."""
+    @property
+    def labels(self) -> NDArray[numpy.int32]:
+        """(H, W) int32, read-only: ids, 0 = no object"""
+    def __len__(self) -> int: ...
+    @overload
+    def __getitem__(self, index: int) -> Object: ...
+    @overload
+    def __getitem__(self, range: slice) -> List[Object]: ...
+    def __iter__(self) -> Iterator[Object]: ...
+
+class Option:
+    """One option of the method, as the command and the reference page name it."""
+    @property
+    def name(self) -> str:
+        """its group and name, 'match.window_size'"""
+    @property
+    def group(self) -> str: ...
+    @property
+    def type(self) -> str:
+        """'int', 'float', 'bool', 'choice' or 'points'"""
+    @property
+    def default(self) -> object:
+        """value in the preset asked for"""
+    @property
+    def unit(self) -> str:
+        """may be empty"""
+    @property
+    def range(self) -> str:
+        """'3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'"""
+    @property
+    def help(self) -> str:
+        """what it does"""
+
+class Region:
+    """A set of connected pixels. Mean and variance are over its valid pixels: of grey levels, or of disparities in px."""
+    @property
+    def pixel_count(self) -> int: ...
+    @property
+    def valid_count(self) -> int:
+        """pixels that carry a value"""
+    @property
+    def box(self) -> Tuple[int, int, int, int]:
+        """(x, y, width, height), px"""
+    @property
+    def mean(self) -> float: ...
+    @property
+    def variance(self) -> float: ...
+    @property
+    def is_floor(self) -> bool:
+        """the one floor region of a disparity segmentation"""
+
+class RegionGraph:
+    """Regions and which of them touch (4-neighbourhood)."""
+    def __len__(self) -> int: ...
+    def neighbours(self, region: int) -> List[int]:
+        """The regions that touch this one, ascending."""
+
+class Reject(enum.IntFlag):
+    """Why a pixel has no disparity: a set of bits, as in frame.reject.
+    frame.reject & cairn.Reject.left_right != 0   # seen by one camera only
+border: no candidate lay inside the right picture; left_right: the match does not lead back; not_unique: another disparity fits nearly as well; flat: every disparity fits equally; no_texture: too little texture; below_ground: under the floor, a reflection; speckle: a small island; no_data: the map from outside had none."""
+    none: Reject
+    border: Reject
+    left_right: Reject
+    not_unique: Reject
+    flat: Reject
+    no_texture: Reject
+    below_ground: Reject
+    speckle: Reject
+    no_data: Reject
+
+class Rig:
+    """The calibration of a rectified pair (C++: StereoRig). Depth in metres: Z = focal_px * baseline_m / (d + doffs_px), d in px."""
+    def __init__(
+        self,
+        focal_px: float,
+        baseline_m: float,
+        cx_px: float = 0.0,
+        cy_px: float = 0.0,
+        doffs_px: float = 0.0,
+    ) -> None:
+        """Raises cairn.Error unless every number is finite and focal length and baseline are positive."""
+    @staticmethod
+    def from_file(path: PathLike) -> Rig:
+        """The rig of a calibration file, see load_calibration(). Raises cairn.Error where it has none."""
+    @property
+    def focal_px(self) -> float:
+        """focal length, px"""
+    @property
+    def baseline_m(self) -> float:
+        """distance of the cameras, m"""
+    @property
+    def cx_px(self) -> float:
+        """principal point of the left camera, px"""
+    @property
+    def cy_px(self) -> float:
+        """principal point of the left camera, px"""
+    @property
+    def doffs_px(self) -> float:
+        """cx of the right camera less cx of the left one, px"""
+    def point_in_camera_m(self, x: float, y: float, disparity_px: float) -> Optional[Tuple[float, float, float]]:
+        """The point (x right, y down, z forward; m) that pixel (x, y) with this disparity shows in the left
+        camera's frame; None at or beyond infinity.
+        """
+    def __eq__(self, other: object) -> bool: ...
+
+class SceneDisparity:
+    """Disparity with everything that speaks against it, ground and speckle included."""
+    @property
+    def disparity_map(self) -> DisparityMap: ...
+    @property
+    def disparity(self) -> NDArray[numpy.float32]:
+        """(H, W) float32, px, read-only; NaN = hole"""
+    @property
+    def reject(self) -> NDArray[numpy.uint8]:
+        """(H, W) uint8, bits of cairn.Reject"""
+    @property
+    def ground(self) -> Ground: ...
+    @property
+    def floor(self) -> Optional[NDArray[numpy.uint8]]:
+        """(H, W) uint8, 255 = floor; None where there is none"""
+    @property
+    def epipolar(self) -> EpipolarOffset: ...
+    @property
+    def confidence(self) -> Optional[NDArray[numpy.float32]]:
+        """(H, W) float32, 0 to 1; or None"""
+
+class Segmentation:
+    """Regions: every pixel belongs to one."""
+    @property
+    def labels(self) -> NDArray[numpy.int32]:
+        """(H, W) int32, read-only: indexes `regions`"""
+    @property
+    def regions(self) -> List[Region]:
+        """a list of Region, in raster order of their first pixel"""
+    def __len__(self) -> int: ...
+
+class Segmenter:
+    """segment() for video: keeps threads and image buffers from frame to frame, so that from the second frame on no image is allocated (as long as earlier frames, and arrays of them, have died). Every frame is what segment() would give. Several threads may use one."""
+    def __init__(
+        self,
+        rig: RigLike = None,
+        *,
+        preset: str = 'default',
+        config: Union[Config, PathLike, None] = None,
+        exec: Optional[Exec] = None,
+        epipolar_correction: EpipolarCorrectionOptions = ...,
+        match: MatchOptions = ...,
+        semi_global: SemiGlobalOptions = ...,
+        subpixel: SubpixelOptions = ...,
+        left_right: LeftRightOptions = ...,
+        uniqueness: UniquenessOptions = ...,
+        flatness: FlatnessOptions = ...,
+        texture: TextureOptions = ...,
+        ground: GroundOptions = ...,
+        speckle: SpeckleOptions = ...,
+        confidence: ConfidenceOptions = ...,
+        evidence: EvidenceOptions = ...,
+        background: BackgroundOptions = ...,
+        intensity: IntensityOptions = ...,
+        disparity: DisparityOptions = ...,
+        fusion: FusionOptions = ...,
+        facets: FacetsOptions = ...,
+        figure: FigureOptions = ...,
+        group: GroupOptions = ...,
+        objects: ObjectsOptions = ...,
+    ) -> None:
+        """The arguments are those of segment()."""
+    def segment(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> Frame:
+        """One frame."""
+    @property
+    def config(self) -> Config: ...
+    @property
+    def rig(self) -> Optional[Rig]: ...
+    @property
+    def exec(self) -> Exec: ...
+
+class TrueObjectScore:
+    """How well one true object was found."""
+    @property
+    def id(self) -> int: ...
+    @property
+    def pixel_count(self) -> int: ...
+    @property
+    def found(self) -> int:
+        """our object of greatest IoU; 0 = none"""
+    @property
+    def iou(self) -> float: ...
+    @property
+    def boundary_f(self) -> float:
+        """0 to 1"""
+    @property
+    def over_segmented(self) -> bool: ...
+    @property
+    def under_segmented(self) -> bool: ...
+    @property
+    def error(self) -> float:
+        """the paper's E, Eq. 5: 1 / IoU - 1; inf where nothing overlaps"""
+
+def apply_merges(
+    labels: LabelsLike,
+    graph: RegionGraph,
+    merged_into: List[int],
+    value_scale: float = 1.0,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> Segmentation:
+    """Writes what growing made. value_scale: what one unit of the graph's values is (1/16 px for
+    disparities).
+    """
+
+def as_segmentation(
+    facets: Facets,
+    left: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> Segmentation:
+    """The facets as a segmentation, with their grey statistics."""
+
+def build_graph(
+    labels: LabelsLike,
+    values: NumbersLike,
+    floor: MaskLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> RegionGraph:
+    """Counts and links regions. labels: (H, W) integers from 0 on; values: what the statistics are of, (H,
+    W) uint8 grey levels, or int16 as quantised() gives them, then with floor: (H, W) uint8, not 0 =
+    floor, or None.
+    """
+
+def combine(
+    refined_px: FloatsLike,
+    verdicts: sequence,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> DisparityMap:
+    """Unites verdicts, arrays (H, W) uint8 of cairn.Reject bits (yours among them), with the disparities:
+    a pixel keeps every bit that it got, NaN adds Reject.border. refined_px: (H, W) float32, px.
+    """
+
+def compiled_targets() -> List[str]:
+    """The instruction sets in this build, slowest first."""
+
+def correct_epipolar(
+    left: ImageLike,
+    right: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    max_rows: float = ...,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+) -> EpipolarCorrection:
+    """Both: compensates a small misalignment of the cameras, as vibration makes it, before the matching."""
+
+def disparity_errors(
+    ours_px: FloatsLike,
+    truth_px: FloatsLike,
+    excluded: MaskLike = None,
+    skip_left: int = 0,
+) -> DisparityErrors:
+    """Compares two disparity maps, (H, W) float32 in px, NaN = a hole, no truth. excluded: (H, W) uint8,
+    pixels that are not 0 are left out; columns x < skip_left are left out, too.
+    """
+
+def draw_disparity(disparity: DisparityLike, rig: RigLike = None) -> NDArray[numpy.uint8]:
+    """Disparity as colour, holes in colours that tell the reason, with a legend (with a rig in metres,
+    too): (h, w, 3) uint8, RGB.
+    """
+
+def draw_objects(
+    left: ImageLike,
+    objects: Objects,
+    floor: MaskLike = None,
+    *,
+    bgr: bool = False,
+) -> NDArray[numpy.uint8]:
+    """The left picture with the objects drawn in: (h, w, 3) uint8, RGB."""
+
+def edge_strength(
+    left: ImageLike,
+    smoothing_sigma: float = 0.699999988079071,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.uint16]:
+    """Edges between facets: central differences in 1/4 grey level, of colour the strongest channel's. (H,
+    W) uint16.
+    """
+
+def estimate_confidence(
+    matches: Matches,
+    disparity: DisparityLike,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    enabled: bool = ...,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+) -> Optional[NDArray[numpy.float32]]:
+    """How likely each disparity is within 1 px of the truth: (H, W) float32, 0 to 1; 0 where there is
+    none. None where it is off, or where `matches` lacks runner_up or mean_cost. Of the group match only
+    `method` counts: how `matches` was made.
+    """
+
+def estimate_disparity(
+    left: ImageLike,
+    right: ImageLike,
+    rig: RigLike = None,
+    *,
+    preset: str = 'default',
+    config: Union[Config, PathLike, None] = None,
+    exec: Optional[Exec] = None,
+    bgr: bool = False,
+    epipolar_correction: EpipolarCorrectionOptions = ...,
+    match: MatchOptions = ...,
+    semi_global: SemiGlobalOptions = ...,
+    subpixel: SubpixelOptions = ...,
+    left_right: LeftRightOptions = ...,
+    uniqueness: UniquenessOptions = ...,
+    flatness: FlatnessOptions = ...,
+    texture: TextureOptions = ...,
+    ground: GroundOptions = ...,
+    speckle: SpeckleOptions = ...,
+    confidence: ConfidenceOptions = ...,
+    evidence: EvidenceOptions = ...,
+    background: BackgroundOptions = ...,
+    intensity: IntensityOptions = ...,
+    disparity: DisparityOptions = ...,
+    fusion: FusionOptions = ...,
+    facets: FacetsOptions = ...,
+    figure: FigureOptions = ...,
+    group: GroupOptions = ...,
+    objects: ObjectsOptions = ...,
+) -> SceneDisparity:
+    """The method's first half: matching and every check, ground and speckle included. Returns a
+    SceneDisparity.
+    left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's
+    order): what stands at (x, y) on the left stands at (x - d, y) on the right. Grey arrays whose rows
+    are dense are used where they lie, without a copy; do not write to them meanwhile. rig: a Rig, a
+    Calibration, or None: no metres then. preset, then config (a Config or a file's name), then the
+    options; later ones win. Other Python threads run meanwhile. Raises cairn.Error for what cannot be
+    used.
+    """
+
+def external_disparity(
+    disparity_px: FloatsLike,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> DisparityMap:
+    """A map from outside (depth camera, learned matcher), (H, W) float32 in px: NaN and inf become holes
+    with Reject.no_data.
+    """
+
+def find_epipolar_offset(
+    left: ImageLike,
+    right: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    max_rows: float = ...,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+) -> EpipolarOffset:
+    """Finds how far the right picture's rows are off, from textured points all over it. left, right: (H,
+    W) or (H, W, 3) uint8 of one size.
+    """
+
+def find_evidence(
+    left: ImageLike,
+    disparity: DisparityLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    noise_factor: float = ...,
+    gradient_min: float = ...,
+    agreement: float = ...,
+) -> NDArray[numpy.float32]:
+    """The disparities that rest on the pixel's own texture, NaN elsewhere: (H, W) float32, px."""
+
+def fit_background(
+    evidence_px: FloatsLike,
+    ground: Ground,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    max_walls: int = ...,
+    tolerance: float = ...,
+    min_share: float = ...,
+    min_share_square: float = ...,
+    max_behind: float = ...,
+) -> Background:
+    """Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as
+    find_evidence() gives it.
+    """
+
+def fit_ground(
+    disparity: DisparityLike,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    source: Literal["off", "automatic", "points", "pose"] = ...,
+    points: Points = ...,
+    height: float = ...,
+    pitch: float = ...,
+    roll: float = ...,
+    margin: float = ...,
+    label_floor: bool = ...,
+) -> Ground:
+    """Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve trust)."""
+
+def fuse(
+    by_intensity: Segmentation,
+    by_disparity: Segmentation,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> Fusion:
+    """Each intensity region goes to the disparity region with the greatest overlap (paper, Eq. 4)."""
+
+def gradient(
+    image: NumbersLike,
+    smoothing_sigma: float = 0.0,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.uint16]:
+    """Gradient magnitude: of a picture, (H, W) uint8, in grey levels, capped at 255; or of quantised()
+    disparities, int16, in 1/16 px, 65535 in holes. (H, W) uint16, from one side of a pixel to the
+    other.
+    """
+
+def group_facets(
+    facets: Facets,
+    figure: List[int],
+    disparity: DisparityLike,
+    evidence_px: FloatsLike,
+    background: Background,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    step: float = ...,
+    step_share: float = ...,
+    deviation: float = ...,
+    deviation_share: float = ...,
+    gap_share: float = ...,
+    min_area: float = ...,
+    occluded_gap: float = ...,
+    margin: float = ...,
+    agreement: float = ...,
+    longest_bridge: float = ...,
+    border_weight: float = ...,
+    skirting: float = ...,
+    smoothness: float = ...,
+    colour_weight: float = ...,
+    continuation_weight: float = ...,
+    largest_part: float = ...,
+) -> Segmentation:
+    """Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the
+    background (is_floor), the others are groups. Means in px.
+    """
+
+def grow_near_to_far(
+    graph: RegionGraph,
+    *,
+    mean_difference_max: float,
+    deviation_max: float,
+    sigma_min: float,
+    min_region_area: int = 0,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.int32]:
+    """The paper's region growing for disparity, from the nearest region to the farthest; else as
+    grow_statistical().
+    """
+
+def grow_statistical(
+    graph: RegionGraph,
+    *,
+    mean_difference_max: float,
+    deviation_max: float,
+    sigma_min: float,
+    min_region_area: int = 0,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.int32]:
+    """Statistical region growing (paper, Eq. 1 to 3): for each region that in which it ended, int32. The
+    criteria are in units of the graph's values; min_region_area in px.
+    """
+
+def label_floor(
+    disparity: DisparityLike,
+    ground: Ground,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    source: Literal["off", "automatic", "points", "pose"] = ...,
+    points: Points = ...,
+    height: float = ...,
+    pitch: float = ...,
+    roll: float = ...,
+    margin: float = ...,
+    label_floor: bool = ...,
+) -> Optional[NDArray[numpy.uint8]]:
+    """(H, W) uint8: 255 where the disparity is the floor's, else 0. None where there is no ground or
+    label_floor is off.
+    """
+
+def load_calibration(path: PathLike) -> Calibration:
+    """Reads a calibration, its form recognised by content: our own YAML, Middlebury, KITTI, OpenCV
+    FileStorage, ROS camera_info (or the folder of a pair of them), key=value lines. Raises cairn.Error.
+    """
+
+def load_disparity(path: PathLike) -> NDArray[numpy.float32]:
+    """A disparity map from .png (16 bits, px * 256, 0 = hole) or .pfm: (H, W) float32, px, NaN = hole."""
+
+def load_labels(path: PathLike) -> NDArray[numpy.uint16]:
+    """The numbers of a one-channel file as they stand: (H, W) uint16."""
+
+def load_pair(left: PathLike, right: PathLike) -> Tuple[NDArray[numpy.uint8], NDArray[numpy.uint8]]:
+    """Both pictures; deeper ones are reduced by the same factor, so that a difference of exposure stays
+    what it was.
+    """
+
+def load_picture(path: PathLike) -> NDArray[numpy.uint8]:
+    """A PNG, JPEG, PGM, PPM or TIFF file: (H, W) uint8 where it is grey, (H, W, 3) RGB where it is in
+    colour. Of deeper pictures the low bits are dropped.
+    """
+
+def match(
+    left: ImageLike,
+    right: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+    penalty_small: float = ...,
+    penalty_large: float = ...,
+    penalty_edge: float = ...,
+) -> Matches:
+    """Matches every pixel of the left picture with its candidates in the same row of the right one; the
+    winner takes all. left, right: (H, W) or (H, W, 3) uint8 of one size, rectified: what stands at (x,
+    y) on the left stands at (x - d, y) on the right.
+    """
+
+def match_semi_global(
+    left: ImageLike,
+    right: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+    penalty_small: float = ...,
+    penalty_large: float = ...,
+    penalty_edge: float = ...,
+) -> Matches:
+    """match() with method='semi_global', whatever the configuration says: neighbours vote along four paths
+    (Hirschmueller 2008). Of the group match only min_disparity, num_disparities and evidence count.
+    """
+
+def measure(
+    fusion: Fusion,
+    by_disparity: Segmentation,
+    disparity: DisparityLike,
+    left: ImageLike,
+    rig: RigLike = None,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    min_area: float = ...,
+    max_area: float = ...,
+    min_confidence: float = ...,
+) -> Objects:
+    """Turns fused regions into objects: what is floor, background, too small, unseen or unlikely is none."""
+
+def object_errors(
+    ours: LabelsLike,
+    truth: LabelsLike,
+    min_area: int = 200,
+    boundary_tolerance: float = 0.75,
+) -> ObjectErrors:
+    """Compares a map of objects with the truth of the same size: (H, W) integers, 0 = none; truth -1 =
+    don't care. min_area: px, smaller true objects are not scored; boundary_tolerance: % of the image's
+    diagonal.
+    """
+
+def options(preset: str = 'default') -> List[Option]:
+    """Every option with its value in a preset, in the order of the stages."""
+
+def preset_names() -> List[str]:
+    """The presets by name: 'default', 'paper'."""
+
+def quantised(
+    disparity: DisparityLike,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.int16]:
+    """Disparities in 1/16 px: (H, W) int16, HOLE_16 in holes."""
+
+def refine_subpixel(
+    matches: Matches,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    enabled: bool = ...,
+    method: Literal["parabola", "equiangular"] = ...,
+) -> NDArray[numpy.float32]:
+    """Where the curve through each winner's cost and its neighbours' is lowest: (H, W) float32, px; NaN
+    where there is no match.
+    """
+
+def reject_ambiguous(
+    matches: Matches,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    ratio: float = ...,
+) -> NDArray[numpy.uint8]:
+    """Pixels with more than one suitable minimum: (H, W) uint8, Reject.not_unique or 0."""
+
+def reject_below_ground(
+    disparity: DisparityLike,
+    ground: Ground,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    source: Literal["off", "automatic", "points", "pose"] = ...,
+    points: Points = ...,
+    height: float = ...,
+    pitch: float = ...,
+    roll: float = ...,
+    margin: float = ...,
+    label_floor: bool = ...,
+) -> DisparityMap:
+    """Rejects matches under the floor, which are reflections."""
+
+def reject_flat(
+    matches: Matches,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    threshold: float = ...,
+) -> NDArray[numpy.uint8]:
+    """Pixels with a constant correlation function: (H, W) uint8, Reject.flat or 0."""
+
+def reject_inconsistent(
+    matches: Matches,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    max_diff: float = ...,
+    method: Literal["true", "vote"] = ...,
+) -> NDArray[numpy.uint8]:
+    """Pixels whose match, followed back from the right picture, does not return to them: (H, W) uint8,
+    Reject.left_right or 0.
+    """
+
+def reject_speckles(
+    disparity: DisparityLike,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    size: int = ...,
+    range: float = ...,
+) -> DisparityMap:
+    """Rejects small islands of disparity."""
+
+def reject_textureless(
+    left: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    window_size: int = ...,
+    threshold: float = ...,
+) -> NDArray[numpy.uint8]:
+    """Pixels without enough texture (Moravec operator): (H, W) uint8, Reject.no_texture or 0. left: (H, W)
+    or (H, W, 3) uint8.
+    """
+
+def save_disparity(path: PathLike, disparity_px: FloatsLike) -> None:
+    """Writes a map as .png or .pfm, whole or not at all."""
+
+def save_png(path: PathLike, image: NumbersLike) -> None:
+    """Writes (H, W) uint8 or uint16, or (H, W, 3) uint8 RGB, as PNG, whole or not at all."""
+
+def segment(
+    left: ImageLike,
+    right: Optional[ImageLike] = None,
+    rig: RigLike = None,
+    *,
+    preset: str = 'default',
+    config: Union[Config, PathLike, None] = None,
+    exec: Optional[Exec] = None,
+    bgr: bool = False,
+    disparity_map: DisparityLike = None,
+    epipolar_correction: EpipolarCorrectionOptions = ...,
+    match: MatchOptions = ...,
+    semi_global: SemiGlobalOptions = ...,
+    subpixel: SubpixelOptions = ...,
+    left_right: LeftRightOptions = ...,
+    uniqueness: UniquenessOptions = ...,
+    flatness: FlatnessOptions = ...,
+    texture: TextureOptions = ...,
+    ground: GroundOptions = ...,
+    speckle: SpeckleOptions = ...,
+    confidence: ConfidenceOptions = ...,
+    evidence: EvidenceOptions = ...,
+    background: BackgroundOptions = ...,
+    intensity: IntensityOptions = ...,
+    disparity: DisparityOptions = ...,
+    fusion: FusionOptions = ...,
+    facets: FacetsOptions = ...,
+    figure: FigureOptions = ...,
+    group: GroupOptions = ...,
+    objects: ObjectsOptions = ...,
+) -> Frame:
+    """Objects from a stereo pair: the whole method. Returns a Frame.
+    left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's
+    order): what stands at (x, y) on the left stands at (x - d, y) on the right. Grey arrays whose rows
+    are dense are used where they lie, without a copy; do not write to them meanwhile. rig: a Rig, a
+    Calibration, or None: no metres then. preset, then config (a Config or a file's name), then the
+    options; later ones win. Other Python threads run meanwhile. Raises cairn.Error for what cannot be
+    used. disparity_map instead of right: a map from elsewhere, (H, W) float32 in px, NaN = hole, or a
+    DisparityMap.
+    """
+
+def segment_disparity(
+    disparity: DisparityLike,
+    floor: MaskLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    smoothing_sigma: float = ...,
+    mean_difference_max: float = ...,
+    deviation_max: float = ...,
+    sigma_min: float = ...,
+    min_region_area: float = ...,
+) -> Segmentation:
+    """Regions of like disparity, nearest first: gradient, watershed, build_graph, grow_near_to_far. floor:
+    (H, W) uint8 as label_floor() gives it, one region of its own; or None.
+    """
+
+def segment_facets(
+    left: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    smoothing_sigma: float = ...,
+    edge_min: float = ...,
+    noise_factor: float = ...,
+    contrast_share: float = ...,
+) -> Facets:
+    """Cuts the picture into pieces that no clear edge runs through, by colour where there is colour."""
+
+def segment_intensity(
+    left: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    smoothing_sigma: float = ...,
+    mean_difference_max: float = ...,
+    deviation_max: float = ...,
+    sigma_min: float = ...,
+    min_region_area: float = ...,
+) -> Segmentation:
+    """Regions of like intensity: gradient, watershed, build_graph, grow_statistical. left: (H, W) or (H,
+    W, 3) uint8.
+    """
+
+def separate_figure(
+    facets: Facets,
+    left: ImageLike,
+    evidence_px: FloatsLike,
+    background: Background,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    margin: float = ...,
+    agreement: float = ...,
+    longest_bridge: float = ...,
+    border_weight: float = ...,
+    skirting: float = ...,
+    smoothness: float = ...,
+    colour_weight: float = ...,
+    continuation_weight: float = ...,
+    largest_part: float = ...,
+) -> NDArray[numpy.int32]:
+    """For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, one
+    number for each facet.
+    """
+
+def shift_rows(
+    right: ImageLike,
+    offset: EpipolarOffset,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.uint8]:
+    """The right picture, (H, W) uint8, moved back by `offset`, so that its rows are the left one's."""
+
+def summarise(frames: List[ObjectErrors]) -> ObjectSummary:
+    """A summary of many frames' object_errors()."""
+
+def supported_targets() -> List[str]:
+    """Those of them that this processor has, slowest first."""
+
+def watershed(
+    gradient: NumbersLike,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> Basins:
+    """Watershed by steepest descent, 4-connected, no ridge lines. gradient: (H, W) uint16."""

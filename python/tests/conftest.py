@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import cairn
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SAMPLES = sorted(folder for folder in (SOURCE / "samples").iterdir() if (folder / "left.png").exists())
+
+
+@pytest.fixture(scope="session")
+def source():
+    return SOURCE
+
+
+@pytest.fixture(scope="session")
+def command():
+    """The command of the same build."""
+    path = os.environ.get("CAIRN_COMMAND")
+    if not path:
+        pytest.skip("CAIRN_COMMAND does not say where the command is")
+    return path
+
+
+class Sample:
+    """A pair with its calibration; the frame is made once."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.left, self.right = cairn.load_pair(folder / "left.png", folder / "right.png")
+        self.calibration = cairn.load_calibration(folder / "calib.txt")
+        self.frame = cairn.segment(self.left, self.right, self.calibration)
+
+    def gray(self):
+        """Both pictures in grey."""
+        return tuple(gray_of(picture) for picture in (self.left, self.right))
+
+
+def gray_of(rgb):
+    r, g, b = (rgb[..., channel].astype(int) for channel in range(3))
+    return ((77 * r + 150 * g + 29 * b + 128) >> 8).astype(np.uint8)
+
+
+@pytest.fixture(scope="session")
+def sample():
+    return Sample(SOURCE / "samples" / "four_in_a_row")
+
+
+def same(a, b):
+    """Bit for bit, holes included."""
+    return (a is None and b is None) or (
+        a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+    )
+
+
+def same_frame(a, b):
+    names = ["disparity", "reject", "confidence", "floor", "objects_map"]
+    return all(same(getattr(a, name), getattr(b, name)) for name in names) and repr(a) == repr(b)

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""What may come in and how; who owns what comes out."""
+
+import ctypes
+import gc
+import mmap
+import weakref
+
+import numpy as np
+import pytest
+
+import cairn
+from cairn import _cairn
+from conftest import gray_of, same, same_frame
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+# ---- in ----
+
+
+def test_grey_pictures_are_read_where_they_lie():
+    picture = np.zeros((48, 64), np.uint8)
+    assert _cairn._address_of_pixels(picture) == address(picture)
+    window = picture[5:40, 7:50]  # rows of a larger picture
+    assert _cairn._address_of_pixels(window) == address(window)
+    row = picture[3:4, :]
+    assert _cairn._address_of_pixels(row) == address(row)
+    every_other_row = picture[::2]
+    assert _cairn._address_of_pixels(every_other_row) == address(every_other_row)
+    picture.flags.writeable = False
+    assert _cairn._address_of_pixels(picture) == address(picture)
+
+
+def test_pixels_that_do_not_lie_side_by_side_are_copied():
+    picture = np.zeros((48, 64), np.uint8)
+    for other in (picture[:, ::2], picture.T, picture[::-1], picture[:, ::-1], np.asfortranarray(picture)):
+        assert _cairn._address_of_pixels(other) != address(other)
+
+
+def test_any_layout_gives_the_same_frame(sample):
+    left, right = sample.gray()
+    expected = cairn.segment(left, right, sample.calibration)
+
+    def with_room(picture):
+        room = np.full((300, 400), 77, np.uint8)
+        room[30:270, 40:360] = picture
+        return room[30:270, 40:360]
+
+    def spread(picture):
+        wide = np.zeros((240, 640), np.uint8)
+        wide[:, ::2] = picture
+        return wide[:, ::2]
+
+    def upside_down(picture):
+        return np.ascontiguousarray(picture[::-1])[::-1]
+
+    for layout in (with_room, spread, upside_down, np.asfortranarray, lambda p: p[:, :, None], memoryview):
+        assert same_frame(cairn.segment(layout(left), layout(right), sample.calibration), expected)
+
+
+def test_colour_is_rgb_and_bgr_when_told(sample):
+    swapped = [np.ascontiguousarray(picture[:, :, ::-1]) for picture in (sample.left, sample.right)]
+    assert same_frame(cairn.segment(*swapped, sample.calibration, bgr=True), sample.frame)
+    views = [picture[:, :, ::-1] for picture in swapped]  # a view that is RGB, its channels backwards
+    assert same_frame(cairn.segment(*views, sample.calibration), sample.frame)
+    taken_for_rgb = cairn.segment(*swapped, sample.calibration)
+    assert [o.mean_colour for o in taken_for_rgb.objects] != [o.mean_colour for o in sample.frame.objects]
+
+
+def test_grey_of_colours_is_the_files_grey(sample):
+    left, right = sample.gray()
+    in_grey = cairn.match(left, right, num_disparities=32)
+    in_colour = cairn.match(sample.left, sample.right, num_disparities=32)
+    assert same(in_grey.best, in_colour.best) and same(in_grey.cost, in_colour.cost)
+
+
+def test_nothing_is_read_beyond_a_pictures_last_pixel():
+    """Pictures that end where the process's memory ends."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    random = np.random.default_rng(5)
+
+    def at_the_end(height, width):
+        area = height * width
+        pages = -(-area // mmap.PAGESIZE) + 1
+        memory = mmap.mmap(-1, pages * mmap.PAGESIZE)
+        everything = np.frombuffer(memory, np.uint8)
+        last_page = everything[(pages - 1) * mmap.PAGESIZE :]
+        if libc.mprotect(ctypes.c_void_p(address(last_page)), mmap.PAGESIZE, 0) != 0:
+            pytest.skip("memory cannot be protected here")
+        picture = everything[(pages - 1) * mmap.PAGESIZE - area : (pages - 1) * mmap.PAGESIZE].reshape(height, width)
+        picture[:] = random.integers(0, 256, picture.shape)
+        return picture
+
+    for height, width in ((40, 61), (33, 64), (50, 97)):
+        left, right = at_the_end(height, width), at_the_end(height, width)
+        for preset in cairn.preset_names():
+            for method in ("window", "semi_global"):
+                cairn.segment(left, right, preset=preset, match={"num_disparities": 17, "method": method})
+        cairn.match(left, right, method="window", cost="sad", prefilter="xsobel", num_disparities=9, row_band=2)
+
+
+@pytest.mark.parametrize("height, width", [(1, 1), (1, 40), (40, 1), (9, 9), (17, 33)])
+def test_any_size_that_the_window_fits_is_taken_and_others_are_refused_by_name(height, width):
+    picture = np.zeros((height, width), np.uint8)
+    if min(height, width) >= 9:
+        assert cairn.segment(picture, picture, match={"num_disparities": 5}).shape == (height, width)
+        return
+    with pytest.raises(cairn.Error, match="option match.window_size"):
+        cairn.segment(picture, picture, match={"num_disparities": 1})
+
+
+BAD_PICTURES = [
+    (None, "left: found None, expected a picture"),
+    (3, "left: found a value of type int"),
+    ("left.png", "left: found a value of type str"),
+    (b"left", "left: found a value of type bytes"),
+    ([[1, 2], [3, 4]], "left: found a value of type list"),
+    (np.zeros((4, 5)), r"left: found an array of shape \(4, 5\) and type float64"),
+    (np.zeros((4, 5), np.uint16), "type uint16, expected a picture: an array .* of uint8"),
+    (np.zeros((4, 5), np.int8), "type int8"),
+    (np.zeros(5, np.uint8), r"left: found an array of shape \(5,\)"),
+    (np.zeros((4, 5, 4), np.uint8), r"shape \(4, 5, 4\)"),
+    (np.zeros((2, 4, 5, 3), np.uint8), r"shape \(2, 4, 5, 3\)"),
+    (np.zeros((0, 5), np.uint8), "at least one pixel"),
+    (np.zeros((5, 0, 3), np.uint8), "at least one pixel"),
+    (np.broadcast_to(np.zeros((1, 1), np.uint8), (1 << 15, 1 << 14)), r"at most 2\^28 pixels"),
+]
+
+
+@pytest.mark.parametrize("picture, words", BAD_PICTURES)
+def test_a_bad_picture_is_refused_by_name(sample, picture, words):
+    with pytest.raises(cairn.Error, match=words):
+        cairn.segment(picture, sample.right)
+    with pytest.raises(cairn.Error, match=words.replace("left: ", "right: ")):
+        cairn.segment(sample.left, picture)
+
+
+def test_pictures_of_two_sizes_are_refused(sample):
+    with pytest.raises(cairn.Error, match="left image is 320x240, right image is 319x240"):
+        cairn.segment(sample.left, sample.right[:, 1:])
+
+
+def test_disparities_may_be_any_floats_but_no_integers(sample):
+    truth = cairn.load_disparity(sample.folder / "disp_left.png")
+    expected = cairn.segment(sample.left, disparity_map=truth)
+    for other in (truth.astype(np.float64), np.asfortranarray(truth), truth.astype(">f4"), cairn.external_disparity(truth)):
+        assert same_frame(cairn.segment(sample.left, disparity_map=other), expected)
+    with pytest.raises(cairn.Error, match="disparity_map: found an array .* type int16, expected .* float32"):
+        cairn.segment(sample.left, disparity_map=np.zeros((240, 320), np.int16))
+    with pytest.raises(cairn.Error, match="the map is 319x240, the left image 320x240"):
+        cairn.segment(sample.left, disparity_map=truth[:, 1:])
+    with pytest.raises(cairn.Error):
+        cairn.segment(sample.left, disparity_map=np.full((240, 320), 1e9, np.float32))
+    with pytest.raises(cairn.Error, match="beside disparity_map"):
+        cairn.segment(sample.left, sample.right, disparity_map=truth)
+
+
+# ---- out ----
+
+
+def test_arrays_of_a_frame_are_its_own_memory_and_outlive_it(sample):
+    frame = cairn.segment(sample.left, sample.right, sample.calibration)
+    assert address(frame.disparity) == address(frame.disparity)
+    assert address(frame.disparity) == address(frame.disparity_map.disparity_px)
+    disparity, labels, objects = frame.disparity, frame.by_disparity.labels, frame.objects
+    before = disparity.copy()
+    del frame
+    gc.collect()
+    [cairn.segment(sample.left[::-1], sample.right) for _ in range(3)]  # would reuse freed memory
+    np.testing.assert_array_equal(disparity, before)
+    assert labels.max() == len(sample.frame.by_disparity) - 1
+    assert repr(objects) == repr(sample.frame.objects)
+
+
+def test_arrays_have_the_types_and_shapes_that_the_guide_says(sample):
+    frame = sample.frame
+    for name, kind in (("disparity", np.float32), ("reject", np.uint8), ("confidence", np.float32), ("floor", np.uint8),
+                       ("objects_map", np.int32)):
+        array = getattr(frame, name)
+        assert array.dtype == kind and array.shape == frame.shape == (240, 320), name
+    np.testing.assert_array_equal(np.isnan(frame.disparity), frame.reject != 0)
+    assert frame.confidence.min() >= 0 and frame.confidence.max() <= 1
+    assert not frame.confidence[frame.reject != 0].any()
+    assert set(np.unique(frame.floor)) == {0, 255}
+    assert sorted(set(np.unique(frame.objects_map)) - {0}) == [o.id for o in frame.objects]
+    for made in (frame.by_intensity, frame.by_disparity, frame.fusion):
+        assert made.labels.dtype == np.int32 and made.labels.max() == len(made) - 1
+    assert frame.overlay().dtype == np.uint8 and frame.overlay().shape[2] == 3
+
+
+def test_what_stages_rely_on_cannot_be_written_to(sample):
+    for array in (sample.frame.disparity, sample.frame.objects_map, sample.frame.by_disparity.labels):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1
+        with pytest.raises(ValueError):
+            array.flags.writeable = True
+        array.copy()[0, 0] = 1
+    refined = cairn.refine_subpixel(cairn.match(sample.left, sample.right, num_disparities=8))
+    refined[0, 0] = 3  # nobody else's
+
+
+def test_a_frame_keeps_the_left_picture_only_as_long_as_it_lives(sample):
+    left, right = sample.gray()
+    kept, unkept = weakref.ref(left), weakref.ref(right)
+    frame = cairn.segment(left, right)
+    del left, right
+    gc.collect()
+    assert kept() is not None and unkept() is None
+    frame.overlay()
+    del frame
+    gc.collect()
+    assert kept() is None
+
+
+def test_memory_does_not_grow_with_the_number_of_frames(sample):
+    def resident():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * mmap.PAGESIZE
+
+    left, right = sample.left[80:160], sample.right[80:160]
+    for _ in range(10):
+        cairn.segment(left, right, match={"num_disparities": 8})
+    before = resident()
+    for _ in range(60):
+        frame = cairn.segment(left, right, match={"num_disparities": 8})
+        frame.disparity, frame.by_disparity.labels, frame._repr_png_(), frame.disparity_view()
+    per_frame = sample.left[80:160].nbytes * 10
+    assert resident() - before < 30 * per_frame
+
+
+def test_gray_of_helper_is_the_librarys(sample):
+    colour = np.random.default_rng(1).integers(0, 256, (20, 40, 3)).astype(np.uint8)
+    np.testing.assert_array_equal(
+        cairn.gradient(gray_of(colour), 1.0), cairn.gradient(colour, 1.0)
+    )

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""Frames, objects and rigs as one meets them in a notebook; files."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+import cairn
+from conftest import same
+
+
+def test_objects_tell_what_they_are(sample):
+    frame = sample.frame
+    nearest = frame.objects[0]
+    assert nearest.id == 1 and nearest.distance_m == nearest.position_in_camera_m[2] == pytest.approx(2.13, abs=0.1)
+    mask = frame.objects_map == nearest.id
+    assert mask.sum() == nearest.pixel_count
+    x, y, width, height = nearest.box_px
+    rows, columns = np.nonzero(mask)
+    assert (columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1) == (x, y, width, height)
+    assert nearest.disparity_px == pytest.approx(np.nanmedian(frame.disparity[mask]))
+    assert nearest.mean_colour == tuple(np.rint(sample.left[mask].mean(axis=0)).astype(int))
+    assert 0 < nearest.confidence <= 1 and 0 < nearest.valid_share <= 1
+    assert re.fullmatch(r"<cairn.Object 1: 2\.\d\d m away at .* px in box \(.*\), confidence 0\.\d\d>", repr(nearest))
+
+
+def test_objects_are_a_sequence(sample):
+    objects = sample.frame.objects
+    assert [o.id for o in objects] == list(range(1, len(objects) + 1))
+    assert objects[-1].id == len(objects) and [o.id for o in objects[1:3]] == [2, 3]
+    assert [o.disparity_px for o in objects] == sorted((o.disparity_px for o in objects), reverse=True)
+    with pytest.raises(IndexError):
+        objects[len(objects)]
+    assert same(objects.labels, sample.frame.objects_map)
+
+
+def test_without_a_rig_there_are_no_metres(sample):
+    frame = cairn.segment(sample.left, sample.right, match={"num_disparities": 32})
+    assert frame.rig is None and frame.objects[0].distance_m is None and frame.objects[0].position_in_camera_m is None
+    assert repr(frame.objects[0]).startswith("<cairn.Object 1: disparity ")
+
+
+def test_a_frame_shows_itself(sample, tmp_path):
+    frame = sample.frame
+    png = frame._repr_png_()
+    assert png.startswith(b"\x89PNG\r\n\x1a\n")
+    (tmp_path / "overlay.png").write_bytes(png)
+    shown = cairn.load_picture(tmp_path / "overlay.png")
+    assert same(shown, frame.overlay())
+    assert same(shown, cairn.draw_objects(sample.left, frame.objects, frame.floor))
+    assert same(frame.disparity_view(), cairn.draw_disparity(frame.disparity_map, sample.calibration))
+    assert repr(frame).startswith("<cairn.Frame 320x240, 4 objects, ground found\n")
+    assert frame.ground and frame.ground.refusal == "none" and 0 < frame.ground.support <= 1
+    a, b, c = frame.ground.plane
+    assert frame.ground.plane.disparity_px(10, 20) == pytest.approx(a * 10 + b * 20 + c, rel=1e-5)
+    assert list(frame.timings)[:2] == ["correct_epipolar", "match"] and min(frame.timings.values()) >= 0
+    assert json.loads(frame.to_json())["objects"][0]["id"] == 1
+    assert frame.epipolar.outcome == "aligned"
+
+
+def test_reasons_have_names(sample):
+    assert cairn.Reject(sample.frame.reject.max()) and cairn.Reject.left_right == 2
+    assert repr(cairn.Reject.left_right | cairn.Reject.speckle).startswith("<Reject.left_right|speckle")
+    assert {r.name for r in cairn.Reject} >= {"border", "left_right", "below_ground", "no_data"}
+    seen_by_one = (sample.frame.reject & cairn.Reject.left_right) != 0
+    assert seen_by_one.any() and np.isnan(sample.frame.disparity[seen_by_one]).all()
+
+
+def test_a_rig_is_numbers_or_a_file(sample, tmp_path):
+    rig = cairn.Rig(focal_px=700, baseline_m=0.12, cx_px=320, cy_px=240)
+    assert rig.point_in_camera_m(320, 240, 42) == pytest.approx((0, 0, 2))
+    assert rig.point_in_camera_m(0, 0, 0) is None
+    assert repr(rig) == "Rig(focal_px=700.0, baseline_m=0.12, cx_px=320.0, cy_px=240.0, doffs_px=0.0)"
+    assert eval(repr(rig), {"Rig": cairn.Rig}) == rig and rig != cairn.Rig(701, 0.12)
+    assert cairn.Rig.from_file(sample.folder / "calib.txt") == sample.calibration.rig
+    assert sample.calibration.image_size == (320, 240)
+    with pytest.raises(cairn.Error, match="baseline is 0.0+, expected a positive number"):
+        cairn.Rig(700, 0)
+    with pytest.raises(cairn.Error):
+        cairn.Rig(float("nan"), 0.1)
+    with pytest.raises(cairn.Error, match="calib.txt"):
+        cairn.load_calibration(tmp_path / "calib.txt")
+
+
+def test_files_come_back_as_they_were_written(tmp_path):
+    random = np.random.default_rng(3)
+    disparity = (random.integers(1, 200 * 256, (20, 30)) / 256).astype(np.float32)
+    disparity[3, 4] = np.nan
+    for name in ("map.png", "map.pfm"):
+        cairn.save_disparity(tmp_path / name, disparity)
+        np.testing.assert_array_equal(cairn.load_disparity(tmp_path / name), disparity)
+    for picture in (random.integers(0, 256, (9, 7, 3)).astype(np.uint8), random.integers(0, 256, (9, 7)).astype(np.uint8)):
+        cairn.save_png(tmp_path / "picture.png", picture)
+        assert same(cairn.load_picture(str(tmp_path / "picture.png")), np.ascontiguousarray(picture)) or np.array_equal(
+            cairn.load_picture(tmp_path / "picture.png"), picture
+        )
+    labels = random.integers(0, 60000, (9, 7)).astype(np.uint16)
+    cairn.save_png(tmp_path / "labels.png", labels)
+    np.testing.assert_array_equal(cairn.load_labels(tmp_path / "labels.png"), labels)
+    with pytest.raises(cairn.Error, match="nowhere"):
+        cairn.save_png(tmp_path / "nowhere" / "x.png", labels)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""Options: listed, set, shown; always the library's own."""
+
+import re
+import subprocess
+
+import numpy as np
+import pytest
+
+import cairn
+from conftest import same_frame
+
+
+def test_options_are_those_of_the_commands_reference(command):
+    table = subprocess.run([command, "config", "--markdown"], capture_output=True, text=True, check=True).stdout
+    listed = re.findall(r"^\| `(.*?)` \| (?:`(.*?)`)? ?\| (.*?) \| (.*?) \| (.*?) \|$", table.replace(r"\|", "¦"), re.M)
+    options = cairn.options()
+    assert [row[0] for row in listed] == [o.name for o in options]
+    assert [(row[2], row[3].replace("¦", "|"), row[4].replace("¦", "|")) for row in listed] == [
+        (o.unit, o.range, o.help) for o in options
+    ]
+    by_name = {o.name: o for o in options}
+    assert by_name["match.num_disparities"].default == 64
+    assert by_name["match.cost"].default == "zncc" and by_name["match.cost"].type == "choice"
+    assert by_name["subpixel.enabled"].default is True
+    assert by_name["match.num_disparities"].group == "match"
+    assert "num_disparities" in repr(by_name["match.num_disparities"])
+    paper = {o.name: o.default for o in cairn.options("paper")}
+    assert paper["match.method"] == "window" and by_name["match.method"].default == "semi_global"
+
+
+def test_docstrings_list_the_options():
+    for option in cairn.options():
+        line = f"{option.name.split('.')[1]} = "
+        assert line in cairn.segment.__doc__ and option.help in cairn.segment.__doc__
+    assert "window_size = 9 px (3 … 31, odd)" in cairn.match.__doc__
+    assert "speckle" not in cairn.match.__doc__
+
+
+def test_a_config_is_preset_then_file_then_keywords(tmp_path):
+    file = tmp_path / "config.yaml"
+    file.write_text("match:\n  window_size: 11\n  row_band: 1\n")
+    config = cairn.Config("paper", file, match={"row_band": 2})
+    assert (config["match.method"], config["match.window_size"], config["match.row_band"]) == ("window", 11, 2)
+    assert repr(config) == "Config('paper', match={'window_size': 11, 'row_band': 2})"
+    assert eval(repr(config), {"Config": cairn.Config}) == config
+    assert cairn.Config(**config.as_dict()) == config
+    file.write_text("preset: paper\n" + config.yaml())
+    assert cairn.Config(file=file) == config and cairn.Config(file=file).preset == "paper"
+    assert cairn.Config() != cairn.Config("paper")
+    with pytest.raises(cairn.Error, match="did you mean 'match.window_size'"):
+        config["match.window_sise"]
+
+
+def test_values_may_be_of_any_fitting_type():
+    points = [(10, 20.5, 5, 20), (300, 20, 290, 20), (10, 200, 1, 200), (300, 210, 280, 210)]
+    config = cairn.Config(
+        match={"window_size": np.int64(11), "cost": "sad"},
+        left_right={"max_diff": np.float32(0.1)},
+        subpixel={"enabled": np.bool_(False)},
+        ground={"source": "points", "points": np.array(points)},
+    )
+    assert config["match.window_size"] == 11 and config["match.cost"] == "sad"
+    assert config["left_right.max_diff"] == 0.1 and config["subpixel.enabled"] is False
+    assert config["ground.points"] == points
+
+
+def test_a_calibrations_search_range_is_a_default(sample):
+    frame = sample.frame
+    assert frame.config["match.num_disparities"] == sample.calibration.num_disparities == 32
+    given = cairn.segment(sample.left, sample.right, sample.calibration, match={"num_disparities": 40})
+    assert given.config["match.num_disparities"] == 40
+    by_config = cairn.segment(sample.left, sample.right, sample.calibration, config=cairn.Config(match={"num_disparities": 64}))
+    assert by_config.config["match.num_disparities"] == 64
+    inherited = cairn.segment(sample.left, sample.right, sample.calibration, config=cairn.Config(speckle={"size": 50}))
+    assert same_frame(inherited, frame)
+    rig_only = cairn.segment(sample.left, sample.right, sample.calibration.rig)
+    assert rig_only.config["match.num_disparities"] == 64
+
+
+def test_what_is_no_option_is_refused(sample):
+    with pytest.raises(TypeError, match="no keyword argument 'window_size'"):
+        cairn.segment(sample.left, sample.right, window_size=9)
+    with pytest.raises(cairn.Error, match="options match: found a value of type int, expected a dict"):
+        cairn.segment(sample.left, sample.right, match=9)
+    with pytest.raises(cairn.Error, match="unknown option 'match.windowsize', did you mean 'match.window_size'"):
+        cairn.match(sample.left, sample.right, windowsize=9)
+    with pytest.raises(cairn.Error, match="unknown preset 'papr'.*did you mean 'paper'"):
+        cairn.segment(sample.left, sample.right, preset="papr")
+    with pytest.raises(cairn.Error, match="config: found a value of type int"):
+        cairn.segment(sample.left, sample.right, config=3)
+    with pytest.raises(cairn.Error, match="preset: found 'paper' beside a config"):
+        cairn.segment(sample.left, sample.right, preset="paper", config=cairn.Config())
+    with pytest.raises(cairn.Error, match="rig: found a value of type str"):
+        cairn.segment(sample.left, sample.right, "calib.txt")
+    with pytest.raises(cairn.Error, match="exec: found a value of type int"):
+        cairn.segment(sample.left, sample.right, exec=2)
+    with pytest.raises(TypeError):
+        cairn.noise = cairn.watershed(np.zeros((3, 3), np.uint16), sigma=2)
+
+
+def test_exec_never_changes_a_result(sample):
+    for exec in [cairn.Exec(1), cairn.Exec(3), *(cairn.Exec(2, name) for name in cairn.supported_targets())]:
+        assert same_frame(cairn.segment(sample.left, sample.right, sample.calibration, exec=exec), sample.frame)
+    assert cairn.Exec(3).threads in (1, 3)
+    with pytest.raises(cairn.Error, match="target: unknown instruction set 'axv2'.*did you mean 'avx2'"):
+        cairn.Exec(target="axv2")
+    with pytest.raises(cairn.Error, match="threads: found -1"):
+        cairn.Exec(-1)

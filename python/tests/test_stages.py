@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""Every stage under its C++ name; one behind the other they make the frame."""
+
+import re
+
+import numpy as np
+import pytest
+
+import cairn
+from conftest import same, same_frame
+
+
+def test_every_stage_of_the_umbrella_header_is_there(source):
+    text = (source / "cairn" / "cairn.hpp").read_text()
+    names = {name for words in re.findall(r"// ([a-z_, ]+)$", text, re.M) for name in words.split(", ")}
+    assert {"match", "fuse", "measure", "segment_facets"} <= names
+    assert [name for name in sorted(names) if not callable(getattr(cairn, name.strip(), None))] == []
+
+
+def by_the_paper(sample):
+    config = cairn.Config("paper", match={"num_disparities": 32})
+    rig = sample.calibration.rig
+    matches = cairn.match(sample.left, sample.right, config=config)
+    refined = cairn.refine_subpixel(matches, config=config)
+    verdicts = [
+        cairn.reject_inconsistent(matches, config=config),
+        cairn.reject_ambiguous(matches, config=config),
+        cairn.reject_flat(matches, config=config),
+        cairn.reject_textureless(sample.left, config=config),
+    ]
+    disparity = cairn.combine(refined, verdicts)
+    ground = cairn.fit_ground(disparity, rig, config=config)
+    disparity = cairn.reject_below_ground(disparity, ground, rig, config=config)
+    disparity = cairn.reject_speckles(disparity, config=config)
+    floor = cairn.label_floor(disparity, ground, rig, config=config)
+    by_intensity = cairn.segment_intensity(sample.left, config=config)
+    by_disparity = cairn.segment_disparity(disparity, floor, config=config)
+    fusion = cairn.fuse(by_intensity, by_disparity)
+    objects = cairn.measure(fusion, by_disparity, disparity, sample.left, rig, config=config)
+    return disparity, cairn.estimate_confidence(matches, disparity, config=config), by_disparity, objects
+
+
+def by_evidence(sample):
+    rig = sample.calibration.rig
+    offset = cairn.find_epipolar_offset(sample.left, sample.right, num_disparities=32)
+    assert offset.outcome == "aligned"
+    matches = cairn.match_semi_global(sample.left, sample.right, num_disparities=32)
+    disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches)])
+    evidence = cairn.find_evidence(sample.left, disparity)
+    ground = cairn.fit_ground(evidence, rig)
+    disparity = cairn.reject_below_ground(disparity, ground, rig)
+    background = cairn.fit_background(evidence, ground, rig)
+    facets = cairn.segment_facets(sample.left)
+    figure = cairn.separate_figure(facets, sample.left, evidence, background)
+    groups = cairn.group_facets(facets, figure, disparity, evidence, background, rig)
+    disparity = cairn.reject_speckles(disparity)
+    fusion = cairn.fuse(cairn.as_segmentation(facets, sample.left), groups)
+    objects = cairn.measure(fusion, groups, disparity, sample.left, rig)
+    return disparity, cairn.estimate_confidence(matches, disparity), groups, objects
+
+
+@pytest.mark.parametrize("preset, stages", [("paper", by_the_paper), ("default", by_evidence)])
+def test_stage_by_stage_gives_the_frame(sample, preset, stages):
+    frame = cairn.segment(sample.left, sample.right, sample.calibration, preset=preset)
+    disparity, confidence, by_disparity, objects = stages(sample)
+    assert same(disparity.disparity_px, frame.disparity) and same(disparity.reject, frame.reject)
+    assert same(confidence, frame.confidence)
+    assert same(by_disparity.labels, frame.by_disparity.labels)
+    assert same(objects.labels, frame.objects_map) and repr(objects) == repr(frame.objects)
+
+
+def test_a_segmentation_is_gradient_watershed_graph_growing(sample):
+    gray = sample.gray()[0]
+    basins = cairn.watershed(cairn.gradient(gray, 0.7))
+    graph = cairn.build_graph(basins.labels, gray)
+    merges = cairn.grow_statistical(
+        graph, mean_difference_max=3, deviation_max=1, sigma_min=2, min_region_area=int(np.ceil(0.0003 * gray.size - 1e-9))
+    )
+    made = cairn.apply_merges(basins.labels, graph, merges)
+    assert len(graph) == basins.count and 0 in graph.neighbours(graph.neighbours(0)[0])
+    assert same(made.labels, cairn.segment_intensity(gray).labels)
+
+
+def test_a_check_of_ones_own_is_an_array(sample):
+    """examples/03_your_own_check.cpp in Python."""
+    matches = cairn.match(sample.left, sample.right, num_disparities=32)
+    saturated = np.where(sample.gray()[0] >= 150, np.uint8(cairn.Reject.no_data), np.uint8(0))
+    disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches), saturated])
+    assert np.isnan(disparity.disparity_px[saturated != 0]).all() and (saturated != 0).any()
+    frame = cairn.segment(sample.left, rig=sample.calibration, disparity_map=disparity)
+    assert ((frame.reject & cairn.Reject.no_data) != 0).sum() == (saturated != 0).sum()
+
+
+def test_matches_hold_what_evidence_asks_for(sample):
+    matches = cairn.match(sample.left, sample.right, evidence="winner", num_disparities=16)
+    assert matches.runner_up is None and matches.best_right is None and matches.best.dtype == np.int16
+    assert cairn.match(np.zeros((9, 9), np.uint8), np.zeros((9, 9), np.uint8), num_disparities=1).best.shape == (9, 9)
+    with pytest.raises(cairn.Error, match="hold no runner_up, which reject_ambiguous needs; match with evidence='minimum'"):
+        cairn.reject_ambiguous(matches, ratio=5)
+    with pytest.raises(cairn.Error, match="hold no mean_cost"):
+        cairn.reject_flat(matches, threshold=0.1)
+    with pytest.raises(cairn.Error, match="hold no best_right"):
+        cairn.reject_inconsistent(matches)
+    assert cairn.reject_inconsistent(matches, method="vote").dtype == np.uint8
+    assert not cairn.reject_ambiguous(matches).any()  # off in the preset default
+    assert cairn.estimate_confidence(matches, cairn.combine(cairn.refine_subpixel(matches), [])) is None
+
+
+def test_what_does_not_belong_together_is_refused(sample):
+    frame, half = sample.frame, sample.left[:, :160]
+    other = cairn.segment_facets(half)
+    labels = frame.by_disparity.labels
+    calls = [
+        lambda: cairn.measure(frame.fusion, frame.by_disparity, frame.disparity_map, half),
+        lambda: cairn.measure(frame.fusion, cairn.as_segmentation(other, half), frame.disparity_map, sample.left),
+        lambda: cairn.measure(frame.fusion, cairn.segment_intensity(np.zeros((240, 320), np.uint8)), frame.disparity_map, sample.left),
+        lambda: cairn.fuse(cairn.as_segmentation(other, half), frame.by_disparity),
+        lambda: cairn.find_evidence(half, frame.disparity_map),
+        lambda: cairn.combine(frame.disparity, [frame.reject[:, 1:]]),
+        lambda: cairn.segment_disparity(frame.disparity_map, frame.floor[1:]),
+        lambda: cairn.separate_figure(other, half, frame.disparity, cairn.fit_background(frame.disparity, frame.ground)),
+        lambda: cairn.group_facets(other, [2] * other.count, half, half, cairn.fit_background(frame.disparity, frame.ground)),
+        lambda: cairn.build_graph(labels - 1, sample.gray()[0]),
+        lambda: cairn.build_graph(labels * 2, sample.gray()[0]),
+        lambda: cairn.build_graph(labels, sample.gray()[0][1:]),
+        lambda: cairn.build_graph(labels.astype(float), sample.gray()[0]),
+        lambda: cairn.apply_merges(labels, cairn.build_graph(labels, sample.gray()[0]), [0]),
+        lambda: cairn.apply_merges(labels, cairn.build_graph(labels, sample.gray()[0]), [1, 0] + [0] * (len(frame.by_disparity) - 2)),
+        lambda: cairn.gradient(sample.gray()[0], 50),
+        lambda: cairn.watershed(sample.gray()[0]),
+        lambda: cairn.fit_ground(np.full((20, 20), 1e30, np.float32)),
+        lambda: cairn.fit_ground(frame.disparity_map, source="points", points=[(1, 2, 3, 4)]),
+        lambda: cairn.match(sample.left, sample.right, num_disparities=321),
+        lambda: cairn.shift_rows(sample.right, cairn.EpipolarOffset(float("nan"))),
+    ]
+    for number, call in enumerate(calls):
+        with pytest.raises(cairn.Error):
+            call()
+            pytest.fail(f"call {number} was accepted")
+
+
+def test_a_moved_right_picture_is_moved_back(sample):
+    moved = np.roll(sample.right, 2, axis=0)
+    correction = cairn.correct_epipolar(sample.left, moved, num_disparities=32)
+    assert correction.offset.outcome == "corrected" and abs(correction.offset.rows - 2) < 0.1
+    assert correction.right.shape == (240, 320) and "corrected" in repr(correction.offset)
+    back = cairn.shift_rows(moved, cairn.EpipolarOffset(2))
+    np.testing.assert_array_equal(back[4:-4], sample.gray()[1][4:-4])
