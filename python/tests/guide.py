@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""What docs/python.md shows; test_guide.py runs it."""
+
+import cairn
+import numpy as np
+
+
+def rigs(folder):
+    # [rig]
+    rig = cairn.Rig(focal_px=700, baseline_m=0.12, cx_px=320, cy_px=240)
+    rig = cairn.load_calibration(folder / "calib.txt")  # Middlebury, KITTI, OpenCV, ROS, YAML: see formats
+    # [/rig]
+    return rig
+
+
+def frame_of(left, right, rig):
+    # [frame]
+    frame = cairn.segment(left, right, rig)
+    nearest = frame.objects[0]
+    pixels = frame.objects_map == nearest.id
+    trusted = np.where(frame.confidence > 0.8, frame.disparity, np.nan)
+    hidden = (frame.reject & cairn.Reject.left_right) != 0  # seen by one camera only
+    # [/frame]
+    return frame, pixels, trusted, hidden
+
+
+def options_of(left, right, rig):
+    # [options]
+    frame = cairn.segment(left, right, rig, preset="paper", match={"num_disparities": 64, "cost": "sad"})
+
+    config = cairn.Config("paper", match={"window_size": 11}, speckle={"size": 100})
+    frame = cairn.segment(left, right, rig, config=config)
+    coarse = [option for option in cairn.options() if option.name == "match.window_size"]
+    # [/options]
+    return frame, coarse
+
+
+def video(pairs, rig):
+    found = []
+    # [video]
+    segmenter = cairn.Segmenter(rig, match={"num_disparities": 48})
+    for left, right in pairs:
+        frame = segmenter.segment(left, right)
+        found.append([(o.id, o.distance_m) for o in frame.objects])
+    # [/video]
+    return found
+
+
+def stages(left, right, rig):
+    # [stages]
+    matches = cairn.match(left, right, num_disparities=32)
+    inconsistent = cairn.reject_inconsistent(matches, max_diff=1)
+    bright = left.min(axis=2) > 250  # over-exposed: no data
+    saturated = np.where(bright, cairn.Reject.no_data, cairn.Reject.none).astype(np.uint8)
+    disparity = cairn.combine(cairn.refine_subpixel(matches), [inconsistent, saturated])
+    frame = cairn.segment(left, rig=rig, disparity_map=disparity)
+    # [/stages]
+    return frame
