@@ -214,6 +214,12 @@ std::string percent(double share) {
   return std::isnan(share) ? "-" : text_of("%.1f %%", 100 * share);
 }
 
+std::string name_of(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path whole = fs::absolute(path, ignored).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 namespace {
 
 /// Characters, not bytes: a frame's name may be UTF-8.

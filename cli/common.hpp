@@ -94,6 +94,9 @@ std::string text_of(const char* format, double value);
 /// "62.1 %" of 0.621; "-" for NaN.
 std::string percent(double share);
 
+/// The last part of a path, whatever way it is written: "frames" of "data/frames/".
+std::string name_of(const std::filesystem::path& path);
+
 /// What became of the epipolar correction, in words; "" where it is switched off.
 std::string describe(const EpipolarOffset& epipolar);
 

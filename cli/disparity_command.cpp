@@ -5,6 +5,7 @@
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
 #include <io/disparity_files.hpp>
+#include <io/point_cloud.hpp>
 #include <iostream>
 
 #include "commands.hpp"
@@ -18,6 +19,7 @@ struct DisparityOptions {
   ExecOptions exec;
   std::string output;
   std::string confidence;
+  std::string ply;
 };
 
 /// Before any work: a name that cannot be written to should not cost the matching's time.
@@ -41,6 +43,13 @@ void check_confidence(const std::string& output, const Config& config) {
   if (config.match.evidence != Evidence::full) {
     throw Error("option match.evidence: --confidence needs full");
   }
+}
+
+void check_ply(const std::string& output, const LoadedFrame& frame) {
+  if (std::filesystem::path(output).extension().string() != ".ply") {
+    throw Error(output + ": a point cloud is written as .ply");
+  }
+  if (!frame.rig) throw Error("--ply: a point cloud is in metres; give a calibration with --calib");
 }
 
 std::string describe(const SceneDisparity& scene, double milliseconds) {
@@ -88,11 +97,16 @@ int estimate(const DisparityOptions& options) {
   const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
   if (!options.confidence.empty()) check_confidence(options.confidence, loaded.config);
+  if (!options.ply.empty()) check_ply(options.ply, loaded);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(
       StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
   if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
   if (!options.confidence.empty()) io::save_confidence(options.confidence, scene.confidence);
+  if (!options.ply.empty()) {
+    io::save_ply(options.ply, loaded.left.gray, loaded.left.rgb, scene.disparity.disparity_px, {},
+                 *loaded.rig);
+  }
   std::cout << describe(scene, watch.total_ms());
   return 0;
 }
@@ -108,6 +122,8 @@ Work declare_disparity(CLI::App& app) {
       ->type_name("FILE");
   app.add_option("--confidence", options->confidence,
                  "file.png: 8 bits, how likely each disparity is within 1 px x 255, 0 = hole")
+      ->type_name("FILE");
+  app.add_option("--ply", options->ply, "file.ply: coloured points in metres; needs a calibration")
       ->type_name("FILE");
   return [options] { return estimate(*options); };
 }

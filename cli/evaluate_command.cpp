@@ -20,6 +20,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "evaluate_files.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -33,62 +34,8 @@ struct EvaluateOptions {
   ObjectErrorConfig objects;
   int skip_left = 0;
   std::optional<std::string> json;
+  std::optional<std::string> html;
 };
-
-// ---- reading ----
-
-struct ResultFiles {
-  std::string name;
-  std::optional<fs::path> objects;
-  std::optional<fs::path> disparity;
-  std::optional<fs::path> confidence;
-  std::optional<fs::path> json;
-};
-
-std::optional<fs::path> file_in(const fs::path& folder, const char* name) {
-  std::error_code ignored;
-  return fs::is_regular_file(folder / name, ignored) ? std::optional(folder / name) : std::nullopt;
-}
-
-/// nullopt where the folder holds no result.
-std::optional<ResultFiles> result_in(const fs::path& folder) {
-  ResultFiles files;
-  files.name = folder.filename().string();
-  files.objects = file_in(folder, "objects.png");
-  files.disparity = file_in(folder, "disparity.png");
-  if (!files.disparity) files.disparity = file_in(folder, "disparity.pfm");
-  files.confidence = file_in(folder, "confidence.png");
-  files.json = file_in(folder, "objects.json");
-  if (!files.objects && !files.disparity) return std::nullopt;
-  return files;
-}
-
-Image<ObjectId> ours_of(const io::Labels& labels) {
-  Image<ObjectId> ids(labels.ids.size());
-  for (int y = 0; y < ids.height(); ++y) {
-    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y),
-                   [](std::uint16_t id) { return ObjectId{id}; });
-  }
-  return ids;
-}
-
-/// 255 means "don't care" in a truth of 8 bits; with 16 bits it is an id like others.
-Image<TruthId> truth_of(const io::Labels& labels) {
-  Image<TruthId> ids(labels.ids.size());
-  const bool has_dont_care = labels.bits == 8;
-  for (int y = 0; y < ids.height(); ++y) {
-    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y), [&](std::uint16_t id) {
-      return has_dont_care && id == 255 ? TruthId::dont_care : TruthId{id};
-    });
-  }
-  return ids;
-}
-
-void require_equal_size(const fs::path& ours, Size our_size, const fs::path& theirs, Size their_size) {
-  if (our_size == their_size) return;
-  throw Error(ours.string() + ": is " + text(our_size) + ", the truth " + theirs.string() + " is " +
-              text(their_size));
-}
 
 // ---- one frame ----
 
@@ -110,13 +57,15 @@ struct ConfidentPixels {
 
 struct FrameScore {
   std::string name;
+  ResultFiles result;
+  io::TruthFiles truth;
   std::optional<FrameObjects> objects;
   std::map<ObjectId, double> confidence;   // empty where there is no objects.json
   std::optional<DisparityErrors> visible;  // non-occluded; all pixels with truth where nothing tells
   std::optional<DisparityErrors> all;
   bool knows_occlusion = false;
   std::optional<ConfidentPixels> confident;  // nullopt where there is no confidence.png
-  std::vector<io::StageTime> times;          // empty where there is no objects.json, and without --json
+  std::vector<io::StageTime> times;  // empty where there is no objects.json, and without --json or --html
 };
 
 /// What objects.json says of the time of each stage.
@@ -179,6 +128,8 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
                        const EvaluateOptions& options) {
   FrameScore score;
   score.name = result.name;
+  score.result = result;
+  score.truth = truth;
   if (result.objects && truth.objects) {
     const Image<ObjectId> ours = ours_of(io::load_labels(*result.objects));
     const Image<TruthId> theirs = truth_of(io::load_labels(*truth.objects));
@@ -194,7 +145,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
     throw Error(truth.folder.string() + ": has the truth of nothing that the result " + result.name +
                 " holds");
   }
-  if (options.json && result.json) score.times = load_times(*result.json);
+  if ((options.json || options.html) && result.json) score.times = load_times(*result.json);
   return score;
 }
 
@@ -621,9 +572,26 @@ std::string evaluation_json(const Scores& scores, const EvaluateOptions& options
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+constexpr const char* kPageName = "evaluation.html";
+
+void write_page(const Scores& scores, const EvaluateOptions& options, const std::string& as_json) {
+  std::vector<io::EncodedFrame> frames;
+  frames.reserve(scores.frames.size());
+  for (const FrameScore& frame : scores.frames) frames.push_back(encode_frame(frame.result, frame.truth));
+  const io::PageHead head{"evaluate", name_of(options.result) + " against " + name_of(options.truth),
+                          as_json};
+  const std::string page = io::html_page(head, frames);
+  io::make_folder(*options.html);
+  io::write_file(fs::path(*options.html) / kPageName, page);
+}
+
 int evaluate(const EvaluateOptions& options) {
   const Scores scores = score_all(options);
-  if (options.json) io::write_file(*options.json, evaluation_json(scores, options));
+  if (options.json || options.html) {
+    const std::string as_json = evaluation_json(scores, options);
+    if (options.json) io::write_file(*options.json, as_json);
+    if (options.html) write_page(scores, options, as_json);
+  }
   std::cout << frame_table(scores.frames) << "\n"
             << object_lines(scores.frames, options) << disparity_lines(scores.frames, options.skip_left);
   if (!scores.without_result.empty()) {
@@ -663,6 +631,9 @@ Work declare_evaluate(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--json", options->json, "also write the whole evaluation into this file, as JSON")
       ->type_name("FILE");
+  app.add_option("--html", options->html,
+                 "also write evaluation.html into this folder: one page, to look at in a browser")
+      ->type_name("DIR");
   app.footer(
       "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true objects found "
       "with\n"

@@ -4,6 +4,8 @@
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
+#include <io/atomic_file.hpp>
+#include <io/html_page.hpp>
 #include <iostream>
 
 #include "commands.hpp"
@@ -19,6 +21,8 @@ struct SegmentOptions {
   ExecOptions exec;
   std::string output;
   bool json = false;
+  bool ply = false;
+  bool html = false;
 };
 
 Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
@@ -68,27 +72,61 @@ std::string summary(const Frame& frame, double milliseconds) {
 }
 
 struct Report {
-  std::string out;   // for stdout
-  std::string note;  // for stderr; mostly empty
+  std::string out;         // for stdout
+  std::string note;        // for stderr; mostly empty
+  io::EncodedFrame frame;  // for the page; empty without --html
 };
+
+constexpr const char* kPageName = "segment.html";
+
+io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, const Frame& frame,
+                        const io::Provenance& provenance) {
+  io::PageFrame shown;
+  shown.name = name;
+  shown.left = loaded.left.gray;
+  shown.left_rgb = loaded.left.rgb;
+  shown.disparity_px = frame.disparity.disparity_px;
+  shown.reject = frame.disparity.reject;
+  shown.confidence = frame.confidence;
+  shown.by_intensity = frame.by_intensity.labels;
+  shown.by_disparity = frame.by_disparity.labels;
+  shown.objects = frame.objects.labels;
+  shown.objects_json = io::objects_json(frame, provenance);
+  return io::encode_frame(shown);
+}
+
+std::string no_metres(const io::FrameFiles& files) {
+  return "--ply: a point cloud is in metres, and " + files.left.string() +
+         " has no calibration with a baseline; give one with --calib";
+}
+
+/// An older page would speak of results that are no longer there.
+void remove_older_page(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / kPageName, ignored);
+}
 
 /// One frame from files to results.
 Report work_on(const io::FrameFiles& files, const SegmentOptions& options, const fs::path& folder,
                bool one_of_many, Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
+  if (options.ply && !loaded.rig) throw Error(no_metres(files));
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
   const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
                                   loaded.given.has_value()};
   Report report;
   if (!folder.empty()) {
-    io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance);
+    remove_older_page(options.output);
+    io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
+                     {.point_cloud = options.ply});
     if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
       report.note = "cairn: " + (folder / "disparity.pfm").string() +
                     ": written instead of disparity.png, since 16 bits cannot hold disparities below 0 or "
                     "from 256 on\n";
     }
   }
+  if (options.html) report.frame = encode(files.name, loaded, frame, provenance);
   if (options.json) {
     report.out = io::objects_json(frame, provenance);
     return report;
@@ -107,18 +145,29 @@ bool is_folder_of_frames(const fs::path& input, const io::FrameFiles& first) {
   return fs::is_directory(input, ignored) && !fs::equivalent(first.folder, input, ignored);
 }
 
+/// Files that are asked for without a folder for them.
+void require_output(const SegmentOptions& options) {
+  if (!options.output.empty()) return;
+  for (const auto& [asked, name] : {std::pair{options.ply, "--ply"}, {options.html, "--html"}}) {
+    if (asked) throw Error(std::string(name) + ": needs -o DIR, the folder to write into");
+  }
+}
+
 int segment_all(const SegmentOptions& options) {
+  require_output(options);
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // a bad option is one whatever the frames hold
   Exec exec = make_exec(options.exec);
   const bool many = is_folder_of_frames(options.input.left, frames.front());
   const Progress progress(frames.size());
+  std::vector<io::EncodedFrame> encoded;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
     fs::path folder = options.output;
     if (many && !options.output.empty()) folder /= frames[i].name;
     try {
-      const Report report = work_on(frames[i], options, folder, many, exec);
+      Report report = work_on(frames[i], options, folder, many, exec);
+      if (options.html) encoded.push_back(std::move(report.frame));
       progress.clear();
       std::cerr << report.note;
       std::cout << report.out << std::flush;
@@ -126,6 +175,10 @@ int segment_all(const SegmentOptions& options) {
       if (!many) throw;
       throw Error("frame " + frames[i].name + ": " + error.what());
     }
+  }
+  if (options.html) {
+    const io::PageHead head{"segment", name_of(options.input.left), {}};
+    io::write_file(fs::path(options.output) / kPageName, io::html_page(head, encoded));
   }
   return 0;
 }
@@ -144,6 +197,11 @@ Work declare_segment(CLI::App& app) {
                  "disparity_view.png and objects.json")
       ->type_name("DIR");
   app.add_flag("--json", options->json, "print the content of objects.json instead of a table");
+  app.add_flag(
+      "--ply", options->ply,
+      "also write cloud.ply: the coloured points in metres, each with its object; needs a calibration");
+  app.add_flag("--html", options->html,
+               "also write segment.html into DIR: one page of all frames, to look at in a browser");
   app.footer(
       "LEFT may also be a folder of such folders: each is a frame, and its result goes to a folder of its "
       "name in DIR.\n"

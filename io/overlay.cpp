@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <io/overlay.hpp>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
@@ -67,22 +68,6 @@ void write_centred(const cv::Mat& canvas, const std::string& text, cv::Point mid
   write(canvas, text, {x, y}, scale, {255, 255, 255});
 }
 
-/// The pixel of the object that lies farthest from its outline: a place for a label.
-cv::Point innermost(View<const ObjectId> labels, const Object& object) {
-  const Rect box = object.box_px;
-  cv::Mat mask(box.height + 2, box.width + 2, CV_8UC1, cv::Scalar(0));
-  for (int y = 0; y < box.height; ++y) {
-    for (int x = 0; x < box.width; ++x) {
-      if (labels(box.x + x, box.y + y) == object.id) mask.at<std::uint8_t>(y + 1, x + 1) = 255;
-    }
-  }
-  cv::Mat distance;
-  cv::distanceTransform(mask, distance, cv::DIST_L2, 3);
-  cv::Point best;
-  cv::minMaxLoc(distance, nullptr, nullptr, nullptr, &best);
-  return {box.x + best.x - 1, box.y + best.y - 1};
-}
-
 /// The picture enlarged, its background faded towards grey.
 Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor) {
   Image<Rgb> colour(left.size());
@@ -125,70 +110,13 @@ void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> f
 
 // ---- disparity ----
 
-struct Reason {
-  Reject bit;
-  const char* name;
-  Rgb colour;
-};
-/// Where several bits are set, the first of these is shown: what cannot be helped before what the matcher
-/// decided.
-constexpr std::array kReasons{
-    Reason{Reject::no_data, "no data", {25, 25, 25}},
-    Reason{Reject::border, "border", {60, 60, 60}},
-    Reason{Reject::below_ground, "below ground", {205, 185, 255}},
-    Reason{Reject::speckle, "speckle", {255, 240, 200}},
-    Reason{Reject::no_texture, "no texture", {105, 105, 105}},
-    Reason{Reject::not_unique, "not unique", {150, 135, 135}},
-    Reason{Reject::flat, "flat", {125, 150, 140}},
-    Reason{Reject::left_right, "left-right", {205, 205, 205}},
-};
-
-static_assert(kReasons.size() == kRejects.size());
-
-const Reason& shown_reason(Reject reject) {
-  const auto found =
-      std::find_if(kReasons.begin(), kReasons.end(), [&](const Reason& r) { return has(reject, r.bit); });
-  return found == kReasons.end() ? kReasons.front() : *found;
+const HoleReason& shown_reason(Reject reject) {
+  const auto found = std::find_if(kHoleReasons.begin(), kHoleReasons.end(),
+                                  [&](const HoleReason& r) { return has(reject, r.bit); });
+  return found == kHoleReasons.end() ? kHoleReasons.front() : *found;
 }
 
-struct Span {
-  float low = 0;
-  float high = 1;
-};
-
-/// From the 1st to the 99th percentile, so that a few wrong matches do not take the colours from the rest.
-Span shown_span(const DisparityMap& map) {
-  std::vector<float> values;
-  for (int y = 0; y < map.reject.height(); ++y) {
-    for (int x = 0; x < map.reject.width(); ++x) {
-      if (map.reject(x, y) == Reject::none) values.push_back(map.disparity_px(x, y));
-    }
-  }
-  if (values.empty()) return {};
-  const auto at = [&](std::size_t percent) {
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-  };
-  const Span span{at(1), at(99)};
-  return span.high > span.low ? span : Span{span.low - 0.5F, span.low + 0.5F};
-}
-
-std::array<Rgb, 256> turbo() {
-  cv::Mat ramp(1, 256, CV_8UC1);
-  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
-  cv::Mat bgr;
-  cv::applyColorMap(ramp, bgr, cv::COLORMAP_TURBO);
-  std::array<Rgb, 256> colours{};
-  for (int i = 0; i < 256; ++i) {
-    const auto c = bgr.at<cv::Vec3b>(0, i);
-    // The darkest ends would be hard to tell from holes.
-    colours[static_cast<std::size_t>(i)] = mixed(Rgb{c[2], c[1], c[0]}, {255, 255, 255}, 0.08F);
-  }
-  return colours;
-}
-
-Rgb colour_of(float disparity, Span span, const std::array<Rgb, 256>& colours) {
+Rgb colour_of(float disparity, DisparitySpan span, const std::array<Rgb, 256>& colours) {
   const float share = std::clamp((disparity - span.low) / (span.high - span.low), 0.0F, 1.0F);
   return colours[static_cast<std::size_t>(std::lround(share * 255))];
 }
@@ -202,9 +130,9 @@ std::string scale_text(float disparity, const std::optional<StereoRig>& rig) {
 
 constexpr int kLegendWidth = 190;
 constexpr int kLegendRow = 20;
-constexpr int kLegendHeight = kLegendRow * (int(kReasons.size()) + 6) + 10;
+constexpr int kLegendHeight = kLegendRow * (int(kHoleReasons.size()) + 6) + 10;
 
-void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Span span,
+void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, DisparitySpan span,
                  const std::array<Rgb, 256>& colours, const std::optional<StereoRig>& rig) {
   constexpr double kScale = 0.42;
   constexpr int kBarRows = 4;
@@ -219,7 +147,7 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Span 
     const float d = span.high + (span.low - span.high) * static_cast<float>(i) / 2;
     write(canvas, scale_text(d, rig), {left + 32, bar_top + 10 + i * (bar_height - 14) / 2}, kScale, white);
   }
-  std::array<std::int64_t, kReasons.size()> counts{};
+  std::array<std::int64_t, kHoleReasons.size()> counts{};
   std::int64_t valid = 0;
   for (int y = 0; y < map.reject.height(); ++y) {
     for (int x = 0; x < map.reject.width(); ++x) {
@@ -227,7 +155,7 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Span 
       if (reject == Reject::none) {
         ++valid;
       } else {
-        ++counts[static_cast<std::size_t>(&shown_reason(reject) - kReasons.data())];
+        ++counts[static_cast<std::size_t>(&shown_reason(reject) - kHoleReasons.data())];
       }
     }
   }
@@ -237,10 +165,10 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Span 
   };
   int y = bar_top + bar_height + kLegendRow;
   write(canvas, "valid" + percent(valid), {left + 10, y}, kScale, white);
-  for (std::size_t i = 0; i < kReasons.size(); ++i) {
+  for (std::size_t i = 0; i < kHoleReasons.size(); ++i) {
     y += kLegendRow;
-    cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kReasons[i].colour), cv::FILLED);
-    write(canvas, kReasons[i].name + percent(counts[i]), {left + 32, y}, kScale, white);
+    cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kHoleReasons[i].colour), cv::FILLED);
+    write(canvas, kHoleReasons[i].name + percent(counts[i]), {left + 32, y}, kScale, white);
   }
 }
 
@@ -250,6 +178,49 @@ Rgb object_colour(ObjectId id) {
   // Steps of the golden ratio keep any few consecutive hues far apart.
   const float hue = std::fmod(0.61803399F * static_cast<float>(number(id) % 1000), 1.0F);
   return from_hsv(hue, 0.78F, 0.98F);
+}
+
+LabelPlace label_place(View<const std::uint8_t> mask) {
+  // A frame of nothing around it: the image's border is an outline, too.
+  cv::Mat framed(mask.height() + 2, mask.width() + 2, CV_8UC1, cv::Scalar(0));
+  for (int y = 0; y < mask.height(); ++y) {
+    std::copy_n(mask.row(y), mask.width(), framed.ptr<std::uint8_t>(y + 1) + 1);
+  }
+  cv::Mat distance;
+  cv::distanceTransform(framed, distance, cv::DIST_L2, 3);
+  cv::Point best;
+  cv::minMaxLoc(distance, nullptr, nullptr, nullptr, &best);
+  return {best.x - 1, best.y - 1};
+}
+
+DisparitySpan disparity_span(View<const float> disparity_px) {
+  std::vector<float> values;
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    std::copy_if(disparity_px.row(y), disparity_px.row(y) + disparity_px.width(), std::back_inserter(values),
+                 [](float d) { return !std::isnan(d); });
+  }
+  if (values.empty()) return {};
+  const auto at = [&](std::size_t percent) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+  };
+  const DisparitySpan span{at(1), at(99)};
+  return span.high > span.low ? span : DisparitySpan{span.low - 0.5F, span.low + 0.5F};
+}
+
+std::array<Rgb, 256> disparity_colours() {
+  cv::Mat ramp(1, 256, CV_8UC1);
+  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
+  cv::Mat bgr;
+  cv::applyColorMap(ramp, bgr, cv::COLORMAP_TURBO);
+  std::array<Rgb, 256> colours{};
+  for (int i = 0; i < 256; ++i) {
+    const auto c = bgr.at<cv::Vec3b>(0, i);
+    // The darkest ends would be hard to tell from holes.
+    colours[static_cast<std::size_t>(i)] = mixed(Rgb{c[2], c[1], c[0]}, {255, 255, 255}, 0.08F);
+  }
+  return colours;
 }
 
 Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const Objects& objects,
@@ -262,16 +233,19 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
     const std::string distance = object.position_in_camera_m
                                      ? number_text("%.2f m", object.position_in_camera_m->z)
                                      : number_text("%.1f px", object.disparity_px);
-    const cv::Point place = innermost(objects.labels, object) * factor;
-    write_centred(target, std::to_string(number(object.id)) + ": " + distance, place, 0.45);
+    const Rect box = object.box_px;
+    const Image<std::uint8_t> mask = mask_of(View<const ObjectId>(objects.labels), object.id, box);
+    const LabelPlace place = label_place(mask);
+    const cv::Point middle = cv::Point(box.x + place.x, box.y + place.y) * factor;
+    write_centred(target, std::to_string(number(object.id)) + ": " + distance, middle, 0.45);
   }
   return canvas;
 }
 
 Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig) {
   const int factor = enlargement(map.reject.size());
-  const Span span = shown_span(map);
-  const std::array<Rgb, 256> colours = turbo();
+  const DisparitySpan span = disparity_span(map.disparity_px);
+  const std::array<Rgb, 256> colours = disparity_colours();
   const int width = map.reject.width() * factor;
   const int height = map.reject.height() * factor;
   Image<Rgb> canvas({width + kLegendWidth, std::max(height, kLegendHeight)}, Rgb{15, 15, 15}, {});

@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <array>
 #include <cairn/core/image.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/disparity/disparity_map.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cstdint>
 #include <optional>
 
 /// Pictures to look at. Small frames are drawn enlarged by a whole factor, so that labels stay legible.
@@ -24,5 +26,52 @@ Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig
 
 /// The colour that an object is drawn with: neighbouring ids differ strongly.
 Rgb object_colour(ObjectId id);
+
+/// The pixels of one id within `box`, as 255.
+template <class Id>
+Image<std::uint8_t> mask_of(View<const Id> labels, Id id, Rect box) {
+  Image<std::uint8_t> mask({box.width, box.height});
+  for (int y = 0; y < box.height; ++y) {
+    for (int x = 0; x < box.width; ++x) mask(x, y) = labels(box.x + x, box.y + y) == id ? 255 : 0;
+  }
+  return mask;
+}
+
+/// The pixel of a mask (non-zero) that lies farthest from its outline: a place for a label.
+struct LabelPlace {
+  int x = 0;
+  int y = 0;
+};
+LabelPlace label_place(View<const std::uint8_t> mask);
+
+/// How a hole is drawn.
+struct HoleReason {
+  Reject bit = Reject::none;
+  const char* name = "";
+  Rgb colour;
+};
+/// Where several bits are set, the first of these is shown: what cannot be helped before what the matcher
+/// decided.
+inline constexpr std::array kHoleReasons{
+    HoleReason{Reject::no_data, "no data", {25, 25, 25}},
+    HoleReason{Reject::border, "border", {60, 60, 60}},
+    HoleReason{Reject::below_ground, "below ground", {205, 185, 255}},
+    HoleReason{Reject::speckle, "speckle", {255, 240, 200}},
+    HoleReason{Reject::no_texture, "no texture", {105, 105, 105}},
+    HoleReason{Reject::not_unique, "not unique", {150, 135, 135}},
+    HoleReason{Reject::flat, "flat", {125, 150, 140}},
+    HoleReason{Reject::left_right, "left-right", {205, 205, 205}},
+};
+static_assert(kHoleReasons.size() == kRejects.size());
+
+/// The disparities that the scale of colours spans: from the 1st to the 99th percentile, so that a few wrong
+/// matches do not take the colours from the rest.
+struct DisparitySpan {
+  float low = 0;
+  float high = 1;
+};
+DisparitySpan disparity_span(View<const float> disparity_px);
+/// The scale's colours, the lowest disparity first.
+std::array<Rgb, 256> disparity_colours();
 
 }  // namespace cairn::io

@@ -52,8 +52,8 @@ Raster decode_jpeg(std::string_view file);
 Raster decode_tiff(std::string_view file, Palette palette);
 Raster decode_pnm(std::string_view file);
 
-/// Rows of samples to be written: grey of 8 or 16 bits, or RGB of 8.
-struct PngRows {
+/// Rows of samples to be encoded: grey of 8 or 16 bits, or RGB of 8.
+struct PixelRows {
   Size size;
   int channels = 1;
   int bytes_each = 1;
@@ -61,6 +61,8 @@ struct PngRows {
   std::ptrdiff_t stride_bytes = 0;
 };
 /// A PNG file's bytes. Throws Error without a file's name.
-std::string encode_png(const PngRows& rows);
+std::string encode_png(const PixelRows& rows);
+/// A JPEG file's bytes, for looking at: quality 90; 8 bits only. Throws Error without a file's name.
+std::string encode_jpeg(const PixelRows& rows);
 
 }  // namespace cairn::io

@@ -9,6 +9,7 @@
 
 #include <cairn/core/error.hpp>
 #include <csetjmp>
+#include <cstdlib>
 #include <io/raster.hpp>
 #include <string>
 
@@ -34,13 +35,16 @@ void judge(j_common_ptr jpeg, int level) {
 }
 void keep_quiet(j_common_ptr) {}
 
+jpeg_error_mgr* prepared(Complaints& complaints) {
+  jpeg_std_error(&complaints.manager);
+  complaints.manager.error_exit = complain;
+  complaints.manager.emit_message = judge;
+  complaints.manager.output_message = keep_quiet;
+  return &complaints.manager;
+}
+
 struct Reader {
-  Reader() {
-    jpeg.err = jpeg_std_error(&complaints.manager);
-    complaints.manager.error_exit = complain;
-    complaints.manager.emit_message = judge;
-    complaints.manager.output_message = keep_quiet;
-  }
+  Reader() { jpeg.err = prepared(complaints); }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
   ~Reader() { jpeg_destroy_decompress(&jpeg); }
@@ -48,17 +52,31 @@ struct Reader {
   Complaints complaints;
 };
 
+struct Writer {
+  Writer() { jpeg.err = prepared(complaints); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer() {
+    jpeg_destroy_compress(&jpeg);
+    std::free(file);  // NOLINT(cppcoreguidelines-no-malloc): libjpeg's own
+  }
+  jpeg_compress_struct jpeg{};
+  unsigned char* file = nullptr;
+  unsigned long bytes = 0;
+  Complaints complaints;
+};
+
 /// Runs `steps`, which must own nothing: libjpeg leaves them by longjmp. Everything that lives on is the
 /// caller's.
 template <class Steps>
-bool succeeds(Reader& reader, const Steps& steps) {
-  if (setjmp(reader.complaints.way_out) != 0) return false;  // NOLINT(cert-err52-cpp): libjpeg's only way out
+bool succeeds(Complaints& complaints, const Steps& steps) {
+  if (setjmp(complaints.way_out) != 0) return false;  // NOLINT(cert-err52-cpp): libjpeg's only way out
   steps();
   return true;
 }
 
 void run(Reader& reader, const auto& steps) {
-  if (!succeeds(reader, steps)) {
+  if (!succeeds(reader.complaints, steps)) {
     throw Error(std::string("is a truncated or damaged JPEG: ") + reader.complaints.text);
   }
 }
@@ -93,6 +111,33 @@ Raster decode_jpeg(std::string_view file) {
     jpeg_finish_decompress(&jpeg);
   });
   return raster;
+}
+
+std::string encode_jpeg(const PixelRows& rows) {
+  constexpr int kQuality = 90;
+  Writer writer;
+  jpeg_compress_struct& jpeg = writer.jpeg;
+  const auto steps = [&] {
+    jpeg_create_compress(&jpeg);
+    jpeg_mem_dest(&jpeg, &writer.file, &writer.bytes);
+    jpeg.image_width = static_cast<JDIMENSION>(rows.size.width);
+    jpeg.image_height = static_cast<JDIMENSION>(rows.size.height);
+    jpeg.input_components = rows.channels;
+    jpeg.in_color_space = rows.channels == 3 ? JCS_RGB : JCS_GRAYSCALE;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, kQuality, TRUE);
+    jpeg_start_compress(&jpeg, TRUE);
+    for (int y = 0; y < rows.size.height; ++y) {
+      // libjpeg's type, not its habit: it reads these rows.
+      auto* row = const_cast<JSAMPROW>(rows.first + y * rows.stride_bytes);
+      jpeg_write_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+  };
+  if (!succeeds(writer.complaints, steps)) {
+    throw Error(std::string("cannot be encoded as JPEG: ") + writer.complaints.text);
+  }
+  return {reinterpret_cast<const char*>(writer.file), writer.bytes};
 }
 
 }  // namespace cairn::io

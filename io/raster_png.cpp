@@ -132,7 +132,7 @@ Raster decode_png(std::string_view file, Palette palette) {
   return raster;
 }
 
-std::string encode_png(const PngRows& rows) {
+std::string encode_png(const PixelRows& rows) {
   std::string file;
   const Writer writer(file);
   const auto steps = [&] {

@@ -10,6 +10,7 @@
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
 #include <io/overlay.hpp>
+#include <io/point_cloud.hpp>
 #include <io/read_file.hpp>
 #include <io/results.hpp>
 #include <io/rle.hpp>
@@ -127,9 +128,9 @@ Json json(const Object& object, View<const ObjectId> labels) {
 
 // ---- the folder ----
 
-constexpr std::array kResultFiles{"disparity.png",  "disparity.pfm",      "reject.png",
-                                  "confidence.png", "objects.png",        "floor.png",
-                                  "overlay.png",    "disparity_view.png", "objects.json"};
+constexpr std::array kResultFiles{"disparity.png", "disparity.pfm", "reject.png",  "confidence.png",
+                                  "objects.png",   "floor.png",     "overlay.png", "disparity_view.png",
+                                  "cloud.ply",     "objects.json"};
 
 /// A folder that is gone with all that it holds unless it is kept.
 class TemporaryFolder {
@@ -197,7 +198,7 @@ Image<std::uint16_t> ids_of_16_bits(View<const ObjectId> labels, const fs::path&
 }
 
 void write_files(const fs::path& folder, View<const Gray> left, View<const Rgb> left_rgb, const Frame& frame,
-                 const Provenance& provenance) {
+                 const Provenance& provenance, Extras extras) {
   save_disparity(folder / disparity_file_name(frame, provenance), frame.disparity.disparity_px);
   save_png(folder / "reject.png", View<const Reject>(frame.disparity.reject));
   if (!frame.confidence.empty()) save_confidence(folder / "confidence.png", frame.confidence);
@@ -208,6 +209,10 @@ void write_files(const fs::path& folder, View<const Gray> left, View<const Rgb> 
   save_png(folder / "overlay.png", View<const Rgb>(overlay));
   const Image<Rgb> view = draw_disparity(frame.disparity, provenance.rig);
   save_png(folder / "disparity_view.png", View<const Rgb>(view));
+  if (extras.point_cloud && provenance.rig) {
+    save_ply(folder / "cloud.ply", left, left_rgb, frame.disparity.disparity_px, frame.objects.labels,
+             *provenance.rig);
+  }
   write_file(folder / "objects.json", objects_json(frame, provenance));
 }
 
@@ -233,6 +238,7 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   const Size size = frame.disparity.disparity_px.size();
   Json j;
   j["cairn"] = CAIRN_VERSION;
+  j["schema"] = kObjectsSchema;
   j["image"] = {{"width", size.width}, {"height", size.height}};
   j["rig"] = json(provenance.rig);
   j["preset"] = provenance.preset;
@@ -267,7 +273,7 @@ void save_confidence(const fs::path& path, View<const float> confidence) {
 }
 
 void write_result(const fs::path& given_folder, View<const Gray> left, View<const Rgb> left_rgb,
-                  const Frame& frame, const Provenance& provenance) {
+                  const Frame& frame, const Provenance& provenance, Extras extras) {
   std::error_code failed;
   // Absolute and without a last slash, so that every folder has a parent.
   fs::path folder = fs::absolute(given_folder, failed).lexically_normal();
@@ -276,13 +282,13 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
     if (fs::exists(folder)) {
       if (!fs::is_directory(folder)) throw Error(given_folder.string() + ": is a file, expected a folder");
       const TemporaryFolder made(folder);  // inside: a folder beside might lie on another disk
-      write_files(made.path(), left, left_rgb, frame, provenance);
+      write_files(made.path(), left, left_rgb, frame, provenance, extras);
       replace(made.path(), folder);
       return;
     }
     Ancestors ancestors(folder.parent_path());
     const TemporaryFolder made(folder.parent_path());
-    write_files(made.path(), left, left_rgb, frame, provenance);
+    write_files(made.path(), left, left_rgb, frame, provenance, extras);
     fs::rename(made.path(), folder);
     ancestors.keep();
   } catch (const fs::filesystem_error& error) {

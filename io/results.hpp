@@ -27,6 +27,10 @@ struct Provenance {
 /// Every option by section, as a JSON object.
 std::string config_json(const Config& config);
 
+/// The form of objects.json: a reader of 1.x may rely on all that docs/schema/objects.schema.json says
+/// of 1.0; the number behind the dot grows with what is added.
+inline constexpr const char* kObjectsSchema = "1.0";
+
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);
 
@@ -37,13 +41,18 @@ std::string disparity_file_name(const Frame& frame, const Provenance& provenance
 /// Writes how likely each disparity is right (0 … 1) as 8-bit PNG: round(255·confidence).
 void save_confidence(const std::filesystem::path& path, View<const float> confidence);
 
+/// What a result holds on request.
+struct Extras {
+  bool point_cloud = false;  // cloud.ply, see save_ply(); needs provenance.rig
+};
+
 /// Writes disparity.png (or .pfm), reject.png, confidence.png (where disparities were matched), objects.png,
-/// floor.png (where a floor was labelled), overlay.png, disparity_view.png and objects.json, whole or not at
-/// all: everything is written under a temporary name first. An older result in `folder` is replaced, files of
-/// it that the new one has not are removed, foreign files stay. `left_rgb` may be empty. Throws Error (names
-/// the folder).
+/// floor.png (where a floor was labelled), overlay.png, disparity_view.png, objects.json and the extras,
+/// whole or not at all: everything is written under a temporary name first. An older result in `folder` is
+/// replaced, files of it that the new one has not are removed, foreign files stay. `left_rgb` may be empty.
+/// Throws Error (names the folder).
 void write_result(const std::filesystem::path& folder, View<const Gray> left, View<const Rgb> left_rgb,
-                  const Frame& frame, const Provenance& provenance);
+                  const Frame& frame, const Provenance& provenance, Extras extras = {});
 
 /// What `cairn evaluate` needs of an objects.json. Throws Error where the file is none.
 struct ObjectConfidence {

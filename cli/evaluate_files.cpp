@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "evaluate_files.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <io/disparity_files.hpp>
+#include <io/read_file.hpp>
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> file_in(const fs::path& folder, const char* name) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / name, ignored) ? std::optional(folder / name) : std::nullopt;
+}
+
+/// A map of the page, which must have the size of those before it.
+class SizeCheck {
+ public:
+  void operator()(const fs::path& path, Size size) {
+    if (first_) require_equal_size(path, size, *first_, size_);
+    first_ = path;
+    size_ = size;
+  }
+
+ private:
+  std::optional<fs::path> first_;
+  Size size_;
+};
+
+/// The frame's left picture: in the truth's folder, or in the one beside it that has the result's name.
+std::optional<fs::path> left_picture(const fs::path& truth_folder, const std::string& name) {
+  for (const fs::path& folder : {truth_folder, truth_folder.parent_path() / name}) {
+    try {
+      const io::FrameFiles frame = io::find_frames(folder).front();
+      if (frame.folder == folder) return frame.left;
+    } catch (const Error&) {
+      continue;  // a truth needs no picture
+    }
+  }
+  return std::nullopt;
+}
+
+template <class T, class Convert>
+Image<T> converted(const io::Labels& labels, const Convert& convert) {
+  Image<T> map(labels.ids.size());
+  for (int y = 0; y < map.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + map.width(), map.row(y), convert);
+  }
+  return map;
+}
+
+}  // namespace
+
+std::optional<ResultFiles> result_in(const fs::path& folder) {
+  ResultFiles files;
+  files.name = folder.filename().string();
+  files.objects = file_in(folder, "objects.png");
+  files.disparity = file_in(folder, "disparity.png");
+  if (!files.disparity) files.disparity = file_in(folder, "disparity.pfm");
+  files.reject = file_in(folder, "reject.png");
+  files.confidence = file_in(folder, "confidence.png");
+  files.json = file_in(folder, "objects.json");
+  if (!files.objects && !files.disparity) return std::nullopt;
+  return files;
+}
+
+Image<ObjectId> ours_of(const io::Labels& labels) {
+  return converted<ObjectId>(labels, [](std::uint16_t id) { return ObjectId{id}; });
+}
+
+Image<TruthId> truth_of(const io::Labels& labels) {
+  const bool has_dont_care = labels.bits == 8;
+  return converted<TruthId>(labels, [&](std::uint16_t id) {
+    return has_dont_care && id == 255 ? TruthId::dont_care : TruthId{id};
+  });
+}
+
+void require_equal_size(const fs::path& ours, Size our_size, const fs::path& theirs, Size their_size) {
+  if (our_size == their_size) return;
+  throw Error(ours.string() + ": is " + text(our_size) + ", the truth " + theirs.string() + " is " +
+              text(their_size));
+}
+
+io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth) {
+  SizeCheck check;
+  io::PageFrame shown;
+  shown.name = result.name;
+
+  Image<ObjectId> objects;
+  if (result.objects) {
+    objects = ours_of(io::load_labels(*result.objects));
+    check(*result.objects, objects.size());
+    shown.objects = objects;
+  }
+  Image<TruthId> true_objects;
+  if (truth.objects) {
+    true_objects = truth_of(io::load_labels(*truth.objects));
+    check(*truth.objects, true_objects.size());
+    shown.true_objects = true_objects;
+  }
+  Image<float> disparity;
+  if (result.disparity) {
+    disparity = io::load_disparity(*result.disparity);
+    check(*result.disparity, disparity.size());
+    shown.disparity_px = disparity;
+  }
+  Image<float> true_disparity;
+  if (truth.disparity) {
+    true_disparity = io::load_disparity(*truth.disparity);
+    check(*truth.disparity, true_disparity.size());
+    shown.true_disparity_px = true_disparity;
+  }
+  Image<Reject> reject;
+  if (result.reject && result.disparity) {
+    reject = converted<Reject>(io::load_labels(*result.reject),
+                               [](std::uint16_t bits) { return static_cast<Reject>(bits & 0xff); });
+    check(*result.reject, reject.size());
+    shown.reject = reject;
+  }
+  Image<float> confidence;
+  if (result.confidence && result.disparity) {
+    confidence = converted<float>(io::load_labels(*result.confidence),
+                                  [](std::uint16_t c) { return static_cast<float>(c & 0xff) / 255; });
+    check(*result.confidence, confidence.size());
+    shown.confidence = confidence;
+  }
+  io::Picture left;
+  if (const auto path = left_picture(truth.folder, result.name)) {
+    left = io::load_picture(*path);
+    check(*path, left.gray.size());
+    shown.left = left.gray;
+    shown.left_rgb = left.rgb;
+  }
+  if (result.json) {
+    constexpr std::size_t kMost = std::size_t{256} << 20;
+    shown.objects_json = io::read_file(*result.json, kMost);
+  }
+  return io::encode_frame(shown);
+}
+
+}  // namespace cairn::cli

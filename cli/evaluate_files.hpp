@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/evaluation/object_error.hpp>
+#include <filesystem>
+#include <io/dataset.hpp>
+#include <io/html_page.hpp>
+#include <io/image_files.hpp>
+#include <optional>
+#include <string>
+
+/// What `cairn evaluate` reads.
+namespace cairn::cli {
+
+struct ResultFiles {
+  std::string name;
+  std::optional<std::filesystem::path> objects;
+  std::optional<std::filesystem::path> disparity;
+  std::optional<std::filesystem::path> reject;
+  std::optional<std::filesystem::path> confidence;
+  std::optional<std::filesystem::path> json;
+};
+
+/// nullopt where the folder holds no result.
+std::optional<ResultFiles> result_in(const std::filesystem::path& folder);
+
+Image<ObjectId> ours_of(const io::Labels& labels);
+/// 255 means "don't care" in a truth of 8 bits; with 16 bits it is an id like others.
+Image<TruthId> truth_of(const io::Labels& labels);
+
+/// Throws Error that names both.
+void require_equal_size(const std::filesystem::path& ours, Size our_size, const std::filesystem::path& theirs,
+                        Size their_size);
+
+/// A result beside its truth, for the page of --html. The left picture is the one beside the truth; without
+/// one the page has none. Throws Error where two maps differ in size.
+io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth);
+
+}  // namespace cairn::cli

@@ -1,0 +1,9 @@
+# cmake -DFOLDER=… -DOUT=… -P embed.cmake: the files of the page as string constants of a C++ source.
+set(source "// Made from io/html/ by io/html/embed.cmake.\n#include <io/html_template.hpp>\n\nnamespace cairn::io {\n\n")
+foreach(part IN ITEMS Layout:page.html Style:page.css Script:page.js)
+  string(REGEX MATCH "(.*):(.*)" unused ${part})
+  file(READ ${FOLDER}/${CMAKE_MATCH_2} content)
+  string(APPEND source "const std::string_view kPage${CMAKE_MATCH_1} = R\"cairn(${content})cairn\";\n\n")
+endforeach()
+string(APPEND source "}  // namespace cairn::io\n")
+file(WRITE ${OUT} "${source}")

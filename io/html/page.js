@@ -1,0 +1,879 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// The page of `cairn segment --html` and `cairn evaluate --html`. Its data are JSON blocks beside this script
+// (io/html_page.cpp): `run`, and for each frame `facts-N`, read at once, and `maps-N`, read when it is shown.
+'use strict';
+(() => {
+  // ---- small helpers ----
+
+  const byId = (id) => document.getElementById(id);
+  const block = (id) => JSON.parse(byId(id).textContent);
+
+  /** An element; properties that are no attributes of their own begin with "on" (listeners) or are `style`. */
+  function el(tag, properties = {}, ...children) {
+    const node = document.createElement(tag);
+    for (const [name, value] of Object.entries(properties)) {
+      if (value === undefined || value === null || value === false) continue;
+      if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
+      else if (name === 'style') Object.assign(node.style, value);
+      else node.setAttribute(name, value === true ? '' : value);
+    }
+    node.append(...children.flat().filter((child) => child !== null && child !== undefined));
+    return node;
+  }
+
+  const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
+  const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits) : '–');
+  const percent = (share, digits = 1) => (isNumber(share) ? `${(100 * share).toFixed(digits)} %` : '–');
+  const counted = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
+  const words = (name) => name.replaceAll('_', ' ');
+
+  /** "#rrggbb" as the four bytes of a canvas' pixel, in this machine's order (little endian everywhere). */
+  function pixel(colour, alpha = 255) {
+    const n = parseInt(colour.slice(1), 16);
+    return ((alpha << 24) | ((n & 255) << 16) | (n & 0xff00) | (n >> 16)) >>> 0;
+  }
+  const mixed = (a, b, shareOfB) => {
+    const channel = (shift) => {
+      const from = (parseInt(a.slice(1), 16) >> shift) & 255;
+      const to = (parseInt(b.slice(1), 16) >> shift) & 255;
+      return Math.round(from + (to - from) * shareOfB) << shift;
+    };
+    return '#' + (channel(16) | channel(8) | channel(0)).toString(16).padStart(6, '0');
+  };
+
+  // ---- data ----
+
+  const run = block('run');
+  const evaluates = run.command === 'evaluate';
+  const frames = Array.from({length: run.frames}, (_, i) => {
+    const facts = block(`facts-${i}`);
+    facts.rig = facts.result?.rig ?? null;
+    facts.found = new Map((facts.result?.objects ?? []).map((o) => [o.id, o]));
+    const scores = run.evaluation?.frames[i] ?? null;
+    facts.scores = scores;
+    facts.ours = new Map((scores?.objects?.ours ?? []).map((o) => [o.id, o]));
+    facts.truth = new Map((scores?.objects?.true ?? []).map((t) => [t.id, t]));
+    return facts;
+  });
+
+  async function inflated(text) {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+
+  /** The numbers of a packed map; null where there is none. */
+  async function unpacked(map, count) {
+    if (!map) return null;
+    const planes = await inflated(map.data);
+    const values = new Uint32Array(count);
+    const mask = map.bytes === 4 ? 0xffffffff : 2 ** (8 * map.bytes) - 1;
+    let value = 0;
+    for (let i = 0; i < count; ++i) {
+      for (let k = 0; k < map.bytes; ++k) value += planes[k * count + i] * 2 ** (8 * k);
+      value = (value & mask) >>> 0;
+      values[i] = value;
+    }
+    return values;
+  }
+
+  async function disparities(map, count) {
+    const steps = await unpacked(map, count);
+    return steps && Float32Array.from(steps, (n) => (n === 0 ? NaN : map.low + (n - 1) / map.steps));
+  }
+
+  const decoded = new Map();  // the frames seen last, so that the slider goes back at once
+  function mapsOf(index) {
+    if (!decoded.has(index)) {
+      decoded.set(index, decode(index));
+      if (decoded.size > 12) decoded.delete(decoded.keys().next().value);
+    }
+    return decoded.get(index);
+  }
+  async function decode(index) {
+    const packed = block(`maps-${index}`);
+    const count = frames[index].width * frames[index].height;
+    const maps = {left: packed.left || null};
+    const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'objects'];
+    for (const name of names) maps[name] = await unpacked(packed[name], count);
+    maps.disparity = await disparities(packed.disparity, count);
+    maps.true_disparity = await disparities(packed.true_disparity, count);
+    const truth = await unpacked(packed.true_objects, count);
+    maps.true_objects = truth && Int32Array.from(truth, (n) => n - 1);  // −1 = don't care
+    if (maps.left) {
+      const image = new Image();
+      image.src = maps.left;
+      await image.decode().catch(() => {});
+    }
+    return maps;
+  }
+
+  // ---- what is shown ----
+
+  const state = {
+    frame: 0,
+    maps: null,
+    columns: 0,        // 0: as many as fit
+    modes: {},         // panel → index of its mode
+    reason: null,      // the hole reason that the legend points at
+    near: null,        // the object under the pointer in a table or picture
+    picked: null,      // the object that was clicked
+    bin: null,         // the histogram's bar that was clicked
+    onlyThisFrame: false,
+  };
+  const current = () => frames[state.frame];
+
+  /** Distance of a disparity in m: the frame's rig says it. */
+  function metres(disparity, rig = current().rig) {
+    if (!rig) return NaN;
+    const shifted = disparity + rig.doffs_px;
+    return shifted > 0 ? (rig.focal_px * rig.baseline_m) / shifted : Infinity;
+  }
+  const distanceText = (object) =>
+    object?.position_m ? `${fixed(object.position_m[2], 2)} m`
+      : isNumber(object?.disparity_px) ? `${fixed(object.disparity_px, 1)} px` : '';
+
+  const objectColour = (id) => run.look.objects[id % run.look.objects.length];
+  /** A true object has the colour of ours that it is compared with; a missed one has none. */
+  const kMissed = '#ff4d6a', kNotScored = '#b8bec6';
+  const truthColour = (id) => {
+    const ours = current().truth.get(id)?.ours;
+    return ours ? objectColour(ours) : current().truth.has(id) ? kMissed : kNotScored;
+  };
+  const reasonOf = (bits) => run.look.reasons.find((reason) => bits & reason.bit) ?? run.look.reasons[0];
+  const reasonsOf = (bits) => run.look.reasons.filter((reason) => bits & reason.bit).map((r) => r.name);
+
+  // Enough hues for any neighbours to differ; which one an id gets means nothing.
+  const kRegionColours = Array.from({length: 64}, (_, i) => {
+    const hue = (i * 0.61803399) % 1, light = [0.62, 0.5, 0.74][i % 3];
+    const channel = (shift) => {
+      const k = (shift + hue * 12) % 12;
+      const v = light - 0.55 * Math.min(light, 1 - light) * Math.max(-1, Math.min(k - 3, 9 - k, 1));
+      return Math.round(255 * v).toString(16).padStart(2, '0');
+    };
+    return '#' + channel(0) + channel(8) + channel(4);
+  });
+  const kErrorClasses = [[0.5, '#2f6fb5'], [1, '#6db7d8'], [2, '#f2d16b'], [4, '#e8863a'], [Infinity, '#cf3d3d']];
+  const kUnsure = '#d3632c', kSure = '#2b9c8d', kNothing = '#24272b';
+
+  // ---- painting: each mode fills the pixels (0 = the picture shows through) and returns its legend ----
+
+  function paintDisparity(out, disparity, reject) {
+    const [low, high] = current().span;
+    const ramp = run.look.ramp.map((c) => pixel(c)), pale = run.look.ramp.map((c) => pixel(mixed(c, kNothing, 0.8)));
+    const holes = new Map(run.look.reasons.map((r) => [r.name, 0]));
+    const colours = new Map(run.look.reasons.map((r) => [r.name, pixel(r.colour)]));
+    let valid = 0;
+    for (let i = 0; i < out.length; ++i) {
+      if (!Number.isNaN(disparity[i])) {
+        const share = Math.min(1, Math.max(0, (disparity[i] - low) / (high - low)));
+        out[i] = (state.reason ? pale : ramp)[Math.round(share * 255)];
+        ++valid;
+        continue;
+      }
+      const name = reject ? reasonOf(reject[i]).name : null;
+      if (name) holes.set(name, holes.get(name) + 1);
+      out[i] = !name ? pixel(kNothing)
+        : !state.reason ? colours.get(name)
+          : reject[i] & state.reason ? pixel('#ff3df2') : pixel(mixed(reasonOf(reject[i]).colour, kNothing, 0.7));
+    }
+    const chips = run.look.reasons.filter((reason) => holes.get(reason.name)).map((reason) => chip(reason.colour, reason.name, holes.get(reason.name) / out.length, {
+      onpointerenter: () => { state.reason = reason.bit; repaint('disparity', false); },
+      onpointerleave: () => { state.reason = null; repaint('disparity', false); },
+    }));
+    return {count: `${percent(valid / out.length)} have one`, legend: [disparityScale(low, high), reject && el('div', {class: 'chips'}, chips)]};
+  }
+
+  function disparityScale(low, high) {
+    const steps = [0, 1, 2, 3, 4].map((i) => low + (high - low) * i / 4);
+    const text = (d) => {
+      const z = metres(d);
+      return [`${fixed(d, 1)} px`, isNumber(z) ? el('br') : null, isNumber(z) ? `${fixed(z, 2)} m` : null];
+    };
+    return el('div', {},
+      el('div', {class: 'scale', style: {background: `linear-gradient(to right, ${run.look.ramp.filter((_, i) => i % 15 === 0).join(',')})`}}),
+      el('div', {class: 'ticks'}, steps.map((d) => el('span', {}, text(d)))));
+  }
+
+  function chip(colour, name, share, properties = {}) {
+    return el('span', {class: `chip${share === 0 ? ' off' : ''}`, ...properties},
+      el('i', {style: {background: colour}}), el('b', {}, name), isNumber(share) ? percent(share) : null);
+  }
+
+  function paintConfidence(out, {confidence, disparity}) {
+    const ramp = Array.from({length: 256}, (_, c) => pixel(mixed(kUnsure, kSure, c / 255)));
+    let sure = 0, valid = 0;
+    for (let i = 0; i < out.length; ++i) {
+      const hole = Number.isNaN(disparity[i]);
+      out[i] = hole ? pixel(kNothing) : ramp[confidence[i]];
+      valid += hole ? 0 : 1;
+      sure += !hole && confidence[i] >= 204 ? 1 : 0;
+    }
+    return {
+      count: `${percent(valid ? sure / valid : NaN)} of them ≥ 0.8`,
+      legend: [
+        el('div', {class: 'scale', style: {background: `linear-gradient(to right, ${kUnsure}, ${kSure})`}}),
+        el('div', {class: 'ticks'}, ['0', 'how likely within 1 px', '1'].map((t) => el('span', {}, t))),
+        el('div', {class: 'chips'}, chip(kNothing, 'hole')),
+      ],
+    };
+  }
+
+  function paintError(out, {disparity, true_disparity: truth}) {
+    const colours = kErrorClasses.map(([, c]) => pixel(c)), counts = kErrorClasses.map(() => 0);
+    let known = 0, holes = 0;
+    for (let i = 0; i < out.length; ++i) {
+      out[i] = pixel('#000000');
+      if (Number.isNaN(truth[i])) continue;
+      ++known;
+      if (Number.isNaN(disparity[i])) {
+        ++holes;
+        out[i] = pixel('#4b5057');
+        continue;
+      }
+      const place = kErrorClasses.findIndex(([limit]) => Math.abs(disparity[i] - truth[i]) <= limit);
+      ++counts[place];
+      out[i] = colours[place];
+    }
+    const names = kErrorClasses.map(([limit], i) => limit === Infinity ? `over ${kErrorClasses[i - 1][0]} px` : `to ${limit} px`);
+    return {
+      count: `of ${percent(known / out.length, 0)} with truth`,
+      legend: [el('div', {class: 'chips'},
+        names.map((name, i) => chip(kErrorClasses[i][1], name, counts[i] / known)), chip('#4b5057', 'hole', holes / known),
+        chip('#000000', 'truth not known'))],
+    };
+  }
+
+  /** Whether a neighbour to the right or below has another label. */
+  function onBorder(labels, i, width) {
+    return ((i + 1) % width !== 0 && labels[i + 1] !== labels[i]) ||
+      (i + width < labels.length && labels[i + width] !== labels[i]);
+  }
+
+  function paintRegions(out, labels) {
+    const {width} = current();
+    const colours = kRegionColours.map((c) => pixel(c, 150)), border = pixel('#111111', 230);
+    const seen = new Set();
+    for (let i = 0; i < out.length; ++i) {
+      seen.add(labels[i]);
+      out[i] = onBorder(labels, i, width) ? border : colours[labels[i] % colours.length];
+    }
+    return {count: counted(seen.size, 'region'), legend: []};
+  }
+
+  function paintObjects(out, labels, colourOf, chosen) {
+    const {width} = current();
+    const inside = new Map(), edge = new Map(), shade = pixel('#000000', 50);
+    for (let i = 0; i < out.length; ++i) {
+      const id = labels[i];
+      if (id <= 0) {
+        out[i] = id < 0 ? pixel('#9aa0a8', 110) : shade;
+        continue;
+      }
+      if (!inside.has(id)) {
+        const dim = chosen !== null && chosen !== id;
+        inside.set(id, pixel(colourOf(id), dim ? 35 : chosen === id ? 175 : 125));
+        edge.set(id, pixel(mixed(colourOf(id), '#ffffff', 0.4), dim ? 90 : 255));
+      }
+      const outline = onBorder(labels, i, width) || (i % width !== 0 && labels[i - 1] !== id) ||
+        (i >= width && labels[i - width] !== id);
+      out[i] = (outline ? edge : inside).get(id);
+    }
+  }
+
+  function marks(places, textOf, chosen) {
+    const {width, height} = current();
+    return places.map(({id, x, y}) => el('span', {
+      class: `mark${chosen !== null && chosen !== id ? ' dim' : ''}`,
+      style: {left: `${100 * (x + 0.5) / width}%`, top: `${100 * (y + 0.5) / height}%`},
+    }, textOf(id)));
+  }
+
+  /** Moves marks down that would lie on others. */
+  function partMarks(all) {
+    const placed = [];
+    for (const mark of all) {
+      const box = mark.getBoundingClientRect();
+      let down = 0;
+      const hits = (other) => box.left < other.right && other.left < box.right &&
+        box.top + down < other.bottom && other.top < box.bottom + down;
+      for (let other = placed.find(hits); other && down < 60; other = placed.find(hits)) down = other.bottom - box.top + 0.5;
+      placed.push({left: box.left, right: box.right, top: box.top + down, bottom: box.bottom + down});
+      if (down) mark.style.marginTop = `${down}px`;
+    }
+  }
+
+  function paintFound(out, {objects}) {
+    const chosen = state.near ?? state.picked;
+    paintObjects(out, objects, objectColour, chosen);
+    const {found, objects: places, ours} = current();
+    return {
+      count: counted(places.length, 'object'),
+      marks: marks(places, (id) => [id, distanceText(found.get(id))].filter((t) => t !== '').join(': '), chosen),
+      legend: evaluates && ours.size ? [el('div', {class: 'chips'}, verdicts())] : [],
+    };
+  }
+  function verdicts() {
+    const all = [...current().ours.values()];
+    const right = all.filter((o) => o.iou >= 0.5).length, phantoms = all.filter((o) => o.phantom).length;
+    return [`${right} of ${all.length} with IoU ≥ 0.5`, counted(phantoms, 'phantom')].map((t) => el('span', {}, t));
+  }
+
+  function errorText(score) {
+    if (!score) return 'not scored';
+    return score.error === null ? 'missed' : `E ${fixed(100 * score.error, 0)} %`;
+  }
+  function paintTruth(out, {true_objects: labels}) {
+    // A true object belongs to ours that it is compared with, so the two are chosen together.
+    const ours = state.near ?? state.picked;
+    const chosen = ours === null ? null : [...current().truth.values()].find((t) => t.ours === ours)?.id ?? -2;
+    paintObjects(out, labels, truthColour, chosen);
+    const {truth, true_objects: places} = current();
+    return {
+      count: counted(places.length, 'object'),
+      marks: marks(places, (id) => `${id}: ${errorText(truth.get(id))}`, chosen),
+      legend: [el('div', {class: 'chips'}, el('span', {}, 'coloured as ours that fits best'),
+        [...truth.values()].some((t) => !t.ours) ? chip(kMissed, 'missed') : null,
+        places.some(({id}) => !truth.has(id)) ? chip(kNotScored, 'not scored') : null)],
+    };
+  }
+
+  /** panel → its modes; `needs` are the maps without which there is nothing to show. */
+  const kPanels = {
+    left: [{name: 'Left picture', needs: ['left'], base: 'plain'}],
+    disparity: [
+      {name: 'Disparity', needs: ['disparity'], paint: (out, m) => paintDisparity(out, m.disparity, m.reject)},
+      {name: 'Disparity error', needs: ['disparity', 'true_disparity'], paint: paintError},
+      {name: 'True disparity', needs: ['true_disparity'], paint: (out, m) => paintDisparity(out, m.true_disparity, null)},
+      {name: 'Confidence', needs: ['disparity', 'confidence'], paint: paintConfidence},
+    ],
+    ...(evaluates
+      ? {truth: [{name: 'True objects', needs: ['true_objects'], base: 'faded', paint: paintTruth}]}
+      : {regions: [
+          {name: 'Regions by intensity', needs: ['by_intensity'], base: 'faded', paint: (out, m) => paintRegions(out, m.by_intensity)},
+          {name: 'Regions by disparity', needs: ['by_disparity'], base: 'faded', paint: (out, m) => paintRegions(out, m.by_disparity)},
+        ]}),
+    objects: [{name: evaluates ? 'Objects found' : 'Objects', needs: ['objects'], base: 'faded', paint: paintFound}],
+  };
+
+  const panels = {};
+  function makePanels() {
+    for (const name of Object.keys(kPanels)) {
+      const stage = el('div', {class: 'stage'});
+      stage.addEventListener('pointermove', (event) => point(event, name));
+      stage.addEventListener('pointerleave', leave);
+      stage.addEventListener('click', pickUnderPointer);
+      const caption = el('figcaption'), legend = el('div', {class: 'legend'});
+      byId('panels').append(el('figure', {class: 'panel', 'data-panel': name}, caption, stage, legend));
+      panels[name] = {stage, caption, legend};
+      state.modes[name] = 0;
+    }
+  }
+
+  function repaint(name, withLegend = true) {
+    const {stage, caption, legend} = panels[name];
+    const {width, height} = current();
+    const offered = kPanels[name].filter((mode) => mode.needs.every((map) => state.maps[map]));
+    const mode = offered[Math.min(state.modes[name], offered.length - 1)];
+    const title = kPanels[name][0].name;
+    stage.style.aspectRatio = `${width || 4} / ${height || 3}`;
+    if (!mode) {
+      stage.replaceChildren(el('div', {class: 'none'}, 'not there'));
+      caption.replaceChildren(el('h2', {}, title));
+      legend.replaceChildren();
+      return;
+    }
+    const children = [];
+    if (mode.base && state.maps.left) children.push(el('img', {src: state.maps.left, alt: '', class: mode.base, draggable: 'false'}));
+    let shown = {count: `${width} × ${height} px`, legend: []};
+    if (mode.paint) {
+      const canvas = el('canvas', {width, height});
+      const image = new ImageData(width, height);
+      shown = mode.paint(new Uint32Array(image.data.buffer), state.maps);
+      canvas.getContext('2d').putImageData(image, 0, 0);
+      children.push(canvas);
+    }
+    stage.replaceChildren(...children, ...(shown.marks ?? []));
+    partMarks(shown.marks ?? []);
+    if (!withLegend) return;
+    const heading = offered.length === 1 ? el('h2', {}, mode.name)
+      : el('select', {'aria-label': `What the panel ${title} shows`, onchange: (event) => {
+          state.modes[name] = event.target.selectedIndex;
+          repaint(name);
+        }}, offered.map((other) => el('option', {selected: other === mode}, other.name)));
+    caption.replaceChildren(heading, el('span', {class: 'count'}, shown.count));
+    legend.replaceChildren(...shown.legend.filter(Boolean));
+  }
+  function repaintObjects() {
+    for (const name of ['objects', 'truth']) if (panels[name] && state.maps) repaint(name, false);
+  }
+
+  // ---- the pointer ----
+
+  function placeOf(event, stage) {
+    const box = stage.getBoundingClientRect();
+    const {width, height} = current();
+    const x = Math.floor((event.clientX - box.left) / box.width * width);
+    const y = Math.floor((event.clientY - box.top) / box.height * height);
+    return x >= 0 && y >= 0 && x < width && y < height ? {x, y, i: y * width + x} : null;
+  }
+
+  function rows(pairs) {
+    return el('dl', {}, pairs.filter(([, value]) => value !== null).flatMap(([key, value]) => [el('dt', {}, key), el('dd', {}, value)]));
+  }
+  function group(title, pairs) {
+    return el('div', {class: 'group'}, title ? el('b', {}, title) : null, rows(pairs));
+  }
+
+  /** What is known of one pixel. */
+  function described({x, y, i}) {
+    const {maps} = state, facts = current();
+    const parts = [el('div', {class: 'at'}, `x ${x}, y ${y}`)];
+    if (maps.disparity) {
+      const d = maps.disparity[i], hole = Number.isNaN(d), z = metres(d), truth = maps.true_disparity?.[i];
+      parts.push(group(null, [
+        ['disparity', hole ? 'none' : `${fixed(d, 2)} px`],
+        ['refused', hole && maps.reject ? reasonsOf(maps.reject[i]).join(', ') : null],
+        ['distance', !hole && isNumber(z) ? `${fixed(z, 2)} m` : null],
+        ['confidence', !hole && maps.confidence ? fixed(maps.confidence[i] / 255, 2) : null],
+        ['true disparity', maps.true_disparity ? (Number.isNaN(truth) ? 'not known' : `${fixed(truth, 2)} px`) : null],
+      ]));
+    }
+    if (maps.by_intensity) {
+      parts.push(group(null, [['region by intensity', maps.by_intensity[i]], ['by disparity', maps.by_disparity?.[i] ?? null]]));
+    }
+    const id = maps.objects?.[i] ?? 0;
+    if (id > 0) {
+      const object = facts.found.get(id), score = facts.ours.get(id);
+      parts.push(group(`object ${id}`, [
+        ['distance', distanceText(object) || null],
+        ['confidence', object ? fixed(object.confidence, 2) : null],
+        ['area', object ? `${object.area} px` : null],
+        ['fits', score ? (score.true === null ? 'no true object' : `true object ${score.true}, IoU ${fixed(score.iou, 2)}`) : null],
+      ]));
+    }
+    const trueId = maps.true_objects?.[i] ?? 0;
+    if (trueId !== 0) {
+      const score = facts.truth.get(trueId);
+      parts.push(group(trueId < 0 ? 'truth: don’t care' : `true object ${trueId}`, trueId < 0 ? [] : [
+        ['', errorText(score)],
+        ['best fit', score?.ours ? `object ${score.ours}, IoU ${fixed(score.iou, 2)}` : null],
+      ]));
+    }
+    return parts;
+  }
+
+  function point(event, name) {
+    const at = state.maps && placeOf(event, panels[name].stage);
+    if (!at) return leave();
+    const tip = byId('tip'), gap = 14;
+    tip.replaceChildren(...described(at));
+    tip.hidden = false;
+    const {width, height} = tip.getBoundingClientRect();
+    const left = event.clientX + gap + width > innerWidth ? event.clientX - gap - width : event.clientX + gap;
+    const top = event.clientY + gap + height > innerHeight ? event.clientY - gap - height : event.clientY + gap;
+    tip.style.left = `${Math.max(0, left)}px`;
+    tip.style.top = `${Math.max(0, top)}px`;
+    for (const [other, {stage}] of Object.entries(panels)) {
+      let cross = stage.querySelector('.cross');
+      if (other === name) {
+        cross?.remove();
+        continue;
+      }
+      if (!cross) stage.append(cross = el('div', {class: 'cross'}));
+      cross.style.left = `${100 * (at.x + 0.5) / current().width}%`;
+      cross.style.top = `${100 * (at.y + 0.5) / current().height}%`;
+    }
+    const id = state.maps.objects?.[at.i] ?? 0;
+    for (const row of document.querySelectorAll('#objects tbody tr')) row.classList.toggle('near', row.dataset.key === String(id));
+  }
+  function leave() {
+    byId('tip').hidden = true;
+    for (const cross of document.querySelectorAll('.cross')) cross.remove();
+    for (const row of document.querySelectorAll('tr.near')) row.classList.remove('near');
+  }
+  function pickUnderPointer(event) {
+    const at = state.maps?.objects && placeOf(event, event.currentTarget);
+    const id = at ? state.maps.objects[at.i] : 0;
+    pick(id > 0 && id !== state.picked ? id : null);
+  }
+  function pick(id) {
+    state.picked = id;
+    state.near = null;
+    for (const row of document.querySelectorAll('#objects tbody tr')) {
+      row.setAttribute('aria-selected', row.dataset.key === String(id));
+      if (row.dataset.key === String(id)) row.scrollIntoView({block: 'nearest'});
+    }
+    repaintObjects();
+  }
+
+  // ---- tables ----
+
+  const sorting = {};  // table → {column, descending}, which outlives the frame
+
+  /**
+   * A table whose heads sort. columns: {name, title, text, value (what is sorted by), show (a cell's nodes), bad}.
+   * What has no value comes last, whichever way.
+   */
+  function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
+    const body = el('tbody');
+    const heads = columns.map((column, c) => el('th', {scope: 'col', class: column.text ? 'text' : null, 'aria-sort': 'none'},
+      el('button', {type: 'button', title: column.title, onclick: () => {
+        const before = sorting[id];
+        sorting[id] = {column: c, descending: before?.column === c ? !before.descending : false};
+        fill();
+      }}, column.name)));
+    const fill = () => {
+      const {column, descending} = sorting[id] ?? {};
+      const rowsShown = [...data];
+      if (column !== undefined) {
+        const valueOf = columns[column].value, sign = descending ? -1 : 1;
+        const missing = (v) => v === null || v === undefined || Number.isNaN(v);
+        rowsShown.sort((a, b) => {
+          const p = valueOf(a), q = valueOf(b);
+          if (missing(p) || missing(q)) return missing(p) - missing(q);
+          return sign * (typeof p === 'string' ? p.localeCompare(q, 'en', {numeric: true}) : p - q);
+        });
+      }
+      heads.forEach((head, c) => head.setAttribute('aria-sort', c !== column ? 'none' : descending ? 'descending' : 'ascending'));
+      body.replaceChildren(...rowsShown.map((row) => {
+        const name = key?.(row);
+        return el('tr', {
+          'data-key': name, class: pickRow ? 'pick' : null, 'aria-selected': selected ? String(selected(row)) : null,
+          onclick: pickRow && (() => pickRow(row)),
+          onpointerenter: enter && (() => enter(row)), onpointerleave: enter && (() => enter(null)),
+        }, columns.map((column) => el('td', {
+          class: [column.text ? 'text' : '', column.grow ? 'grow' : '', column.bad?.(row) ? 'bad' : ''].join(' ').trim() || null,
+        }, column.show(row))));
+      }));
+    };
+    fill();
+    return el('div', {class: 'scroll'}, el('table', {id}, el('thead', {}, el('tr', {}, heads)), body));
+  }
+
+  /** A column of numbers. */
+  const number = (name, value, digits, more = {}) => ({name, value, show: (row) => fixed(value(row), digits), ...more});
+  const share = (name, value, more = {}) => ({name, value, show: (row) => (isNumber(value(row)) ? fixed(100 * value(row), 1) : '–'), ...more});
+  const swatch = (colour) => el('span', {class: 'swatch', style: {background: colour}});
+
+  function card(title, note, ...content) {
+    return el('div', {class: 'card'}, el('div', {class: 'head'}, el('h2', {}, title), note ? el('span', {class: 'note'}, note) : null), ...content);
+  }
+
+  function objectsCard() {
+    const {found, objects: places, ours, name} = current();
+    const list = places.map(({id}) => ({id, ...found.get(id), score: ours.get(id)}));
+    const note = run.frames > 1 ? name : null;
+    if (!list.length) return card(evaluates ? 'Objects found' : 'Objects', note, el('p', {class: 'empty'}, 'none'));
+    const has = (property) => list.some((o) => o[property]);
+    const columns = [{name: 'id', value: (o) => o.id, show: (o) => [swatch(objectColour(o.id)), o.id]}];
+    if (has('position_m')) columns.push(number('distance m', (o) => o.position_m?.[2], 2));
+    if (has('disparity_px')) columns.push(number('disparity px', (o) => o.disparity_px, 1));
+    if (evaluates) {
+      columns.push(
+        number('true id', (o) => o.score?.true, 0), number('IoU', (o) => o.score?.iou, 3, {bad: (o) => o.score && o.score.iou < 0.5}),
+        {name: 'verdict', text: true, value: verdict, show: verdict, bad: (o) => verdict(o) === 'phantom'});
+    } else {
+      if (has('position_m')) {
+        columns.push(number('x m', (o) => o.position_m?.[0], 2, {title: 'to the right of the left camera'}),
+          number('y m', (o) => o.position_m?.[1], 2, {title: 'below the left camera'}));
+      }
+      if (has('extent_m')) {
+        columns.push({name: 'size m', title: 'width × height × depth; sorts by the largest',
+          value: (o) => (o.extent_m ? Math.max(...o.extent_m) : null),
+          show: (o) => o.extent_m?.map((length) => fixed(length, 2)).join(' × ') ?? '–'});
+      }
+      columns.push(share('valid %', (o) => o.valid_share, {title: 'share of its pixels that have a disparity'}));
+    }
+    columns.push(number('area px', (o) => o.area ?? o.score?.area_px, 0));
+    if (has('confidence')) columns.push(number('confidence', (o) => o.confidence, 2));
+    return card(evaluates ? 'Objects found' : 'Objects', note, table('objects', columns, list, {
+      key: (o) => o.id, pickRow: (o) => pick(o.id === state.picked ? null : o.id), selected: (o) => o.id === state.picked,
+      enter: (o) => { state.near = o?.id ?? null; repaintObjects(); },
+    }));
+  }
+  function verdict({score}) {
+    if (!score) return '–';
+    if (score.mostly_dont_care) return 'don’t care';
+    if (score.phantom) return 'phantom';
+    return score.iou >= 0.5 ? 'right' : 'poor';
+  }
+
+  const total = (times) => Object.values(times ?? {}).reduce((sum, t) => sum + t, 0);
+
+  function framesCard() {
+    const list = frames.map((facts, index) => ({index, ...facts}));
+    const objects = (f) => f.scores?.objects, counts = (f) => objects(f)?.counts;
+    const visible = (f) => f.scores?.disparity?.both_cameras ?? f.scores?.disparity?.all;
+    const meanError = (f) => {
+      const errors = (objects(f)?.true ?? []).map(cappedError);
+      return errors.length ? errors.reduce((a, b) => a + b) / errors.length : null;
+    };
+    const columns = [{name: 'frame', text: true, value: (f) => f.name, show: (f) => f.name}];
+    if (evaluates) {
+      columns.push(
+        share('E %', meanError, {title: 'mean, each counted as 200 % at most'}),
+        {name: 'found', title: 'true objects with IoU ≥ 0.5, of all scored', value: (f) => counts(f) && counts(f).found_50 - counts(f).scored,
+          show: (f) => (counts(f) ? `${counts(f).found_50}/${counts(f).scored}` : '–'), bad: (f) => counts(f)?.found_50 < counts(f)?.scored},
+        number('ours', (f) => counts(f)?.ours, 0), number('right', (f) => counts(f)?.right_50, 0),
+        number('phantoms', (f) => counts(f)?.phantoms, 0, {bad: (f) => counts(f)?.phantoms > 0}),
+        share('bad-1 %', (f) => visible(f)?.bad_of_matched['1'], {title: 'of the matched pixels that both cameras see'}),
+        share('density %', (f) => visible(f)?.density));
+    } else {
+      columns.push(
+        number('objects', (f) => f.objects.length, 0),
+        number('nearest m', (f) => f.result?.objects[0]?.position_m?.[2], 2),
+        share('disparity %', (f) => f.valid_share, {title: 'share of the pixels that have a disparity'}),
+        {name: 'ground', text: true, value: groundText, show: (f) => el('span', {title: groundText(f)}, groundText(f).split(':')[0])},
+        number('ms', (f) => total(f.result?.timings_ms), 1));
+    }
+    return card('Frames', `${run.frames}`, table('frames-table', columns, list, {
+      key: (f) => f.index, pickRow: (f) => show(f.index), selected: (f) => f.index === state.frame,
+    }));
+  }
+  function groundText({result}) {
+    if (!result) return '–';
+    return result.ground.plane ? 'found' : `none: ${words(result.ground.refusal ?? '')}`;
+  }
+
+  function timesCard() {
+    const times = Object.entries(current().result?.timings_ms ?? {});
+    if (!times.length) return null;
+    const most = Math.max(...times.map(([, t]) => t));
+    return card('Time per stage', `${fixed(total(current().result.timings_ms), 1)} ms in all`, table('times', [
+      {name: 'stage', text: true, value: ([stage]) => stage, show: ([stage]) => words(stage)},
+      number('ms', ([, t]) => t, 2),
+      {name: '', grow: true, text: true, value: ([, t]) => t, show: ([, t]) => el('span', {class: 'bar', style: {width: `${100 * t / most}%`}})},
+    ], times));
+  }
+
+  let optionsOpen = false;
+  function optionsCard() {
+    const config = current().result?.config;
+    if (!config) return null;
+    const list = Object.entries(config).flatMap(([section, options]) =>
+      Object.entries(options).map(([name, value]) => [`${section}.${name}`, Array.isArray(value) ? JSON.stringify(value) : String(value)]));
+    return el('details', {class: 'card', open: optionsOpen, ontoggle: (event) => { optionsOpen = event.target.open; }},
+      el('summary', {}, `Options (preset ${current().result.preset})`),
+      table('options', [0, 1].map((k) => ({name: ['option', 'value'][k], text: true, value: (o) => o[k], show: (o) => o[k]})), list));
+  }
+
+  // ---- evaluation ----
+
+  const kCap = run.evaluation?.summary.objects?.error_cap ?? 2;
+  const cappedError = (score) => (score.error === null ? kCap : Math.min(score.error, kCap));
+  const allTrue = frames.flatMap((facts, frame) =>
+    [...facts.truth.values()].map((score) => ({frame, name: facts.name, ...score})));
+
+  function tiles() {
+    const o = run.evaluation.summary.objects, d = run.evaluation.summary.disparity;
+    const list = [];
+    if (o) {
+      list.push([percent(o.recall_50), `of ${o.scored} true objects found`, 'IoU ≥ 0.5']);
+      if (o.ours !== null) list.push([percent(o.precision_50), `precision of ${counted(o.ours, 'object')}`, 'IoU ≥ 0.5'],
+        [fixed(o.phantoms_per_frame, 2), 'phantoms per frame', 'less than a quarter on any true object']);
+      list.push([percent(o.median_error), `median E; mean ${percent(o.mean_error)}`, 'Eq. 5: 1/IoU − 1, counted as 200 % at most'],
+        [fixed(o.mean_boundary_f, 3), 'boundary F', 'mean over all scored']);
+    }
+    const seen = d?.both_cameras ?? d?.all;
+    if (seen) {
+      list.push([percent(seen.bad_of_matched['1']), 'bad-1 of the matched', d.both_cameras ? 'pixels that both cameras see' : 'all pixels with truth'],
+        [percent(seen.density), 'density', 'share of the pixels with truth that have a disparity']);
+    }
+    byId('tiles').replaceChildren(...list.map(([value, name, title]) => el('div', {class: 'tile', title}, el('b', {}, value), el('span', {}, name))));
+    byId('tiles').hidden = list.length === 0;
+  }
+
+  const kBins = 20;
+  /** The last bin holds what reaches the cap: misses, mostly. */
+  const binOf = (score) => Math.min(kBins, Math.floor(cappedError(score) / kCap * kBins));
+  const binText = (bin) => bin === kBins ? `${100 * kCap} % and more, or missed`
+    : `${Math.round(100 * kCap * bin / kBins)} to ${Math.round(100 * kCap * (bin + 1) / kBins)} %`;
+
+  function svg(tag, properties, ...children) {
+    const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
+    for (const [name, value] of Object.entries(properties)) {
+      if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
+      else node.setAttribute(name, value);
+    }
+    node.append(...children);
+    return node;
+  }
+
+  function histogramCard() {
+    const counts = Array.from({length: kBins + 1}, () => 0);
+    for (const score of allTrue) ++counts[binOf(score)];
+    const most = Math.max(...counts, 1);
+    const width = 640, height = 190, left = 34, bottom = 34, top = 22, step = (width - left - 6) / (kBins + 1.6);
+    const x = (bin) => left + step * (bin === kBins ? kBins + 0.6 : bin);
+    const y = (count) => top + (height - top - bottom) * (1 - count / most);
+    const drawing = svg('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': 'Histogram of E'});
+    const ticks = [...new Set([0, 0.5, 1].map((s) => Math.round(s * most)))];
+    for (const count of ticks) {
+      drawing.append(svg('line', {x1: left, x2: width - 6, y1: y(count), y2: y(count)}),
+        svg('text', {x: left - 6, y: y(count) + 4, 'text-anchor': 'end'}, String(count)));
+    }
+    counts.forEach((count, bin) => {
+      const kind = bin === kBins ? ' miss' : bin * kCap / kBins >= 1 ? ' poor' : '';
+      drawing.append(svg('rect', {class: `bar${kind}`, x: x(bin) + 1, width: step - 2, y: y(count), height: height - bottom - y(count)}));
+    });
+    for (let bin = 0; bin <= kBins; bin += kBins / 4) {
+      if (bin < kBins) drawing.append(svg('text', {x: x(bin), y: height - bottom + 14, 'text-anchor': 'middle'}, `${100 * kCap * bin / kBins}`));
+    }
+    drawing.append(svg('text', {x: x(kBins) + step / 2, y: height - bottom + 14, 'text-anchor': 'middle'}, `≥ ${100 * kCap}`),
+      svg('text', {x: left + step * kBins / 2, y: height - 6, 'text-anchor': 'middle'}, 'E in %; up to 100 % is IoU ≥ 0.5'));
+    const middle = run.evaluation.summary.objects?.median_error;
+    if (isNumber(middle) && middle < kCap) {
+      const at = left + step * kBins * middle / kCap;
+      drawing.append(svg('line', {class: 'median', x1: at, x2: at, y1: top - 8, y2: height - bottom}),
+        svg('text', {x: at, y: top - 11, 'text-anchor': 'middle'}, 'median'));
+    }
+    counts.forEach((count, bin) => drawing.append(svg('rect', {
+      class: `hit${state.bin === bin ? ' on' : ''}`, 'data-bin': bin, x: x(bin), width: step, y: top, height: height - top - bottom,
+      onclick: () => { state.bin = state.bin === bin ? null : bin; fillTables(); },
+    }, svg('title', {}, `E ${binText(bin)}: ${counted(count, 'true object')}`))));
+    const result = card('Histogram of E', 'over the true objects of all frames; click a bar to list them', el('div', {class: 'histogram'}, drawing));
+    result.id = 'histogram';
+    return result;
+  }
+
+  function truthCard() {
+    const list = allTrue.filter((t) => (state.bin === null || binOf(t) === state.bin) && (!state.onlyThisFrame || t.frame === state.frame));
+    const columns = [
+      {name: 'id', value: (t) => t.id, show: (t) => t.id},
+      share('E %', (t) => t.error ?? Infinity, {show: (t) => (t.error === null ? 'missed' : fixed(100 * t.error, 1)), bad: (t) => t.iou < 0.5}),
+      number('IoU', (t) => t.iou, 3), number('boundary F', (t) => t.boundary_f, 3),
+      number('ours', (t) => t.ours, 0, {title: 'the object of ours that fits best'}), number('area px', (t) => t.area_px, 0),
+      {name: 'segmented', text: true, value: segmented, show: segmented},
+    ];
+    if (run.frames > 1) columns.unshift({name: 'frame', text: true, value: (t) => t.name, show: (t) => t.name});
+    const note = state.bin === null ? counted(list.length, 'scored object') : `${counted(list.length, 'object')} with E ${binText(state.bin)}`;
+    const result = card('True objects', note, table('truth', columns, list, {
+      key: (t) => `${t.frame}:${t.id}`, pickRow: (t) => show(t.frame).then(() => pick(t.ours)),
+      enter: (t) => { state.near = t?.frame === state.frame ? t.ours : null; repaintObjects(); },
+    }));
+    if (run.frames > 1) {
+      result.querySelector('.head').append(el('label', {}, el('input', {type: 'checkbox', checked: state.onlyThisFrame, onchange: (event) => {
+        state.onlyThisFrame = event.target.checked;
+        fillTables();
+      }}), 'this frame only'));
+    }
+    return result;
+  }
+  const segmented = (t) => [t.over_segmented ? 'over' : '', t.under_segmented ? 'under' : ''].filter(Boolean).join(', ');
+
+  // ---- the page ----
+
+  function fillTables() {
+    const many = run.frames > 1, scored = allTrue.length > 0;
+    const columns = evaluates
+      ? [[scored ? histogramCard() : null, objectsCard(), timesCard()], [scored ? truthCard() : null, many ? framesCard() : null, optionsCard()]]
+      : [[objectsCard(), many ? timesCard() : null], [many ? framesCard() : timesCard(), optionsCard()]];
+    // A table that is filled anew stays where it was scrolled to.
+    const scrolled = [...document.querySelectorAll('#tables table')].map((t) => [t.id, t.parentElement.scrollTop]);
+    byId('tables').replaceChildren(...columns.map((cards) => el('div', {class: 'column'}, cards)));
+    for (const [id, to] of scrolled) if (to && byId(id)) byId(id).parentElement.scrollTop = to;
+  }
+
+  function summaryText() {
+    const {result, valid_share: valid, objects} = current();
+    const parts = [el('b', {}, counted(objects.length, 'object'))];
+    if (isNumber(valid)) parts.push(`disparity on ${percent(valid)} of the pixels`);
+    if (result) {
+      const {ground, epipolar} = result;
+      parts.push(ground.plane ? `ground found, support ${percent(ground.support, 0)}` : `no ground (${words(ground.refusal ?? '')})`);
+      if (epipolar?.outcome === 'corrected') parts.push(`right picture moved by ${fixed(epipolar.rows, 2)} rows`);
+      if (!result.rig) parts.push('no calibration, no metres');
+      if (result.external_disparity) parts.push('disparity given');
+      parts.push(`preset ${result.preset}`, `${fixed(total(result.timings_ms), 1)} ms`);
+    }
+    return parts.flatMap((part, i) => (i ? [' · ', part] : [part]));
+  }
+
+  let wanted = 0;  // the frame asked for last: an earlier one that is decoded later is not shown
+  async function show(index) {
+    wanted = Math.min(run.frames - 1, Math.max(0, index));
+    const mine = wanted;
+    byId('slider').value = mine;
+    byId('frame-name').replaceChildren(frames[mine].name, el('small', {}, `${mine + 1} / ${run.frames}`));
+    byId('previous').disabled = mine === 0;
+    byId('next').disabled = mine === run.frames - 1;
+    let maps;
+    try {
+      maps = await mapsOf(mine);
+    } catch (error) {
+      trouble(`This frame cannot be shown: ${error.message}`);
+      return;
+    }
+    if (mine !== wanted) return;
+    if (state.frame !== mine) Object.assign(state, {picked: null, near: null});
+    Object.assign(state, {frame: mine, maps, reason: null});
+    byId('summary').replaceChildren(...summaryText());
+    leave();
+    for (const name of Object.keys(panels)) repaint(name);
+    sharpen();
+    fillTables();
+    if (run.frames > 1) history.replaceState(null, '', `#${mine + 1}`);
+    document.documentElement.dataset.shown = mine;
+    if (mine + 1 < run.frames) setTimeout(() => mapsOf(mine + 1).catch(() => {}), 150);
+  }
+
+  function trouble(text) {
+    byId('trouble').textContent = text;
+    byId('trouble').hidden = false;
+  }
+
+  function layOut() {
+    const fitting = innerWidth >= 1080 ? 4 : innerWidth >= 560 ? 2 : 1;
+    document.documentElement.style.setProperty('--columns', state.columns || fitting);
+    for (const button of byId('columns').children) {
+      button.setAttribute('aria-pressed', Number(button.dataset.columns) === (state.columns || fitting));
+    }
+    sharpen();
+  }
+
+  /** Enlarged maps show their pixels; in a reduced one thin outlines would be broken by them. */
+  function sharpen() {
+    for (const {stage} of Object.values(panels)) stage.classList.toggle('reduced', stage.clientWidth < current().width);
+  }
+
+  function begin() {
+    byId('command').textContent = run.command;
+    byId('title').textContent = run.title;
+    byId('about').textContent = `cairn ${run.cairn}. Point at a pixel to see what is known of it; click an object to single it out` +
+      (run.frames > 1 ? '; ← and → change the frame.' : '.');
+    byId('columns').append(...[4, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} in a row`, onclick: () => {
+      state.columns = n;
+      layOut();
+    }}, String(n))));
+    byId('theme').addEventListener('click', () => {
+      const root = document.documentElement;
+      const dark = root.dataset.theme ? root.dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
+      root.dataset.theme = dark ? 'light' : 'dark';
+    });
+    addEventListener('resize', layOut);
+    layOut();
+    makePanels();
+    if (run.evaluation) tiles();
+    byId('frames').hidden = run.frames < 2;
+    byId('slider').max = run.frames - 1;
+    byId('slider').addEventListener('input', (event) => show(Number(event.target.value)));
+    byId('previous').addEventListener('click', () => show(wanted - 1));
+    byId('next').addEventListener('click', () => show(wanted + 1));
+    addEventListener('keydown', (event) => {
+      if (event.altKey || event.ctrlKey || event.metaKey || event.target.matches?.('select, input[type=range]')) return;
+      const to = {ArrowLeft: wanted - 1, ArrowRight: wanted + 1, Home: 0, End: run.frames - 1}[event.key];
+      if (run.frames < 2 || to === undefined) return;
+      event.preventDefault();
+      show(to);
+    });
+    addEventListener('hashchange', () => show(Number(location.hash.slice(1)) - 1 || 0));
+    if (typeof DecompressionStream === 'undefined') {
+      trouble('This browser cannot unpack the pictures (no DecompressionStream): Chrome 80, Firefox 113, Safari 16.4 or later can.');
+    }
+    show(Number(location.hash.slice(1)) - 1 || 0);
+  }
+  begin();
+})();

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/ids.hpp>
+#include <cairn/core/image.hpp>
+#include <cairn/disparity/reject.hpp>
+#include <cairn/evaluation/object_error.hpp>
+#include <string>
+#include <vector>
+
+/// A run's results as one page for the browser, which needs nothing but itself: no network, no other file.
+/// Style, script and layout are in io/html/.
+namespace cairn::io {
+
+/// What the page shows of one frame. Any view may be empty: what rests on it is then left out; the others
+/// have one size.
+struct PageFrame {
+  std::string name;
+  View<const Gray> left;
+  View<const Rgb> left_rgb;
+  View<const float> disparity_px;  // NaN = hole
+  View<const Reject> reject;
+  View<const float> confidence;  // 0 … 1
+  View<const RegionId> by_intensity;
+  View<const RegionId> by_disparity;
+  View<const ObjectId> objects;
+  View<const TruthId> true_objects;
+  View<const float> true_disparity_px;
+  std::string objects_json;  // the text of objects.json, for the tables; may be empty
+};
+
+/// A frame as text, so that its images need not be kept until the page is written. Ids and reasons are packed
+/// without loss, disparities to 1/64 px, confidences to 1/255, the left picture as JPEG.
+struct EncodedFrame {
+  std::string facts;  // JSON, read when the page is opened
+  std::string maps;   // JSON, read when the frame is shown
+};
+EncodedFrame encode_frame(const PageFrame& frame);
+
+struct PageHead {
+  std::string command;     // "segment" or "evaluate"
+  std::string title;       // what was worked on
+  std::string evaluation;  // the text of `cairn evaluate --json`; empty where there is none
+};
+
+/// The page's HTML, the frames in the order given.
+std::string html_page(const PageHead& head, const std::vector<EncodedFrame>& frames);
+
+}  // namespace cairn::io
