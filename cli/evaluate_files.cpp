@@ -6,6 +6,7 @@
 #include <cairn/core/error.hpp>
 #include <io/disparity_files.hpp>
 #include <io/read_file.hpp>
+#include <io/results.hpp>
 
 namespace cairn::cli {
 namespace {
@@ -136,6 +137,7 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
     shown.left_rgb = left.rgb;
   }
   if (result.json) {
+    (void)io::load_confidences(*result.json);  // refuses what is no objects.json, with the file's name
     constexpr std::size_t kMost = std::size_t{256} << 20;
     shown.objects_json = io::read_file(*result.json, kMost);
   }

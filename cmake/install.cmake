@@ -9,6 +9,7 @@ install(DIRECTORY cairn/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn FILES_MAT
   PATTERN "*-inl.hpp" EXCLUDE)
 if(CAIRN_IO)
   install(TARGETS cairn_cli)
+  install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn)
 endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)

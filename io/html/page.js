@@ -254,7 +254,7 @@
 
   function paintRegions(out, labels) {
     const {width} = current();
-    const colours = kRegionColours.map((c) => pixel(c, 150)), border = pixel('#111111', 230);
+    const colours = kRegionColours.map((c) => pixel(c, 150)), border = pixel('#111111', 190);
     const seen = new Set();
     for (let i = 0; i < out.length; ++i) {
       seen.add(labels[i]);
@@ -291,10 +291,13 @@
     }, textOf(id)));
   }
 
-  /** Moves marks down that would lie on others. */
+  /** Moves marks into the picture where they reach over its sides, and down where they would lie on others. */
   function partMarks(all) {
     const placed = [];
     for (const mark of all) {
+      const inside = mark.parentElement.getBoundingClientRect(), at = mark.getBoundingClientRect();
+      const right = Math.max(0, inside.left + 2 - at.left) + Math.min(0, inside.right - 2 - at.right);
+      if (right) mark.style.marginLeft = `${right}px`;
       const box = mark.getBoundingClientRect();
       let down = 0;
       const hits = (other) => box.left < other.right && other.left < box.right &&
@@ -635,7 +638,7 @@
   }
   function groundText({result}) {
     if (!result) return '–';
-    return result.ground.plane ? 'found' : `none: ${words(result.ground.refusal ?? '')}`;
+    return result.ground?.plane ? 'found' : `none: ${words(result.ground?.refusal ?? 'not known')}`;
   }
 
   function timesCard() {
@@ -783,7 +786,7 @@
     if (isNumber(valid)) parts.push(`disparity on ${percent(valid)} of the pixels`);
     if (result) {
       const {ground, epipolar} = result;
-      parts.push(ground.plane ? `ground found, support ${percent(ground.support, 0)}` : `no ground (${words(ground.refusal ?? '')})`);
+      parts.push(ground?.plane ? `ground found, support ${percent(ground.support, 0)}` : `no ground (${words(ground?.refusal ?? 'not known')})`);
       if (epipolar?.outcome === 'corrected') parts.push(`right picture moved by ${fixed(epipolar.rows, 2)} rows`);
       if (!result.rig) parts.push('no calibration, no metres');
       if (result.external_disparity) parts.push('disparity given');

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// --html and --ply of the commands: where their files go, and what they refuse. What is in them:
+// unit/html_page_test.cpp, unit/point_cloud_test.cpp, cli/page_in_browser.py.
+#include <gtest/gtest.h>
+
+#include "command.hpp"
+
+namespace cairn::command {
+namespace {
+
+class PageAndCloudTest : public CommandTest {
+ protected:
+  static constexpr const char* kCalibration = "fx=80\nfy=80\ncx=48\ncy=36\nbaseline=0.1\nndisp=16\n";
+};
+
+TEST_F(PageAndCloudTest, OneFrameHasBothInItsFolder) {
+  pair_in("frame");
+  write(at("frame") / "calib.txt", kCalibration);
+  const Outcome outcome = run({"segment", path("frame"), "--html", "--ply", "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(content(at("out") / "segment.html").starts_with("<!doctype html>"));
+  EXPECT_TRUE(content(at("out") / "cloud.ply").starts_with("ply\nformat binary_little_endian"));
+}
+
+TEST_F(PageAndCloudTest, AFolderOfFramesHasOnePageAndACloudForEach) {
+  for (const std::string name : {"a", "b"}) {
+    pair_in("frames/" + name);
+    write(at("frames/" + name) / "calib.txt", kCalibration);
+  }
+  const Outcome outcome = run({"segment", path("frames"), "--html", "--ply", "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string page = content(at("out") / "segment.html");
+  EXPECT_NE(page.find("id=\"facts-1\""), std::string::npos);
+  EXPECT_EQ(page.find("id=\"facts-2\""), std::string::npos);
+  EXPECT_TRUE(fs::exists(at("out/a/cloud.ply")));
+  EXPECT_TRUE(fs::exists(at("out/b/cloud.ply")));
+  EXPECT_FALSE(fs::exists(at("out/a/segment.html")));
+}
+
+TEST_F(PageAndCloudTest, ANewResultTakesOlderOnesAway) {
+  pair_in("frame");
+  write(at("frame") / "calib.txt", kCalibration);
+  ASSERT_EQ(run({"segment", path("frame"), "--html", "--ply", "-o", path("out")}).code, 0);
+  ASSERT_EQ(run({"segment", path("frame"), "-o", path("out")}).code, 0);
+  EXPECT_FALSE(fs::exists(at("out") / "segment.html"));
+  EXPECT_FALSE(fs::exists(at("out") / "cloud.ply"));
+  EXPECT_TRUE(fs::exists(at("out") / "objects.json"));
+}
+
+TEST_F(PageAndCloudTest, BothNeedAFolderToWriteInto) {
+  pair_in("frame");
+  refuses({"segment", path("frame"), "--html"}, {"--html", "-o DIR"});
+  refuses({"segment", path("frame"), "--ply"}, {"--ply", "-o DIR"});
+}
+
+TEST_F(PageAndCloudTest, ACloudNeedsACalibration) {
+  const auto pair = pair_in("frame");
+  refuses({"segment", path("frame"), "--ply", "-o", path("out")}, {"--ply", "left.png", "--calib"});
+  refuses(with("disparity", pair, {"--ply", path("cloud.ply")}), {"--ply", "--calib"});
+}
+
+TEST_F(PageAndCloudTest, DisparityWritesACloudWithoutObjects) {
+  const auto pair = pair_in("frame");
+  write(at("frame") / "calib.txt", kCalibration);
+  refuses(with("disparity", pair, {"--ply", path("cloud.pcd")}), {"cloud.pcd", ".ply"});
+  ASSERT_EQ(run(with("disparity", pair, {"--ply", path("cloud.ply")})).code, 0);
+  const std::string cloud = content(at("cloud.ply"));
+  EXPECT_TRUE(cloud.starts_with("ply\n"));
+  EXPECT_EQ(cloud.find("object"), std::string::npos);
+}
+
+TEST_F(PageAndCloudTest, EvaluateWritesAPageOfWhatThereIs) {
+  pair_in("frame");
+  ASSERT_EQ(
+      run({"segment", path("frame"), "--set", "match.num_disparities=16", "-o", path("out/frame")}).code, 0);
+  // No picture beside the truth, and a result that has lost all but its disparity.
+  fs::create_directories(at("truth/frame"));
+  write(at("truth/frame") / "disp_left.pfm", pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
+  ASSERT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("new/page")}).code, 0);
+  EXPECT_TRUE(content(at("new/page") / "evaluation.html").starts_with("<!doctype html>"));
+  write(at("out/frame") / "objects.json", R"({"timings_ms": {}, "objects": [7]})");
+  refuses({"evaluate", path("out"), path("truth"), "--html", path("other")}, {"objects.json"});
+  for (const char* lost : {"objects.json", "objects.png", "reject.png", "confidence.png"}) {
+    fs::remove(at("out/frame") / lost);
+  }
+  EXPECT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("new/page")}).code, 0);
+}
+
+TEST_F(PageAndCloudTest, EvaluateWritesNoPageOfMapsThatDiffer) {
+  pair_in("frame");
+  ASSERT_EQ(
+      run({"segment", path("frame"), "--set", "match.num_disparities=16", "-o", path("out/frame")}).code, 0);
+  fs::create_directories(at("truth/frame"));
+  write(at("truth/frame") / "disp_left.pfm", pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
+  pair_in("other", {50, 40});
+  fs::copy_file(at("other/left.png"), at("truth/frame/left.png"));
+  refuses({"evaluate", path("out"), path("truth"), "--html", path("page")}, {"left.png", "50x40", "96x72"});
+  EXPECT_EQ(run({"evaluate", path("out"), path("truth")}).code, 0);
+  refuses({"evaluate", path("out"), path("truth"), "--html", path("other/left.png")}, {"left.png"});
+}
+
+}  // namespace
+}  // namespace cairn::command

@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""page_in_browser.py CAIRN SOURCE_DIR: the pages of --html in headless Chromium. Sorts tables, moves the slider, points at
+pixels and compares what the page says with the files of the result. Exits with 77 (skipped) where Debian's chromium,
+chromium-driver, python3-selenium or python3-pil is absent. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+try:
+    from PIL import Image
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.actions.action_builder import ActionBuilder
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.select import Select
+except ImportError as missing:
+    print(f"skipped: no {missing.name}")
+    sys.exit(77)
+for program in ("chromium", "chromedriver"):
+    if not shutil.which(program):
+        print(f"skipped: no {program}")
+        sys.exit(77)
+
+CAIRN, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+REASONS = {1: "border", 2: "left-right", 4: "not unique", 8: "flat", 16: "no texture", 32: "below ground", 64: "speckle",
+           128: "no data"}
+HOSTILE = "<!--<script> & \"x\""  # a name that must be shown, not obeyed
+
+
+def cairn(*arguments):
+    subprocess.run([CAIRN, *map(str, arguments)], check=True, capture_output=True)
+
+
+def browser():
+    options = webdriver.ChromeOptions()
+    options.binary_location = shutil.which("chromium")
+    # No sandbox: Chromium refuses to run as root with one, and the page is our own.
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1366,1000"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        root = pathlib.Path(cls.folder.name)
+        cls.frames, cls.results = root / "frames", root / "results"
+        for sample in ("dim_light", "four_in_a_row", "overlap"):
+            shutil.copytree(SOURCE / "samples" / sample, cls.frames / sample)
+        (cls.frames / "overlap").rename(cls.frames / HOSTILE)
+        cls.names = sorted(path.name for path in cls.frames.iterdir())
+        # One more check than the preset has, so that some pixels have two reasons.
+        cairn("segment", cls.frames, "--html", "-o", cls.results, "--set", "uniqueness.ratio=5")
+        cairn("evaluate", cls.results, cls.frames, "--html", root / "scores", "--json", root / "scores.json")
+        cls.evaluation = json.loads((root / "scores.json").read_text())
+        cls.pages = {"segment": cls.results / "segment.html", "evaluate": root / "scores" / "evaluation.html"}
+        cls.browser = browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+        cls.folder.cleanup()
+
+    # ---- helpers ----
+
+    def open(self, command):
+        self.browser.get("about:blank")
+        self.browser.get(self.pages[command].as_uri())
+        self.wait_for_frame(0)
+
+    def tearDown(self):
+        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [])
+
+    def wait_for_frame(self, index):
+        for _ in range(200):
+            if self.browser.execute_script("return document.documentElement.dataset.shown") == str(index):
+                return
+            time.sleep(0.025)
+        self.fail(f"frame {index} is not shown")
+
+    def find(self, selector):
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def find_all(self, selector):
+        return self.browser.find_elements(By.CSS_SELECTOR, selector)
+
+    def name_shown(self):
+        return self.browser.execute_script("return document.querySelector('#frame-name').firstChild.textContent")
+
+    def column(self, table, name):
+        """The texts of a column, from the top."""
+        return self.browser.execute_script(
+            "const t = document.getElementById(arguments[0]);"
+            "const c = [...t.tHead.rows[0].cells].findIndex((h) => h.textContent === arguments[1]);"
+            "return [...t.tBodies[0].rows].map((r) => r.cells[c].textContent);", table, name)
+
+    def head(self, table, name):
+        for cell in self.find_all(f"#{table} th"):
+            if cell.text.split(" ↑")[0].split(" ↓")[0] == name:
+                return cell
+        self.fail(f"table {table} has no column {name}")
+
+    def two_in_a_row(self):
+        """Panels large enough for a pointer to find every pixel, and small enough for the window."""
+        self.find("[data-columns='2']").click()
+
+    def point_at(self, panel, x, y):
+        """Moves the pointer to the middle of a pixel and returns what the page says of it."""
+        stage = self.find(f"[data-panel={panel}] .stage")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", stage)
+        left, top, wide, high = self.browser.execute_script(
+            "const b = arguments[0].getBoundingClientRect(); return [b.left, b.top, b.width, b.height]", stage)
+        mouse = ActionBuilder(self.browser, duration=0)  # in the window's own px: an element's middle is rounded
+        mouse.pointer_action.move_to_location(round(left + (x + 0.5) / 320 * wide), round(top + (y + 0.5) / 240 * high))
+        mouse.perform()
+        tip = self.find("#tip")
+        self.assertTrue(tip.is_displayed())
+        return tip.text
+
+    def result(self, index):
+        folder = self.results / self.names[index]
+        maps = {}
+        for name in ("disparity", "reject", "objects", "confidence"):
+            with Image.open(folder / f"{name}.png") as image:
+                maps[name] = image.copy()
+        return maps, json.loads((folder / "objects.json").read_text())
+
+    def keep(self, name):
+        if folder := os.environ.get("CAIRN_SCREENSHOTS"):
+            self.browser.save_screenshot(str(pathlib.Path(folder) / f"{name}.png"))
+
+    # ---- tests ----
+
+    def test_asks_the_network_for_nothing(self):
+        for command in self.pages:
+            self.open(command)
+            asked = self.browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
+            self.assertEqual([name for name in asked if not name.startswith("data:")], [])
+
+    def test_has_four_pictures_and_the_tables(self):
+        self.open("segment")
+        panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
+        self.assertEqual(panels, ["left", "disparity", "regions", "objects"])
+        self.assertEqual(len(self.find_all(".panel canvas")), 3)
+        self.assertGreater(self.browser.execute_script("return document.querySelector('[data-panel=left] img').naturalWidth"), 0)
+        _, document = self.result(0)
+        self.assertEqual(self.column("objects", "id"), [str(o["id"]) for o in document["objects"]])
+        self.assertEqual(self.column("objects", "distance m"), [f"{o['position_m'][2]:.2f}" for o in document["objects"]])
+        self.assertEqual(self.column("frames-table", "frame"), self.names)
+        marks = [mark.text for mark in self.find_all("[data-panel=objects] .mark")]
+        self.assertEqual(marks, [f"{o['id']}: {o['position_m'][2]:.2f} m" for o in document["objects"]])
+        self.keep("segment")
+
+    def test_slider_buttons_and_arrows_change_the_frame(self):
+        self.open("segment")
+        self.assertEqual(self.name_shown(), self.names[0])
+        first = self.find("[data-panel=left] img").get_attribute("src")
+        self.find("#slider").send_keys(Keys.ARROW_RIGHT)
+        self.wait_for_frame(1)
+        self.assertEqual(self.name_shown(), self.names[1])
+        self.assertNotEqual(self.find("[data-panel=left] img").get_attribute("src"), first)
+        _, document = self.result(1)
+        self.assertEqual(self.column("objects", "area px"), [str(o["area"]) for o in document["objects"]])
+        self.find("#next").click()
+        self.wait_for_frame(2)
+        self.find("h1").click()
+        body = self.find("body")
+        body.send_keys(Keys.ARROW_LEFT)
+        self.wait_for_frame(1)
+        body.send_keys(Keys.END)
+        self.wait_for_frame(2)
+        body.send_keys(Keys.ARROW_RIGHT)  # there is none
+        self.wait_for_frame(2)
+        self.find("#previous").click()
+        self.wait_for_frame(1)
+        self.find(f"#frames-table tr[data-key='{self.names.index(HOSTILE)}']").click()
+        self.wait_for_frame(self.names.index(HOSTILE))
+        self.assertEqual(self.name_shown(), HOSTILE)
+
+    def test_tables_sort_both_ways(self):
+        self.open("segment")
+        for name in ("confidence", "distance m", "area px"):
+            values = [float(text) for text in self.column("objects", name)]
+            self.assertGreater(len(set(values)), 1)
+            for order, way in (("ascending", 1), ("descending", -1)):
+                self.head("objects", name).find_element(By.TAG_NAME, "button").click()
+                self.assertEqual(self.head("objects", name).get_attribute("aria-sort"), order)
+                shown = [float(text) for text in self.column("objects", name)]
+                self.assertEqual(shown, sorted(values, reverse=way < 0))
+        self.assertEqual(self.head("objects", "id").get_attribute("aria-sort"), "none")
+
+    def test_pointing_at_a_pixel_tells_what_the_files_say(self):
+        self.open("segment")
+        self.two_in_a_row()
+        maps, document = self.result(0)
+        width, height = maps["reject"].size
+        seen = {"hole": 0, "object": 0, "two reasons": 0}
+        # Some of each kind: spread over the picture, and the first pixels that have two reasons.
+        places = [(x, y) for y in range(7, height, 41) for x in range(5, width, 53)]
+        bits = maps["reject"].load()
+        places += [(x, y) for y in range(height) for x in range(width) if bin(bits[x, y]).count("1") > 1][:3]
+        for x, y in places:
+            text = self.point_at("disparity", x, y)
+            self.assertIn(f"x {x}, y {y}", text)
+            reject, value, object_id = (maps[name].getpixel((x, y)) for name in ("reject", "disparity", "objects"))
+            if reject:
+                seen["hole"] += 1
+                line = next(line for line in text.split("\n") if line in
+                            [", ".join(order) for order in orders([REASONS[bit] for bit in REASONS if reject & bit])])
+                seen["two reasons"] += "," in line
+            else:
+                disparity = value / 256
+                shown = float(text.split("disparity\n")[1].split(" px")[0])
+                self.assertAlmostEqual(shown, disparity, delta=0.5 / 64 + 0.0051 + 0.5 / 256)
+                rig = document["rig"]
+                metres = float(text.split("distance\n")[1].split(" m")[0])
+                expected = rig["focal_px"] * rig["baseline_m"] / (disparity + rig["doffs_px"])
+                self.assertAlmostEqual(metres, expected, delta=0.006 + expected * 0.011 / (disparity + rig["doffs_px"]))
+                self.assertIn(f"confidence\n{maps['confidence'].getpixel((x, y)) / 255:.2f}", text)
+            if object_id:
+                seen["object"] += 1
+                found = document["objects"][object_id - 1]
+                block = text.split(f"object {object_id}\n")[1]
+                self.assertIn(f"{found['position_m'][2]:.2f} m", block)
+                self.assertIn(f"confidence\n{found['confidence']:.2f}", block)
+            else:
+                self.assertNotIn("\nobject ", text)
+        self.assertGreater(seen["hole"], 3)
+        self.assertGreater(seen["object"], 1)
+        self.assertGreater(seen["two reasons"], 0)
+        self.assertEqual(len(self.find_all(".cross")), 3)  # the same pixel in the other pictures
+
+    def test_a_click_singles_an_object_out(self):
+        self.open("segment")
+        self.two_in_a_row()
+        maps, _ = self.result(0)
+        ids = maps["objects"].load()
+        x, y = next((x, y) for y in range(240) for x in range(320) if ids[x, y] == 1)
+        self.point_at("objects", x, y)
+        self.assertIn("near", self.find("#objects tr[data-key='1']").get_attribute("class"))
+        ActionChains(self.browser).click().perform()
+        self.assertEqual(self.find("#objects tr[data-key='1']").get_attribute("aria-selected"), "true")
+        dim = [mark.text.split(":")[0] for mark in self.find_all("[data-panel=objects] .mark.dim")]
+        self.assertEqual(dim, [str(o["id"]) for o in self.result(0)[1]["objects"] if o["id"] != 1])
+
+    def test_evaluation_shows_the_numbers_of_its_json(self):
+        self.open("evaluate")
+        panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
+        self.assertEqual(panels, ["left", "disparity", "truth", "objects"])
+        summary = self.evaluation["summary"]["objects"]
+        tiles = self.find("#tiles").text
+        self.assertIn(f"{100 * summary['recall_50']:.1f} %", tiles)
+        self.assertIn(f"{100 * summary['median_error']:.1f} %", tiles)
+        true_ones = [score for frame in self.evaluation["frames"] for score in frame["objects"]["true"]]
+        self.assertEqual(len(self.column("truth", "id")), len(true_ones))
+        button = self.head("truth", "E %").find_element(By.TAG_NAME, "button")
+        button.click()
+        button.click()
+        worst = max(true_ones, key=lambda score: float("inf") if score["error"] is None else score["error"])
+        top = self.column("truth", "E %")[0]
+        self.assertEqual(top, "missed" if worst["error"] is None else f"{100 * worst['error']:.1f}")
+        chooser = Select(self.find("[data-panel=disparity] select"))
+        for mode in ("Disparity error", "True disparity", "Confidence"):
+            chooser.select_by_visible_text(mode)
+            chooser = Select(self.find("[data-panel=disparity] select"))
+            self.assertEqual(chooser.first_selected_option.text, mode)
+        self.keep("evaluate")
+
+    def test_histogram_counts_and_lists_the_true_objects(self):
+        self.open("evaluate")
+        true_ones = [score for frame in self.evaluation["frames"] for score in frame["objects"]["true"]]
+        cap = self.evaluation["summary"]["objects"]["error_cap"]
+        bins = [0] * 21
+        for score in true_ones:
+            error = cap if score["error"] is None else min(score["error"], cap)
+            bins[min(20, int(error / cap * 20))] += 1
+        bars = self.find_all("#histogram .hit")
+        told = [self.browser.execute_script("return arguments[0].textContent", bar) for bar in bars]
+        self.assertEqual([int(text.split(": ")[1].split(" ")[0]) for text in told], bins)
+        fullest = bins.index(max(bins))
+        ActionChains(self.browser).move_to_element(bars[fullest]).click().perform()
+        self.assertEqual(len(self.column("truth", "id")), bins[fullest])
+        ActionChains(self.browser).move_to_element(self.find_all("#histogram .hit")[fullest]).click().perform()
+        self.assertEqual(len(self.column("truth", "id")), len(true_ones))
+
+    def test_a_true_object_leads_to_its_frame(self):
+        self.open("evaluate")
+        last = len(self.names) - 1
+        score = self.evaluation["frames"][last]["objects"]["true"][0]
+        row = self.find(f"#truth tr[data-key='{last}:{score['id']}']")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", row)
+        row.click()
+        self.wait_for_frame(last)
+        self.assertEqual(self.find(f"#objects tr[data-key='{score['ours']}']").get_attribute("aria-selected"), "true")
+        self.find("#truth").find_element(By.XPATH, "../..").find_element(By.TAG_NAME, "label").click()
+        self.assertEqual(set(self.column("truth", "frame")), {self.names[last]})
+
+    def test_light_and_dark_change_in_place(self):
+        self.open("segment")
+        colour = "return getComputedStyle(document.body).backgroundColor"
+        before = self.browser.execute_script(colour)
+        self.find("#theme").click()
+        after = self.browser.execute_script(colour)
+        self.assertNotEqual(before, after)
+        self.keep("segment_other_theme")
+        self.find("#theme").click()
+        self.assertEqual(self.browser.execute_script(colour), before)
+
+    def test_fits_a_laptop_without_scrolling_sideways(self):
+        for command in self.pages:
+            self.open(command)
+            wide, seen = self.browser.execute_script("return [document.documentElement.scrollWidth, innerWidth]")
+            self.assertLessEqual(wide, seen)
+
+
+def orders(names):
+    """Every order of a few words: which reason is told first is the page's business."""
+    if len(names) < 2:
+        return [names]
+    return [[name, *rest] for name in names for rest in orders([other for other in names if other != name])]
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
