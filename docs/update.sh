@@ -106,14 +106,31 @@ while read -r page; do
   put "$page" <<<"$contents"
 done < <(find . -name '*.md' -not -path './build/*' | xargs grep -lE '^<!-- (code|output): ' | sort)
 
+picture() {  # FILE NAME
+  cp "$1" "docs/images/$2.png"
+  # 256 colours are enough for a page, and a third of the bytes.
+  if command -v pngquant >/dev/null; then pngquant --force --ext .png 256 "docs/images/$2.png"; fi
+  echo "wrote docs/images/$2.png"
+}
+
+# What a browser shows of a page.
+screenshot() {  # PAGE FILE
+  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1280,860 --virtual-time-budget=4000 \
+    --screenshot="$2" "file://$1" >/dev/null 2>&1
+}
+
 if [[ $pictures == yes ]]; then
-  "$build_dir/cairn" segment samples/four_in_a_row -o "$scratch" >/dev/null
   mkdir -p docs/images
-  for kind in overlay disparity_view; do
-    cp "$scratch/$kind.png" "docs/images/$kind.png"
-    # 256 colours are enough for a page, and a third of the bytes.
-    if command -v pngquant >/dev/null; then pngquant --force --ext .png 256 "docs/images/$kind.png"; fi
-    echo "wrote docs/images/$kind.png"
-  done
+  "$build_dir/cairn" segment samples --html -o "$scratch/results" >/dev/null
+  "$build_dir/cairn" evaluate "$scratch/results" samples --html "$scratch" >/dev/null
+  for kind in overlay disparity_view; do picture "$scratch/results/four_in_a_row/$kind.png" $kind; done
+  if command -v chromium >/dev/null; then
+    screenshot "$scratch/results/segment.html#2" "$scratch/segment.png"
+    screenshot "$scratch/evaluation.html#2" "$scratch/evaluation.png"
+    picture "$scratch/segment.png" segment_page
+    picture "$scratch/evaluation.png" evaluation_page
+  else
+    echo "no chromium: the pictures of the pages stay as they are" >&2
+  fi
 fi
 [[ $stale == 0 ]]

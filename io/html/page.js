@@ -58,6 +58,7 @@
     return facts;
   });
 
+  // Not PNGs that a canvas gives back: browsers that guard against fingerprinting alter what is read from one.
   async function inflated(text) {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
@@ -390,7 +391,7 @@
     }
     const children = [];
     if (mode.base && state.maps.left) children.push(el('img', {src: state.maps.left, alt: '', class: mode.base, draggable: 'false'}));
-    let shown = {count: `${width} × ${height} px`, legend: []};
+    let shown = {count: `${width} × ${height} px`, legend: [rigText()]};
     if (mode.paint) {
       const canvas = el('canvas', {width, height});
       const image = new ImageData(width, height);
@@ -408,6 +409,11 @@
         }}, offered.map((other) => el('option', {selected: other === mode}, other.name)));
     caption.replaceChildren(heading, el('span', {class: 'count'}, shown.count));
     legend.replaceChildren(...shown.legend.filter(Boolean));
+  }
+  function rigText() {
+    const {rig, result} = current();
+    if (!rig) return result ? 'no calibration: no metres' : null;
+    return `focal length ${fixed(rig.focal_px, 1)} px, baseline ${fixed(rig.baseline_m, 3)} m`;
   }
   function repaintObjects() {
     for (const name of ['objects', 'truth']) if (panels[name] && state.maps) repaint(name, false);
@@ -573,6 +579,7 @@
     const has = (property) => list.some((o) => o[property]);
     const columns = [{name: 'id', value: (o) => o.id, show: (o) => [swatch(objectColour(o.id)), o.id]}];
     if (has('position_m')) columns.push(number('distance m', (o) => o.position_m?.[2], 2));
+    if (has('confidence')) columns.push(number('confidence', (o) => o.confidence, 2));
     if (has('disparity_px')) columns.push(number('disparity px', (o) => o.disparity_px, 1));
     if (evaluates) {
       columns.push(
@@ -591,7 +598,6 @@
       columns.push(share('valid %', (o) => o.valid_share, {title: 'share of its pixels that have a disparity'}));
     }
     columns.push(number('area px', (o) => o.area ?? o.score?.area_px, 0));
-    if (has('confidence')) columns.push(number('confidence', (o) => o.confidence, 2));
     return card(evaluates ? 'Objects found' : 'Objects', note, table('objects', columns, list, {
       key: (o) => o.id, pickRow: (o) => pick(o.id === state.picked ? null : o.id), selected: (o) => o.id === state.picked,
       enter: (o) => { state.near = o?.id ?? null; repaintObjects(); },
@@ -674,7 +680,7 @@
     const o = run.evaluation.summary.objects, d = run.evaluation.summary.disparity;
     const list = [];
     if (o) {
-      list.push([percent(o.recall_50), `of ${o.scored} true objects found`, 'IoU ≥ 0.5']);
+      list.push([percent(o.recall_50), `of ${counted(o.scored, 'object')} found`, 'true objects with IoU ≥ 0.5']);
       if (o.ours !== null) list.push([percent(o.precision_50), `precision of ${counted(o.ours, 'object')}`, 'IoU ≥ 0.5'],
         [fixed(o.phantoms_per_frame, 2), 'phantoms per frame', 'less than a quarter on any true object']);
       list.push([percent(o.median_error), `median E; mean ${percent(o.mean_error)}`, 'Eq. 5: 1/IoU − 1, counted as 200 % at most'],
@@ -788,7 +794,6 @@
       const {ground, epipolar} = result;
       parts.push(ground?.plane ? `ground found, support ${percent(ground.support, 0)}` : `no ground (${words(ground?.refusal ?? 'not known')})`);
       if (epipolar?.outcome === 'corrected') parts.push(`right picture moved by ${fixed(epipolar.rows, 2)} rows`);
-      if (!result.rig) parts.push('no calibration, no metres');
       if (result.external_disparity) parts.push('disparity given');
       parts.push(`preset ${result.preset}`, `${fixed(total(result.timings_ms), 1)} ms`);
     }
