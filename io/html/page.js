@@ -85,11 +85,13 @@
     return steps && Float32Array.from(steps, (n) => (n === 0 ? NaN : map.low + (n - 1) / map.steps));
   }
 
+  const kMostPixelsKept = 5e6;  // some 40 bytes each
   const decoded = new Map();  // the frames seen last, so that the slider goes back at once
   function mapsOf(index) {
     if (!decoded.has(index)) {
       decoded.set(index, decode(index));
-      if (decoded.size > 12) decoded.delete(decoded.keys().next().value);
+      const most = Math.max(2, Math.floor(kMostPixelsKept / (frames[index].width * frames[index].height || 1)));
+      while (decoded.size > most) decoded.delete(decoded.keys().next().value);
     }
     return decoded.get(index);
   }
@@ -529,7 +531,7 @@
   function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
     const body = el('tbody');
     const heads = columns.map((column, c) => el('th', {scope: 'col', class: column.text ? 'text' : null, 'aria-sort': 'none'},
-      el('button', {type: 'button', title: column.title, onclick: () => {
+      column.name === '' ? null : el('button', {type: 'button', title: column.title, onclick: () => {
         const before = sorting[id];
         sorting[id] = {column: c, descending: before?.column === c ? !before.descending : false};
         fill();
