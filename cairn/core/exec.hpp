@@ -45,6 +45,8 @@ struct Exec {
   /// `threads` ≥ 1 persistent threads, the calling one counted; 0 = one for each processor.
   static Exec with_threads(int threads, Target target = Target::best);
   [[nodiscard]] int threads() const;
+  /// For a SideWork: unobserved, and where it is done at the same time, with a pool of its own.
+  [[nodiscard]] Exec beside() const;
 };
 
 }  // namespace cairn

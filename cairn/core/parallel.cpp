@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <thread>
+#include <utility>
 
 #if CAIRN_WITH_TBB
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 #endif
 
 namespace cairn {
@@ -37,16 +39,25 @@ class Workers {
     // cheap.
     const int part = std::max(grain, (count + threads_ * 4 - 1) / (threads_ * 4));
     const int parts = (count + part - 1) / part;
+    // Isolated: who waits for the last part must not begin a side work meanwhile, which takes much longer.
     arena_.execute([&] {
-      oneapi::tbb::parallel_for(
-          0, parts, [&](int i) { body(i * part, std::min(count, (i + 1) * part)); },
-          oneapi::tbb::simple_partitioner{});
+      oneapi::tbb::this_task_arena::isolate([&] {
+        oneapi::tbb::parallel_for(
+            0, parts, [&](int i) { body(i * part, std::min(count, (i + 1) * part)); },
+            oneapi::tbb::simple_partitioner{});
+      });
     });
 #else
     body(0, count);
     (void)grain;
 #endif
   }
+
+#if CAIRN_WITH_TBB
+  [[nodiscard]] oneapi::tbb::task_arena& arena() {
+    return arena_;
+  }
+#endif
 
  private:
   int threads_;
@@ -70,12 +81,69 @@ int Exec::threads() const {
   return workers ? workers->threads() : 1;
 }
 
+Exec Exec::beside() const {
+  return {target, workers ? pool.beside() : pool, {}, workers};
+}
+
 void parallel_for(const Exec& exec, int count, int grain, const std::function<void(int, int)>& body) {
   if (count <= 0) return;
   if (!exec.workers || count <= grain) {
     body(0, count);
   } else {
     exec.workers->run(count, grain, body);
+  }
+}
+
+#if CAIRN_WITH_TBB
+class SideWork::Running {
+ public:
+  Running(std::shared_ptr<Workers> workers, std::function<void()> work) : workers_(std::move(workers)) {
+    workers_->arena().execute([&] { group_.run(std::move(work)); });
+  }
+  void wait() {
+    workers_->arena().execute([&] { group_.wait(); });
+  }
+  void give_up() {
+    group_.cancel();
+    wait();
+  }
+
+ private:
+  std::shared_ptr<Workers> workers_;
+  oneapi::tbb::task_group group_;
+};
+
+SideWork::SideWork(const Exec& exec, std::function<void()> work) {
+  if (exec.workers) {
+    running_ = std::make_unique<Running>(exec.workers, std::move(work));
+  } else {
+    work_ = std::move(work);
+  }
+}
+#else
+class SideWork::Running {
+ public:
+  void wait() {}
+  void give_up() {}
+};
+
+SideWork::SideWork(const Exec&, std::function<void()> work) : work_(std::move(work)) {}
+#endif
+
+SideWork::~SideWork() {
+  if (!running_) return;
+  try {
+    running_->give_up();
+  } catch (...) {  // nobody asks any more what came of it
+  }
+}
+
+void SideWork::wait() {
+  if (running_) {
+    const std::unique_ptr<Running> running = std::move(running_);
+    running->wait();
+  } else {
+    work_();
   }
 }
 

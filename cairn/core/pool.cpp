@@ -26,6 +26,7 @@ struct Pool::Buffer::Store {
   std::multimap<std::size_t, std::byte*> free;  // by size
   std::int64_t heap_allocations = 0;
   std::int64_t bytes = 0;
+  Pool beside;
 
   Store() = default;
   Store(const Store&) = delete;
@@ -79,6 +80,13 @@ Pool Pool::make() {
   return pool;
 }
 
+Pool Pool::beside() const {
+  if (!store_) return {};
+  const std::lock_guard lock(store_->mutex);
+  if (!store_->beside.store_) store_->beside = make();
+  return store_->beside;
+}
+
 Pool::Buffer Pool::take(std::size_t bytes) const {
   if (!store_) return {allocate(bytes), bytes, nullptr};
   {
@@ -99,13 +107,13 @@ Pool::Buffer Pool::take(std::size_t bytes) const {
 std::int64_t Pool::heap_allocations() const {
   if (!store_) return 0;
   const std::lock_guard lock(store_->mutex);
-  return store_->heap_allocations;
+  return store_->heap_allocations + store_->beside.heap_allocations();
 }
 
 std::int64_t Pool::bytes() const {
   if (!store_) return 0;
   const std::lock_guard lock(store_->mutex);
-  return store_->bytes;
+  return store_->bytes + store_->beside.bytes();
 }
 
 }  // namespace cairn

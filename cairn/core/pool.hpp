@@ -40,6 +40,10 @@ class Pool {
   /// A store of its own, empty.
   static Pool make();
 
+  /// A store beside this one, always the same: for work that goes on at the same time, so that what either
+  /// finds does not depend on who takes first. Its numbers are part of this one's. No store: none either.
+  [[nodiscard]] Pool beside() const;
+
   /// A buffer of at least `bytes`, contents undefined.
   [[nodiscard]] Buffer take(std::size_t bytes) const;
   /// How many buffers this store has asked the heap for so far; 0 for a pool without store.

@@ -210,9 +210,131 @@ inline PlaneCounts count_about(const PointArrays& points, const GroundPlane& pla
   return counts;
 }
 
-inline constexpr RowKernels kRowKernels{smooth,   edges,    steepness,      disparity_steepness,
-                                        quantise, noise,    smooth_lightly, textured,
-                                        agreed,   count_on, count_beyond,   count_about};
+inline void add_squares(const std::uint8_t* here, const std::uint8_t* there, int count,
+                        std::uint32_t* CAIRN_RESTRICT sums) {
+  for (int x = 0; x < count; ++x) {
+    // 16 bits hold the square of a difference of bytes, and multiply twice as many at once.
+    const auto difference = static_cast<std::int16_t>(here[x] - there[x]);
+    sums[x] += static_cast<std::uint16_t>(difference * difference);
+  }
+}
+
+inline void remove_squares(const std::uint8_t* here, const std::uint8_t* there, int count,
+                           std::uint32_t* CAIRN_RESTRICT sums) {
+  for (int x = 0; x < count; ++x) {
+    const auto difference = static_cast<std::int16_t>(here[x] - there[x]);
+    sums[x] -= static_cast<std::uint16_t>(difference * difference);
+  }
+}
+
+/// to[x] = from[x] + more[x]
+template <class T>
+inline void add_rows(const T* from, const T* more, int count, T* CAIRN_RESTRICT to) {
+  for (int x = 0; x < count; ++x) to[x] = static_cast<T>(from[x] + more[x]);
+}
+
+/// Sums of `window` numbers from each on, put together from blocks of 1, 2, 4, … numbers. The window is odd.
+template <class T>
+inline void sum_along(const T* columns, int width, int window, T* blocks, T* sums) {
+  T* const halves[] = {blocks, blocks + width + window};  // what is read and what is written must not overlap
+  const T* block = columns;
+  const T* sum = columns;
+  int summed = 1;
+  int length = width + window - 1;
+  int half = 0;
+  for (int size = 2; size <= window; size *= 2, half = 1 - half) {
+    length -= size / 2;  // of blocks that are whole
+    add_rows(block, block + size / 2, length, halves[half]);
+    block = halves[half];
+    if ((window & size) == 0) continue;
+    for (int x = 0; x < width; ++x) sums[x] = static_cast<T>(sum[x] + block[x + summed]);
+    sum = sums;
+    summed += size;
+  }
+}
+
+inline void flag_low_sums(const std::uint32_t* columns, int width, int window, const std::int32_t* limits,
+                          Reject why, std::uint32_t* blocks, std::uint32_t* sums,
+                          Reject* CAIRN_RESTRICT verdict) {
+  sum_along(columns, width, window, blocks, sums);
+  for (int x = 0; x < width; ++x)
+    verdict[x] |= static_cast<std::int32_t>(sums[x]) < limits[x] ? why : Reject::none;
+}
+
+constexpr HolesAndJumps kHole = 1;
+constexpr HolesAndJumps kIsJump = 256;
+
+inline void mark_jumps(const float* here, const float* below, int width, float jump,
+                       HolesAndJumps* CAIRN_RESTRICT marks) {
+  const auto mark = [&](int x, int right) {
+    const float d = here[x];
+    // NaN differs from nothing by more than anything. Both are compared always: a branch would keep the loop
+    // from becoming vector code.
+    const int along = std::abs(d - here[right]) > jump ? kIsJump : 0;
+    const int down = std::abs(d - below[x]) > jump ? kIsJump : 0;
+    return static_cast<HolesAndJumps>((d == d ? 0 : kHole) | along | down);
+  };
+  for (int x = 0; x + 1 < width; ++x) marks[x] = mark(x, x + 1);
+  marks[width - 1] = mark(width - 1, width - 1);
+}
+
+inline void add_counts(const HolesAndJumps* more, int width, HolesAndJumps* CAIRN_RESTRICT counts) {
+  for (int x = 0; x < width; ++x) counts[x] = static_cast<HolesAndJumps>(counts[x] + more[x]);
+}
+
+inline void remove_counts(const HolesAndJumps* less, int width, HolesAndJumps* CAIRN_RESTRICT counts) {
+  for (int x = 0; x < width; ++x) counts[x] = static_cast<HolesAndJumps>(counts[x] - less[x]);
+}
+
+inline void sum_counts(const HolesAndJumps* columns, int width, int window, HolesAndJumps* blocks,
+                       HolesAndJumps* sums) {
+  sum_along(columns, width, window, blocks, sums);
+}
+
+/// 2^t for |t| ≤ kGreatestExponent, to 2·10⁻⁷ of it; in arithmetic that is the same everywhere, as no
+/// library's is.
+inline float power_of_two(float t) {
+  constexpr int kOffset = 64;
+  const int whole = static_cast<int>(t + kOffset) - kOffset;
+  const float f = t - static_cast<float>(whole);
+  const float fraction =
+      1.0F + f * (0.6931514F + f * (0.2401641F + f * (0.0558005F + f * (0.00901663F + f * 0.00186721F))));
+  return std::bit_cast<float>((whole + 127) << 23) * fraction;
+}
+
+constexpr float kLeastMean = 1e-6F;  // keeps costs that are all 0 from dividing by it
+constexpr float kGreatestExponent = 30.0F;
+
+inline float logistic(float log_odds) {
+  constexpr float kLog2OfE = 1.44269504F;
+  // In this order of arguments NaN, which pixels without a match have, is held at the bound, too.
+  const float exponent = std::max(-kGreatestExponent, std::min(kGreatestExponent, -kLog2OfE * log_odds));
+  return 1.0F / (1.0F + power_of_two(exponent));
+}
+
+inline void judge_confidence(const ConfidenceRow& given, int width, const ConfidenceModel& fitted,
+                             float* CAIRN_RESTRICT out) {
+  const ConfidenceRow row = given;
+  const ConfidenceModel model = fitted;
+  for (int x = 0; x < width; ++x) {
+    const float inverse_mean = 1.0F / std::max(row.mean_cost[x], kLeastMean);
+    const float margin = std::min((row.runner_up[x] - row.cost[x]) * inverse_mean, 1.0F);
+    const float cost = std::min(row.cost[x] * inverse_mean, 1.0F);
+    const int counts = row.around[x];
+    const float jumps = std::sqrt(static_cast<float>(counts >> 8) * row.inverse_area[x]);
+    const float holes = std::sqrt(static_cast<float>(counts & 255) * row.inverse_area[x]);
+    const float log_odds =
+        model.bias + model.margin * margin + model.cost * cost + model.jumps * jumps + model.holes * holes;
+    const float confidence = logistic(log_odds);
+    const float d = row.disparity_px[x];
+    out[x] = d == d ? confidence : 0.0F;  // a hole is NaN
+  }
+}
+
+inline constexpr RowKernels kRowKernels{
+    smooth,        edges,      steepness,  disparity_steepness, quantise,    noise,           smooth_lightly,
+    textured,      agreed,     count_on,   count_beyond,        count_about, add_squares,     remove_squares,
+    flag_low_sums, mark_jumps, add_counts, remove_counts,       sum_counts,  judge_confidence};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

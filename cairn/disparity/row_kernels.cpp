@@ -4,6 +4,7 @@
 // Compiles row_kernels-inl.hpp once for plain C++ and once for each of Highway's targets, and lists what
 // there is. The loops are the same; what Highway adds is the switch of the instruction set.
 #include <algorithm>
+#include <bit>
 #include <cairn/core/target.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cairn/disparity/row_kernels.hpp>

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
+#include <cairn/disparity/confidence.hpp>
 #include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what find_evidence(), gradient(), edge_strength() and fit_background()
-/// do for each pixel of a row, and for each point of a sample. Private to the library.
+/// The seam to the instruction sets: what find_evidence(), gradient(), edge_strength(), reject_textureless(),
+/// estimate_confidence() and fit_background() do for each pixel of a row, and for each point of a sample.
+/// Private to the library.
 namespace cairn::kernels {
 
 /// One side of a symmetric smoothing kernel in 1/256: weights[i] stands at +i and −i.
@@ -32,6 +34,19 @@ struct PlaneCounts {
   int on = 0;     // within the tolerance
   int near = 0;   // within twice of it
   int below = 0;  // farther away than that
+};
+
+/// Holes (low byte) and jumps of the disparity (high byte), counted over some pixels.
+using HolesAndJumps = std::uint16_t;
+
+/// What confidence is judged by in a row.
+struct ConfidenceRow {
+  const float* cost;
+  const float* runner_up;
+  const float* mean_cost;
+  const float* disparity_px;
+  const HolesAndJumps* around;  // each pixel
+  const float* inverse_area;    // 1 / the pixels that these were counted over
 };
 
 /// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
@@ -75,6 +90,25 @@ struct RowKernels {
   /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
   PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
                              float tolerance);
+  /// sums[x] += (here[x] − there[x])² for `count` pixels; and the same taken away again.
+  void (*add_squares)(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint32_t* sums);
+  void (*remove_squares)(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint32_t* sums);
+  /// verdict[x] |= `why` where columns[x] + … + columns[x + window − 1] is below limits[x]. `blocks`:
+  /// 2 · (width + window) samples, `sums`: width, working memory. The window is odd.
+  void (*flag_low_sums)(const std::uint32_t* columns, int width, int window, const std::int32_t* limits,
+                        Reject why, std::uint32_t* blocks, std::uint32_t* sums, Reject* verdict);
+  /// Marks each hole, and each disparity that differs by more than `jump` from the one to the right or below.
+  /// The last pixel has no right neighbour.
+  void (*mark_jumps)(const float* here, const float* below, int width, float jump, HolesAndJumps* marks);
+  /// counts[x] += more[x], or −= .
+  void (*add_counts)(const HolesAndJumps* more, int width, HolesAndJumps* counts);
+  void (*remove_counts)(const HolesAndJumps* less, int width, HolesAndJumps* counts);
+  /// sums[x] = columns[x] + … + columns[x + window − 1]. `blocks`: 2 · (width + window)
+  /// samples, working memory. The window is odd.
+  void (*sum_counts)(const HolesAndJumps* columns, int width, int window, HolesAndJumps* blocks,
+                     HolesAndJumps* sums);
+  /// See estimate_confidence().
+  void (*judge_confidence)(const ConfidenceRow& row, int width, const ConfidenceModel& model, float* out);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/disparity/texture.hpp>
 #include <cmath>
 #include <cstddef>
@@ -32,40 +33,34 @@ RowPerShift<T> row_per_shift(int length) {
 }
 
 /// Per column x and shift: Σ (I(q) − I(q+s))² over the rows of the window, kept up to date as the window
-/// moves down. A column sum has at most 31·255² < 2²¹, a window's 2²⁶.
+/// moves down; `radius` zeros on either side. A column sum has at most 31·255² < 2²¹, a window's 2²⁶.
 class ColumnSums {
  public:
-  explicit ColumnSums(View<const Gray> image)
-      : image_(image), sums_(row_per_shift<std::uint32_t>(image.width())) {}
+  ColumnSums(View<const Gray> image, int radius, const kernels::RowKernels& run)
+      : image_(image),
+        radius_(radius),
+        run_(run),
+        sums_(row_per_shift<std::uint32_t>(image.width() + 2 * radius)) {}
 
-  void add_row(int y) {
-    for_each_pair(y, [](std::uint32_t sum, std::uint32_t square) { return sum + square; });
-  }
-  void remove_row(int y) {
-    for_each_pair(y, [](std::uint32_t sum, std::uint32_t square) { return sum - square; });
-  }
+  void add_row(int y) { for_each_pair(y, run_.add_squares); }
+  void remove_row(int y) { for_each_pair(y, run_.remove_squares); }
+  /// Begins with the zeros.
   [[nodiscard]] const std::uint32_t* of(std::size_t shift) const { return sums_[shift].data(); }
 
  private:
-  template <class Update>
-  void for_each_pair(int y, Update update) {
+  void for_each_pair(int y, decltype(kernels::RowKernels::add_squares) update) {
     if (y < 0 || y >= image_.height()) return;
     for (std::size_t s = 0; s < kShifts.size(); ++s) {
       const int other_y = y + kShifts[s].dy;
       if (other_y < 0 || other_y >= image_.height()) continue;
-      const Gray* const here = image_.row(y);
-      const Gray* const there = image_.row(other_y) + kShifts[s].dx;
-      std::uint32_t* const sums = sums_[s].data();
-      const int pairs = image_.width() - kShifts[s].dx;
-      for (int x = 0; x < pairs; ++x) {
-        // 16 bits hold the square of a difference of bytes, and multiply twice as many at once.
-        const auto difference = static_cast<std::int16_t>(here[x] - there[x]);
-        sums[x] = update(sums[x], static_cast<std::uint16_t>(difference * difference));
-      }
+      update(image_.row(y), image_.row(other_y) + kShifts[s].dx, image_.width() - kShifts[s].dx,
+             sums_[s].data() + radius_);
     }
   }
 
   View<const Gray> image_;
+  int radius_;
+  const kernels::RowKernels& run_;
   RowPerShift<std::uint32_t> sums_;
 };
 
@@ -84,13 +79,15 @@ std::int32_t least_sum(float threshold, int count) {
 /// Judges rows from the top down.
 class MoravecRows {
  public:
-  MoravecRows(View<const Gray> image, const TextureConfig& config, int first_row)
+  MoravecRows(View<const Gray> image, const TextureConfig& config, int first_row, const Exec& exec)
       : image_(image),
         radius_(config.window_size / 2),
         threshold_(config.threshold),
         row_(first_row),
-        columns_(image),
-        prefixes_(row_per_shift<std::uint32_t>(image.width() + 2 * radius_ + 1)),
+        run_(kernels::row_kernels(exec)),
+        columns_(image, radius_, run_),
+        blocks_(2 * static_cast<std::size_t>(image.width() + 2 * radius_ + 1)),
+        sums_(static_cast<std::size_t>(image.width())),
         limits_(row_per_shift<std::int32_t>(image.width())) {
     pairs_down_.fill(-1);
     for (int y = first_row - radius_; y < first_row + radius_; ++y) columns_.add_row(y);
@@ -98,32 +95,17 @@ class MoravecRows {
 
   void judge_next(Reject* verdict) {
     columns_.add_row(row_ + radius_);
-    update_prefixes();
     update_limits();
-    compare(verdict);
+    std::fill_n(verdict, image_.width(), Reject::none);
+    for (std::size_t s = 0; s < kShifts.size(); ++s) {
+      run_.flag_low_sums(columns_.of(s), image_.width(), 2 * radius_ + 1, limits_[s].data(),
+                         Reject::no_texture, blocks_.data(), sums_.data(), verdict);
+    }
     columns_.remove_row(row_ - radius_);
     ++row_;
   }
 
  private:
-  // prefix[x + radius + 1] = Σ columns[0 … x], the ends continued: a window's sum is the difference of two
-  // prefixes, modulo 2³², and no pixel at the border needs a case of its own.
-  void update_prefixes() {
-    const int width = image_.width();
-    const int offset = radius_ + 1;
-    const std::array from{columns_.of(0), columns_.of(1), columns_.of(2), columns_.of(3)};
-    const std::array to{prefixes_[0].data() + offset, prefixes_[1].data() + offset,
-                        prefixes_[2].data() + offset, prefixes_[3].data() + offset};
-    std::array<std::uint32_t, 4> sum{};
-    for (int x = 0; x < width; ++x) {  // four chains at once: each alone would wait for its own additions
-      to[0][x] = sum[0] += from[0][x];
-      to[1][x] = sum[1] += from[1][x];
-      to[2][x] = sum[2] += from[2][x];
-      to[3][x] = sum[3] += from[3][x];
-    }
-    for (std::size_t s = 0; s < to.size(); ++s) std::fill_n(to[s] + width, radius_, sum[s]);
-  }
-
   void update_limits() {
     for (std::size_t s = 0; s < kShifts.size(); ++s) {
       const int down = pairs_along(row_, radius_, kShifts[s].dy, image_.height());
@@ -136,26 +118,14 @@ class MoravecRows {
     }
   }
 
-  void compare(Reject* verdict) const {
-    const int width = image_.width();
-    const int window = 2 * radius_ + 1;
-    std::fill_n(verdict, width, Reject::none);
-    for (std::size_t s = 0; s < kShifts.size(); ++s) {
-      const std::uint32_t* const prefix = prefixes_[s].data();
-      const std::int32_t* const limit = limits_[s].data();
-      for (int x = 0; x < width; ++x) {
-        const auto sum = static_cast<std::int32_t>(prefix[x + window] - prefix[x]);
-        verdict[x] |= sum < limit[x] ? Reject::no_texture : Reject::none;
-      }
-    }
-  }
-
   View<const Gray> image_;
   int radius_;
   float threshold_;
   int row_;
+  const kernels::RowKernels& run_;
   ColumnSums columns_;
-  RowPerShift<std::uint32_t> prefixes_;
+  std::vector<std::uint32_t> blocks_;  // working memory
+  std::vector<std::uint32_t> sums_;
   RowPerShift<std::int32_t> limits_;  // the least sum that is enough texture
   std::array<int, kShifts.size()> pairs_down_{};
 };
@@ -168,7 +138,7 @@ Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& con
     return Image<Reject>(left.size(), Reject::no_texture, exec.pool);  // not one pair
   Image<Reject> verdict(left.size(), exec.pool);
   parallel_for(exec, left.height(), kGrain, [&](int first, int last) {
-    MoravecRows rows(left, config, first);
+    MoravecRows rows(left, config, first, exec);
     for (int y = first; y < last; ++y) rows.judge_next(verdict.row(y));
   });
   return verdict;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 #include <cairn/core/observed.hpp>
+#include <cairn/core/parallel.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <utility>
 
@@ -74,6 +75,35 @@ Image<float> trusted(View<const Gray> left, const DisparityMap& disparity, const
   return stage("find_evidence", find_evidence(left, disparity, config.evidence, exec));
 }
 
+/// What the left image tells without a disparity. It takes longer than anything else but matching, and much
+/// of it can be done by one thread only: so it is done beside the matching.
+class LeftRegions {
+ public:
+  LeftRegions(View<const Gray> left, View<const Rgb> left_rgb, const Config& config, const Exec& exec)
+      : work_(exec, [=, this, &config, beside = exec.beside()] {
+          if (config.fusion.method == FusionMethod::overlap) {
+            by_intensity_ = segment_intensity(left, config.intensity, beside);
+          } else {
+            facets_ = segment_facets(left, left_rgb, config.facets, beside);
+          }
+        }) {}
+  /// With fusion.method=overlap; once.
+  Segmentation by_intensity() {
+    work_.wait();
+    return std::move(by_intensity_);
+  }
+  /// With fusion.method=evidence; once.
+  Facets facets() {
+    work_.wait();
+    return std::move(facets_);
+  }
+
+ private:
+  Segmentation by_intensity_;
+  Facets facets_;
+  SideWork work_;  // the last, so that it is over before what it writes to is gone
+};
+
 /// A frame's two segmentations, which fuse() unites.
 struct Regions {
   Segmentation by_intensity;
@@ -81,20 +111,21 @@ struct Regions {
 };
 
 /// The paper's way: united where they overlap.
-Regions regions_by_overlap(View<const Gray> left, const SceneDisparity& scene, const Config& config,
+Regions regions_by_overlap(LeftRegions& of_left, const SceneDisparity& scene, const Config& config,
                            const Exec& exec, Observed& stage) {
-  auto by_intensity = stage("segment_intensity", segment_intensity(left, config.intensity, exec));
+  auto by_intensity = stage("segment_intensity", of_left.by_intensity());
   auto by_disparity =
       stage("segment_disparity", segment_disparity(scene.disparity, scene.floor, config.disparity, exec));
   return {std::move(by_intensity), std::move(by_disparity)};
 }
 
 /// What texture proves decides which facets stand before the background, and which of those belong together.
-Regions regions_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, View<const float> evidence_px,
-                            const SceneDisparity& scene, const std::optional<StereoRig>& rig,
-                            const Config& config, const Exec& exec, Observed& stage) {
+Regions regions_by_evidence(LeftRegions& of_left, View<const Gray> left, View<const Rgb> left_rgb,
+                            View<const float> evidence_px, const SceneDisparity& scene,
+                            const std::optional<StereoRig>& rig, const Config& config, const Exec& exec,
+                            Observed& stage) {
   const Background background = fit_background(evidence_px, scene.ground, rig, config.background, exec);
-  const Facets facets = segment_facets(left, left_rgb, config.facets, exec);
+  const Facets facets = of_left.facets();
   auto by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
   const auto figure = separate_figure(facets, left, left_rgb, evidence_px, background, config.figure, exec);
   auto by_disparity = stage("group_facets", group_facets(facets, figure, scene.disparity, evidence_px,
@@ -103,17 +134,18 @@ Regions regions_by_evidence(View<const Gray> left, View<const Rgb> left_rgb, Vie
 }
 
 /// From disparities that the per-pixel checks have passed to objects.
-Frame find_objects(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
-                   const std::optional<StereoRig>& rig, const Config& config, const Exec& exec,
-                   Observed& stage) {
+Frame find_objects(LeftRegions& of_left, View<const Gray> left, View<const Rgb> left_rgb,
+                   DisparityMap disparity, const std::optional<StereoRig>& rig, const Config& config,
+                   const Exec& exec, Observed& stage) {
   const bool by_evidence = config.fusion.method == FusionMethod::evidence;
   const Image<float> trusted_px = trusted(left, disparity, config, exec, stage);
   SceneDisparity scene = check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage);
   Regions regions;
   // Facets weigh small islands for themselves: thin legs and leaves are islands, too.
-  if (by_evidence) regions = regions_by_evidence(left, left_rgb, trusted_px, scene, rig, config, exec, stage);
+  if (by_evidence)
+    regions = regions_by_evidence(of_left, left, left_rgb, trusted_px, scene, rig, config, exec, stage);
   scene = clean_up(std::move(scene), rig, config, exec, stage);
-  if (!by_evidence) regions = regions_by_overlap(left, scene, config, exec, stage);
+  if (!by_evidence) regions = regions_by_overlap(of_left, scene, config, exec, stage);
 
   Fusion fusion = stage("fuse", fuse(regions.by_intensity, regions.by_disparity, exec));
   Objects objects = stage("measure", measure(fusion, regions.by_disparity, scene.disparity, left, left_rgb,
@@ -148,10 +180,11 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
               const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
+  LeftRegions of_left(pair.left(), pair.left_rgb(), config, exec);
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
   Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
-  Frame frame =
-      find_objects(pair.left(), pair.left_rgb(), std::move(matched.disparity), rig, config, exec, stage);
+  Frame frame = find_objects(of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity), rig, config,
+                             exec, stage);
   frame.confidence = confidence_of(frame.disparity, matched.matches, config, exec, stage);
   frame.epipolar = aligned.offset;
   return frame;
@@ -165,7 +198,8 @@ Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disp
   }
   validate(config);
   Observed stage(exec);
-  return find_objects(left, left_rgb, std::move(disparity), rig, config, exec, stage);
+  LeftRegions of_left(left, left_rgb, config, exec);
+  return find_objects(of_left, left, left_rgb, std::move(disparity), rig, config, exec, stage);
 }
 
 }  // namespace cairn
