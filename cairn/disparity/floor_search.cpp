@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -61,15 +62,17 @@ struct Points {
   }
 };
 
-/// The numbers of those points that `holds` is true of, in their order. Found without a branch: about a plane
-/// nothing tells the next point from the last.
-template <class Holds>
-std::vector<std::size_t> those(const Points& points, Holds holds) {
-  std::vector<std::size_t> found(points.size() + 1);
+/// The numbers of those points whose distance above the plane is least … most, in their order. Found without
+/// a branch: about a plane nothing tells the next point from the last.
+std::vector<std::uint32_t> between(const Points& points, const GroundPlane& plane, float least, float most,
+                                   const kernels::RowKernels& run) {
+  std::vector<std::uint8_t> marks(points.size());
+  run.mark_between(points.arrays(), plane, least, most, marks.data());
+  std::vector<std::uint32_t> found(points.size() + 1);
   std::size_t count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    found[count] = i;
-    count += holds(i) ? 1 : 0;
+    found[count] = static_cast<std::uint32_t>(i);
+    count += marks[i];
   }
   found.resize(count);
   return found;
@@ -219,12 +222,14 @@ class Places {
 /// Of the matches under the plane, those of which the original is seen where the plane as a mirror puts it. A
 /// point's distance from the plane, in units of its depth, is the difference of the disparities divided by
 /// the normal's length.
-int mirrored(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera) {
+int mirrored(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera,
+             const kernels::RowKernels& run) {
   const Vec3 normal = camera.normal(plane);
   const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
   int sum = 0;
-  const auto is_below = [&](std::size_t i) { return !(-points.above(plane, i) <= kTolerance); };
-  for (const std::size_t i : those(points, is_below)) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const float below_it = std::nextafter(-kTolerance, -kInfinity);
+  for (const std::uint32_t i : between(points, plane, -kInfinity, below_it, run)) {
     const float below = -points.above(plane, i);
     if (plane.disparity_px(points.x[i], points.y[i]) + camera.infinity <= 0) continue;
     const float twice = 2 * below / square;
@@ -285,14 +290,16 @@ std::vector<Guess> guesses(const Points& points, const Camera& camera, const ker
 
 /// Least squares over the matches within reach, again and again while the reach shrinks.
 template <std::size_t N>
-GroundPlane refined(GroundPlane plane, const Points& points, const std::array<float, N>& reaches) {
+GroundPlane refined(GroundPlane plane, const Points& points, const std::array<float, N>& reaches,
+                    const kernels::RowKernels& run) {
   float before = 0;
   bool moved = true;
   for (const float reach : reaches) {
     if (reach == before && !moved) continue;  // would find the same again
     PlaneFit fit(points.x[points.size() / 2], points.y[points.size() / 2]);
-    const auto within = [&](std::size_t i) { return std::abs(points.above(plane, i)) <= reach * kTolerance; };
-    for (const std::size_t i : those(points, within)) fit.add(points.x[i], points.y[i], points.d[i]);
+    const float farthest = reach * kTolerance;
+    for (const std::uint32_t i : between(points, plane, -farthest, farthest, run))
+      fit.add(points.x[i], points.y[i], points.d[i]);
     const GroundPlane fitted = fit.solve().value_or(plane);
     moved = fitted.a != plane.a || fitted.b != plane.b || fitted.c != plane.c;
     before = reach;
@@ -305,16 +312,17 @@ GroundPlane refined(GroundPlane plane, const Points& points, const std::array<fl
 /// apart must differ, and by more than noise explains. This tells a floor from a plane that is laid across
 /// upright surfaces at different depths, an object before a wall for instance, each of which has its own
 /// disparity all the way down.
-bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points) {
+bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points,
+           const kernels::RowKernels& run) {
   double nn = 0;  // n rows apart, d px apart
   double nd = 0;
   double dd = 0;
   int pairs = 0;
   // Apart by more than a usual matching window, which would tie the two together, but not from one surface to
   // the next.
-  const auto on_plane = those(points, [&](std::size_t i) { return points.on(plane, i); });
+  const auto on_plane = between(points, plane, -kTolerance, kTolerance, run);
   for (const int rows : {disparity_px.height() / 24 + 1, disparity_px.height() / 12 + 1}) {
-    for (const std::size_t i : on_plane) {
+    for (const std::uint32_t i : on_plane) {
       const int y = static_cast<int>(points.y[i]) + rows;
       if (y >= disparity_px.height()) break;  // points are in raster order
       const float d = disparity_px(static_cast<int>(points.x[i]), y);
@@ -362,12 +370,13 @@ Candidates candidates(View<const float> disparity_px, const Points& points, cons
     };
     if (std::any_of(seen.begin(), seen.end(), explains)) continue;
     if (std::any_of(walls.begin(), walls.end(), touches)) continue;
-    const auto plane = refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F});
+    const auto plane =
+        refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F}, run);
     seen.push_back(plane);
     Tally judged = tally(plane, points, camera.infinity, run);
-    judged.mirrored = mirrored(plane, points, places, camera);
+    judged.mirrored = mirrored(plane, points, places, camera, run);
     if (!judged.convincing()) continue;
-    if (camera.may_stand_on(plane) && rises(plane, disparity_px, points)) {
+    if (camera.may_stand_on(plane) && rises(plane, disparity_px, points, run)) {
       found.floors.push_back({plane, judged});
     } else {
       found.others = true;
@@ -417,7 +426,7 @@ bool faces_a_wall(const Points& points, const Camera& camera, const kernels::Row
   std::vector<float> sorted = points.d;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const auto wall = refined({0, 0, *middle}, points, std::array{2.0F, 1.0F, 1.0F});
+  const auto wall = refined({0, 0, *middle}, points, std::array{2.0F, 1.0F, 1.0F}, run);
   return tally(wall, points, camera.infinity, run).convincing();
 }
 
@@ -491,7 +500,7 @@ Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>
                                                                      : Refusal::no_plane);
   }
   const auto plane =
-      refined(choose(found.floors, points, camera).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F});
+      refined(choose(found.floors, points, camera).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F}, run);
   return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, points), Refusal::none};
 }
 

@@ -192,6 +192,16 @@ inline int count_beyond(const PointArrays& points, const GroundPlane& plane, flo
   return count;
 }
 
+inline void mark_between(const PointArrays& points, const GroundPlane& plane, float least, float most,
+                         std::uint8_t* CAIRN_RESTRICT marks) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  for (int i = 0; i < at.count; ++i) {
+    const float above = at.d[i] - (p.a * at.x[i] + p.b * at.y[i] + p.c);
+    marks[i] = static_cast<std::uint8_t>((above >= least) & (above <= most));
+  }
+}
+
 inline PlaneCounts count_about(const PointArrays& points, const GroundPlane& plane, float infinity,
                                float tolerance) {
   const GroundPlane p = plane;
@@ -331,10 +341,12 @@ inline void judge_confidence(const ConfidenceRow& given, int width, const Confid
   }
 }
 
-inline constexpr RowKernels kRowKernels{
-    smooth,        edges,      steepness,  disparity_steepness, quantise,    noise,           smooth_lightly,
-    textured,      agreed,     count_on,   count_beyond,        count_about, add_squares,     remove_squares,
-    flag_low_sums, mark_jumps, add_counts, remove_counts,       sum_counts,  judge_confidence};
+inline constexpr RowKernels kRowKernels{smooth,          edges,       steepness,      disparity_steepness,
+                                        quantise,        noise,       smooth_lightly, textured,
+                                        agreed,          count_on,    count_beyond,   mark_between,
+                                        count_about,     add_squares, remove_squares, flag_low_sums,
+                                        mark_jumps,      add_counts,  remove_counts,  sum_counts,
+                                        judge_confidence};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

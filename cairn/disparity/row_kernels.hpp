@@ -87,6 +87,9 @@ struct RowKernels {
   int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
   /// How many points lie farther than `tolerance` behind the plane and the background.
   int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// marks[i] = 1 where least ≤ the point's distance above the plane ≤ most, in px of disparity; else 0.
+  void (*mark_between)(const PointArrays& points, const GroundPlane& plane, float least, float most,
+                       std::uint8_t* marks);
   /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
   PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
                              float tolerance);

@@ -113,9 +113,10 @@ struct Regions {
 /// The paper's way: united where they overlap.
 Regions regions_by_overlap(LeftRegions& of_left, const SceneDisparity& scene, const Config& config,
                            const Exec& exec, Observed& stage) {
-  auto by_intensity = stage("segment_intensity", of_left.by_intensity());
+  // In this order, as the one by intensity may not be done yet.
   auto by_disparity =
       stage("segment_disparity", segment_disparity(scene.disparity, scene.floor, config.disparity, exec));
+  auto by_intensity = stage("segment_intensity", of_left.by_intensity());
   return {std::move(by_intensity), std::move(by_disparity)};
 }
 

@@ -163,7 +163,7 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
 std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
   std::int32_t best = -1;
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
-    if (neighbour == region || regions.brief(neighbour).is_floor || regions.brief(neighbour).valid_count > 0)
+    if (neighbour == region || regions.is_floor(neighbour) || regions.brief(neighbour).valid_count > 0)
       return;
     if (best < 0 || regions.brief(neighbour).place < regions.brief(best).place) best = neighbour;
   });
@@ -206,9 +206,9 @@ class SmallRegions {
     }
   }
   void enter(std::int32_t region) {
-    const auto pixels = regions_.brief(region).pixel_count;
+    const auto pixels = regions_.pixel_count(region);
     if (pixels >= min_region_area_ && regions_.brief(region).valid_count > 0) return;
-    if (regions_.brief(region).is_floor) return;
+    if (regions_.is_floor(region)) return;
     entries_.push_back({region, first_[pixels]});
     first_[pixels] = static_cast<std::int32_t>(entries_.size()) - 1;
   }
@@ -225,7 +225,7 @@ class SmallRegions {
       for (const Placed entry : of_one_size) {
         const std::int32_t region = region_of(entry);
         // Others may have fused with it meanwhile; then it stands among the larger ones too.
-        if (regions_.is_alive(region) && regions_.brief(region).pixel_count == pixels) fuse(region);
+        if (regions_.is_alive(region) && regions_.pixel_count(region) == pixels) fuse(region);
       }
     }
   }
@@ -241,7 +241,7 @@ class SmallRegions {
     bool has_unseen = false;
     for (std::int32_t i = 0; i < regions.count(); ++i) {
       if (!regions.is_alive(i)) continue;
-      all_pixels += regions.brief(i).pixel_count;
+      all_pixels += regions.pixel_count(i);
       has_unseen |= regions.brief(i).valid_count == 0;
     }
     // Regions without valid pixel count as small at any size.
@@ -271,8 +271,8 @@ void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, c
 bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,
               const GrowCriteria& criteria) {
   if (neighbour.valid_count == 0 || neighbour.is_floor) return false;
-  const Absorption absorption(GrowingRegions::Brief::of(visited), visited.sum_of_squares, criteria);
-  return absorption.is_near(neighbour.mean()) && absorption.admits(GrowingRegions::Brief::of(neighbour));
+  const Absorption absorption(GrowingRegions::Brief::of(visited, 0), visited.sum_of_squares, criteria);
+  return absorption.is_near(neighbour.mean()) && absorption.admits(GrowingRegions::Brief::of(neighbour, 1));
 }
 
 Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {

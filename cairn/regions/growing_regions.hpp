@@ -20,26 +20,22 @@ namespace cairn {
 /// when they are read.
 class GrowingRegions {
  public:
-  /// What looks at a neighbour need: half a cache line.
+  /// What looks at a neighbour need, together in half a cache line: at some ten thousand regions, growing
+  /// mostly waits for memory.
   struct alignas(32) Brief {
     double mean;  // NaN where the region may not fuse by likeness: floor, or no valid pixel
     std::int64_t sum;
     std::int32_t place;  // its first pixel: different for any two living regions, ascending in raster order
-    std::int32_t pixel_count;
     std::int32_t valid_count;
-    bool is_floor;
+    std::int32_t parent;  // itself while it lives
+    std::int32_t seen;    // the last visit that named it
 
-    static Brief of(const RegionGraph::Node& node) {
-      Brief brief{0,
-                  node.sum,
-                  node.first_pixel,
-                  static_cast<std::int32_t>(node.pixel_count),
-                  static_cast<std::int32_t>(node.valid_count),
-                  node.is_floor};
-      brief.find_mean();
+    static Brief of(const RegionGraph::Node& node, std::int32_t number) {
+      Brief brief{0, node.sum, node.first_pixel, static_cast<std::int32_t>(node.valid_count), number, -1};
+      brief.find_mean(node.is_floor);
       return brief;
     }
-    void find_mean() {
+    void find_mean(bool is_floor) {
       mean = valid_count == 0 || is_floor ? std::numeric_limits<double>::quiet_NaN()
                                           : static_cast<double>(sum) / static_cast<double>(valid_count);
     }
@@ -48,33 +44,36 @@ class GrowingRegions {
   GrowingRegions(const RegionGraph& graph, const Exec& exec)
       : arcs_(2 * graph.arcs.size(), exec.pool),
         briefs_(graph.nodes.size(), exec.pool),
-        squares_(graph.nodes.size(), exec.pool),
-        lists_(graph.nodes.size(), exec.pool),
-        parent_(graph.nodes.size(), exec.pool),
-        seen_(graph.nodes.size(), -1, exec.pool) {
+        rests_(graph.nodes.size(), exec.pool) {
     std::copy(graph.arcs.begin(), graph.arcs.end(), arcs_.room_for(graph.arcs.size()));
     arcs_.grown(graph.arcs.size());
     for (std::int32_t i = 0; i < count(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const RegionGraph::Node& node = graph.nodes[at];
-      briefs_[i] = Brief::of(node);
-      squares_[i] = node.sum_of_squares;
-      lists_[i] = {graph.first_arc[at], graph.first_arc[at + 1], -1, i};
-      parent_[i] = i;
+      briefs_[i] = Brief::of(node, i);
+      rests_[i] = {graph.first_arc[at],
+                   graph.first_arc[at + 1],
+                   -1,
+                   i,
+                   node.sum_of_squares,
+                   static_cast<std::int32_t>(node.pixel_count),
+                   node.is_floor};
     }
   }
 
-  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(parent_.size()); }
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(briefs_.size()); }
   [[nodiscard]] const Brief& brief(std::int32_t region) const { return briefs_[region]; }
   /// The sum of the squares of its values.
-  [[nodiscard]] std::int64_t squares(std::int32_t region) const { return squares_[region]; }
-  [[nodiscard]] bool is_alive(std::int32_t region) const { return parent_[region] == region; }
+  [[nodiscard]] std::int64_t squares(std::int32_t region) const { return rests_[region].squares; }
+  [[nodiscard]] std::int32_t pixel_count(std::int32_t region) const { return rests_[region].pixel_count; }
+  [[nodiscard]] bool is_floor(std::int32_t region) const { return rests_[region].is_floor; }
+  [[nodiscard]] bool is_alive(std::int32_t region) const { return briefs_[region].parent == region; }
 
   /// Calls found(neighbour) for each living neighbour of `region`, for some of them more than once, and
   /// perhaps for the region itself.
   template <class Found>
   void for_each_neighbour(std::int32_t region, Found found) {
-    for (std::int32_t member = region; member >= 0; member = lists_[member].next_member) {
+    for (std::int32_t member = region; member >= 0; member = rests_[member].next_member) {
       for (const std::int32_t neighbour : arcs_of(member)) found(living(neighbour));
     }
   }
@@ -82,21 +81,21 @@ class GrowingRegions {
   /// From here on append_new_neighbours() names each region once.
   void start_visit(std::int32_t region) {
     ++visit_;
-    seen_[region] = visit_;
+    briefs_[region].seen = visit_;
   }
   /// Appends the living neighbours of `region` that this visit has not named yet. Without a branch: one in
   /// two or three is known already, and nothing tells which.
   void append_new_neighbours(std::int32_t region, ScratchList<std::int32_t>& found) {
-    std::int32_t* const seen = seen_.data();
-    for (std::int32_t member = region; member >= 0; member = lists_[member].next_member) {
+    Brief* const briefs = briefs_.data();
+    for (std::int32_t member = region; member >= 0; member = rests_[member].next_member) {
       const std::span<const std::int32_t> arcs = arcs_of(member);
       std::int32_t* const room = found.room_for(arcs.size() + 1);
       std::size_t count = 0;
       for (const std::int32_t arc : arcs) {
         const std::int32_t neighbour = living(arc);
         room[count] = neighbour;
-        count += seen[neighbour] != visit_ ? 1 : 0;
-        seen[neighbour] = visit_;
+        count += briefs[neighbour].seen != visit_ ? 1 : 0;
+        briefs[neighbour].seen = visit_;
       }
       found.grown(count);
     }
@@ -104,16 +103,17 @@ class GrowingRegions {
 
   void absorb(std::int32_t survivor, std::int32_t other) {
     Brief& brief = briefs_[survivor];
-    const Brief& absorbed = briefs_[other];
-    brief.sum += absorbed.sum;
-    brief.place = std::min(brief.place, absorbed.place);
-    brief.pixel_count += absorbed.pixel_count;
-    brief.valid_count += absorbed.valid_count;
-    brief.find_mean();
-    squares_[survivor] += squares_[other];
-    parent_[other] = survivor;
-    lists_[lists_[survivor].last_member].next_member = other;
-    lists_[survivor].last_member = lists_[other].last_member;
+    Rest& rest = rests_[survivor];
+    const Rest& absorbed = rests_[other];
+    brief.sum += briefs_[other].sum;
+    brief.place = std::min(brief.place, briefs_[other].place);
+    brief.valid_count += briefs_[other].valid_count;
+    brief.find_mean(rest.is_floor);
+    briefs_[other].parent = survivor;
+    rest.squares += absorbed.squares;
+    rest.pixel_count += absorbed.pixel_count;
+    rests_[rest.last_member].next_member = other;
+    rest.last_member = absorbed.last_member;
   }
 
   /// States anew which regions are beside `region`, so that later visits do not wade through its inner
@@ -124,41 +124,45 @@ class GrowingRegions {
     for (std::size_t i = 0; i < count; ++i) room[i] = neighbour_at(i);
     const auto begin = static_cast<std::int32_t>(arcs_.size());
     arcs_.grown(count);
-    lists_[region] = {begin, begin + static_cast<std::int32_t>(count), -1, region};
+    Rest& rest = rests_[region];
+    rest.begin = begin;
+    rest.end = begin + static_cast<std::int32_t>(count);
+    rest.next_member = -1;
+    rest.last_member = region;
   }
 
   [[nodiscard]] Merges merges() {
-    Merges merged_into(parent_.size());
+    Merges merged_into(briefs_.size());
     for (std::int32_t i = 0; i < count(); ++i) merged_into[static_cast<std::size_t>(i)] = living(i);
     return merged_into;
   }
 
  private:
-  struct List {
+  struct alignas(32) Rest {
     std::int32_t begin;  // of this member's neighbours in arcs_
     std::int32_t end;
     std::int32_t next_member;
-    std::int32_t last_member;  // kept up for living regions
+    std::int32_t last_member;  // this and what follows: kept up for living regions
+    std::int64_t squares;
+    std::int32_t pixel_count;
+    bool is_floor;
   };
 
   [[nodiscard]] std::span<const std::int32_t> arcs_of(std::int32_t member) const {
-    return {arcs_.begin() + lists_[member].begin, arcs_.begin() + lists_[member].end};
+    return {arcs_.begin() + rests_[member].begin, arcs_.begin() + rests_[member].end};
   }
   std::int32_t living(std::int32_t region) {
     // Two steps at once, as most are there then: how many it takes cannot be foretold.
-    std::int32_t* const parent = parent_.data();
-    std::int32_t root = parent[parent[region]];
-    while (parent[root] != root) root = parent[root];
-    parent[region] = root;
+    Brief* const briefs = briefs_.data();
+    std::int32_t root = briefs[briefs[region].parent].parent;
+    while (briefs[root].parent != root) root = briefs[root].parent;
+    briefs[region].parent = root;
     return root;
   }
 
   ScratchList<std::int32_t> arcs_;  // the graph's, and behind them those stated anew
   Scratch<Brief> briefs_;
-  Scratch<std::int64_t> squares_;
-  Scratch<List> lists_;
-  Scratch<std::int32_t> parent_;
-  Scratch<std::int32_t> seen_;  // the last visit that named the region
+  Scratch<Rest> rests_;
   std::int32_t visit_ = 0;
 };
 
@@ -175,9 +179,9 @@ class Absorption {
   void update(const Brief& visited, std::int64_t squares) {
     sum_ = visited.sum;
     valid_count_ = visited.valid_count;
-    if (valid_count_ == 0 || visited.is_floor) return;  // mean_ stays NaN: is near to nothing
+    if (std::isnan(visited.mean)) return;  // mean_ stays NaN: is near to nothing
     const auto n = static_cast<double>(valid_count_);
-    mean_ = static_cast<double>(sum_) / n;
+    mean_ = visited.mean;
     const double variance = std::max(0.0, static_cast<double>(squares) / n - mean_ * mean_);
     sigma_ = std::max(std::sqrt(variance), criteria_.sigma_min);
   }
