@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <atomic>
 #include <cairn/core/parallel.hpp>
 #include <thread>
 #include <utility>
@@ -98,18 +99,25 @@ void parallel_for(const Exec& exec, int count, int grain, const std::function<vo
 class SideWork::Running {
  public:
   Running(std::shared_ptr<Workers> workers, std::function<void()> work) : workers_(std::move(workers)) {
-    workers_->arena().execute([&] { group_.run(std::move(work)); });
+    workers_->arena().execute([&] {
+      group_.run([this, work = std::move(work)] {
+        if (!given_up_) work();
+      });
+    });
   }
   void wait() {
     workers_->arena().execute([&] { group_.wait(); });
   }
+  /// Does not cancel the group: that would end the loops inside the work, too, which then went on with what
+  /// they had not written.
   void give_up() {
-    group_.cancel();
+    given_up_ = true;
     wait();
   }
 
  private:
   std::shared_ptr<Workers> workers_;
+  std::atomic<bool> given_up_ = false;
   oneapi::tbb::task_group group_;
 };
 

@@ -143,5 +143,26 @@ TEST(ExecLaw, APoolAndAnObserverChangeNoBit) {
   EXPECT_GT(stages, 0);
 }
 
+TEST(ExecLaw, AnObserverMayEndAFrameAtAnyStage) {
+  const samples::Sample sample = samples::load("overlap");
+  for (const Config& config : {sample.suited(), sample.suited(Config::paper())}) {
+    Exec exec = Exec::with_threads(2);
+    exec.pool = Pool::make();
+    const Frame expected = segment(sample.pair(), sample.calibration.rig, config, exec);
+    int stages = 0;
+    exec.observe = [&stages](std::string_view, const Artifact&, double) { ++stages; };
+    static_cast<void>(segment(sample.pair(), sample.calibration.rig, config, exec));
+    for (int last = 1; last <= stages; ++last) {
+      int stage = 0;
+      exec.observe = [&](std::string_view, const Artifact&, double) {
+        if (++stage == last) throw Error("enough");
+      };
+      EXPECT_THROW(static_cast<void>(segment(sample.pair(), sample.calibration.rig, config, exec)), Error);
+    }
+    exec.observe = {};
+    expect_same(segment(sample.pair(), sample.calibration.rig, config, exec), expected);
+  }
+}
+
 }  // namespace
 }  // namespace cairn

@@ -39,6 +39,15 @@ TEST(Segmenter, AllocatesNoImageFromTheSecondFrameOnWithTheWholePaper) {
   EXPECT_EQ(counts[2], counts[0]);
 }
 
+TEST(Segmenter, AllocatesNoImageFromTheSecondFrameOnWithSeveralThreads) {
+  const samples::Sample sample = samples::load("glossy_floor");
+  for (const Config& config : {sample.suited(), sample.suited(Config::paper())}) {
+    const Segmenter segmenter(config, sample.calibration.rig, Exec::with_threads(3));
+    const auto counts = allocations_by_frame(segmenter, sample.pair(), 6);
+    EXPECT_EQ(counts[5], counts[1]);
+  }
+}
+
 TEST(Segmenter, FindsWhatSegmentFinds) {
   const samples::Sample sample = samples::load("overlap");
   const Segmenter segmenter(sample.suited(), sample.calibration.rig);

@@ -8,10 +8,12 @@
 #include <cairn/core/observed.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/stereo_pair.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -96,6 +98,56 @@ TEST(ParallelFor, VisitsEachElementOnce) {
       for (const auto& v : visits) EXPECT_EQ(v, 1);
     }
   }
+}
+
+TEST(SideWork, IsDoneWhenItHasBeenWaitedFor) {
+  for (const int threads : {1, 2, 4}) {
+    const Exec exec = Exec::with_threads(threads);
+    std::atomic<int> sum = 0;
+    SideWork work(exec,
+                  [&] { parallel_for(exec, 1000, 7, [&](int first, int last) { sum += last - first; }); });
+    std::atomic<int> own = 0;
+    parallel_for(exec, 1000, 7, [&](int first, int last) { own += last - first; });
+    EXPECT_EQ(own, 1000);
+    work.wait();
+    EXPECT_EQ(sum, 1000) << threads;
+  }
+}
+
+TEST(SideWork, HandsOnWhatItThrows) {
+  for (const int threads : {1, 2}) {
+    SideWork work(Exec::with_threads(threads), [] { throw Error("no"); });
+    EXPECT_THROW(work.wait(), Error) << threads;
+  }
+}
+
+TEST(SideWork, IsOverWhenNobodyWaitsForItAnyMore) {
+  for (const int threads : {1, 2}) {
+    std::atomic<bool> gone = false;
+    std::atomic<bool> late = false;
+    {
+      const SideWork work(Exec::with_threads(threads), [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        late = gone.load();
+        throw Error("nobody hears this");
+      });
+    }
+    gone = true;
+    EXPECT_FALSE(late) << threads;
+  }
+}
+
+TEST(Pool, HasAnotherBesideItThatCountsAsPartOfIt) {
+  const Pool pool = Pool::make();
+  { const Image<float> image(Size{100, 50}, pool); }
+  {
+    const Image<float> image(Size{100, 50}, pool.beside());
+    EXPECT_EQ(pool.heap_allocations(), 2) << "the free buffer of the other pool was taken";
+  }
+  { const Image<float> image(Size{100, 50}, pool.beside()); }
+  EXPECT_EQ(pool.heap_allocations(), 2);
+  EXPECT_GE(pool.bytes(), 2 * 100 * 50 * 4);
+  EXPECT_EQ(Pool().beside().heap_allocations(), 0);
 }
 
 TEST(Observed, ReportsEachStageAndHandsItsResultThrough) {
