@@ -6,6 +6,7 @@
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/ranks.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <cstdint>
@@ -19,11 +20,41 @@ namespace {
 
 constexpr int kGrain = 64;  // rows
 
-/// What the runs of a fused region tell of it.
+/// How an object's outline looks, in steps from a pixel of it to a 4-neighbour that is not.
+struct Rim {
+  std::int64_t length = 0;
+  std::int64_t at_edge = 0;
+  std::int64_t cut = 0;
+
+  void add(bool is_edge) {
+    ++length;
+    at_edge += is_edge ? 1 : 0;
+  }
+  void add_cut(int steps) {
+    length += steps;
+    cut += steps;
+  }
+};
+
+/// What is known of a fused region without its disparities. All of it are whole numbers: in which order they
+/// are added changes nothing.
 struct Outline {
   std::int64_t pixel_count = 0;
   int first_pixel = 0;
   Rect box;
+  std::array<std::int64_t, 3> colour_sum{};
+  Rim rim;
+
+  /// `more`: of lower rows.
+  void absorb(const Outline& more) {
+    if (pixel_count == 0) first_pixel = more.first_pixel;
+    pixel_count += more.pixel_count;
+    box = united(box, more.box);
+    for (std::size_t c = 0; c < 3; ++c) colour_sum[c] += more.colour_sum[c];
+    rim.length += more.rim.length;
+    rim.at_edge += more.rim.at_edge;
+    rim.cut += more.rim.cut;
+  }
 };
 
 struct Inputs {
@@ -38,17 +69,142 @@ struct Inputs {
 constexpr float kEdgeMin = 4.0F;          // grey levels …
 constexpr float kEdgeNoiseFactor = 3.0F;  // … plus deviations of the image noise
 
-std::vector<Outline> outlines(const Inputs& in, std::vector<Run>& runs) {
-  const int width = in.fusion.labels.width();
-  std::vector<Outline> result(in.fusion.parts.size());
-  for_each_run(in.fusion.labels, [&](const Run& run) {
-    runs.push_back(run);
-    Outline& outline = result[index(run.label)];
-    if (outline.pixel_count == 0) outline.first_pixel = run.y * width + run.first;
-    outline.pixel_count += run.length();
-    outline.box = united(outline.box, run.box());
+/// Surveys a band of rows.
+class Survey {
+ public:
+  Survey(const Inputs& in, const Exec& exec)
+      : in_(in),
+        run_(kernels::label_kernels(exec)),
+        outlines_(in.fusion.parts.size()),
+        ends_(slot(in.fusion.labels.width()) + kernels::kListSlack),
+        upper_(ends_.size()),
+        lower_(ends_.size()),
+        up_to_(3 * ends_.size()) {}
+
+  void add_rows(int first, int last) {
+    for (int y = first; y < last; ++y) {
+      add_runs(y);
+      if (y > 0) look_up(y);
+    }
+  }
+
+  [[nodiscard]] std::vector<Outline>& outlines() { return outlines_; }
+  /// In raster order.
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
+
+ private:
+  void add_runs(int y) {
+    const auto [width, height] = in_.fusion.labels.size();
+    const RegionId* const label = in_.fusion.labels.row(y);
+    const int count = run_.find_runs(label, label, width, ends_.data());
+    sum_colours(y, width);
+    const int at_border = (y == 0 ? 1 : 0) + (y + 1 == height ? 1 : 0);
+    Outline* before = nullptr;
+    for (int k = 0, x = 0; k < count; ++k) {
+      const Run run{label[x], y, x, ends_[slot(k)]};
+      runs_.push_back(run);
+      Outline& outline = outlines_[index(run.label)];
+      if (outline.pixel_count == 0) outline.first_pixel = y * width + x;
+      outline.pixel_count += run.length();
+      outline.box = united(outline.box, run.box());
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t* const sums = up_to(in_.left_rgb.empty() ? 0 : c);
+        outline.colour_sum[c] += sums[run.last] - sums[run.first];
+      }
+      outline.rim.add_cut(at_border * run.length());
+      if (before == nullptr) {
+        outline.rim.add_cut(1);
+      } else {
+        add_step(*before, outline, is_edge(x - 1, y, x, y));
+      }
+      before = &outline;
+      x = run.last;
+    }
+    before->rim.add_cut(1);
+  }
+
+  /// The sums of a channel up to each pixel of the row, itself not counted.
+  [[nodiscard]] std::uint32_t* up_to(std::size_t channel) { return up_to_.data() + channel * ends_.size(); }
+
+  void sum_colours(int y, int width) {
+    std::array<std::uint32_t, 3> sum{};
+    if (in_.left_rgb.empty()) {
+      const Gray* const row = in_.left.row(y);
+      std::uint32_t* const grey = up_to(0);
+      for (int x = 0; x < width; ++x) {
+        grey[x] = sum[0];
+        sum[0] += row[x];
+      }
+      grey[width] = sum[0];
+      return;
+    }
+    const Rgb* const row = in_.left_rgb.row(y);
+    const std::array channels{up_to(0), up_to(1), up_to(2)};
+    for (int x = 0; x < width; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) channels[c][x] = sum[c];
+      sum[0] += row[x].r;
+      sum[1] += row[x].g;
+      sum[2] += row[x].b;
+    }
+    for (std::size_t c = 0; c < 3; ++c) channels[c][width] = sum[c];
+  }
+
+  /// From each pixel to the one above.
+  void look_up(int y) {
+    const int count = run_.differing(in_.fusion.labels.row(y), in_.fusion.labels.row(y - 1), in_.left.width(),
+                                     ends_.data(), {upper_.data(), lower_.data()});
+    for (std::size_t k = 0; k < slot(count); ++k) {
+      const int x = ends_[k];
+      add_step(outlines_[slot(upper_[k])], outlines_[slot(lower_[k])], is_edge(x, y, x, y - 1));
+    }
+  }
+
+  /// The step between two regions belongs to the rim of both.
+  static void add_step(Outline& p, Outline& q, bool is_edge) {
+    p.rim.add(is_edge);
+    q.rim.add(is_edge);
+  }
+
+  [[nodiscard]] bool is_edge(int x, int y, int u, int v) const {
+    if (in_.left_rgb.empty()) return std::abs(in_.left(x, y) - in_.left(u, v)) > in_.edge_min;
+    const Rgb p = in_.left_rgb(x, y);
+    const Rgb q = in_.left_rgb(u, v);
+    return std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)}) > in_.edge_min;
+  }
+
+  const Inputs& in_;
+  const kernels::LabelKernels& run_;
+  std::vector<Outline> outlines_;
+  std::vector<Run> runs_;
+  std::vector<std::int32_t> ends_;  // of a row's runs; then its pixels at a rim
+  std::vector<std::int32_t> upper_;
+  std::vector<std::int32_t> lower_;
+  std::vector<std::uint32_t> up_to_;  // one list for each channel
+};
+
+/// One band for each thread, from the top down.
+std::vector<Survey> survey(const Inputs& in, const Exec& exec) {
+  const int height = in.left.height();
+  std::vector<Survey> bands(slot(std::min(exec.threads(), height)), Survey(in, exec));
+  const auto count = static_cast<int>(bands.size());
+  const auto first_row = [&](int band) { return static_cast<int>(std::int64_t{height} * band / count); };
+  parallel_for(exec, count, 1, [&](int first, int last) {
+    for (int band = first; band < last; ++band)
+      bands[slot(band)].add_rows(first_row(band), first_row(band + 1));
   });
-  return result;
+  return bands;
+}
+
+/// Those of the whole image, put together in the first of the bands.
+const std::vector<Outline>& outlines_of(std::vector<Survey>& bands) {
+  std::vector<Outline>& all = bands.front().outlines();
+  for (std::size_t band = 1; band < bands.size(); ++band) {
+    const std::vector<Outline>& more = bands[band].outlines();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (more[i].pixel_count > 0) all[i].absorb(more[i]);
+    }
+  }
+  return all;
 }
 
 int borders_touched(Rect box, Size image) {
@@ -79,14 +235,7 @@ float median(std::vector<float>& values) {
   return (above + below) / 2;
 }
 
-/// How an object's outline looks, in steps from a pixel of it to a 4-neighbour that is not.
-struct Rim {
-  std::int64_t length = 0;
-  std::int64_t at_edge = 0;
-  std::int64_t cut = 0;
-};
-
-/// What the pixels of an object show, gathered run by run. Values are appended without a branch: holes come
+/// The disparities of an object, gathered run by run. Values are appended without a branch: holes come
 /// irregularly.
 class Gathered {
  public:
@@ -97,8 +246,6 @@ class Gathered {
   }
 
   void add(const Run& run) {
-    const std::array<int, 3> colour = cairn::colour_sum(in_.left, in_.left_rgb, run);
-    for (std::size_t c = 0; c < 3; ++c) colour_sum_[c] += colour[c];
     const float* const disparity = in_.disparity_px.row(run.y);
     float* const room = disparities_.data() + valid_count_;
     std::size_t valid = 0;
@@ -108,15 +255,9 @@ class Gathered {
     }
     valid_count_ += valid;
     if (in_.rig) add_points(*in_.rig, run, disparity);
-    look_aside(run, run.first, run.first - 1);
-    look_aside(run, run.last - 1, run.last);
-    look_along(run, run.y - 1);
-    look_along(run, run.y + 1);
   }
 
   [[nodiscard]] std::size_t valid_count() const { return valid_count_; }
-  [[nodiscard]] const std::array<std::int64_t, 3>& colour_sum() const { return colour_sum_; }
-  [[nodiscard]] const Rim& rim() const { return rim_; }
   struct Lists {
     std::array<std::vector<float>, 3> points;  // in the camera's frame, before infinity; one list per axis
     std::vector<float> disparities;
@@ -153,49 +294,12 @@ class Gathered {
     point_count_ += count;
   }
 
-  [[nodiscard]] bool is_edge(int x, int y, int u, int v) const {
-    if (in_.left_rgb.empty()) return std::abs(in_.left(x, y) - in_.left(u, v)) > in_.edge_min;
-    const Rgb p = in_.left_rgb(x, y);
-    const Rgb q = in_.left_rgb(u, v);
-    return std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)}) > in_.edge_min;
-  }
-
-  /// From an end of the run, x, to the pixel beside it, u.
-  void look_aside(const Run& run, int x, int u) {
-    ++rim_.length;
-    if (u < 0 || u >= in_.left.width()) {
-      ++rim_.cut;
-    } else {
-      rim_.at_edge += is_edge(x, run.y, u, run.y) ? 1 : 0;
-    }
-  }
-
-  /// From the run to the row above or below, v.
-  void look_along(const Run& run, int v) {
-    if (v < 0 || v >= in_.left.height()) {
-      rim_.length += run.length();
-      rim_.cut += run.length();
-      return;
-    }
-    const RegionId* const label = in_.fusion.labels.row(v);
-    const RegionId here = run.label;
-    int crossed = 0;
-    for (int x = run.first; x < run.last; ++x) crossed += label[x] != here ? 1 : 0;
-    if (crossed == 0) return;  // most are inside
-    rim_.length += crossed;
-    for (int x = run.first; x < run.last; ++x) {
-      if (label[x] != run.label) rim_.at_edge += is_edge(x, run.y, x, v) ? 1 : 0;
-    }
-  }
-
   const Inputs& in_;
   std::vector<float> disparities_;  // one more than there can be, as each is written before it is judged
   std::array<std::vector<float>, 3> points_;
   std::array<std::vector<float>, 3> of_run_;
-  std::array<std::int64_t, 3> colour_sum_{};
   std::size_t valid_count_ = 0;
   std::size_t point_count_ = 0;
-  Rim rim_;
 };
 
 Rgb mean_colour(const std::array<std::int64_t, 3>& sum, std::int64_t pixels) {
@@ -234,8 +338,8 @@ std::optional<Object> measured(const Outline& outline, Gathered gathered, Size i
   object.box_px = outline.box;
   object.pixel_count = static_cast<int>(outline.pixel_count);
   object.valid_share = static_cast<float>(gathered.valid_count()) / static_cast<float>(outline.pixel_count);
-  object.mean_colour = mean_colour(gathered.colour_sum(), outline.pixel_count);
-  const Rim rim = gathered.rim();
+  object.mean_colour = mean_colour(outline.colour_sum, outline.pixel_count);
+  const Rim& rim = outline.rim;
   const auto share = [&](std::int64_t part) {
     return static_cast<float>(part) / static_cast<float>(std::max<std::int64_t>(rim.length, 1));
   };
@@ -254,11 +358,10 @@ struct Candidate {
   std::optional<Object> object;
 };
 
-/// Measures the candidates first … last − 1, all together in one pass over the picture: region after region
+/// Measures candidates, all together in one pass over the picture: region after region
 /// would fetch every row anew.
-void measure_range(const Inputs& in, const std::vector<Run>& runs, const std::vector<Outline>& outline,
-                   std::vector<Candidate>& candidates, int first, int last) {
-  const std::span<Candidate> range = std::span(candidates).subspan(slot(first), slot(last) - slot(first));
+void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std::vector<Outline>& outline,
+                   std::span<Candidate> range) {
   std::vector<Gathered> gathered;
   gathered.reserve(range.size());
   std::vector<Gathered*> of_region(outline.size(), nullptr);
@@ -266,12 +369,31 @@ void measure_range(const Inputs& in, const std::vector<Run>& runs, const std::ve
     of_region[candidate.region] =
         &gathered.emplace_back(in, static_cast<std::size_t>(outline[candidate.region].pixel_count));
   }
-  for (const Run& run : runs) {
-    if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
+  for (const Survey& band : bands) {
+    for (const Run& run : band.runs()) {
+      if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
+    }
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
     range[i].object = measured(outline[range[i].region], std::move(gathered[i]), in.left.size());
   }
+}
+
+/// Where lists of candidates with about as many pixels each begin, and their end. Each goes through the
+/// picture.
+std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const std::vector<Outline>& outline,
+                                const Exec& exec) {
+  const int parts = exec.threads() == 1 ? 1 : 2 * exec.threads();
+  std::int64_t all = 0;
+  for (const Candidate& candidate : candidates) all += outline[candidate.region].pixel_count;
+  std::vector<std::size_t> begins{0};
+  std::int64_t pixels = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (pixels * parts > all * static_cast<std::int64_t>(begins.size())) begins.push_back(i);
+    pixels += outline[candidates[i].region].pixel_count;
+  }
+  begins.push_back(candidates.size());
+  return begins;
 }
 
 }  // namespace
@@ -282,16 +404,19 @@ Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const Di
   const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma(left));
   const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig, edge_min};
   const Size size = fusion.labels.size();
-  std::vector<Run> runs;
-  const std::vector<Outline> outline = outlines(in, runs);
+  std::vector<Survey> bands = survey(in, exec);
+  const std::vector<Outline>& outline = outlines_of(bands);
 
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Region& followed = by_disparity.regions[index(fusion.disparity_region[i])];
     if (is_object(outline[i], followed, size, config)) found.push_back({i, std::nullopt});
   }
-  parallel_for(exec, static_cast<int>(found.size()), 1,
-               [&](int first, int last) { measure_range(in, runs, outline, found, first, last); });
+  const std::vector<std::size_t> begins = shares(found, outline, exec);
+  parallel_for(exec, static_cast<int>(begins.size()) - 1, 1, [&](int first, int last) {
+    for (auto i = slot(first); i < slot(last); ++i)
+      measure_range(in, bands, outline, std::span(found).subspan(begins[i], begins[i + 1] - begins[i]));
+  });
   std::erase_if(found, [&](const Candidate& candidate) {
     return !candidate.object || candidate.object->confidence < config.min_confidence;
   });
