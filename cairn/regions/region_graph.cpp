@@ -136,55 +136,74 @@ Touches count_and_touch(View<const RegionId> labels, std::vector<RegionGraph::No
   return touches;
 }
 
+/// Sorts the numbers and keeps each once; returns their end. Lists are short, and mostly in order.
+std::int32_t* sort_once(std::int32_t* begin, std::int32_t* end) {
+  constexpr std::ptrdiff_t kFew = 24;
+  if (end - begin > kFew) {
+    std::sort(begin, end);
+    return std::unique(begin, end);
+  }
+  if (begin == end) return end;
+  for (std::int32_t* next = begin + 1; next < end; ++next) {
+    const std::int32_t moved = *next;
+    std::int32_t* at = next;
+    for (; at > begin && at[-1] > moved; --at) *at = at[-1];
+    *at = moved;
+  }
+  std::int32_t* last = begin;
+  for (const std::int32_t* next = begin + 1; next < end; ++next) {
+    last += *next != *last ? 1 : 0;
+    *last = *next;
+  }
+  return last + 1;
+}
+
 /// Compact adjacency from touches: every pair in both directions once, neighbours ascending.
 void link(RegionGraph& graph, const Touches& touches, const Exec& exec) {
   const auto count = static_cast<std::int32_t>(graph.nodes.size());
-  graph.first_arc.assign(graph.nodes.size() + 1, 0);
-  std::int32_t* const first = graph.first_arc.data();
   const std::int32_t* const touch_a = touches.a.begin();
   const std::int32_t* const touch_b = touches.b.begin();
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    ++first[touch_a[i] + 1];
-    ++first[touch_b[i] + 1];
+  // The larger neighbours of each node, which are half of the work, as they were met.
+  Scratch<std::int32_t> end_room(graph.nodes.size() + 1, 0, exec.pool);
+  Scratch<std::int32_t> larger_room(touches.size(), exec.pool);
+  std::int32_t* const end = end_room.data();
+  std::int32_t* const larger = larger_room.data();
+  for (std::size_t i = 0; i < touches.size(); ++i) ++end[touch_a[i] + 1];
+  std::partial_sum(end, end + count + 1, end);
+  for (std::size_t i = 0; i < touches.size(); ++i) larger[end[touch_a[i]]++] = touch_b[i];
+
+  // Each list in order and without repetitions, all without gaps; end[a] becomes how many a has.
+  graph.first_arc.assign(graph.nodes.size() + 1, 0);
+  std::int32_t* const first = graph.first_arc.data();
+  std::int32_t* kept = larger;
+  std::int32_t* list = larger;
+  for (std::int32_t a = 0; a < count; ++a) {
+    std::int32_t* const list_end = larger + end[a];
+    const std::int32_t* const last = sort_once(list, list_end);
+    end[a] = static_cast<std::int32_t>(last - list);
+    first[a + 1] += end[a];
+    for (const std::int32_t* b = list; b != last; ++b) {
+      ++first[*b + 1];
+      *kept++ = *b;
+    }
+    list = list_end;
   }
   std::partial_sum(first, first + count + 1, first);
-  Scratch<std::int32_t> unsorted_room(2 * touches.size(), exec.pool);
-  Scratch<std::int32_t> end_room(graph.nodes.size(), exec.pool);
-  std::int32_t* const unsorted = unsorted_room.data();
-  std::int32_t* const end = end_room.data();
-  std::copy_n(first, count, end);
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    unsorted[end[touch_a[i]]++] = touch_b[i];
-    unsorted[end[touch_b[i]]++] = touch_a[i];
-  }
 
-  // Handing every node, in ascending order, to its neighbours' lists sorts those lists, and repetitions end
-  // up side by side, where they are seen. Pairs are symmetric, so the lists have room for the same number.
-  Scratch<std::int32_t> sorted_room(2 * touches.size() + 1, exec.pool);
-  std::int32_t* const sorted = sorted_room.data() + 1;
-  std::copy_n(first, count, end);
-  sorted[-1] = -1;
-  std::int32_t size = 0;
+  // A node's smaller neighbours come to it in ascending order, and before its larger ones.
+  graph.arcs.resize(slot(first[count]));
+  Scratch<std::int32_t> next_room(graph.nodes.size(), exec.pool);
+  std::int32_t* const next = next_room.data();
+  std::int32_t* const arcs = graph.arcs.data();
+  std::copy_n(first, count, next);
+  const std::int32_t* b = larger;
   for (std::int32_t a = 0; a < count; ++a) {
-    for (std::int32_t i = first[a]; i < first[a + 1]; ++i) {
-      const std::int32_t b = unsorted[i];
-      const std::int32_t at = end[b];
-      // What stands before a list's begin is another list's, and may be anything.
-      const bool is_new = (at == first[b]) | (sorted[at - 1] != a);
-      sorted[at] = a;
-      end[b] = at + (is_new ? 1 : 0);
-      size += is_new ? 1 : 0;
+    std::int32_t own = next[a];
+    for (std::int32_t i = 0; i < end[a]; ++i, ++b) {
+      arcs[own++] = *b;
+      arcs[next[*b]++] = a;
     }
   }
-
-  graph.arcs.resize(slot(size));
-  std::int32_t* to = graph.arcs.data();
-  for (std::int32_t a = 0; a < count; ++a) {
-    const std::int32_t begin = first[a];
-    first[a] = static_cast<std::int32_t>(to - graph.arcs.data());
-    for (std::int32_t i = begin; i < end[a]; ++i) *to++ = sorted[i];
-  }
-  first[count] = size;
 }
 
 Region region_of(const RegionGraph::Node& node, double value_scale) {
