@@ -200,9 +200,8 @@ const std::vector<Outline>& outlines_of(std::vector<Survey>& bands) {
   std::vector<Outline>& all = bands.front().outlines();
   for (std::size_t band = 1; band < bands.size(); ++band) {
     const std::vector<Outline>& more = bands[band].outlines();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (more[i].pixel_count > 0) all[i].absorb(more[i]);
-    }
+    // Those without a pixel in it, too: the rim of a region just above belongs to a band as well.
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].absorb(more[i]);
   }
   return all;
 }
