@@ -99,7 +99,8 @@ class Survey {
     const int count = run_.find_runs(label, label, width, ends_.data());
     sum_colours(y, width);
     const int at_border = (y == 0 ? 1 : 0) + (y + 1 == height ? 1 : 0);
-    Outline* before = nullptr;
+    outlines_[index(label[0])].rim.add_cut(1);
+    outlines_[index(label[width - 1])].rim.add_cut(1);
     for (int k = 0, x = 0; k < count; ++k) {
       const Run run{label[x], y, x, ends_[slot(k)]};
       runs_.push_back(run);
@@ -112,15 +113,9 @@ class Survey {
         outline.colour_sum[c] += sums[run.last] - sums[run.first];
       }
       outline.rim.add_cut(at_border * run.length());
-      if (before == nullptr) {
-        outline.rim.add_cut(1);
-      } else {
-        add_step(*before, outline, is_edge(x - 1, y, x, y));
-      }
-      before = &outline;
+      if (x > 0) add_step(outlines_[index(label[x - 1])], outline, is_edge(x - 1, y, x, y));
       x = run.last;
     }
-    before->rim.add_cut(1);
   }
 
   /// The sums of a channel up to each pixel of the row, itself not counted.
