@@ -30,7 +30,7 @@ class Band {
         exists_(g_),
         zeros_(std::max(g_.length, g_.width)),
         step_(keeps_costs_ ? kBlock : round_up(g_.width, kBlock)),
-        blocks_{Block<Width>(g_, step_, keeps_costs_), Block<Width>(g_, step_, keeps_costs_)},
+        block_(g_, step_, task.config.evidence),
         least_(keeps_costs_ && radius_ > 0 ? g_.lanes : 0),
         candidates_(round_up(g_.width, kBlock)),
         winners_(round_up(g_.width, kBlock)) {
@@ -136,7 +136,7 @@ class Band {
     return inside(strip, y) && (mine(y) || (full_ && mine(y + strip.row)));
   }
 
-  /// So many left pixels and one row of the right image: what is done between two looks at a block.
+  /// So many left pixels and one row of the right image: what is done before the block is looked at.
   struct Work {
     const Strip* strip = nullptr;
     int x_first = 0;
@@ -145,28 +145,21 @@ class Band {
     bool ends = false;
   };
 
-  /// What a block holds is not looked at before the next one is filled: what has just been written lane by
-  /// lane and is read as vectors at once has to wait for every write.
   void match_blocks(int y) {
     const auto unwanted = [&](const Strip& strip) { return !wanted(strip, y); };
     const auto first = std::find_if_not(strips_.begin(), strips_.end(), unwanted);
     const auto last = std::find_if_not(strips_.rbegin(), strips_.rend(), unwanted).base();
-    Work before;
-    std::size_t turn = 0;
     for (int x = 0; x < g_.width; x += step_) {
       for (auto strip = first; strip < last; ++strip) {
         if (unwanted(*strip)) continue;
-        const Work now{&*strip, x, std::min(x + step_, g_.width), strip == first, strip + 1 == last};
-        fill(blocks_[turn], now);
-        turn = 1 - turn;
-        if (before.strip != nullptr) look_at(blocks_[turn], before, y);
-        before = now;
+        const Work work{&*strip, x, std::min(x + step_, g_.width), strip == first, strip + 1 == last};
+        fill(work);
+        look_at(work, y);
       }
     }
-    if (before.strip != nullptr) look_at(blocks_[1 - turn], before, y);
   }
 
-  void fill(const Block<Width>& block, const Work& work) const {
+  void fill(const Work& work) const {
     const auto [strip, x_first, x_last, begins, ends] = work;
     const Rows<Width> rows(*strip, g_, exists_);
     for_each_tile([&, x_first = x_first, x_last = x_last]<int kLanes>(int first) {
@@ -179,7 +172,7 @@ class Band {
       const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
       const auto slide_over = [&]<Place kPlace>(int begin, int end) {
         if (begin < end)
-          slide<kCost, Width, kDouble, kLanes, kPlace>(rows, first, begin, end, begin - x_first, block);
+          slide<kCost, Width, kDouble, kLanes, kPlace>(rows, first, begin, end, begin - x_first, block_);
       };
       slide_over.template operator()<Place::border>(x_first, x_inside);
       slide_over.template operator()<Place::inside>(x_inside, x_border);
@@ -188,24 +181,24 @@ class Band {
     });
   }
 
-  void look_at(const Block<Width>& block, const Work& work, int y) {
+  void look_at(const Work& work, int y) {
     const auto [strip, x_first, x_last, begins, ends] = work;
     if (full_ && mine(y + strip->row)) {
       RightRow& right = right_row(y + strip->row);
-      radius_ > 0 ? update_right<Width, true>(block.costs, g_, x_first, x_last - x_first, right)
-                  : update_right<Width, false>(block.costs, g_, x_first, x_last - x_first, right);
+      radius_ > 0 ? update_right<Width, true>(block_.costs, g_, x_first, x_last - x_first, right)
+                  : update_right<Width, false>(block_.costs, g_, x_first, x_last - x_first, right);
     }
     if (!mine(y)) return;
-    if (begins) winners_.start(block.winners.front(), x_first, x_last);
-    for (std::size_t tile = begins ? 1 : 0; tile < block.winners.size(); ++tile) {
-      winners_.keep(block.winners[tile], static_cast<int>(tile) * kTile, strip->row, x_first, x_last);
+    if (begins) winners_.start(block_.winners.front(), x_first, x_last);
+    for (std::size_t tile = begins ? 1 : 0; tile < block_.winners.size(); ++tile) {
+      winners_.keep(block_.winners[tile], static_cast<int>(tile) * kTile, strip->row, x_first, x_last);
     }
     if (!keeps_costs_) return;
     if (radius_ > 0) {
       if (begins) least_.clear();
-      keep_lesser<Width>(block.costs, x_last - x_first, g_.lanes, least_);
+      keep_lesser<Width>(block_.costs, x_last - x_first, g_.lanes, least_);
     }
-    if (ends) settle_evidence(radius_ > 0 ? least_ : block.costs, x_first, x_last - x_first, y);
+    if (ends) settle_evidence(radius_ > 0 ? least_ : block_.costs, x_first, x_last - x_first, y);
   }
 
   // -- results --------------------------------------------------------------------------------------------
@@ -239,23 +232,27 @@ class Band {
   void settle_evidence(const CostBlock& block, int x_first, int pixels, int y) {
     if (full_) settle_mean(block, x_first, pixels, y);
     const std::int32_t* const best = winners_.lane.data() + x_first;
-    alignas(64) std::array<Lane, kBlock> before;
-    alignas(64) std::array<Lane, kBlock> after;
-    for (int i = 0; i < kBlock; ++i) {
-      Lane* const costs = block.of(i) + best[i];
-      before[static_cast<std::size_t>(i)] = costs[-1];
-      after[static_cast<std::size_t>(i)] = costs[1];
-      costs[-1] = costs[0] = costs[1] = kNone<Lane>;  // so that the runner-up is the least of what is left
+    alignas(64) std::array<Lane, 4 * kBlock> around;
+    Lane* costs = block.of(0) - 1;
+    const std::ptrdiff_t stride = block.stride;
+    for (std::ptrdiff_t i = 0; i < kBlock; ++i) {
+      // So that the runner-up is the least of what is left.
+      take_three<Width>(costs + best[i], around.data() + 4 * i);
+      costs += stride;
     }
     alignas(64) std::array<Lane, kBlock> runner_up;
     runner_up.fill(kNone<Lane>);
     for_each_tile([&]<int kLanes>(int first) {
-      std::array<Lane, kBlock> of_tile;
-      for (int i = 0; i < kBlock; ++i) {
-        of_tile[static_cast<std::size_t>(i)] = least_cost<Width, kLanes>(block.of(i) + first);
-      }
+      alignas(64) std::array<Lane, kBlock> of_tile;
+      least_costs<Width, kLanes>(block, first, of_tile);
       for (std::size_t i = 0; i < kBlock; ++i) runner_up[i] = std::min(runner_up[i], of_tile[i]);
     });
+    alignas(64) std::array<Lane, kBlock> before;
+    alignas(64) std::array<Lane, kBlock> after;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      before[i] = around[4 * i];
+      after[i] = around[4 * i + 2];
+    }
     store_costs(before, pixels, task_.out.cost_before.row(y) + x_first);
     store_costs(after, pixels, task_.out.cost_after.row(y) + x_first);
     store_costs(runner_up, pixels, task_.out.runner_up.row(y) + x_first);
@@ -286,9 +283,7 @@ class Band {
       if (g_.count * Width::kLargestSum < 1 << 24) {
         const I i32;
         alignas(64) std::array<std::int32_t, kBlock> kept;
-        for (int i = 0; i < kBlock; ++i) {
-          kept[static_cast<std::size_t>(i)] = sum_of_kept<Width>(block.of(i), g_.lanes);
-        }
+        sums_of_kept<Width>(block, g_.lanes, kept);
         for (int i = 0; i < kBlock; i += lane_count<Wide>()) {
           const VI missing = lanes::Sub(lanes::Set(i32, g_.lanes), lanes::Load(i32, candidates + i));
           lanes::Store(sum_from_kept<Width>(kept.data() + i, g_.lanes, missing), F(), sums.data() + i);
@@ -306,7 +301,16 @@ class Band {
     std::int16_t* const out = task_.out.best_right.row(y);
     const Lane* const cost = right.cost.data();
     const Lane* const lane = right.lane.data();
-    for (int x = 0, j = g_.reversed(0); x < g_.width; ++x, --j) {
+    int x = 0;
+    for (; x + lane_count<Wide>() <= g_.width; x += lane_count<Wide>()) {
+      const int j = g_.reversed(x + lane_count<Wide>() - 1);
+      const VI d = lanes::Add(as_lanes(Width(), lane + j), lanes::Set(I(), g_.first_d));
+      const auto none =
+          lanes::RebindMask(I(), lanes::Eq(as_costs(Width(), cost + j), lanes::Set(F(), kNoCost)));
+      const VI found = lanes::IfThenElse(none, lanes::Set(I(), std::int32_t{kNoMatch}), d);
+      lanes::StoreNarrowed(I(), lanes::Reverse(I(), found), out + x);
+    }
+    for (int j = g_.reversed(x); x < g_.width; ++x, --j) {
       out[x] = cost[j] < kNone<Lane> ? static_cast<std::int16_t>(g_.first_d + static_cast<int>(lane[j]))
                                      : kNoMatch;
     }
@@ -325,7 +329,7 @@ class Band {
   Existence<Width> exists_;
   Scratch<std::int32_t> zeros_;
   int step_;  // left pixels in a block
-  std::array<Block<Width>, 2> blocks_;
+  Block<Width> block_;
   CostBlock least_;                   // over the rows of the band
   Scratch<std::int32_t> candidates_;  // [x]: so many
   RowWinners winners_;

@@ -133,6 +133,46 @@ HWY_INLINE std::int32_t LeastOfEights(D d, const Vec<D> (&v)[kCount]) {
   for (int k = 1; k < kCount; ++k) all = Min(all, v[k]);
   return LeastEighth(d, all);
 }
+/// So many vectors are brought down to one lane each at a time: as many as stand side by side in 128 bits.
+template <class D>
+constexpr int kFolded = 16 / static_cast<int>(sizeof(TFromD<D>));
+template <class D>
+using Folded = CappedTag<TFromD<D>, kFolded<D>>;
+
+struct Lesser {
+  template <class V>
+  static HWY_INLINE V of(V a, V b) {
+    return Min(a, b);
+  }
+};
+struct Sum {
+  template <class V>
+  static HWY_INLINE V of(V a, V b) {
+    return Add(a, b);
+  }
+};
+template <class Op, class D>
+HWY_INLINE Vec<Folded<D>> FoldBlocks([[maybe_unused]] D d, Vec<D> v) {
+  if constexpr (MaxLanes(D()) > kFolded<D>) {
+    const Half<D> half;
+    return FoldBlocks<Op>(half, Op::of(LowerHalf(half, v), UpperHalf(half, v)));
+  } else {
+    return v;
+  }
+}
+/// Lane k: all lanes of v[k]. Two vectors become one, their lanes side by side and half as many of each,
+/// until one is left.
+template <class Op, class D>
+HWY_INLINE Vec<Folded<D>> FoldEach(D d, Vec<D> (&v)[kFolded<D>]) {
+  HWY_UNROLL(4)
+  for (int n = kFolded<D> / 2; n > 0; n /= 2) {
+    HWY_UNROLL(8)
+    for (int i = 0; i < n; ++i)
+      v[i] = Op::of(InterleaveLower(d, v[i], v[i + n]), InterleaveUpper(d, v[i], v[i + n]));
+  }
+  return FoldBlocks<Op>(d, v[0]);
+}
+
 /// The sum of all lanes: the upper half is added to the lower one until one lane is left.
 template <class D>
 HWY_INLINE float SumByHalves(D d, Vec<D> v) {
@@ -146,30 +186,27 @@ HWY_INLINE float SumByHalves(D d, Vec<D> v) {
   }
 }
 
-/// A sum of 16-bit numbers, in fewer and wider lanes: none yet; with those of v; of all lanes together.
+/// A sum of 16-bit numbers, in fewer and wider lanes: none yet; with those of v.
 template <class D>
-using SumOf = Vec<Repartition<std::int32_t, D>>;
+using SumTag = Repartition<std::int32_t, D>;
+template <class D>
+using SumOf = Vec<SumTag<D>>;
 template <class D>
 HWY_INLINE SumOf<D> ZeroSum(D) {
-  return Zero(Repartition<std::int32_t, D>());
+  return Zero(SumTag<D>());
 }
 template <class D>
 HWY_INLINE SumOf<D> AddPairs(D d, SumOf<D> sum, Vec<D> v) {
 #if HWY_ARCH_X86
-  const Repartition<std::int32_t, D> wide;
+  const SumTag<D> wide;
   SumOf<D> unused = Zero(wide);
   return Add(sum, ReorderWidenMulAccumulate(wide, v, Set(d, std::int16_t{1}), Zero(wide), unused));
 #else
-  const auto pairs = BitCast(Repartition<std::int32_t, D>(), v);
+  const auto pairs = BitCast(SumTag<D>(), v);
   (void)d;
   return Add(sum, Add(ShiftRight<16>(ShiftLeft<16>(pairs)), ShiftRight<16>(pairs)));
 #endif
 }
-template <class D>
-HWY_INLINE std::int32_t SumOfAll(D, SumOf<D> sum) {
-  return GetLane(SumOfLanes(Repartition<std::int32_t, D>(), sum));
-}
-
 /// `before`'s last lane and the lanes of v up to each, added up. Of at most 4 lanes.
 template <class D>
 HWY_INLINE Vec<D> RunningSum(D d, Vec<D> before, Vec<D> v) {

@@ -156,6 +156,9 @@ T IfThenZeroElse(bool mask, T no) {
 inline float ConvertTo(Tag<float>, std::int32_t value) {
   return static_cast<float>(value);
 }
+inline std::int32_t ConvertTo(Tag<std::int32_t>, float value) {
+  return static_cast<std::int32_t>(value);
+}
 
 // Beyond Highway.
 
@@ -213,14 +216,20 @@ inline std::int32_t ZeroSum(Tag<std::int16_t>) {
 inline std::int32_t AddPairs(Tag<std::int16_t>, std::int32_t sum, std::int16_t v) {
   return sum + v;
 }
-inline std::int32_t SumOfAll(Tag<std::int16_t>, std::int32_t sum) {
-  return sum;
+template <class D>
+using SumTag = Tag<std::int32_t>;
+template <class D>
+constexpr int kFolded = 1;
+template <class D>
+using Folded = D;
+struct Lesser {};
+struct Sum {};
+/// Lane k: all lanes of v[k].
+template <class Op, class T>
+T FoldEach(Tag<T>, const T (&v)[1]) {
+  return v[0];
 }
 inline float SumByHalves(Tag<float>, float value) {
-  return value;
-}
-template <class T>
-T LeastLane(Tag<T>, T value) {
   return value;
 }
 template <class T>

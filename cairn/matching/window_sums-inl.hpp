@@ -448,6 +448,7 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
   const int half = in.g.half;
   const auto winners = block.winners[static_cast<std::size_t>(first / kTile)].places();
   const bool keeps_costs = !block.costs.empty();
+  const bool equal_tags = block.equal_tags;
   const std::ptrdiff_t stride = block.costs.stride;
   typename Width::Cost* costs = keeps_costs ? block.costs.of(pixel) + first : nullptr;
   lanes::Vec<typename Width::SumTag> box[kCount];
@@ -468,9 +469,12 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
     winners.find(pixel, cost);
     ++pixel;
     if (!keeps_costs) continue;
+    if (equal_tags) {
+      CAIRN_UNROLL
+      for (int v = 0; v < kCount; ++v) cost[v] = with_equal_tag<Width>(cost[v]);
+    }
     CAIRN_UNROLL
-    for (int v = 0; v < kCount; ++v)
-      lanes::Store(without_tag<Width>(cost[v]), d_cost, costs + v * lane_count<Width>());
+    for (int v = 0; v < kCount; ++v) lanes::Store(cost[v], d_cost, costs + v * lane_count<Width>());
     costs += stride;
   }
   CAIRN_UNROLL

@@ -8,7 +8,7 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-constexpr int kBlock = 32;       // left pixels whose costs are held at a time
+constexpr int kBlock = 64;       // left pixels whose costs are held at a time
 constexpr int kRightBlock = 16;  // of these, so many are handed on at a time: as many as a vector has lanes
 
 /// As Matches has it.
@@ -72,9 +72,10 @@ struct TileWinners<Tagged> {
   }
 };
 
-/// Tags are made equal, so that costs of different lanes can be compared.
+/// Tags are made equal, so that of equal costs none is less for its lane.
 template <class Width>
-CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> without_tag(lanes::Vec<typename Width::CostTag> cost) {
+CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> with_equal_tag(
+    lanes::Vec<typename Width::CostTag> cost) {
   if constexpr (std::is_same_v<Width, Tagged>) {
     return lanes::Or(cost, lanes::Set(typename Width::CostTag(), std::int16_t{7}));
   } else {
@@ -82,13 +83,13 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> without_tag(lanes::Vec<ty
   }
 }
 
-/// The costs of a block of left pixels, a margin of kNone around each pixel's lanes.
+/// The costs of a block of left pixels, margins of kNone before, between and after them.
 template <class Lane>
 struct CostBlock {
   int stride;
   Scratch<Lane> costs;
   explicit CostBlock(int lanes_used)
-      : stride(lanes_used > 0 ? lanes_used + 2 * kMargin : 0), costs(kBlock * stride) {
+      : stride(lanes_used > 0 ? lanes_used + kMargin : 0), costs(stride > 0 ? kBlock * stride + kMargin : 0) {
     clear();
   }
   [[nodiscard]] bool empty() const { return stride == 0; }
@@ -105,16 +106,41 @@ struct RightRow {
   void clear() { std::fill_n(cost.data(), cost.size(), kNone<Lane>); }
 };
 
-/// The least of a tile's costs.
+/// The least of a tile's costs for each pixel of a block. `first`: the tile's first lane.
 template <class Width, int kLanes>
-CAIRN_LANES_INLINE typename Width::Cost least_cost(const typename Width::Cost* costs) {
-  const typename Width::CostTag d;
-  auto least = lanes::Load(d, costs);
-  CAIRN_UNROLL
-  for (int v = 1; v < kVectors<Width, kLanes>; ++v) {
-    least = lanes::Min(lanes::Load(d, costs + v * lane_count<Width>()), least);
+void least_costs(const CostBlock<typename Width::Cost>& block, int first,
+                 std::array<typename Width::Cost, kBlock>& least) {
+  using Tag = typename Width::CostTag;
+  const Tag d;
+  constexpr int kPixels = lanes::kFolded<Tag>;
+  const typename Width::Cost* costs = block.of(0) + first;
+  const std::ptrdiff_t stride = block.stride;
+  for (int pixel = 0; pixel < kBlock; pixel += kPixels) {
+    lanes::Vec<Tag> of_pixel[kPixels];
+    CAIRN_UNROLL
+    for (int i = 0; i < kPixels; ++i) {
+      of_pixel[i] = lanes::Load(d, costs);
+      CAIRN_UNROLL
+      for (int v = 1; v < kVectors<Width, kLanes>; ++v)
+        of_pixel[i] = lanes::Min(of_pixel[i], lanes::Load(d, costs + v * lane_count<Width>()));
+      costs += stride;
+    }
+    lanes::Store(lanes::FoldEach<lanes::Lesser>(d, of_pixel), lanes::Folded<Tag>(), least.data() + pixel);
   }
-  return lanes::LeastLane(d, least);
+}
+
+/// Copies four costs from `at` on, and makes the first three of them kNone.
+template <class Width>
+CAIRN_LANES_INLINE void take_three(typename Width::Cost* at, typename Width::Cost* four) {
+  using Lane = typename Width::Cost;
+  constexpr Lane kLeast = std::numeric_limits<Lane>::lowest();
+  alignas(16) static constexpr Lane kTaken[4] = {kNone<Lane>, kNone<Lane>, kNone<Lane>, kLeast};
+  const lanes::CappedTag<Lane, 4> d;
+  for (int i = 0; i < 4; i += static_cast<int>(lanes::Lanes(d))) {
+    const auto costs = lanes::LoadU(d, at + i);
+    lanes::Store(costs, d, four + i);
+    lanes::StoreU(lanes::Max(costs, lanes::Load(d, kTaken + i)), d, at + i);
+  }
 }
 
 /// The costs number k, k + 16, … of a pixel for as many k from `residue` on as there are lanes; none counts
@@ -155,18 +181,31 @@ CAIRN_LANES_INLINE float sum_by_parts(const typename Width::Cost* costs, int cou
   return lanes::SumByHalves(F(), sums[0]);
 }
 
-/// The sum of costs as they are kept.
+/// The sums of a block's costs as they are kept, for each pixel.
 template <class Width>
-CAIRN_LANES_INLINE std::int32_t sum_of_kept(const std::int16_t* costs, int count) {
-  const typename Width::CostTag d;
-  auto sum = lanes::ZeroSum(d);
-  for (int first = 0; first < count; first += kTile / 2) {
+void sums_of_kept(const CostBlock<std::int16_t>& block, int count, std::array<std::int32_t, kBlock>& sums) {
+  using Tag = typename Width::CostTag;
+  using SumTag = lanes::SumTag<Tag>;
+  const Tag d;
+  constexpr int kPixels = lanes::kFolded<SumTag>;
+  const std::int16_t* const costs_0 = block.of(0);
+  const std::ptrdiff_t stride = block.stride;
+  for (int pixel = 0; pixel < kBlock; pixel += kPixels) {
+    lanes::Vec<SumTag> of_pixel[kPixels];
     CAIRN_UNROLL
-    for (int v = 0; v < kVectors<Width, kTile / 2>; ++v) {
-      sum = lanes::AddPairs(d, sum, lanes::Load(d, costs + first + v * lane_count<Width>()));
+    for (int i = 0; i < kPixels; ++i) {
+      const std::int16_t* const costs = costs_0 + (pixel + i) * stride;
+      of_pixel[i] = lanes::ZeroSum(d);
+      for (int first = 0; first < count; first += kTile / 2) {
+        CAIRN_UNROLL
+        for (int v = 0; v < kVectors<Width, kTile / 2>; ++v)
+          of_pixel[i] =
+              lanes::AddPairs(d, of_pixel[i], lanes::Load(d, costs + first + v * lane_count<Width>()));
+      }
     }
+    lanes::Store(lanes::FoldEach<lanes::Sum>(SumTag(), of_pixel), lanes::Folded<SumTag>(),
+                 sums.data() + pixel);
   }
-  return lanes::SumOfAll(d, sum);
 }
 
 /// What sum_by_parts() says, out of the sum of `count` kept costs, `missing` of which are none. Below 2^24
@@ -182,7 +221,7 @@ CAIRN_LANES_INLINE VF sum_from_kept(const std::int32_t* sum_of_kept, int count, 
 
 /// As Matches has them.
 CAIRN_LANES_INLINE VF as_costs(Wide, const float* kept) {
-  return lanes::Load(F(), kept);
+  return lanes::LoadU(F(), kept);
 }
 template <class Width>
 CAIRN_LANES_INLINE VF as_costs(Width, const std::int16_t* kept) {
@@ -190,6 +229,15 @@ CAIRN_LANES_INLINE VF as_costs(Width, const std::int16_t* kept) {
   const auto none = lanes::RebindMask(F(), lanes::Eq(from_0, lanes::Set(I(), 65535)));
   return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
                            lanes::ConvertTo(F(), lanes::ShiftRight<Width::kShift>(from_0)));
+}
+
+/// Numbers of lanes, kept in the costs' own type.
+CAIRN_LANES_INLINE VI as_lanes(Wide, const float* kept) {
+  return lanes::ConvertTo(I(), lanes::LoadU(F(), kept));
+}
+template <class Width>
+CAIRN_LANES_INLINE VI as_lanes(Width, const std::int16_t* kept) {
+  return lanes::LoadWidened(I(), kept);
 }
 
 /// What a right pixel has found so far against what it finds now, both with the lane. A right pixel meets its
@@ -242,8 +290,8 @@ CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t
   auto least = lanes::LoadU(d, costs + 7 * next);
   CAIRN_UNROLL
   for (int pixel = 0; pixel < 7; ++pixel) {
-    const auto number = lanes::Set(d, static_cast<std::int16_t>(7 - pixel));
-    least = lanes::Min(least, lanes::Sub(lanes::LoadU(d, costs + pixel * next), number));
+    const auto number = lanes::Set(d, static_cast<std::int16_t>(pixel - 7));
+    least = lanes::Min(least, lanes::Add(lanes::LoadU(d, costs + pixel * next), number));
   }
   return least;
 }
@@ -308,7 +356,9 @@ template <class Width>
 struct Block {
   CostBlock<typename Width::Cost> costs;  // empty where nobody asks for them
   std::vector<TileWinners<Width>> winners;
-  Block(const Geometry& g, int pixels, bool keeps_costs) : costs(keeps_costs ? g.lanes : 0) {
+  bool equal_tags;  // of all costs
+  Block(const Geometry& g, int pixels, Evidence evidence)
+      : costs(evidence == Evidence::winner ? 0 : g.lanes), equal_tags(evidence == Evidence::full) {
     for (int first = 0; first < g.lanes; first += kTile) winners.emplace_back(pixels);
   }
 };
