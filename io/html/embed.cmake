@@ -1,3 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
 # cmake -DFOLDER=… -DOUT=… -P embed.cmake: the files of the page as string constants of a C++ source.
 set(source "// Made from io/html/ by io/html/embed.cmake.\n#include <io/html_template.hpp>\n\nnamespace cairn::io {\n\n")
 foreach(part IN ITEMS Layout:page.html Style:page.css Script:page.js)
