@@ -245,7 +245,7 @@
       count: `of ${percent(known / out.length, 0)} with truth`,
       legend: [el('div', {class: 'chips'},
         names.map((name, i) => chip(kErrorClasses[i][1], name, counts[i] / known)), chip('#4b5057', 'hole', holes / known),
-        chip('#000000', 'truth not known'))],
+        known < out.length ? chip('#000000', 'truth not known') : null)],
     };
   }
 
@@ -469,7 +469,7 @@
     if (trueId !== 0) {
       const score = facts.truth.get(trueId);
       parts.push(group(trueId < 0 ? 'truth: don’t care' : `true object ${trueId}`, trueId < 0 ? [] : [
-        ['', errorText(score)],
+        ['E', errorText(score).replace(/^E /, '')],
         ['best fit', score?.ours ? `object ${score.ours}, IoU ${fixed(score.iou, 2)}` : null],
       ]));
     }
