@@ -12,7 +12,7 @@ if(OpenCVCalib3d_INCLUDE_DIR AND OpenCVCalib3d_LIBRARY)
     set_target_properties(opencv_calib3d PROPERTIES
       IMPORTED_LOCATION ${OpenCVCalib3d_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${OpenCVCalib3d_INCLUDE_DIR}
-      INTERFACE_LINK_LIBRARIES opencv_imgproc)
+      INTERFACE_LINK_LIBRARIES OpenCVImgproc::imgproc)
   endif()
 else()
   find_package(OpenCV QUIET COMPONENTS core imgproc calib3d)

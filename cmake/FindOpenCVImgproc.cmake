@@ -1,4 +1,5 @@
-# OpenCV's drawing functions: target opencv_imgproc with what it needs.
+# OpenCV's drawing functions: target OpenCVImgproc::imgproc with what it needs. Not by OpenCV's own name of the target, which
+# find_package(OpenCV) would then refuse to define.
 #
 # OpenCV's own package file demands every module of OpenCV, which on Debian are 270 more packages and 760 MB for lines and
 # text on a picture. So the two libraries are looked for directly first (libopencv-imgproc-dev has them).
@@ -9,15 +10,23 @@ mark_as_advanced(OpenCVImgproc_INCLUDE_DIR OpenCVImgproc_LIBRARY OpenCVImgproc_C
 
 if(OpenCVImgproc_INCLUDE_DIR AND OpenCVImgproc_LIBRARY AND OpenCVImgproc_CORE_LIBRARY)
   set(OpenCVImgproc_FOUND TRUE)
-  if(NOT TARGET opencv_imgproc)
-    add_library(opencv_imgproc UNKNOWN IMPORTED)
-    set_target_properties(opencv_imgproc PROPERTIES
+  if(NOT TARGET OpenCVImgproc::imgproc)
+    add_library(OpenCVImgproc::imgproc UNKNOWN IMPORTED)
+    set_target_properties(OpenCVImgproc::imgproc PROPERTIES
       IMPORTED_LOCATION ${OpenCVImgproc_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${OpenCVImgproc_INCLUDE_DIR}
       INTERFACE_LINK_LIBRARIES ${OpenCVImgproc_CORE_LIBRARY})
   endif()
 else()
   # Somewhere else than where libraries usually are: OpenCV_DIR tells.
-  find_package(OpenCV REQUIRED COMPONENTS core imgproc)
+  set(opencv_required)
+  if(OpenCVImgproc_FIND_REQUIRED)
+    set(opencv_required REQUIRED)
+  endif()
+  find_package(OpenCV QUIET ${opencv_required} COMPONENTS core imgproc)
   set(OpenCVImgproc_FOUND ${OpenCV_FOUND})
+  if(OpenCVImgproc_FOUND AND NOT TARGET OpenCVImgproc::imgproc)
+    add_library(OpenCVImgproc::imgproc INTERFACE IMPORTED)
+    target_link_libraries(OpenCVImgproc::imgproc INTERFACE opencv_imgproc opencv_core)
+  endif()
 endif()

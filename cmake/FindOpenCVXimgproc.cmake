@@ -13,6 +13,6 @@ if(OpenCVXimgproc_INCLUDE_DIR AND OpenCVXimgproc_LIBRARY AND OpenCVImgproc_FOUND
     set_target_properties(opencv_ximgproc PROPERTIES
       IMPORTED_LOCATION ${OpenCVXimgproc_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${OpenCVXimgproc_INCLUDE_DIR}
-      INTERFACE_LINK_LIBRARIES opencv_imgproc)
+      INTERFACE_LINK_LIBRARIES OpenCVImgproc::imgproc)
   endif()
 endif()

@@ -1,20 +1,97 @@
-# What `cmake --install` puts in place: the core library with its headers, and the command.
-# The io library stays inside: its types are the project's own business until they have settled.
-include(GNUInstallDirs)
+# What `cmake --install` puts in place, in the components library, dev and tools; docs/install.md says how it is used.
 include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
+set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/cairn)
 
-install(TARGETS cairn EXPORT cairn)
-install(DIRECTORY cairn/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn FILES_MATCHING
+# cairn_install_library(TARGET EXPORT)
+function(cairn_install_library target export)
+  install(TARGETS ${target} EXPORT ${export}
+    LIBRARY COMPONENT library NAMELINK_COMPONENT dev
+    ARCHIVE COMPONENT dev
+    INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT ${export} NAMESPACE cairn:: FILE ${export}.cmake DESTINATION ${package_dir} COMPONENT dev)
+endfunction()
+
+# ---- libraries and their headers ----
+
+# The rest are the library's own business: they may change or go with any version.
+set(private_headers
+  core/highway_targets core/nearest core/observed core/of_target
+  disparity/floor_search disparity/homography disparity/plane_fit disparity/row_kernels
+  matching/byte_lanes_plain matching/kernels matching/lanes_plain matching/pixel_math matching/prefilter matching/scratch
+  matching/semi_global_kernels
+  objects/look_kernels objects/look_kernels_plain objects/ranks
+  regions/growing_regions regions/label_kernels regions/label_kernels_plain regions/minimum_cut regions/percent regions/runs
+  regions/scratch regions/split_floor
+  io/calibration_forms io/html_template io/raster io/read_file)
+list(JOIN private_headers "|" private_headers)
+
+cairn_install_library(cairn cairnTargets)
+install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   PATTERN "*.hpp"
-  PATTERN "*-inl.hpp" EXCLUDE)
+  PATTERN "*-inl.hpp" EXCLUDE
+  REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
 if(CAIRN_IO)
-  install(TARGETS cairn_cli)
-  install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn)
+  cairn_install_library(cairn_io cairnIoTargets)
+  install(DIRECTORY io/ DESTINATION ${include_dir}/io COMPONENT dev FILES_MATCHING
+    PATTERN "*.hpp"
+    REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
 endif()
 
-set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
-install(EXPORT cairn NAMESPACE cairn:: FILE cairnTargets.cmake DESTINATION ${package_dir})
+# ---- for find_package(cairn) ----
+
+# A static library leaves its own libraries to whoever links it.
+set(static_library OFF)
+get_target_property(type cairn TYPE)
+if(type STREQUAL "STATIC_LIBRARY")
+  set(static_library ON)
+endif()
 configure_package_config_file(cmake/cairnConfig.cmake.in cairnConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(cairnConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cairnConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/cairnConfigVersion.cmake
-  DESTINATION ${package_dir})
+  DESTINATION ${package_dir} COMPONENT dev)
+if(CAIRN_IO AND static_library)
+  install(FILES cmake/FindOpenCVImgproc.cmake DESTINATION ${package_dir} COMPONENT dev)
+endif()
+
+# ---- for pkg-config ----
+
+# cairn_install_pkgconfig(NAME DESCRIPTION REQUIRES PRIVATE_REQUIRES PRIVATE_LIBS)
+function(cairn_install_pkgconfig name description requires private_requires private_libs)
+  # The prefix is told from where the file lies, so that an installed tree may be moved.
+  file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
+  if(static_library)
+    string(APPEND requires " ${private_requires}")
+    set(libs " ${private_libs}")
+    set(private "")
+  else()
+    set(libs "")
+    set(private "Requires.private: ${private_requires}\nLibs.private: ${private_libs}\n")
+  endif()
+  configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/library.pc.in ${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endfunction()
+
+set(private_requires)
+if(CAIRN_SIMD)
+  list(APPEND private_requires libhwy)
+endif()
+if(CAIRN_TBB)
+  list(APPEND private_requires tbb)
+endif()
+list(JOIN private_requires " " private_requires)
+cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "" "${private_requires}" "-pthread")
+if(CAIRN_IO)
+  # OpenCV by its libraries: its own .pc file names every module.
+  cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results"
+    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4" "-lopencv_imgproc -lopencv_core")
+endif()
+
+# ---- the command ----
+
+if(CAIRN_IO)
+  install(TARGETS cairn_cli RUNTIME COMPONENT tools)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)

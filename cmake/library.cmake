@@ -1,0 +1,19 @@
+# cairn_library(TARGET): what our two libraries have in common, static or shared (BUILD_SHARED_LIBS).
+include(CheckLinkerFlag)
+set(CAIRN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/exports.map)
+check_linker_flag(CXX "LINKER:--version-script=${CAIRN_EXPORTS}" CAIRN_HAS_VERSION_SCRIPT)
+
+function(cairn_library target)
+  set_target_properties(${target} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON
+    # Before 1.0 each minor version may change the binary interface.
+    VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    # No macro says that a shared library is being made: the same objects for both kinds.
+    DEFINE_SYMBOL "")
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY" AND CAIRN_HAS_VERSION_SCRIPT AND NOT CAIRN_SANITIZE)
+    target_link_options(${target} PRIVATE LINKER:--version-script=${CAIRN_EXPORTS} LINKER:--no-undefined)
+    set_target_properties(${target} PROPERTIES LINK_DEPENDS ${CAIRN_EXPORTS})
+  endif()
+endfunction()
