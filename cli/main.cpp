@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "commands.hpp"
+#include "app.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -65,19 +65,8 @@ std::string unknown_option(const CLI::App& app, const std::vector<std::string>& 
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app{"cairn: objects from a rectified stereo pair, with a reason for every pixel that was refused",
-               "cairn"};
-  app.set_version_flag("--version", std::string("cairn ") + CAIRN_VERSION);
-  app.require_subcommand(0, 1);
-  app.footer(
-      "cairn COMMAND --help tells more of each.\n"
-      "Exit codes: 0 done, 1 the work failed, 2 bad usage, file or option (one line on stderr).");
-  std::vector<std::pair<CLI::App*, Work>> commands;
-  for (const Command& command : kCommands) {
-    CLI::App* sub = app.add_subcommand(command.name, command.help);
-    commands.emplace_back(sub, command.declare(*sub));
-  }
-
+  const CommandLine line = declare_command_line();
+  CLI::App& app = *line.app;
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (const std::string sentence = unknown_command(words); !sentence.empty())
     return complain(sentence, kBadUsage);
@@ -87,12 +76,12 @@ int run(int argc, const char* const* argv) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
     const CLI::App* meant = &app;
-    for (const auto& [sub, work] : commands)
+    for (const auto& [sub, work] : line.commands)
       meant = !words.empty() && sub->get_name() == words.front() ? sub : meant;
     const std::string sentence = unknown_option(*meant, words);
     return complain(sentence.empty() ? error.what() : sentence, kBadUsage);
   }
-  for (const auto& [sub, work] : commands) {
+  for (const auto& [sub, work] : line.commands) {
     if (*sub) return work();
   }
   std::cout << app.help();

@@ -2,14 +2,85 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# install_and_use.sh SOURCE_DIR BUILD_DIR COMPILER: installs the library from BUILD_DIR into a new folder, and a project that
-# knows only find_package(cairn) builds against it and runs.
+# install_and_use.sh HOW SOURCE_DIR BUILD_DIR COMPILER: the library from BUILD_DIR, installed into a new folder and that
+# folder moved, as others use it (HOW):
+#   cmake         tests/consumer finds it by find_package(cairn), builds and runs
+#   pkg-config    the same programs, built with what pkg-config says
+#   headers       each installed header compiles alone, with nothing of the source tree in reach
+#   subdirectory  tests/consumer builds the library from its sources, as FetchContent does (no installing)
+# Exit code 77 where pkg-config is not installed.
 set -euo pipefail
-source_dir=$1 build_dir=$2 compiler=$3
+how=$1 source_dir=$2 build_dir=$3 compiler=$4
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-cmake --install "$build_dir" --prefix "$scratch/prefix" >/dev/null
-cmake -S "$source_dir/tests/contracts/consumer" -B "$scratch/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
-  -DCMAKE_PREFIX_PATH="$scratch/prefix" ${CAIRN_CONSUMER_FLAGS:+"-DCMAKE_CXX_FLAGS=$CAIRN_CONSUMER_FLAGS"} >/dev/null
-cmake --build "$scratch/build"
-"$scratch/build/consumer"
+read -ra flags <<<"${CAIRN_CONSUMER_FLAGS:-}"
+
+# Moved behind the installer's back: nothing in it may name the place that it was made for.
+install_and_move() {
+  cmake --install "$build_dir" --prefix "$scratch/first" >/dev/null
+  mv "$scratch/first" "$scratch/prefix"
+  ! grep -rlI -e "$scratch/first" -e "$source_dir" "$scratch/prefix" || { echo "these name a path of the build"; exit 1; }
+  PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name cairn.pc)")
+  LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH")${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}  # only for shared ones
+  export PKG_CONFIG_PATH LD_LIBRARY_PATH
+}
+
+build_consumer() {  # CMAKE-ARGS
+  cmake -S "$source_dir/tests/consumer" -B "$scratch/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
+    -DCMAKE_CXX_FLAGS="${flags[*]}" "$@" >/dev/null
+  cmake --build "$scratch/build"
+}
+
+run_programs() {
+  local program ran=0
+  for program in core files matrices; do
+    [[ -x $scratch/build/$program ]] || continue
+    "$scratch/build/$program" "$source_dir/samples/four_in_a_row" "$scratch/result"
+    ran=$((ran + 1))
+  done
+  echo "$ran programs"
+  [[ -x $scratch/build/core ]]
+}
+
+compile() {  # PACKAGES SOURCE OUTPUT
+  local words
+  words=$(pkg-config --cflags --libs "$1")
+  # shellcheck disable=SC2086  # words
+  "$compiler" -std=c++20 "${flags[@]}" "$2" -o "$3" $words
+}
+
+case $how in
+  cmake)
+    install_and_move
+    build_consumer -DCMAKE_PREFIX_PATH="$scratch/prefix"
+    run_programs
+    ;;
+  pkg-config)
+    command -v pkg-config >/dev/null || exit 77
+    install_and_move
+    mkdir "$scratch/build"
+    compile cairn "$source_dir/tests/consumer/core.cpp" "$scratch/build/core"
+    if [[ -e $PKG_CONFIG_PATH/cairn-io.pc ]]; then
+      compile cairn-io "$source_dir/tests/consumer/files.cpp" "$scratch/build/files"
+    fi
+    run_programs
+    ;;
+  headers)
+    install_and_move
+    cd "$scratch/prefix/include"
+    mapfile -t headers < <(find cairn -name '*.hpp' | sort)
+    [[ -d /usr/include/opencv4 ]] || mapfile -t headers < <(printf '%s\n' "${headers[@]}" | grep -v opencv)
+    # shellcheck disable=SC2016  # for the inner shell
+    printf '%s\n' "${headers[@]}" | xargs -P "$(nproc)" -I{} \
+      sh -c 'echo "#include <$2>" | "$1" -std=c++20 -Wall -Wextra -Wconversion -Wshadow -Werror -fsyntax-only -I. \
+        -isystem /usr/include/opencv4 -x c++ - || { echo "$2"; exit 255; }' \
+      compile "$compiler" {}
+    echo "${#headers[@]} headers"
+    [[ ${#headers[@]} -gt 30 ]]
+    ;;
+  subdirectory)
+    if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
+    build_consumer -DCAIRN_FOLDER="$source_dir" -DCAIRN_IO=OFF -DCMAKE_BUILD_TYPE=Release
+    run_programs
+    ;;
+esac

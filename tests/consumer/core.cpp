@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/cairn.hpp>
+#include <cstdio>
 
-/// Segments a pair of grey noise, so that every stage is linked and run.
+/// Segments a pair of grey noise, so that every stage is linked and run; and catches the library's exception,
+/// which needs one type on both sides of a shared library.
 int main() {
   cairn::Image<cairn::Gray> left({64, 48});
   cairn::Image<cairn::Gray> right({64, 48});
@@ -18,5 +20,12 @@ int main() {
   config.match.num_disparities = 16;
   const cairn::Frame frame =
       cairn::segment(cairn::StereoPair::from(left, right), {}, config, cairn::Exec::with_threads(2));
-  return frame.disparity.disparity_px.size() == left.size() ? 0 : 1;
+  if (frame.disparity.disparity_px.size() != left.size()) return 1;
+  try {
+    cairn::set(config, "match.num_disparities", "many");
+  } catch (const cairn::Error& error) {
+    std::printf("core: %s\n", error.what());
+    return 0;
+  }
+  return 1;
 }

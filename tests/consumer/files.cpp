@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/cairn.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/results.hpp>
+#include <cstdio>
+#include <filesystem>
+
+/// files SAMPLE RESULT: from pictures to results through cairn::io, every library behind it linked and run.
+int main(int, char** argv) {
+  const std::filesystem::path folder = argv[1];
+  const std::filesystem::path result = argv[2];
+  const auto pictures = cairn::io::load_pair(folder / "left.png", folder / "right.png");
+  const auto calibration = cairn::io::load_calibration(folder / "calib.txt");
+  cairn::Config config;
+  config.match.num_disparities = calibration.num_disparities.value_or(64);
+  const auto pair = cairn::StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  const auto frame = cairn::segment(pair, calibration.rig, config, cairn::Exec::with_threads(0));
+  cairn::io::write_result(result, pictures.left.gray, pictures.left.rgb, frame,
+                          {"default", config, calibration.rig, {}, false});
+  std::printf("files: %zu objects, %zu bytes of options\n", frame.objects.list.size(),
+              cairn::io::config_yaml(config).size());
+  return frame.objects.list.empty() || !std::filesystem::exists(result / "overlay.png") ? 1 : 0;
+}

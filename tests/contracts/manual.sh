@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# manual.sh CAIRN MANUAL_DIR: the manual pages are sound roff and tell every command and option that --help tells; bash (and
+# fish and zsh, where they are installed) complete commands, options, values, files and names of options.
+set -euo pipefail
+cairn=$1 manual=$2
+bad=0
+complain() { echo "$*"; bad=1; }
+
+# ---- manual pages ----
+
+mapfile -t commands < <("$cairn" --help | awk '/^Subcommands:/ { on = 1; next } on && NF { print $1 } on && !NF { exit }')
+((${#commands[@]} > 0)) || complain "cairn --help tells no commands"
+
+page_as_text() { groff -k -man -Tascii -P-cbou -rLL=400n "$1" 2>/dev/null; }
+
+for name in "" "${commands[@]}"; do
+  page=$manual/man1/cairn${name:+-$name}.1
+  [[ -e $page ]] || { complain "$page is missing"; continue; }
+  command -v groff >/dev/null || continue
+  warnings=$(groff -k -ww -man -Tutf8 "$page" 2>&1 >/dev/null)
+  [[ -z $warnings ]] || complain "$page: $warnings"
+  text=$(page_as_text "$page")
+  while read -r option; do
+    [[ $text == *"$option"* ]] || complain "$page does not tell of $option"
+  done < <("$cairn" ${name:+"$name"} --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+')
+done
+while read -r option; do
+  grep -qF -- "\\fB${option//-/\\-}\\fR" "$manual/man7/cairn-options.7" || complain "cairn-options(7) does not tell of $option"
+done < <("$cairn" config --markdown | sed -nE 's/^\| `([^`]+)`.*/\1/p')
+
+# ---- completion ----
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/some folder"
+touch "$scratch/left.png"
+
+expect() {  # WHAT EXPECTED FOUND
+  [[ $2 == "$3" ]] || complain "$1: expected '$2', found '$3'"
+}
+
+bash_offers() {  # WORD...: what bash would offer for the last one
+  (
+    cd "$scratch"
+    # shellcheck disable=SC1091
+    source "$manual/bash-completion/completions/cairn"
+    COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=()
+    _cairn
+    printf '%s\n' "${COMPREPLY[@]}" | sort | paste -sd' '
+  )
+}
+expect "bash: a command" segment "$(bash_offers cairn seg)"
+expect "bash: an option" "--calib --config" "$(bash_offers cairn segment --c)"
+expect "bash: after a flag" "--threads" "$(bash_offers cairn segment --json --thr)"
+expect "bash: a preset" paper "$(bash_offers cairn segment --preset pa)"
+expect "bash: a preset behind =" paper "$(bash_offers cairn segment --preset = pa)"
+expect "bash: a file" "left.png" "$(bash_offers cairn segment le)"
+expect "bash: a folder" "some folder" "$(bash_offers cairn segment left.png -o '')"
+expect "bash: an option's name" "match.method=" "$(bash_offers cairn segment --set match.me)"
+expect "bash: an option's value" "semi_global window" "$(bash_offers cairn segment --set match.method =)"
+expect "bash: a started value" "window" "$(bash_offers cairn segment --set match.method = w)"
+expect "bash: a number" "" "$(bash_offers cairn segment --threads '')"
+expect "bash: commands" "$(printf '%s\n' "${commands[@]}" | sort | paste -sd' ')" \
+  "$(bash_offers cairn '' | tr ' ' '\n' | grep -v '^-' | paste -sd' ')"
+[[ $(bash -c "source '$manual/bash-completion/completions/cairn'; complete -p cairn") == *_cairn* ]] ||
+  complain "bash: nothing is registered for cairn"
+
+if command -v fish >/dev/null; then
+  fish_offers() {  # LINE
+    (cd "$scratch" && HOME=$scratch fish --no-config -c \
+      "source '$manual/fish/vendor_completions.d/cairn.fish'; complete -C'$1'" | cut -f1 | sort | paste -sd' ')
+  }
+  expect "fish: a command" segment "$(fish_offers 'cairn seg')"
+  expect "fish: an option" "--calib --config" "$(fish_offers 'cairn segment --c')"
+  expect "fish: a preset" "default paper" "$(fish_offers 'cairn segment --preset ')"
+  expect "fish: an option's value" "match.method=semi_global match.method=window" \
+    "$(fish_offers 'cairn segment --set match.method=')"
+fi
+if command -v zsh >/dev/null; then
+  zsh -n "$manual/zsh/site-functions/_cairn" || complain "zsh: not sound"
+fi
+[[ $bad == 0 ]]
