@@ -86,7 +86,7 @@ cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "" "${private_requires}" 
 if(CAIRN_IO)
   # OpenCV by its libraries: its own .pc file names every module.
   cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results"
-    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4" "-lopencv_imgproc -lopencv_core")
+    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "-lopencv_imgproc -lopencv_core")
 endif()
 
 # ---- the command ----
@@ -100,5 +100,9 @@ if(CAIRN_IO)
   foreach(folder bash-completion/completions zsh/site-functions fish/vendor_completions.d)
     install(DIRECTORY ${manual}/${folder}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT tools)
   endforeach()
+  install(DIRECTORY samples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools)
 endif()
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
+if(NOT CAIRN_DEBIAN)  # there it is each package's copyright file
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
+endif()
+include(cmake/packages.cmake)

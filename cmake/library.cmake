@@ -3,6 +3,12 @@ include(CheckLinkerFlag)
 set(CAIRN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/exports.map)
 check_linker_flag(CXX "LINKER:--version-script=${CAIRN_EXPORTS}" CAIRN_HAS_VERSION_SCRIPT)
 
+# An installed tree may be moved: command and libraries find each other from where they lie. Debian's find them in /usr.
+if(PROJECT_IS_TOP_LEVEL AND BUILD_SHARED_LIBS AND NOT CAIRN_DEBIAN)
+  file(RELATIVE_PATH bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${bin_to_lib})
+endif()
+
 function(cairn_library target)
   set_target_properties(${target} PROPERTIES
     POSITION_INDEPENDENT_CODE ON

@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# try_deb.sh FOLDER [ROOT]: the packages in FOLDER on a clean Debian 12. Makes the root with debootstrap in ROOT (default: a
+# new folder, which is removed again; an existing root is used as it is), installs cairn there with nothing but what apt
+# brings along, and runs the command on every sample; then the headers with a compiler, by CMake and by pkg-config; then the
+# Python module, where its package is there. Needs root, debootstrap and a Debian mirror (CAIRN_MIRROR).
+set -euo pipefail
+packages=$(cd "$1" && pwd)
+root=${2:-}
+mirror=${CAIRN_MIRROR:-http://deb.debian.org/debian}
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+say() { printf '\n-- %s\n' "$*"; }
+fail() { printf 'try_deb: %s\n' "$*" >&2; exit 1; }
+
+[[ $(id -u) == 0 ]] || fail "needs root, for debootstrap and chroot"
+command -v debootstrap >/dev/null || fail "needs debootstrap: apt-get install debootstrap"
+compgen -G "$packages/cairn_*.deb" >/dev/null || fail "no cairn_*.deb in $packages; ./dev package makes them"
+
+leave() {
+  local code=$?
+  if mountpoint -q "$root/proc"; then umount "$root/proc"; fi
+  if [[ -n ${scratch:-} ]]; then rm -rf "$scratch"; fi
+  exit "$code"
+}
+trap leave EXIT
+if [[ -z $root ]]; then
+  scratch=$(mktemp -d)
+  root=$scratch/root
+fi
+
+inside() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+  DEBIAN_FRONTEND=noninteractive "$@"; }
+install_inside() { inside apt-get install --yes --no-install-recommends "$@" >"$root/tmp/apt.log" 2>&1 ||
+  { tail -20 "$root/tmp/apt.log" >&2; fail "apt-get install $* failed"; }; }
+count_packages() { inside dpkg-query -W -f '.\n' | wc -l; }
+
+if [[ ! -x $root/usr/bin/apt-get ]]; then
+  say "a clean Debian 12 in $root"
+  debootstrap --variant=minbase bookworm "$root" "$mirror" >"$packages/debootstrap.log" 2>&1 ||
+    { tail -5 "$packages/debootstrap.log" >&2; fail "debootstrap failed"; }
+fi
+mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+# The host's way to a mirror, whatever it is: names, proxy, its certificates.
+cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
+if [[ -n ${http_proxy:-} ]]; then echo "Acquire::http::Proxy \"$http_proxy\";" >"$root/etc/apt/apt.conf.d/90proxy"; fi
+rm -rf "$root/cairn" && mkdir "$root/cairn"
+cp "$packages"/*.deb "$root/cairn/"
+inside apt-get update >/dev/null
+before=$(count_packages)
+
+say "the command"
+install_inside /cairn/libcairn0*.deb /cairn/cairn_*.deb
+echo "$(inside cairn --version); $(($(count_packages) - before)) packages came along or are its own"
+for sample in "$source_dir"/samples/*/; do
+  name=$(basename "$sample")
+  inside cairn segment "/usr/share/doc/cairn/examples/$name" -o "/tmp/demo/$name"
+  for file in objects.json objects.png overlay.png disparity.png; do
+    [[ -s $root/tmp/demo/$name/$file ]] || fail "cairn segment left no $file for $name"
+  done
+done
+inside cairn evaluate /tmp/demo/four_in_a_row /usr/share/doc/cairn/examples/four_in_a_row
+[[ -s $root/usr/share/man/man1/cairn-segment.1.gz ]] || fail "no manual page"
+inside bash -c 'source /usr/share/bash-completion/completions/cairn && complete -p cairn' >/dev/null ||
+  fail "bash completion cannot be sourced"
+
+say "headers and libraries for C++"
+install_inside /cairn/libcairn-dev_*.deb g++ cmake make pkg-config
+cp -r "$source_dir/tests/consumer" "$root/cairn/consumer"
+inside cmake -S /cairn/consumer -B /cairn/build >/dev/null
+inside cmake --build /cairn/build -- --no-print-directory >/dev/null
+inside /cairn/build/core
+inside /cairn/build/files /usr/share/doc/cairn/examples/overlap /tmp/demo/by_library
+# shellcheck disable=SC2016  # for the shell inside
+inside bash -c 'g++ -std=c++20 /cairn/consumer/core.cpp -o /cairn/core $(pkg-config --cflags --libs cairn) && /cairn/core'
+
+if compgen -G "$packages/python3-cairn_*.deb" >/dev/null; then
+  say "Python"
+  install_inside /cairn/python3-cairn_*.deb
+  inside python3 -c 'import cairn; print("import", cairn.__name__)'
+fi
+
+say "and away again"
+mapfile -t ours < <(inside dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed \(.*cairn.*\)/\1/p')
+inside apt-get purge --yes "${ours[@]}" >/dev/null 2>&1
+left=$(inside find /usr -name '*cairn*')
+[[ -z $left ]] || fail "left behind: $left"
+echo "installed, used and removed on Debian $(cat "$root/etc/debian_version")"
