@@ -57,32 +57,30 @@ endif()
 
 # ---- for pkg-config ----
 
-# cairn_install_pkgconfig(NAME DESCRIPTION REQUIRES PRIVATE_REQUIRES PRIVATE_LIBS)
-function(cairn_install_pkgconfig name description requires private_requires private_libs)
+# cairn_install_pkgconfig(NAME DESCRIPTION REQUIRES STATIC_REQUIRES STATIC_LIBS): the last two only for static libraries. As
+# Requires.private of a shared one pkg-config would still want them to be installed.
+function(cairn_install_pkgconfig name description requires static_requires static_libs)
   # The prefix is told from where the file lies, so that an installed tree may be moved.
   file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
+  set(libs "-l${name}")
   if(static_library)
-    string(APPEND requires " ${private_requires}")
-    set(libs " ${private_libs}")
-    set(private "")
-  else()
-    set(libs "")
-    set(private "Requires.private: ${private_requires}\nLibs.private: ${private_libs}\n")
+    string(APPEND requires " ${static_requires}")
+    string(APPEND libs " ${static_libs}")
   endif()
   configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/library.pc.in ${name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 endfunction()
 
-set(private_requires)
+set(static_requires)
 if(CAIRN_SIMD)
-  list(APPEND private_requires libhwy)
+  list(APPEND static_requires libhwy)
 endif()
 if(CAIRN_TBB)
-  list(APPEND private_requires tbb)
+  list(APPEND static_requires tbb)
 endif()
-list(JOIN private_requires " " private_requires)
-cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "" "${private_requires}" "-pthread")
+list(JOIN static_requires " " static_requires)
+cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "" "${static_requires}" "-pthread")
 if(CAIRN_IO)
   # OpenCV by its libraries: its own .pc file names every module.
   cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results"

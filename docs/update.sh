@@ -5,7 +5,7 @@
 # update.sh [--check|--pictures] BUILD_DIR: writes the generated parts of the pages anew, or with --check only says which
 # are stale.
 #   docs/options.md                         `cairn config --markdown`
-#   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]` (Python: `# [NAME]`)
+#   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]` (or `# [NAME]`)
 #   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout, without the time it took;
 #                                           SCRATCH among ARGUMENTS is a folder for its files
 #   python/cairn/__init__.pyi               the Python module's types, where BUILD_DIR has one
@@ -47,12 +47,10 @@ TEXT
 }
 
 code_of() {  # FILE#NAME
-  local mark='//'
-  [[ ${1%%#*} != *.py ]] || mark='#'
-  awk -v name="${1#*#}" -v mark="$mark" '
-    index($0, mark " [/" name "]") { shown = 0 }
+  awk -v name="${1#*#}" '
+    $0 ~ "(//|#) \\[/" name "\\]" { shown = 0 }
     shown { print substr($0, match($0, /[^ ]/) > indent ? indent + 1 : 1); found = 1 }
-    index($0, mark " [" name "]") { shown = 1; indent = match($0, /[^ ]/) - 1 }
+    $0 ~ "(//|#) \\[" name "\\]" { shown = 1; indent = match($0, /[^ ]/) - 1 }
     END { exit !found }' "${1%%#*}"
 }
 

@@ -4,10 +4,10 @@
 // The least that one needs: a rectified pair in, objects out.
 //   01_objects_from_a_pair samples/four_in_a_row
 #include <cairn/cairn.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
 
 namespace {
 

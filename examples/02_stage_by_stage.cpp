@@ -4,10 +4,10 @@
 // What cairn::segment() does with the preset `paper`, one stage at a time, with a look at what each one made.
 //   02_stage_by_stage samples/glossy_floor
 #include <cairn/cairn.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
 #include <utility>
 
 namespace {

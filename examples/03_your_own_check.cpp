@@ -5,10 +5,10 @@
 // believed.
 //   03_your_own_check samples/dim_light
 #include <cairn/cairn.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
 #include <utility>
 
 namespace {

@@ -33,6 +33,7 @@ fi
 
 inside() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
   DEBIAN_FRONTEND=noninteractive "$@"; }
+packages_named() { (cd "$root" && compgen -G "cairn/$1_*.deb" | sed 's|^|/|'); }
 install_inside() { inside apt-get install --yes --no-install-recommends "$@" >"$root/tmp/apt.log" 2>&1 ||
   { tail -20 "$root/tmp/apt.log" >&2; fail "apt-get install $* failed"; }; }
 count_packages() { inside dpkg-query -W -f '.\n' | wc -l; }
@@ -52,7 +53,8 @@ inside apt-get update >/dev/null
 before=$(count_packages)
 
 say "the command"
-install_inside /cairn/libcairn0*.deb /cairn/cairn_*.deb
+mapfile -t tools < <(packages_named 'libcairn[0-9]*'; packages_named cairn)
+install_inside "${tools[@]}"
 echo "$(inside cairn --version); $(($(count_packages) - before)) packages came along or are its own"
 for sample in "$source_dir"/samples/*/; do
   name=$(basename "$sample")
@@ -67,24 +69,25 @@ inside bash -c 'source /usr/share/bash-completion/completions/cairn && complete 
   fail "bash completion cannot be sourced"
 
 say "headers and libraries for C++"
-install_inside /cairn/libcairn-dev_*.deb g++ cmake make pkg-config
+install_inside "$(packages_named libcairn-dev)" g++ cmake make pkg-config libopencv-core-dev
 cp -r "$source_dir/tests/consumer" "$root/cairn/consumer"
 inside cmake -S /cairn/consumer -B /cairn/build >/dev/null
 inside cmake --build /cairn/build -- --no-print-directory >/dev/null
 inside /cairn/build/core
+inside /cairn/build/matrices
 inside /cairn/build/files /usr/share/doc/cairn/examples/overlap /tmp/demo/by_library
 # shellcheck disable=SC2016  # for the shell inside
 inside bash -c 'g++ -std=c++20 /cairn/consumer/core.cpp -o /cairn/core $(pkg-config --cflags --libs cairn) && /cairn/core'
 
 if compgen -G "$packages/python3-cairn_*.deb" >/dev/null; then
   say "Python"
-  install_inside /cairn/python3-cairn_*.deb
+  install_inside "$(packages_named python3-cairn)"
   inside python3 -c 'import cairn; print("import", cairn.__name__)'
 fi
 
 say "and away again"
 mapfile -t ours < <(inside dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed \(.*cairn.*\)/\1/p')
 inside apt-get purge --yes "${ours[@]}" >/dev/null 2>&1
-left=$(inside find /usr -name '*cairn*')
+left=$(inside find /usr -name 'cairn*' -o -name 'libcairn*' -o -name _cairn)
 [[ -z $left ]] || fail "left behind: $left"
 echo "installed, used and removed on Debian $(cat "$root/etc/debian_version")"

@@ -4,14 +4,36 @@
 #include <cairn/opencv.hpp>
 #include <cstdio>
 
+namespace {
+
+int count_objects(const cv::Mat& left, const cv::Mat& right, const cairn::Config& config) {
+  // [readme]
+  const auto pair = cairn::stereo_pair(left, right);  // CV_8UC1; borrows their pixels
+  const auto frame = cairn::segment(pair, {}, config, cairn::Exec::with_threads(0));
+
+  // Headers over the frame's own pixels: valid as long as the frame is.
+  const cv::Mat disparity = cairn::mat_of(frame.disparity.disparity_px);  // CV_32FC1, NaN = hole
+  const cv::Mat labels = cairn::mat_of(frame.objects.labels);             // CV_32SC1, 0 = no object
+  // [/readme]
+  std::printf("%d disparities, %d pixels of objects\n", cv::countNonZero(disparity == disparity),
+              cv::countNonZero(labels));
+  return static_cast<int>(frame.objects.list.size());
+}
+
+}  // namespace
+
 /// From cv::Mat to cv::Mat, with OpenCV linked by the consumer alone.
 int main() {
   cv::Mat left(48, 64, CV_8UC1);
   cv::randu(left, 0, 256);
   cairn::Config config;
   config.match.num_disparities = 16;
-  const cairn::Frame frame = cairn::segment(cairn::stereo_pair(left, left), {}, config, {});
-  const cv::Mat disparity = cairn::mat_of(frame.disparity.disparity_px);
-  std::printf("matrices: %d x %d\n", disparity.cols, disparity.rows);
-  return disparity.data == reinterpret_cast<const uchar*>(frame.disparity.disparity_px.row(0)) ? 0 : 1;
+  std::printf("matrices: %d objects\n", count_objects(left, left, config));
+  try {
+    (void)cairn::stereo_pair(left, cv::Mat(48, 64, CV_8UC3));
+  } catch (const cairn::Error& error) {
+    std::printf("matrices: %s\n", error.what());
+    return 0;
+  }
+  return 1;
 }

@@ -7,7 +7,7 @@
 #   cmake         tests/consumer finds it by find_package(cairn), builds and runs
 #   pkg-config    the same programs, built with what pkg-config says
 #   headers       each installed header compiles alone, with nothing of the source tree in reach
-#   subdirectory  tests/consumer builds the library from its sources, as FetchContent does (no installing)
+#   fetch         tests/consumer builds the library from its sources by FetchContent (nothing is downloaded or installed)
 # Exit code 77 where pkg-config is not installed.
 set -euo pipefail
 how=$1 source_dir=$2 build_dir=$3 compiler=$4
@@ -49,11 +49,24 @@ compile() {  # PACKAGES SOURCE OUTPUT
   "$compiler" -std=c++20 "${flags[@]}" "$2" -o "$3" $words
 }
 
+# Without what cairn::io was built with: the core is still found, and whoever asks for io is told why there is none.
+lose_io() {
+  mkdir "$scratch/lost"
+  printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(lost CXX)' 'find_package(cairn REQUIRED)' \
+    'find_package(cairn REQUIRED COMPONENTS io)' >"$scratch/lost/CMakeLists.txt"
+  local said
+  said=$(cmake -S "$scratch/lost" -B "$scratch/lost/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
+    -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON 2>&1) &&
+    { echo "found component io without yaml-cpp"; exit 1; }
+  grep -q 'CMakeLists.txt:4' <<<"$said" && grep -q 'component io is missing: yaml-cpp' <<<"$said" || { echo "$said"; exit 1; }
+}
+
 case $how in
   cmake)
     install_and_move
     build_consumer -DCMAKE_PREFIX_PATH="$scratch/prefix"
     run_programs
+    if [[ -x $scratch/build/files && -e $(find "$scratch/prefix" -name libcairn.a) ]]; then lose_io; fi
     ;;
   pkg-config)
     command -v pkg-config >/dev/null || exit 77
@@ -78,9 +91,9 @@ case $how in
     echo "${#headers[@]} headers"
     [[ ${#headers[@]} -gt 30 ]]
     ;;
-  subdirectory)
+  fetch)
     if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
-    build_consumer -DCAIRN_FOLDER="$source_dir" -DCAIRN_IO=OFF -DCMAKE_BUILD_TYPE=Release
+    build_consumer -DCAIRN_FROM_SOURCE=ON -DFETCHCONTENT_SOURCE_DIR_CAIRN="$source_dir" -DCMAKE_BUILD_TYPE=Release
     run_programs
     ;;
 esac
