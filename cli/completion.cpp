@@ -68,10 +68,8 @@ std::vector<std::string> option_names(const CommandFacts& command) {
 }
 
 bool takes_files(const CommandFacts& command) {
-  for (const OptionFacts& option : command.options) {
-    if (option.positional) return true;
-  }
-  return false;
+  return std::any_of(command.options.begin(), command.options.end(),
+                     [](const OptionFacts& option) { return option.positional; });
 }
 
 // ---- bash ----
