@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/tuning/frame_loss.hpp>
+#include <cmath>
+#include <random>
+
+namespace cairn {
+
+Loss loss_of(const FrameObjects& frame) {
+  Loss loss;
+  loss.weight = static_cast<double>(frame.errors.truth.size());
+  for (const TrueObjectScore& score : frame.errors.truth) loss.sum += score.capped_error();
+  if (frame.partial) return loss;
+  const auto phantoms = std::count_if(frame.errors.ours.begin(), frame.errors.ours.end(),
+                                      [](const FoundObjectScore& score) { return score.phantom; });
+  loss.sum += kErrorCap * static_cast<double>(phantoms);
+  return loss;
+}
+
+Loss loss_of(const DisparityErrors& errors) {
+  constexpr std::size_t kOnePixel = 1;
+  static_assert(kBadThresholdsPx[kOnePixel] == 1.0F);
+  return {static_cast<double>(errors.known - errors.matched + errors.bad[kOnePixel]),
+          static_cast<double>(errors.known)};
+}
+
+Loss loss_of(const Consistency& frame, const std::optional<Steadiness>& since_last) {
+  Loss loss{frame.loss(), 1};
+  if (since_last && since_last->seen > 0) loss.sum += kUnsteadyWeight * since_last->unsteady_share();
+  return loss;
+}
+
+std::vector<bool> held_out(int count, double share, bool sequence, std::uint32_t seed) {
+  std::vector<bool> out(static_cast<std::size_t>(std::max(count, 0)), false);
+  if (count < 2) return out;
+  const int wanted = std::clamp(static_cast<int>(std::lround(share * count)), 1, count - 1);
+  std::fill(out.end() - wanted, out.end(), true);
+  if (sequence) return out;
+  std::mt19937 random(seed);
+  // Drawn without std::shuffle, whose result no standard fixes.
+  for (std::size_t i = out.size(); i > 1; --i) {
+    const bool last = out[i - 1];
+    const std::size_t other = random() % i;
+    out[i - 1] = out[other];
+    out[other] = last;
+  }
+  return out;
+}
+
+}  // namespace cairn

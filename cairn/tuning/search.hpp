@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/tuning/tunable.hpp>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cairn {
+
+/// What a configuration loses on one frame, as a sum over `weight` things: of all frames together, the mean
+/// is Σ sum / Σ weight.
+struct Loss {
+  double sum = 0;
+  double weight = 0;
+};
+/// Infinite where no frame has a weight.
+double mean_loss(const std::vector<Loss>& frames);
+
+/// Whether `after` is better than `before` (the same frames, in order) by more than chance: its mean is lower
+/// by at least `least_share` of that of `before`, and, of two or more frames, the mean gain of a frame is
+/// more than its standard error. A gain that one frame alone makes is just its own standard error, hence
+/// none.
+bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, double least_share);
+
+struct Setting {
+  std::string option;
+  std::string value;  // as set() reads it
+  friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+/// The values that `config` gives to these options.
+std::vector<Setting> settings_of(const Config& config, const std::vector<Tunable>& tunables);
+/// `config` with these settings. Throws Error as set() does.
+Config with_settings(Config config, const std::vector<Setting>& settings);
+
+/// The loss of each frame with these settings; nullopt where it was told to stop meanwhile. Settings that
+/// contradict each other lose infinitely.
+using Measure = std::function<std::optional<std::vector<Loss>>(const std::vector<Setting>&)>;
+
+struct SearchConfig {
+  int evaluations = 1 << 30;  // at most; the start is the first
+  double first_step = 1.6;    // factor on numbers
+  double last_step = 1.1;
+  double least_share = 0.002;  // of the loss: a smaller gain is none
+  std::uint32_t seed = 1;      // decides in which order options are tried
+};
+
+enum class SearchEnd : std::uint8_t {
+  converged,    // nothing near the best is better
+  evaluations,  // their number is used up
+  stopped       // the measure was told to stop
+};
+
+struct SearchResult {
+  std::vector<Setting> start;
+  std::vector<Setting> best;       // `start` where nothing was better
+  std::vector<Loss> start_losses;  // empty where the search was stopped before they were known
+  std::vector<Loss> best_losses;
+  int evaluations = 0;
+  SearchEnd end = SearchEnd::converged;
+};
+
+/// Searches from `start` (one setting for each tunable, in order) for settings of less loss. One option after
+/// the other, in an order drawn anew for each sweep, its neighbours() are measured; what is clearly_better()
+/// is kept at once, and a number goes on the way that helped. A sweep without gain takes the root of the
+/// step; the search ends below the last step. An option that changes no frame's loss is left out from then
+/// on. `improved` (may be empty) is called for the start and for each new best, directly after its
+/// measurement. The same input gives the same result, whatever the time. (docs/decisions/tuning.md)
+SearchResult search(const std::vector<Tunable>& tunables, const std::vector<Setting>& start,
+                    const Measure& measure, const SearchConfig& config,
+                    const std::function<void(const std::vector<Setting>&)>& improved = {});
+
+}  // namespace cairn
