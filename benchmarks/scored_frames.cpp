@@ -2,40 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "scored_frames.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <exception>
 #include <io/calibration_files.hpp>
 #include <io/disparity_files.hpp>
-#include <mutex>
-#include <thread>
 
 #include "clock.hpp"
 
 namespace cairn::report {
 namespace {
-
-Image<TruthId> load_objects(const std::filesystem::path& path) {
-  const io::Labels labels = io::load_labels(path);
-  const bool has_dont_care = labels.bits == 8;
-  Image<TruthId> ids(labels.ids.size());
-  for (int y = 0; y < ids.height(); ++y) {
-    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y), [&](std::uint16_t id) {
-      return has_dont_care && id == 255 ? TruthId::dont_care : TruthId{id};
-    });
-  }
-  return ids;
-}
-
-Image<std::uint8_t> load_hidden(const std::filesystem::path& path) {
-  const io::Labels labels = io::load_labels(path);
-  Image<std::uint8_t> hidden(labels.ids.size());
-  for (int y = 0; y < hidden.height(); ++y) {
-    std::transform(labels.ids.row(y), labels.ids.row(y) + hidden.width(), hidden.row(y),
-                   [](std::uint16_t id) { return static_cast<std::uint8_t>(id == 255 ? 1 : 0); });
-  }
-  return hidden;
-}
 
 template <class T>
 void require_size(const Image<T>& truth, const TrueFrame& frame) {
@@ -58,9 +31,9 @@ TrueFrame load_true_frame(const io::FrameFiles& files) {
     frame.num_disparities = calibration.num_disparities.value_or(frame.num_disparities);
   }
   frame.partial = truth.partial;
-  if (truth.objects) frame.objects = load_objects(*truth.objects);
+  if (truth.objects) frame.objects = io::truth_ids(io::load_labels(*truth.objects));
   if (truth.disparity) frame.truth_px = io::load_disparity(*truth.disparity);
-  if (truth.occlusion) frame.hidden = load_hidden(*truth.occlusion);
+  if (truth.occlusion) frame.hidden = io::hidden_pixels(io::load_labels(*truth.occlusion));
   require_size(frame.objects, frame);
   require_size(frame.truth_px, frame);
   require_size(frame.hidden, frame);
@@ -98,32 +71,6 @@ std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config&
   for_each_index(frames.size(), threads,
                  [&](std::size_t i, const Exec& exec) { scores[i] = score(frames[i], config, grey, exec); });
   return scores;
-}
-
-void for_each_index(std::size_t count, int threads,
-                    const std::function<void(std::size_t index, const Exec& exec)>& body) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  const auto work = [&] {
-    Exec exec;
-    exec.pool = Pool::make();
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        body(i, exec);
-      } catch (...) {
-        const std::lock_guard lock(failure_mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (int t = 1; t < threads; ++t) others.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace cairn::report

@@ -6,13 +6,13 @@
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
 #include <filesystem>
-#include <functional>
 #include <io/dataset.hpp>
 #include <io/image_files.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "each_index.hpp"
 #include "statistics.hpp"
 
 /// Frames with their truth in memory, and how well a configuration does on them.
@@ -47,10 +47,5 @@ Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec&
 /// All frames, in their order, several at a time, each on one thread.
 std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config& config, bool grey,
                              int threads);
-
-/// Calls body(i, exec) for 0 … count−1 on `threads` threads; each has one Exec of its own with a pool. The
-/// first exception is thrown on.
-void for_each_index(std::size_t count, int threads,
-                    const std::function<void(std::size_t index, const Exec& exec)>& body);
 
 }  // namespace cairn::report

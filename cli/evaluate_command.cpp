@@ -116,10 +116,7 @@ void score_disparity(const ResultFiles& result, const io::TruthFiles& truth, int
   if (!truth.occlusion) return;
   const io::Labels occlusion = io::load_labels(*truth.occlusion);
   require_equal_size(*truth.occlusion, occlusion.ids.size(), *truth.disparity, true_disparity.size());
-  Image<std::uint8_t> hidden(occlusion.ids.size());
-  for (int y = 0; y < hidden.height(); ++y) {
-    for (int x = 0; x < hidden.width(); ++x) hidden(x, y) = occlusion.ids(x, y) == 255 ? 1 : 0;
-  }
+  const Image<std::uint8_t> hidden = io::hidden_pixels(occlusion);
   score.visible = disparity_errors(disparity, true_disparity, hidden, skip_left);
   score.knows_occlusion = true;
 }
@@ -132,7 +129,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
   score.truth = truth;
   if (result.objects && truth.objects) {
     const Image<ObjectId> ours = ours_of(io::load_labels(*result.objects));
-    const Image<TruthId> theirs = truth_of(io::load_labels(*truth.objects));
+    const Image<TruthId> theirs = io::truth_ids(io::load_labels(*truth.objects));
     require_equal_size(*result.objects, ours.size(), *truth.objects, theirs.size());
     score.objects = FrameObjects{object_errors(ours, theirs, options.objects), truth.partial};
     if (result.json) {

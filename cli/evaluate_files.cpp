@@ -73,13 +73,6 @@ Image<ObjectId> ours_of(const io::Labels& labels) {
   return converted<ObjectId>(labels, [](std::uint16_t id) { return ObjectId{id}; });
 }
 
-Image<TruthId> truth_of(const io::Labels& labels) {
-  const bool has_dont_care = labels.bits == 8;
-  return converted<TruthId>(labels, [&](std::uint16_t id) {
-    return has_dont_care && id == 255 ? TruthId::dont_care : TruthId{id};
-  });
-}
-
 void require_equal_size(const fs::path& ours, Size our_size, const fs::path& theirs, Size their_size) {
   if (our_size == their_size) return;
   throw Error(ours.string() + ": is " + text(our_size) + ", the truth " + theirs.string() + " is " +
@@ -99,7 +92,7 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
   }
   Image<TruthId> true_objects;
   if (truth.objects) {
-    true_objects = truth_of(io::load_labels(*truth.objects));
+    true_objects = io::truth_ids(io::load_labels(*truth.objects));
     check(*truth.objects, true_objects.size());
     shown.true_objects = true_objects;
   }

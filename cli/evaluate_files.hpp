@@ -26,8 +26,6 @@ struct ResultFiles {
 std::optional<ResultFiles> result_in(const std::filesystem::path& folder);
 
 Image<ObjectId> ours_of(const io::Labels& labels);
-/// 255 means "don't care" in a truth of 8 bits; with 16 bits it is an id like others.
-Image<TruthId> truth_of(const io::Labels& labels);
 
 /// Throws Error that names both.
 void require_equal_size(const std::filesystem::path& ours, Size our_size, const std::filesystem::path& theirs,

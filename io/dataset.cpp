@@ -113,4 +113,26 @@ TruthFiles find_truth(const fs::path& folder) {
               truth_beside(folder).string());
 }
 
+Image<TruthId> truth_ids(const Labels& labels) {
+  constexpr std::uint16_t kDontCare = 255;
+  Image<TruthId> ids(labels.ids.size());
+  const bool has_dont_care = labels.bits == 8;
+  for (int y = 0; y < ids.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + ids.width(), ids.row(y), [&](std::uint16_t id) {
+      return has_dont_care && id == kDontCare ? TruthId::dont_care : TruthId{id};
+    });
+  }
+  return ids;
+}
+
+Image<std::uint8_t> hidden_pixels(const Labels& labels) {
+  constexpr std::uint16_t kHidden = 255;
+  Image<std::uint8_t> hidden(labels.ids.size());
+  for (int y = 0; y < hidden.height(); ++y) {
+    std::transform(labels.ids.row(y), labels.ids.row(y) + hidden.width(), hidden.row(y),
+                   [](std::uint16_t id) { return static_cast<std::uint8_t>(id == kHidden ? 1 : 0); });
+  }
+  return hidden;
+}
+
 }  // namespace cairn::io

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/evaluation/object_error.hpp>
 #include <filesystem>
+#include <io/image_files.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,5 +39,10 @@ struct TruthFiles {
 /// The truth in `folder`, or else in ../gt beside it. Throws Error where neither has objects.png or
 /// disp_left.
 TruthFiles find_truth(const std::filesystem::path& folder);
+
+/// The ids of an objects.png: 255 means "don't care" in a file of 8 bits, with 16 it is an id like others.
+Image<TruthId> truth_ids(const Labels& labels);
+/// Of an occlusion.png: 1 = not seen by the right camera, else 0.
+Image<std::uint8_t> hidden_pixels(const Labels& labels);
 
 }  // namespace cairn::io
