@@ -16,6 +16,7 @@ Work declare_segment(CLI::App& app);
 Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
 Work declare_bench(CLI::App& app);
+Work declare_tune(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
 
@@ -30,6 +31,7 @@ inline constexpr std::array kCommands{
     Command{"disparity", "match a stereo pair and check every match", declare_disparity},
     Command{"evaluate", "compare results with the truth", declare_evaluate},
     Command{"bench", "time each stage on a stereo pair, with OpenCV's matchers beside it", declare_bench},
+    Command{"tune", "search the options that do best on your own frames", declare_tune},
     Command{"config", "show every option with its value, unit, range and meaning", declare_config},
     Command{"info", "show version, instruction sets and threads", declare_info},
 };

@@ -268,7 +268,7 @@ std::string Table::text() const {
   return all;
 }
 
-Progress::Progress(std::size_t count) : count_(count), shown_(count > 1 && isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(std::size_t count) : count_(count), shown_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   clear();
@@ -279,11 +279,17 @@ void Progress::clear() const {
 }
 
 void Progress::at(std::size_t index, const std::string& name) const {
+  if (count_ < 2) return;
+  bar(static_cast<double>(index) / static_cast<double>(count_),
+      std::to_string(index + 1) + "/" + std::to_string(count_) + " " + name);
+}
+
+void Progress::bar(double share, const std::string& words) const {
   if (!shown_) return;
   constexpr std::size_t kWidth = 30;
-  const std::size_t done = index * kWidth / count_;
-  std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu %s", std::string(done, '#').c_str(),
-               std::string(kWidth - done, '.').c_str(), index + 1, count_, name.c_str());
+  const auto done = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * kWidth);
+  std::fprintf(stderr, "\r\033[K[%s%s] %s", std::string(done, '#').c_str(),
+               std::string(kWidth - done, '.').c_str(), words.c_str());
   std::fflush(stderr);
 }
 

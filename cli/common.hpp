@@ -120,6 +120,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void at(std::size_t index, const std::string& name) const;
+  /// A bar of which `share` (0 … 1) is done, with words behind it; also where there is but one frame.
+  void bar(double share, const std::string& words) const;
   /// Takes the bar away, so that other text may follow.
   void clear() const;
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <functional>
 #include <io/config_files.hpp>
@@ -128,10 +129,12 @@ void load_config(const fs::path& path, Config& config, const FromPreset& from_pr
   config = std::move(read);
 }
 
-std::string config_yaml(const Config& config) {
+namespace {
+
+std::string yaml_of(const std::vector<OptionInfo>& options) {
   std::string text;
   std::string section;
-  for (const OptionInfo& option : options(config)) {
+  for (const OptionInfo& option : options) {
     const std::size_t dot = option.name.find('.');
     if (option.name.substr(0, dot) != section) {
       section = option.name.substr(0, dot);
@@ -142,6 +145,24 @@ std::string config_yaml(const Config& config) {
     text += option.domain + "; " + option.help + "\n";
   }
   return text;
+}
+
+}  // namespace
+
+std::string config_yaml(const Config& config) {
+  return yaml_of(options(config));
+}
+
+std::string changed_config_yaml(std::string_view preset, const Config& config,
+                                const std::vector<std::string>& also) {
+  const std::vector<OptionInfo> all = options(config);
+  const std::vector<OptionInfo> known = options(Config::preset(preset));
+  std::vector<OptionInfo> changed;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool wanted = std::find(also.begin(), also.end(), all[i].name) != also.end();
+    if (wanted || all[i].value != known[i].value) changed.push_back(all[i]);
+  }
+  return "preset: " + std::string(preset) + "\n" + yaml_of(changed);
 }
 
 }  // namespace cairn::io

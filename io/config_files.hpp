@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cairn::io {
 
@@ -26,5 +27,10 @@ void load_config(const std::filesystem::path& path, Config& config,
 
 /// Every option with its value, in the form that load_config() reads, one comment per option.
 std::string config_yaml(const Config& config);
+
+/// The same, short: the preset's name and the options in which `config` differs from it; those in `also`
+/// whatever they are.
+std::string changed_config_yaml(std::string_view preset, const Config& config,
+                                const std::vector<std::string>& also = {});
 
 }  // namespace cairn::io

@@ -11,18 +11,16 @@ Loss loss_of(const FrameObjects& frame) {
   Loss loss;
   loss.weight = static_cast<double>(frame.errors.truth.size());
   for (const TrueObjectScore& score : frame.errors.truth) loss.sum += score.capped_error();
-  if (frame.partial) return loss;
-  const auto phantoms = std::count_if(frame.errors.ours.begin(), frame.errors.ours.end(),
-                                      [](const FoundObjectScore& score) { return score.phantom; });
-  loss.sum += kErrorCap * static_cast<double>(phantoms);
+  const ObjectSummary summary = summarise({frame});
+  loss.faults = summary.our_objects - summary.right_50;  // neither counts where the truth is partial
   return loss;
 }
 
 Loss loss_of(const DisparityErrors& errors) {
   constexpr std::size_t kOnePixel = 1;
   static_assert(kBadThresholdsPx[kOnePixel] == 1.0F);
-  return {static_cast<double>(errors.known - errors.matched + errors.bad[kOnePixel]),
-          static_cast<double>(errors.known)};
+  const auto holes = static_cast<double>(errors.known - errors.matched);
+  return {kHoleCost * holes + static_cast<double>(errors.bad[kOnePixel]), static_cast<double>(errors.known)};
 }
 
 Loss loss_of(const Consistency& frame, const std::optional<Steadiness>& since_last) {

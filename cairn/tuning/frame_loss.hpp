@@ -12,11 +12,13 @@
 /// What a frame's loss is, by what is known of it.
 namespace cairn {
 
-/// True objects are known: their capped E (Eq. 5), and for each phantom as much as for a missed object, which
-/// E alone does not see; over the number of scored true objects. No phantoms where the truth is partial.
+/// True objects are known: their capped E (Eq. 5) over the number of scored ones. E alone does not see what
+/// is found where nothing is, so each object of ours that is wrong (IoU < 0.5 with every true one, not mostly
+/// don't-care) is a fault; none where the truth is partial.
 Loss loss_of(const FrameObjects& frame);
 
-/// True disparities are known: pixels without a disparity, or off by more than 1 px, over those with truth.
+/// True disparities are known: pixels off by more than 1 px, and kHoleCost for each without a disparity, over
+/// those with truth.
 Loss loss_of(const DisparityErrors& errors);
 
 /// Nothing is known: Consistency::loss(), and kUnsteadyWeight times the unsteady share against the frame

@@ -124,6 +124,7 @@ class Searcher {
     if (!losses) return false;
     ++tried_;
     if (!same_losses(*losses, result_.best_losses)) ++changed_;
+    if (faults(*losses) > faults(result_.start_losses)) return false;
     if (!clearly_better(result_.best_losses, *losses, config_.least_share)) return false;
     result_.best = std::move(candidate);
     result_.best_losses = std::move(*losses);
@@ -175,6 +176,11 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
   const double mean_square = sum * sum / count;
   constexpr double kRounding = 1e-9;
   return mean_square * (count - 1) > (squares - mean_square) * (1 + kRounding);
+}
+
+int faults(const std::vector<Loss>& frames) {
+  return std::accumulate(frames.begin(), frames.end(), 0,
+                         [](int sum, const Loss& frame) { return sum + frame.faults; });
 }
 
 std::vector<Setting> settings_of(const Config& config, const std::vector<Tunable>& tunables) {

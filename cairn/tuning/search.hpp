@@ -16,6 +16,7 @@ namespace cairn {
 struct Loss {
   double sum = 0;
   double weight = 0;
+  int faults = 0;  // what must not become more in exchange, all frames together
 };
 /// Infinite where no frame has a weight.
 double mean_loss(const std::vector<Loss>& frames);
@@ -25,6 +26,9 @@ double mean_loss(const std::vector<Loss>& frames);
 /// more than its standard error. A gain that one frame alone makes is just its own standard error, hence
 /// none.
 bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, double least_share);
+
+/// Of all frames together.
+int faults(const std::vector<Loss>& frames);
 
 struct Setting {
   std::string option;
@@ -66,10 +70,11 @@ struct SearchResult {
 
 /// Searches from `start` (one setting for each tunable, in order) for settings of less loss. One option after
 /// the other, in an order drawn anew for each sweep, its neighbours() are measured; what is clearly_better()
-/// is kept at once, and a number goes on the way that helped. A sweep without gain takes the root of the
-/// step; the search ends below the last step. An option that changes no frame's loss is left out from then
-/// on. `improved` (may be empty) is called for the start and for each new best, directly after its
-/// measurement. The same input gives the same result, whatever the time. (docs/decisions/tuning.md)
+/// is kept at once, unless it has more faults than the start, and a number goes on the way that helped. A
+/// sweep without gain takes the root of the step; the search ends below the last step. An option that changes
+/// no frame's loss is left out from then on. `improved` (may be empty) is called for the start and for each
+/// new best, directly after its measurement. The same input gives the same result, whatever the time.
+/// (docs/decisions/tuning.md)
 SearchResult search(const std::vector<Tunable>& tunables, const std::vector<Setting>& start,
                     const Measure& measure, const SearchConfig& config,
                     const std::function<void(const std::vector<Setting>&)>& improved = {});

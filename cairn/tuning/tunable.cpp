@@ -114,6 +114,7 @@ std::vector<Tunable> tunables() {
              if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(value)>, std::vector<PointPair>>) {
                Tunable tunable;
                tunable.name = std::string(section) + '.' + std::string(name);
+               if (tunable.name == "match.evidence" || tunable.name == "confidence.enabled") return;
                describe(tunable, value, domain);
                tunable.of_presets = preset_values(tunable.name);
                all.push_back(std::move(tunable));

@@ -23,7 +23,8 @@ struct Tunable {
   std::vector<std::string> of_presets;  // what the presets give it, each value once
 };
 
-/// Every option that can be searched: all but lists of points.
+/// Every option that can be searched: all but lists of points and those that say what is kept, not what is
+/// found (match.evidence, confidence.enabled).
 std::vector<Tunable> tunables();
 /// Those that `patterns` name, in the order of the options, each once. A pattern is an option's name or its
 /// beginning with a * behind it: "match.*", "*". Throws Error for a pattern that names none.

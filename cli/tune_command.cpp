@@ -1,0 +1,525 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <unistd.h>
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <io/atomic_file.hpp>
+#include <io/config_files.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "tuning_frames.hpp"
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+struct TuneOptions {
+  InputOptions input;
+  ExecOptions exec;
+  bool truth = false;
+  std::vector<std::string> patterns;
+  std::string budget = "60s";
+  int evaluations = 0;  // 0 = as many as the budget allows
+  double holdout = 0;
+  std::uint32_t seed = 1;
+  std::string output = "tuned.yaml";
+  std::string json;
+};
+
+/// Nothing that gains less is worth a configuration of one's own.
+constexpr double kLeastGain = 0.01;
+
+// ---- time and Ctrl-C ----
+
+/// "90", "60s", "5m", "1.5h".
+std::chrono::duration<double> parse_budget(const std::string& text) {
+  double value = 0;
+  std::string unit;
+  try {
+    std::size_t end = 0;
+    value = std::stod(text, &end);
+    unit = text.substr(end);
+  } catch (const std::exception&) {
+    value = -1;
+  }
+  const double seconds = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
+  constexpr double kLongest = 30 * 24 * 3600.0;
+  if (!(value > 0) || seconds == 0 || value * seconds > kLongest)
+    throw Error("--budget: found '" + text.substr(0, 80) + "', expected a time such as 60s, 5m or 1.5h");
+  return std::chrono::duration<double>(value * seconds);
+}
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// While it lives, the first Ctrl-C (or SIGTERM) only asks for an end; the second one ends the program.
+class Interruptible {
+ public:
+  Interruptible() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, &old_interrupt_);
+    sigaction(SIGTERM, &action, &old_terminate_);
+  }
+  ~Interruptible() {
+    sigaction(SIGINT, &old_interrupt_, nullptr);
+    sigaction(SIGTERM, &old_terminate_, nullptr);
+  }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  struct sigaction old_interrupt_ {};
+  struct sigaction old_terminate_ {};
+};
+
+// ---- what is tuned, on what ----
+
+struct Task {
+  std::vector<TuningFrame> frames;
+  TuningGoal goal = TuningGoal::objects;
+  std::vector<bool> tuned;     // by frame
+  std::vector<bool> held_out;  // by frame; the others
+  bool sequence = false;
+  std::vector<Tunable> tunables;
+  std::vector<std::string> not_judged;  // asked for, but they change nothing that can be judged
+  ResolvedConfig base;                  // without what a calibration says
+  bool names_disparities = false;       // match.num_disparities is the user's, not the calibration's
+
+  [[nodiscard]] int count(const std::vector<bool>& chosen) const {
+    return static_cast<int>(std::count(chosen.begin(), chosen.end(), true));
+  }
+};
+
+bool mostly_sequence(const std::vector<TuningFrame>& frames) {
+  const auto following = std::count_if(frames.begin(), frames.end(), [](const auto& f) { return f.follows; });
+  return frames.size() > 1 && 2 * following > static_cast<std::ptrdiff_t>(frames.size());
+}
+
+void choose_tunables(const TuneOptions& options, Task& task) {
+  const bool objects = task.goal == TuningGoal::objects;
+  task.tunables =
+      tunables(options.patterns.empty() ? usual_tunables(task.base.config, objects) : options.patterns);
+  if (objects) return;
+  const auto judged = std::stable_partition(task.tunables.begin(), task.tunables.end(),
+                                            [](const Tunable& t) { return changes_disparities(t.name); });
+  for (auto t = judged; t != task.tunables.end(); ++t) task.not_judged.push_back(t->name);
+  task.tunables.erase(judged, task.tunables.end());
+  if (task.tunables.empty()) {
+    throw Error("--options " + options.patterns.front() +
+                ": changes no disparity, and without true objects nothing else can be judged");
+  }
+}
+
+/// Whether --config or --set say how many disparities there are.
+bool names_disparities(const ConfigOptions& options) {
+  constexpr int kOne = 17;
+  constexpr int kOther = 19;
+  return resolve(options, kOne).config.match.num_disparities ==
+         resolve(options, kOther).config.match.num_disparities;
+}
+
+Task read_task(const TuneOptions& options) {
+  Task task;
+  task.base = resolve(options.input.config);
+  validate(task.base.config);
+  task.names_disparities = names_disparities(options.input.config);
+  (void)tunables(options.patterns);  // a bad name is one whatever the frames hold
+  task.frames = load_tuning_frames(options.input, options.truth);
+  task.goal = goal_of(task.frames);
+  if (task.goal == TuningGoal::consistency && task.base.config.match.evidence != Evidence::full) {
+    throw Error(
+        "option match.evidence: without --truth the right image's winners judge the left one's; expected "
+        "full");
+  }
+  task.sequence = mostly_sequence(task.frames);
+  task.held_out.assign(task.frames.size(), false);
+  if (options.holdout > 0) {
+    if (task.frames.size() < 2)
+      throw Error("--holdout: " + options.input.left + " has one frame, expected two or more to share out");
+    task.held_out =
+        held_out(static_cast<int>(task.frames.size()), options.holdout, task.sequence, options.seed);
+  }
+  task.tuned = task.held_out;
+  task.tuned.flip();
+  choose_tunables(options, task);
+  return task;
+}
+
+void require_writable(const std::string& file) {
+  const fs::path folder = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw Error(file + ": is a folder, expected the name of a file");
+  if (!fs::is_directory(folder, ignored))
+    throw Error(file + ": cannot be written, there is no folder " + folder.string());
+  if (access(folder.c_str(), W_OK) != 0)
+    throw Error(file + ": cannot be written, the folder " + folder.string() + " is write-protected");
+}
+
+// ---- the search ----
+
+using Measures = std::vector<FrameMeasure>;
+
+struct Tuned {
+  SearchResult search;
+  Measures before;  // on the frames tuned on
+  Measures after;
+  Measures held_out_before;
+  Measures held_out_after;
+  double seconds = 0;
+  bool was_interrupted = false;
+  std::string kept_because;  // why the start is kept; empty where it is not
+
+  [[nodiscard]] const std::vector<Setting>& settings() const {
+    return kept_because.empty() ? search.best : search.start;
+  }
+};
+
+std::string goal_word(TuningGoal goal) {
+  switch (goal) {
+    case TuningGoal::objects:
+      return "mean E";
+    case TuningGoal::disparities:
+      return "bad disparities";
+    case TuningGoal::consistency:
+      return "contradictions";
+  }
+  return {};
+}
+
+/// Why the start should be kept; empty where what was found is better.
+std::string reason_to_keep(const Tuned& tuned) {
+  const SearchResult& s = tuned.search;
+  if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain))
+    return "nothing that was tried is better by " + percent(kLeastGain) + " and by more than chance";
+  const double before = mean_loss(losses_of(tuned.held_out_before));
+  const double after = mean_loss(losses_of(tuned.held_out_after));
+  if (!tuned.held_out_before.empty() && std::isfinite(before) && after > before)
+    return "what was found is worse on the frames held out";
+  return {};
+}
+
+Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<double> budget) {
+  const Interruptible interruptible;
+  const auto start_time = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start_time); };
+  Tuned tuned;
+  bool knows_start = false;
+  MeasureOptions how;
+  how.goal = task.goal;
+  how.target = wanted_target(options.exec.target);
+  how.threads = options.exec.threads > 0
+                    ? options.exec.threads
+                    : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  how.stop = [&] { return interrupted != 0 || (knows_start && seconds() > budget); };
+  MeasureOptions to_its_end = how;
+  to_its_end.stop = nullptr;
+
+  const Progress progress(task.frames.size());
+  int tried = 0;
+  double best = 0;
+  Measures latest;
+  const Measure measure = [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
+    const double by_time = seconds() / budget;
+    const double by_count = options.evaluations > 0 ? double(tried) / options.evaluations : 0;
+    progress.bar(std::max(by_time, by_count),
+                 std::to_string(tried) + " tried, " + text_of("%.0f s", seconds().count()) + " of " +
+                     options.budget +
+                     (knows_start ? ", " + goal_word(task.goal) + " " + percent(best) + " (was " +
+                                        percent(mean_loss(losses_of(tuned.before))) + ")"
+                                  : ""));
+    auto measures = measure_frames(task.frames, task.tuned, settings, how);
+    if (!measures) return std::nullopt;
+    ++tried;
+    latest = std::move(*measures);
+    return losses_of(latest);
+  };
+  const auto improved = [&](const std::vector<Setting>& settings) {
+    tuned.after = latest;
+    best = mean_loss(losses_of(latest));
+    if (task.count(task.held_out) > 0)
+      tuned.held_out_after = *measure_frames(task.frames, task.held_out, settings, to_its_end);
+    if (knows_start) return;
+    tuned.before = tuned.after;
+    tuned.held_out_before = tuned.held_out_after;
+    knows_start = true;
+  };
+  SearchConfig config;
+  config.seed = options.seed;
+  if (options.evaluations > 0) config.evaluations = options.evaluations;
+  // What a calibration says of a frame is the frame's: the search starts from what all have in common.
+  const std::vector<Setting> start = settings_of(task.frames.front().loaded.config, task.tunables);
+  tuned.search = search(task.tunables, start, measure, config, improved);
+  tuned.seconds = seconds().count();
+  tuned.was_interrupted = interrupted != 0;
+  if (!knows_start)
+    throw std::runtime_error("stopped before the first evaluation was done; nothing is written");
+  if (!std::isfinite(mean_loss(tuned.search.start_losses)))
+    throw Error(options.input.left + ": the truth of the frames to tune on names nothing to score");
+  tuned.kept_because = reason_to_keep(tuned);
+  return tuned;
+}
+
+// ---- what is reported ----
+
+/// One line of the table: a number before and after.
+struct Figure {
+  std::string key;   // in JSON
+  std::string name;  // in the table
+  double value = 0;
+  bool is_share = true;
+};
+
+std::vector<Figure> object_figures(const Measures& measures) {
+  std::vector<FrameObjects> objects;
+  for (const FrameMeasure& m : measures) {
+    if (m.objects) objects.push_back(*m.objects);
+  }
+  const ObjectSummary s = summarise(objects);
+  return {{"median_error", "E, median", s.median_error},
+          {"recall_50", "found, IoU >= 0.5", s.recall_50()},
+          {"precision_50", "precision", s.precision_50()},
+          {"phantoms_per_frame", "phantoms a frame", s.phantoms_per_frame(), false}};
+}
+
+std::vector<Figure> disparity_figures(const Measures& measures) {
+  DisparityErrors all;
+  for (const FrameMeasure& m : measures) {
+    if (m.disparity) all += *m.disparity;
+  }
+  if (all.known == 0) return {};
+  return {{"bad_1_of_known", "bad-1, holes too", all.bad_of_known(1)},
+          {"bad_1_of_matched", "bad-1 of the matched", all.bad_of_matched(1)},
+          {"density", "density", all.density()}};
+}
+
+std::vector<Figure> consistency_figures(const Measures& measures) {
+  Consistency all;
+  Steadiness steady;
+  for (const FrameMeasure& m : measures) {
+    if (m.consistency) all += *m.consistency;
+    if (m.since_last) steady += *m.since_last;
+  }
+  return {{"density", "density", all.density()},
+          {"agreement", "right image agrees", all.agreement()},
+          {"photometric", "photometric difference", all.photometric()},
+          {"unsteady", "unsteady where still", steady.unsteady_share()}};
+}
+
+std::vector<Figure> figures_of(const Measures& measures, TuningGoal goal) {
+  if (measures.empty()) return {};
+  std::vector<Figure> all{{"loss", goal_word(goal), mean_loss(losses_of(measures))}};
+  const auto add = [&](const std::vector<Figure>& more) { all.insert(all.end(), more.begin(), more.end()); };
+  if (goal == TuningGoal::objects) add(object_figures(measures));
+  add(goal == TuningGoal::consistency ? consistency_figures(measures) : disparity_figures(measures));
+  return all;
+}
+
+std::string text_of(const Figure& figure) {
+  return figure.is_share ? percent(figure.value) : cli::text_of("%.2f", figure.value);
+}
+
+std::string figure_table(const Tuned& tuned, TuningGoal goal) {
+  const auto before = figures_of(tuned.before, goal);
+  const auto after = figures_of(tuned.after, goal);
+  const auto held_out_before = figures_of(tuned.held_out_before, goal);
+  const auto held_out_after = figures_of(tuned.held_out_after, goal);
+  Table table({"", "before", "after", "held out: before", "after"});
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const bool known = i < held_out_before.size();
+    table.add({before[i].name, text_of(before[i]), text_of(after[i]),
+               known ? text_of(held_out_before[i]) : "", known ? text_of(held_out_after[i]) : ""});
+  }
+  return table.text();
+}
+
+std::string change_table(const SearchResult& search) {
+  Table table({"option", "before", "after"});
+  bool any = false;
+  for (std::size_t i = 0; i < search.best.size(); ++i) {
+    if (search.best[i] == search.start[i]) continue;
+    table.add({search.best[i].option, search.start[i].value, search.best[i].value});
+    any = true;
+  }
+  return any ? table.text() : "";
+}
+
+std::string plural(std::size_t count, const std::string& word) {
+  return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
+}
+
+std::string end_words(const Tuned& tuned) {
+  if (tuned.was_interrupted) return "interrupted";
+  switch (tuned.search.end) {
+    case SearchEnd::converged:
+      return "nothing near the best is better";
+    case SearchEnd::evaluations:
+      return "as many as asked for";
+    case SearchEnd::stopped:
+      return "the time was up";
+  }
+  return {};
+}
+
+std::string summary(const Task& task, const Tuned& tuned) {
+  const int held = task.count(task.held_out);
+  std::string all = plural(task.frames.size(), "frame") + (task.sequence ? ", a sequence" : "");
+  if (held > 0)
+    all += ": tuned on " + std::to_string(task.count(task.tuned)) + ", held out " + std::to_string(held);
+  all += "; " + plural(task.tunables.size(), "option") + ", " +
+         plural(static_cast<std::size_t>(tuned.search.evaluations), "evaluation") + " in " +
+         cli::text_of("%.1f s", tuned.seconds) + ": " + end_words(tuned) + "\n";
+  if (!task.not_judged.empty()) {
+    all += "not tuned, since nothing here judges objects: " + plural(task.not_judged.size(), "option") + "\n";
+  }
+  return all;
+}
+
+Config tuned_config(const Task& task, const Tuned& tuned) {
+  return with_settings(task.base.config, tuned.settings());
+}
+
+std::string config_file(const Task& task, const Tuned& tuned) {
+  const auto figure = [](const Measures& measures) { return percent(mean_loss(losses_of(measures))); };
+  std::string head = "# Written by cairn tune: " + goal_word(task.goal) + " " + figure(tuned.before);
+  head += tuned.kept_because.empty() ? " before, " + figure(tuned.after) + " after" : ", kept as it was";
+  head += ", on " + plural(tuned.before.size(), "frame") + ".\n";
+  std::vector<std::string> also;
+  constexpr const char* kDisparities = "match.num_disparities";
+  const auto& found = tuned.settings();
+  const bool tunes_disparities =
+      std::any_of(found.begin(), found.end(), [&](const Setting& s) { return s.option == kDisparities; });
+  if (task.names_disparities || tunes_disparities) also.emplace_back(kDisparities);
+  return head + io::changed_config_yaml(task.base.preset, tuned_config(task, tuned), also);
+}
+
+Json json_of(const std::vector<Figure>& before, const std::vector<Figure>& after, int frames) {
+  if (before.empty()) return nullptr;
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json j{{"frames", frames}};
+  for (std::size_t i = 0; i < before.size(); ++i)
+    j[before[i].key] = {{"before", number(before[i].value)}, {"after", number(after[i].value)}};
+  return j;
+}
+
+std::string tuning_json(const Task& task, const Tuned& tuned, const TuneOptions& options) {
+  constexpr std::array kGoals{"objects", "disparities", "consistency"};
+  constexpr std::array kEnds{"converged", "evaluations", "time"};
+  Json j;
+  j["cairn"] = CAIRN_VERSION;
+  j["goal"] = kGoals[static_cast<std::size_t>(task.goal)];
+  j["frames"] = task.frames.size();
+  j["sequence"] = task.sequence;
+  j["seed"] = options.seed;
+  j["options"] = task.tunables.size();
+  j["evaluations"] = tuned.search.evaluations;
+  j["seconds"] = tuned.seconds;
+  j["end"] = tuned.was_interrupted ? "interrupted" : kEnds[static_cast<std::size_t>(tuned.search.end)];
+  j["tuned_on"] = json_of(figures_of(tuned.before, task.goal), figures_of(tuned.after, task.goal),
+                          task.count(task.tuned));
+  j["held_out"] = json_of(figures_of(tuned.held_out_before, task.goal),
+                          figures_of(tuned.held_out_after, task.goal), task.count(task.held_out));
+  j["held_out_frames"] = Json::array();
+  for (std::size_t i = 0; i < task.frames.size(); ++i) {
+    if (task.held_out[i]) j["held_out_frames"].push_back(task.frames[i].name);
+  }
+  j["kept_because"] = tuned.kept_because.empty() ? Json(nullptr) : Json(tuned.kept_because);
+  j["found"] = Json::object();
+  for (std::size_t i = 0; i < tuned.search.best.size(); ++i) {
+    const Setting& before = tuned.search.start[i];
+    const Setting& after = tuned.search.best[i];
+    if (before.value != after.value)
+      j["found"][before.option] = {{"before", before.value}, {"after", after.value}};
+  }
+  j["config"] = options.output;
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+int tune_folder(const TuneOptions& options) {
+  const auto budget = parse_budget(options.budget);
+  (void)wanted_target(options.exec.target);
+  require_writable(options.output);
+  if (!options.json.empty()) require_writable(options.json);
+  const Task task = read_task(options);
+  const Tuned tuned = tune(task, options, budget);
+  io::write_file(options.output, config_file(task, tuned));
+  if (!options.json.empty()) io::write_file(options.json, tuning_json(task, tuned, options));
+  std::cout << summary(task, tuned) << "\n" << figure_table(tuned, task.goal) << "\n";
+  const std::string changes = change_table(tuned.search);
+  if (!changes.empty()) std::cout << changes << "\n";
+  if (!tuned.kept_because.empty())
+    std::cout << "The options stay as they were: " << tuned.kept_because << ".\n";
+  std::cout << "wrote " << options.output << ", for --config\n";
+  return 0;
+}
+
+}  // namespace
+
+Work declare_tune(CLI::App& app) {
+  auto options = std::make_shared<TuneOptions>();
+  app.add_option("FOLDER", options->input.left, "folder of frames, each a folder with left.png and right.png")
+      ->required()
+      ->type_name("");
+  app.add_flag("--truth", options->truth,
+               "make the paper's E small: the frames' folders hold objects.png (or else disp_left.png: bad "
+               "disparities)");
+  app.add_option(
+         "--options", options->patterns,
+         "what may be changed: names or beginnings, e.g. match.*,facets.*; default: a sensible choice")
+      ->type_name("NAMES")
+      ->delimiter(',')
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--budget", options->budget, "time to search, e.g. 60s, 5m, 1h")
+      ->type_name("TIME")
+      ->capture_default_str();
+  app.add_option(
+         "--evaluations", options->evaluations,
+         "end after this many as well, for a result that does not depend on the machine's speed; 0 = no "
+         "limit")
+      ->check(CLI::Range(0, 1 << 30).name(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--holdout", options->holdout,
+                 "keep this share of the frames out of the search and say how well it does on them")
+      ->check(CLI::Range(0.0, 0.9).name(""))
+      ->type_name("SHARE")
+      ->capture_default_str();
+  app.add_option("--seed", options->seed, "which frames are held out, and in which order options are tried")
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--calib", options->input.calib,
+                 "calibration of all frames; default: each frame's own, else ../gt/calib.txt, else none")
+      ->type_name("FILE");
+  add_config_options(app, options->input.config);
+  add_exec_options(app, options->exec);
+  app.add_option("-o,--output", options->output, "the tuned options, as --config reads them")
+      ->type_name("FILE")
+      ->capture_default_str();
+  app.add_option("--json", options->json, "also write what was measured into this file, as JSON")
+      ->type_name("FILE");
+  app.footer(
+      "Without --truth it makes small what contradicts itself: disparities that the right image does not "
+      "confirm,\n"
+      "holes, unlike grey levels, and what flickers where a sequence stands still; the objects are not "
+      "judged.\n"
+      "The search starts from --preset, --config and --set. Ctrl-C ends it and keeps the best so far.\n"
+      "docs/tune.md says what is measured and what to expect.");
+  return [options] { return tune_folder(*options); };
+}
+
+}  // namespace cairn::cli
