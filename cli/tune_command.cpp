@@ -27,7 +27,8 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 struct TuneOptions {
-  InputOptions input;
+  std::vector<std::string> folders;
+  InputOptions input;  // all but its pictures
   ExecOptions exec;
   bool truth = false;
   std::vector<std::string> patterns;
@@ -40,7 +41,7 @@ struct TuneOptions {
 };
 
 /// Nothing that gains less is worth a configuration of one's own.
-constexpr double kLeastGain = 0.01;
+constexpr Margin kLeastGain{.least_share = 0.01};
 
 // ---- time and Ctrl-C ----
 
@@ -107,7 +108,7 @@ struct Task {
 
 bool mostly_sequence(const std::vector<TuningFrame>& frames) {
   const auto following = std::count_if(frames.begin(), frames.end(), [](const auto& f) { return f.follows; });
-  return frames.size() > 1 && 2 * following > static_cast<std::ptrdiff_t>(frames.size());
+  return frames.size() > 1 && 2 * following > static_cast<std::ptrdiff_t>(frames.size()) - 1;
 }
 
 void choose_tunables(const TuneOptions& options, Task& task) {
@@ -133,13 +134,33 @@ bool names_disparities(const ConfigOptions& options) {
          resolve(options, kOther).config.match.num_disparities;
 }
 
+/// Frames of one name in several folders show the same scene: they stay together.
+std::vector<bool> frames_held_out(const TuneOptions& options, const Task& task) {
+  std::vector<bool> out(task.frames.size(), false);
+  if (options.holdout <= 0) return out;
+  std::vector<std::string> names;
+  for (const TuningFrame& frame : task.frames) {
+    if (std::find(names.begin(), names.end(), frame.name) == names.end()) names.push_back(frame.name);
+  }
+  if (names.size() < 2)
+    throw Error("--holdout: " + options.folders.front() +
+                " has one frame, expected two or more to share out");
+  const std::vector<bool> drawn =
+      held_out(static_cast<int>(names.size()), options.holdout, task.sequence, options.seed);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto name = std::find(names.begin(), names.end(), task.frames[i].name);
+    out[i] = drawn[static_cast<std::size_t>(name - names.begin())];
+  }
+  return out;
+}
+
 Task read_task(const TuneOptions& options) {
   Task task;
   task.base = resolve(options.input.config);
   validate(task.base.config);
   task.names_disparities = names_disparities(options.input.config);
   (void)tunables(options.patterns);  // a bad name is one whatever the frames hold
-  task.frames = load_tuning_frames(options.input, options.truth);
+  task.frames = load_tuning_frames(options.folders, options.input, options.truth);
   task.goal = goal_of(task.frames);
   if (task.goal == TuningGoal::consistency && task.base.config.match.evidence != Evidence::full) {
     throw Error(
@@ -147,13 +168,7 @@ Task read_task(const TuneOptions& options) {
         "full");
   }
   task.sequence = mostly_sequence(task.frames);
-  task.held_out.assign(task.frames.size(), false);
-  if (options.holdout > 0) {
-    if (task.frames.size() < 2)
-      throw Error("--holdout: " + options.input.left + " has one frame, expected two or more to share out");
-    task.held_out =
-        held_out(static_cast<int>(task.frames.size()), options.holdout, task.sequence, options.seed);
-  }
+  task.held_out = frames_held_out(options, task);
   task.tuned = task.held_out;
   task.tuned.flip();
   choose_tunables(options, task);
@@ -205,7 +220,8 @@ std::string goal_word(TuningGoal goal) {
 std::string reason_to_keep(const Tuned& tuned) {
   const SearchResult& s = tuned.search;
   if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain))
-    return "nothing that was tried is better by " + percent(kLeastGain) + " and by more than chance";
+    return "nothing that was tried is better by " + percent(kLeastGain.least_share) +
+           " and by more than chance";
   const double before = mean_loss(losses_of(tuned.held_out_before));
   const double after = mean_loss(losses_of(tuned.held_out_after));
   if (!tuned.held_out_before.empty() && std::isfinite(before) && after > before)
@@ -233,6 +249,7 @@ Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<d
   int tried = 0;
   double best = 0;
   Measures latest;
+  std::vector<MatchedOnce> matched(task.frames.size());
   const Measure measure = [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
     const double by_time = seconds() / budget;
     const double by_count = options.evaluations > 0 ? double(tried) / options.evaluations : 0;
@@ -242,7 +259,7 @@ Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<d
                      (knows_start ? ", " + goal_word(task.goal) + " " + percent(best) + " (was " +
                                         percent(mean_loss(losses_of(tuned.before))) + ")"
                                   : ""));
-    auto measures = measure_frames(task.frames, task.tuned, settings, how);
+    auto measures = measure_frames(task.frames, task.tuned, settings, how, matched);
     if (!measures) return std::nullopt;
     ++tried;
     latest = std::move(*measures);
@@ -252,7 +269,7 @@ Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<d
     tuned.after = latest;
     best = mean_loss(losses_of(latest));
     if (task.count(task.held_out) > 0)
-      tuned.held_out_after = *measure_frames(task.frames, task.held_out, settings, to_its_end);
+      tuned.held_out_after = *measure_frames(task.frames, task.held_out, settings, to_its_end, matched);
     if (knows_start) return;
     tuned.before = tuned.after;
     tuned.held_out_before = tuned.held_out_after;
@@ -260,6 +277,7 @@ Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<d
   };
   SearchConfig config;
   config.seed = options.seed;
+  if (getenv("ZZ")) config.margin.standard_errors = atof(getenv("ZZ"));
   if (options.evaluations > 0) config.evaluations = options.evaluations;
   // What a calibration says of a frame is the frame's: the search starts from what all have in common.
   const std::vector<Setting> start = settings_of(task.frames.front().loaded.config, task.tunables);
@@ -269,7 +287,7 @@ Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<d
   if (!knows_start)
     throw std::runtime_error("stopped before the first evaluation was done; nothing is written");
   if (!std::isfinite(mean_loss(tuned.search.start_losses)))
-    throw Error(options.input.left + ": the truth of the frames to tune on names nothing to score");
+    throw Error(options.folders.front() + ": the truth of the frames to tune on names nothing to score");
   tuned.kept_because = reason_to_keep(tuned);
   return tuned;
 }
@@ -471,7 +489,8 @@ int tune_folder(const TuneOptions& options) {
 
 Work declare_tune(CLI::App& app) {
   auto options = std::make_shared<TuneOptions>();
-  app.add_option("FOLDER", options->input.left, "folder of frames, each a folder with left.png and right.png")
+  app.add_option("FOLDER", options->folders,
+                 "folder of frames, each a folder with left.png and right.png; or several such folders")
       ->required()
       ->type_name("");
   app.add_flag("--truth", options->truth,

@@ -3,6 +3,7 @@
 #include "tuning_frames.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <benchmarks/each_index.hpp>
 #include <cairn/core/error.hpp>
@@ -62,18 +63,56 @@ struct Outcome {
   Image<float> disparity_px{};
 };
 
+/// The options that a pair's disparities depend on before there is a ground.
+std::string matching_settings(const Config& config) {
+  constexpr std::array<std::string_view, 8> kStages{
+      "epipolar_correction.", "match.",      "semi_global.", "subpixel.",
+      "left_right.",          "uniqueness.", "flatness.",    "texture."};
+  std::string all;
+  for (const OptionInfo& option : options(config)) {
+    const bool matters = std::any_of(kStages.begin(), kStages.end(),
+                                     [&](std::string_view stage) { return option.name.starts_with(stage); });
+    if (matters) all += option.value + '\n';
+  }
+  return all;
+}
+
+DisparityMap copy_of(const DisparityMap& map, const Exec& exec) {
+  return {map.disparity_px.clone(exec.pool), map.reject.clone(exec.pool)};
+}
+
+/// The whole method; what is matched already is not matched again.
+Frame segment_again(const TuningFrame& frame, const StereoPair& pair, const Config& config,
+                    MatchedOnce& matched, const Exec& exec) {
+  validate(config, pair.size(), frame.loaded.rig.has_value());
+  std::string settings = matching_settings(config);
+  if (matched.settings == settings) {
+    return segment(pair.left(), pair.left_rgb(), copy_of(matched.disparity, exec), frame.loaded.rig, config,
+                   exec);
+  }
+  Exec watched = exec;
+  watched.observe = [&](std::string_view stage, const Artifact& artifact, double) {
+    // Not from the pool, which goes with its thread.
+    if (stage == "combine") matched.disparity = copy_of(*std::get<const DisparityMap*>(artifact), {});
+  };
+  Frame found = segment(pair, frame.loaded.rig, config, watched);
+  matched.settings = std::move(settings);
+  return found;
+}
+
 Outcome judge_objects(const TuningFrame& frame, const StereoPair& pair, const Config& config,
-                      const Exec& exec) {
-  const Frame found = segment(pair, frame.loaded.rig, config, exec);
+                      MatchedOnce& matched, const Exec& exec) {
+  const Frame found = segment_again(frame, pair, config, matched, exec);
   Outcome outcome;
   if (!frame.objects.empty()) {
     outcome.measure.objects =
         FrameObjects{object_errors(found.objects.labels, frame.objects, {}), frame.partial};
     outcome.measure.loss = loss_of(*outcome.measure.objects);
   }
-  if (!frame.truth_px.empty())
+  if (!frame.truth_px.empty()) {
     outcome.measure.disparity =
         disparity_errors(found.disparity.disparity_px, frame.truth_px, frame.hidden, 0);
+  }
   return outcome;
 }
 
@@ -107,14 +146,14 @@ Outcome judge_consistency(const TuningFrame& frame, const StereoPair& pair, cons
 }
 
 Outcome judge(const TuningFrame& frame, const std::vector<Setting>& settings, TuningGoal goal,
-              const Exec& exec) {
+              MatchedOnce& matched, const Exec& exec) {
   Config config = with_settings(frame.loaded.config, settings);
   config.confidence.enabled = false;  // changes nothing else
   const LoadedFrame& loaded = frame.loaded;
   const auto pair = StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb);
   switch (goal) {
     case TuningGoal::objects:
-      return judge_objects(frame, pair, config, exec);
+      return judge_objects(frame, pair, config, matched, exec);
     case TuningGoal::disparities:
       return judge_disparities(frame, pair, config, exec);
     case TuningGoal::consistency:
@@ -148,17 +187,23 @@ std::vector<FrameMeasure> contradiction(std::size_t count) {
 
 }  // namespace
 
-std::vector<TuningFrame> load_tuning_frames(const InputOptions& input, bool with_truth) {
-  std::error_code ignored;
-  if (!fs::is_directory(input.left, ignored))
-    throw Error(input.left +
-                ": no such folder, expected one with a left.png and right.png, or of such folders");
+std::vector<TuningFrame> load_tuning_frames(const std::vector<std::string>& folders, InputOptions input,
+                                            bool with_truth) {
   std::vector<TuningFrame> frames;
-  for (const io::FrameFiles& files : frames_of(input)) {
-    frames.push_back(load_one(files, input, with_truth));
-    if (frames.size() > 1) {
+  for (const std::string& folder : folders) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) {
+      throw Error(folder +
+                  ": no such folder, expected one with left.png and right.png, or a folder of such folders");
+    }
+    input.left = folder;
+    bool first = true;
+    for (const io::FrameFiles& files : frames_of(input)) {
+      frames.push_back(load_one(files, input, with_truth));
       TuningFrame& last = frames.back();
-      last.follows = shows_the_same(frames[frames.size() - 2].loaded.left.gray, last.loaded.left.gray);
+      last.follows =
+          !first && shows_the_same(frames[frames.size() - 2].loaded.left.gray, last.loaded.left.gray);
+      first = false;
     }
   }
   return frames;
@@ -174,7 +219,8 @@ TuningGoal goal_of(const std::vector<TuningFrame>& frames) {
 std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<TuningFrame>& frames,
                                                         const std::vector<bool>& chosen,
                                                         const std::vector<Setting>& settings,
-                                                        const MeasureOptions& options) {
+                                                        const MeasureOptions& options,
+                                                        std::vector<MatchedOnce>& matched) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (chosen[i]) indices.push_back(i);
@@ -186,7 +232,9 @@ std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<Tuning
         indices.size(), options.threads,
         [&](std::size_t k, const Exec& exec) {
           if (options.stop && options.stop()) stopped = true;
-          if (!stopped) outcomes[k] = judge(frames[indices[k]], settings, options.goal, exec);
+          if (stopped) return;
+          const std::size_t i = indices[k];
+          outcomes[k] = judge(frames[i], settings, options.goal, matched[i], exec);
         },
         options.target);
   } catch (const Error&) {  // by validate(): the frames fitted the configuration that the search started from

@@ -17,6 +17,12 @@ namespace cairn::cli {
 /// What is made as small as can be: the paper's E, bad disparities, or contradictions where nothing is known.
 enum class TuningGoal : std::uint8_t { objects, disparities, consistency };
 
+/// What a frame's pair came to when it was last matched: most options change only what comes after.
+struct MatchedOnce {
+  std::string settings;  // all that it depends on; empty: not matched yet
+  DisparityMap disparity{};
+};
+
 struct TuningFrame {
   std::string name;
   LoadedFrame loaded;
@@ -27,9 +33,10 @@ struct TuningFrame {
   Image<std::uint8_t> hidden{};  // 1 = not seen by the right camera
 };
 
-/// Every frame of the folder, with its truth where `with_truth`. Throws Error for a bad frame, one without
+/// Every frame of the folders, with its truth where `with_truth`. Throws Error for a bad frame, one without
 /// truth where that is asked for, and for a configuration that does not fit a frame.
-std::vector<TuningFrame> load_tuning_frames(const InputOptions& input, bool with_truth);
+std::vector<TuningFrame> load_tuning_frames(const std::vector<std::string>& folders, InputOptions input,
+                                            bool with_truth);
 /// E where an object is known anywhere, else disparities where those are, else consistency.
 TuningGoal goal_of(const std::vector<TuningFrame>& frames);
 
@@ -50,11 +57,12 @@ struct MeasureOptions {
 };
 
 /// The frames that `chosen` marks, in order; nullopt where stop() said so before all were done. Settings that
-/// contradict each other lose infinitely.
+/// contradict each other lose infinitely. `matched` has an entry for each frame, and saves time only.
 std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<TuningFrame>& frames,
                                                         const std::vector<bool>& chosen,
                                                         const std::vector<Setting>& settings,
-                                                        const MeasureOptions& options);
+                                                        const MeasureOptions& options,
+                                                        std::vector<MatchedOnce>& matched);
 std::vector<Loss> losses_of(const std::vector<FrameMeasure>& measures);
 
 }  // namespace cairn::cli

@@ -103,7 +103,7 @@ double Consistency::photometric() const {
 double Consistency::loss() const {
   const auto holes = static_cast<double>(pixels - matched);
   const auto contradicted = static_cast<double>(matched - confirmed);
-  return share(kHoleCost * holes + contradicted + photometric_sum, pixels);
+  return share(kUnmatchedCost * holes + contradicted + photometric_sum, pixels);
 }
 
 Consistency consistency(View<const Gray> left, View<const Gray> right, View<const float> disparity_px,

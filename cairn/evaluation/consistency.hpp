@@ -29,7 +29,9 @@ struct Consistency {
 };
 
 inline constexpr float kConfirmedPx = 1.0F;
-inline constexpr double kHoleCost = 0.5;
+/// Less than the half that it would be were the confirmed ones all right; docs/tune.md says how it was
+/// chosen.
+inline constexpr double kUnmatchedCost = 0.25;
 /// Grey levels of difference from which on a pixel is explained no better.
 inline constexpr double kFarthestGrey = 16;
 

@@ -20,6 +20,7 @@ Loss loss_of(const FrameObjects& frame);
 /// True disparities are known: pixels off by more than 1 px, and kHoleCost for each without a disparity, over
 /// those with truth.
 Loss loss_of(const DisparityErrors& errors);
+inline constexpr double kHoleCost = 0.5;
 
 /// Nothing is known: Consistency::loss(), and kUnsteadyWeight times the unsteady share against the frame
 /// before, where there is one; one frame is one thing.

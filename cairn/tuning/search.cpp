@@ -125,7 +125,7 @@ class Searcher {
     ++tried_;
     if (!same_losses(*losses, result_.best_losses)) ++changed_;
     if (faults(*losses) > faults(result_.start_losses)) return false;
-    if (!clearly_better(result_.best_losses, *losses, config_.least_share)) return false;
+    if (!clearly_better(result_.best_losses, *losses, config_.margin)) return false;
     result_.best = std::move(candidate);
     result_.best_losses = std::move(*losses);
     if (improved_) improved_(result_.best);
@@ -156,13 +156,13 @@ double mean_loss(const std::vector<Loss>& frames) {
   return all.weight > 0 ? all.sum / all.weight : std::numeric_limits<double>::infinity();
 }
 
-bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, double least_share) {
+bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, const Margin& margin) {
   assert(before.size() == after.size());
   const double lost_before = mean_loss(before);
   const double lost_after = mean_loss(after);
   if (!std::isfinite(lost_after)) return false;
   if (!std::isfinite(lost_before)) return true;
-  if (lost_before - lost_after < least_share * lost_before || lost_after >= lost_before) return false;
+  if (lost_before - lost_after < margin.least_share * lost_before || lost_after >= lost_before) return false;
   const auto count = static_cast<double>(before.size());
   if (before.size() < 2) return true;
   double sum = 0;
@@ -172,10 +172,11 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
     sum += gain;
     squares += gain * gain;
   }
-  // mean > standard error, squared and without divisions; the gain of a single frame gives equality.
+  // mean > k standard errors, squared and without divisions; the gain of a single frame gives equality.
   const double mean_square = sum * sum / count;
   constexpr double kRounding = 1e-9;
-  return mean_square * (count - 1) > (squares - mean_square) * (1 + kRounding);
+  const double k2 = margin.standard_errors * margin.standard_errors;
+  return mean_square * (count - 1) > k2 * (squares - mean_square) * (1 + kRounding);
 }
 
 int faults(const std::vector<Loss>& frames) {

@@ -21,11 +21,14 @@ struct Loss {
 /// Infinite where no frame has a weight.
 double mean_loss(const std::vector<Loss>& frames);
 
-/// Whether `after` is better than `before` (the same frames, in order) by more than chance: its mean is lower
-/// by at least `least_share` of that of `before`, and, of two or more frames, the mean gain of a frame is
-/// more than its standard error. A gain that one frame alone makes is just its own standard error, hence
-/// none.
-bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, double least_share);
+/// What a gain must exceed to count for more than chance.
+struct Margin {
+  double least_share = 0.002;  // of the loss before
+  double standard_errors = 1;  // of the mean gain of a frame; of one frame there is none
+};
+/// Whether `after` is better than `before` (the same frames, in order) by this margin: the mean is lower, and
+/// the frames agree on it. The gain of one frame alone is just one standard error.
+bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, const Margin& margin);
 
 /// Of all frames together.
 int faults(const std::vector<Loss>& frames);
@@ -49,8 +52,8 @@ struct SearchConfig {
   int evaluations = 1 << 30;  // at most; the start is the first
   double first_step = 1.6;    // factor on numbers
   double last_step = 1.1;
-  double least_share = 0.002;  // of the loss: a smaller gain is none
-  std::uint32_t seed = 1;      // decides in which order options are tried
+  Margin margin{};         // a gain below is none
+  std::uint32_t seed = 1;  // decides in which order options are tried
 };
 
 enum class SearchEnd : std::uint8_t {

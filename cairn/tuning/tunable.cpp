@@ -85,10 +85,11 @@ double rounded(double value) {
 /// from `from`.
 double allowed(const Tunable& tunable, double value, double from) {
   if (tunable.kind == TunableKind::number) return std::clamp(rounded(value), tunable.lowest, tunable.highest);
+  const double way = value < from ? -1 : 1;
   const double least = tunable.odd_only ? 2 : 1;
   value = std::round(value);
-  if (std::abs(value - from) < least) value = from + (value < from ? -least : least);
-  if (tunable.odd_only && std::fmod(value, 2) == 0) value += value < from ? -1 : 1;
+  if (std::abs(value - from) < least) value = from + way * least;
+  if (tunable.odd_only && std::fmod(value, 2) == 0) value += way;
   return value < tunable.lowest || value > tunable.highest ? from : value;
 }
 

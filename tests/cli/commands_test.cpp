@@ -19,6 +19,7 @@ TEST_F(Command, ShowsHelpForEveryCommandAndForNone) {
                                                     {"disparity", "--help"},
                                                     {"evaluate", "--help"},
                                                     {"bench", "--help"},
+                                                    {"tune", "--help"},
                                                     {"config", "--help"},
                                                     {"info", "--help"}}) {
     const Outcome outcome = run(arguments);

@@ -128,6 +128,19 @@ TEST_F(ConfigFiles, RefusesBombs) {
   EXPECT_TRUE(has(refused("match: &m\n  window_size: *m\n"), {""}));
 }
 
+TEST_F(ConfigFiles, AShortFileHoldsWhatDiffersFromThePresetAndReadsBack) {
+  for (const std::string& preset : preset_names()) {
+    Config config = Config::preset(preset);
+    config.match.window_size = 13;
+    config.ground.points = {{1, 2, 3, 4}};
+    const std::string yaml = io::changed_config_yaml(preset, config, {"match.num_disparities"});
+    EXPECT_EQ(values_of(read(yaml)), values_of(config)) << yaml;
+    EXPECT_NE(yaml.find("num_disparities"), std::string::npos) << yaml;
+    EXPECT_EQ(yaml.find("penalty_small"), std::string::npos) << yaml;
+    EXPECT_EQ(io::changed_config_yaml(preset, Config::preset(preset)), "preset: " + preset + "\n");
+  }
+}
+
 TEST_F(ConfigFiles, RefusesMissingFilesAndFolders) {
   Config config;
   EXPECT_TRUE(has(refusal([&] { io::load_config(folder_.path() / "none.yaml", config); }),

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cmath>
+#include <cstdlib>
+#include <io/config_files.hpp>
+#include <io/disparity_files.hpp>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+namespace cairn::command {
+namespace {
+
+using Json = nlohmann::json;
+
+class Tune : public CommandTest {
+ protected:
+  static std::string samples() { return std::string(CAIRN_SOURCE_DIR) + "/samples"; }
+  /// `tune FOLDER … --budget 10m -o tuned.yaml --json found.json`: whatever the machine's speed, the
+  /// evaluations end it.
+  [[nodiscard]] Outcome tune(const std::string& folder, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{
+        "tune", folder, "--budget", "10m", "-o", path("tuned.yaml"), "--json", path("found.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] Json found() const { return Json::parse(content(at("found.json"))); }
+  [[nodiscard]] Config tuned() const {
+    Config config;
+    io::load_config(at("tuned.yaml"), config);
+    return config;
+  }
+};
+
+TEST_F(Tune, WritesAConfigThatIsReadBackAndATableOfBeforeAndAfter) {
+  const Outcome outcome = tune(samples(), {"--truth", "--options", "figure.*,group.step", "--evaluations",
+                                           "8", "--set", "figure.margin=20"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");  // no bar where there is no terminal
+  for (const char* words :
+       {"before", "after", "mean E", "found, IoU >= 0.5", "8 evaluations", "4 frames", "tuned.yaml"})
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
+
+  const Json j = found();
+  EXPECT_EQ(j.at("goal"), "objects");
+  EXPECT_EQ(j.at("end"), "evaluations");
+  EXPECT_EQ(j.at("evaluations"), 8);
+  EXPECT_TRUE(j.at("held_out").is_null());
+  const Json& loss = j.at("tuned_on").at("loss");
+  EXPECT_LE(loss.at("after"), loss.at("before"));
+  const Config config = tuned();
+  const std::string margin = j.at("found").contains("figure.margin") && j.at("kept_because").is_null()
+                                 ? j.at("found").at("figure.margin").at("after")
+                                 : "20";
+  EXPECT_FLOAT_EQ(config.figure.margin, std::stof(margin));
+  EXPECT_EQ(config.match.num_disparities, Config{}.match.num_disparities);
+  EXPECT_EQ(content(at("tuned.yaml")).find("num_disparities"), std::string::npos)
+      << "would undo what each frame's calibration says";
+}
+
+TEST_F(Tune, MendsAnOptionThatWasSpoilt) {
+  const Outcome outcome = tune(samples(), {"--truth", "--options", "figure.margin,group.step",
+                                           "--evaluations", "12", "--set", "figure.margin=20"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json j = found();
+  EXPECT_TRUE(j.at("kept_because").is_null()) << j;
+  EXPECT_LT(j.at("tuned_on").at("loss").at("after"), j.at("tuned_on").at("loss").at("before")) << j;
+  EXPECT_LT(tuned().figure.margin, 15);
+}
+
+TEST_F(Tune, WhatItSaysIsWhatEvaluateMeasuresWithTheConfigThatItWrote) {
+  ASSERT_EQ(tune(samples(), {"--truth", "--options", "figure.margin,left_right.max_diff", "--evaluations",
+                             "6", "--set", "figure.margin=20"})
+                .code,
+            0);
+  ASSERT_EQ(run({"segment", samples(), "--config", path("tuned.yaml"), "-o", path("out")}).code, 0);
+  ASSERT_EQ(run({"evaluate", path("out"), samples(), "--json", path("evaluation.json")}).code, 0);
+  const Json measured = Json::parse(content(at("evaluation.json"))).at("summary").at("objects");
+  const Json j = found();
+  const char* const which = j.at("kept_because").is_null() ? "after" : "before";
+  EXPECT_NEAR(measured.at("mean_error").get<double>(), j.at("tuned_on").at("loss").at(which).get<double>(),
+              1e-9);
+  EXPECT_NEAR(measured.at("recall_50").get<double>(),
+              j.at("tuned_on").at("recall_50").at(which).get<double>(), 1e-9);
+}
+
+TEST_F(Tune, TheSameNumberOfEvaluationsGivesTheSameFileOnAnyNumberOfThreads) {
+  std::vector<std::string> files;
+  for (const char* threads : {"1", "3"}) {
+    ASSERT_EQ(
+        tune(samples(), {"--truth", "--options", "figure.*", "--evaluations", "6", "--threads", threads})
+            .code,
+        0);
+    files.push_back(content(at("tuned.yaml")) + found().at("tuned_on").dump());
+  }
+  EXPECT_EQ(files[0], files[1]);
+}
+
+TEST_F(Tune, HoldsOutTheShareAskedForAndJudgesIt) {
+  ASSERT_EQ(
+      tune(samples(), {"--truth", "--options", "group.step", "--evaluations", "3", "--holdout", "0.5"}).code,
+      0);
+  const Json j = found();
+  EXPECT_EQ(j.at("held_out").at("frames"), 2);
+  EXPECT_EQ(j.at("held_out_frames").size(), 2U);
+  EXPECT_EQ(j.at("tuned_on").at("frames"), 2);
+  EXPECT_GT(j.at("held_out").at("loss").at("before"), 0);
+}
+
+TEST_F(Tune, WithoutTruthItJudgesDisparitiesByTheirContradictions) {
+  pair_in("frames/a");
+  pair_in("frames/b");
+  const Outcome outcome = tune(path("frames"), {"--evaluations", "10", "--set", "match.num_disparities=16",
+                                                "--set", "left_right.max_diff=-1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json j = found();
+  EXPECT_EQ(j.at("goal"), "consistency");
+  EXPECT_EQ(j.at("sequence"), true);  // the same pair twice
+  EXPECT_EQ(j.at("tuned_on").at("unsteady").at("before"), 0);
+  EXPECT_LE(j.at("tuned_on").at("loss").at("after"), j.at("tuned_on").at("loss").at("before"));
+  EXPECT_EQ(tuned().match.num_disparities, 16) << "the user said so";
+}
+
+TEST_F(Tune, WithTrueDisparitiesAloneItJudgesThem) {
+  pair_in("frames/a");
+  const Image<float> truth({96, 72}, 6.0F, {});
+  io::save_disparity(at("frames/a/disp_left.png"), truth);
+  ASSERT_EQ(tune(path("frames"), {"--truth", "--evaluations", "3", "--set", "match.num_disparities=16"}).code,
+            0);
+  EXPECT_EQ(found().at("goal"), "disparities");
+  EXPECT_LT(found().at("tuned_on").at("loss").at("after"), 0.3);
+}
+
+TEST_F(Tune, ContradictorySettingsAreLeft) {
+  pair_in("frames/a");
+  // Windows of 21 and 31 px do not fit 20 rows.
+  pair_in("frames/b", {96, 20});
+  const Outcome outcome =
+      tune(path("frames"), {"--options", "match.window_size", "--set", "match.method=window", "--set",
+                            "match.window_size=13", "--set", "match.num_disparities=16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_LE(tuned().match.window_size, 19);
+}
+
+TEST_F(Tune, CtrlCKeepsTheBestSoFar) {
+  pair_in("frames/a", {160, 120});
+  const std::string line = "timeout --preserve-status -s INT 1 '" CAIRN_COMMAND "' tune '" + path("frames") +
+                           "' --options '*' --budget 1h -o '" + path("tuned.yaml") + "' --json '" +
+                           path("found.json") + "' > '" + path("out") + "' 2> '" + path("err") + "'";
+  const int status = std::system(line.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << content(at("err"));
+  EXPECT_EQ(found().at("end"), "interrupted");
+  EXPECT_GE(found().at("evaluations"), 1);
+  EXPECT_NE(content(at("out")).find("interrupted"), std::string::npos) << content(at("out"));
+  EXPECT_NO_THROW((void)tuned());
+}
+
+TEST_F(Tune, EndsWithItsTimeButNotBeforeItKnowsTheStart) {
+  pair_in("frames/a");
+  const Outcome outcome = run({"tune", path("frames"), "--budget", "0.001s", "-o", path("tuned.yaml"),
+                               "--set", "match.num_disparities=16"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 evaluation in"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("the time was up"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("stay as they were"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Tune, RefusesWhatDoesNotGoTogether) {
+  pair_in("frames/a");
+  write(at("file"), "");
+  const std::string frames = path("frames");
+  refuses({"tune", path("none")}, {"none", "no such folder"});
+  refuses({"tune", path("file")}, {"file"});
+  refuses({"tune", frames, "--truth"}, {"frame a", "objects.png"});
+  for (const char* budget : {"5x", "-3s", "0", "", "1e99h", "nans"})
+    refuses({"tune", frames, "--budget", budget}, {"--budget", "60s"});
+  refuses({"tune", frames, "--options", "match.windw_size"}, {"match.window_size"});
+  refuses({"tune", frames, "--options", "figure.*"}, {"figure.*", "true objects"});
+  refuses({"tune", frames, "--set", "match.num_disparities=16", "--holdout", "0.5"},
+          {"--holdout", "one frame"});
+  refuses({"tune", frames, "--holdout", "1.5"}, {"--holdout"});
+  refuses({"tune", frames, "--evaluations", "-1"}, {"--evaluations"});
+  refuses({"tune", frames, "-o", path("no/such/tuned.yaml")}, {"no/such/tuned.yaml"});
+  refuses({"tune", frames, "-o", frames}, {frames, "is a folder"});
+  refuses({"tune", frames, "--json", path("no/found.json")}, {"found.json"});
+  refuses({"tune", frames, "--set", "match.num_disparities=1000"}, {"frame a", "match.num_disparities"});
+  refuses({"tune", frames, "--set", "match.num_disparities=16", "--set", "match.evidence=minimum", "--set",
+           "left_right.method=vote"},
+          {"match.evidence", "full"});
+}
+
+}  // namespace
+}  // namespace cairn::command

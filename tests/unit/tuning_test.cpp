@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/tuning/frame_loss.hpp>
+#include <cairn/tuning/search.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace cairn {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+Tunable named(const std::string& name) {
+  return tunables({name}).at(0);
+}
+
+Strings names_of(const std::vector<Tunable>& all) {
+  Strings names;
+  for (const Tunable& tunable : all) names.push_back(tunable.name);
+  return names;
+}
+
+bool has(const Strings& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+// ---- what may be tuned ----
+
+TEST(Tunable, TakesItsLimitsFromTheFieldsOfItsStage) {
+  const Tunable window = named("match.window_size");
+  EXPECT_EQ(window.kind, TunableKind::whole_number);
+  EXPECT_EQ(window.lowest, 3);
+  EXPECT_EQ(window.highest, 31);
+  EXPECT_TRUE(window.odd_only);
+  const Tunable max_diff = named("left_right.max_diff");
+  EXPECT_EQ(max_diff.kind, TunableKind::number);
+  EXPECT_TRUE(max_diff.minus_one_is_off);
+  EXPECT_EQ(max_diff.of_presets, (Strings{"2", "1"}));
+  EXPECT_EQ(named("left_right.method").choices, (Strings{"true", "vote"}));
+  EXPECT_EQ(named("subpixel.enabled").choices, (Strings{"false", "true"}));
+}
+
+TEST(Tunable, EveryOptionIsOneButPointsAndWhatOnlySaysWhatIsKept) {
+  const Strings names = names_of(tunables());
+  for (const OptionInfo& option : options(Config{})) {
+    const bool none =
+        option.type == "points" || option.name == "match.evidence" || option.name == "confidence.enabled";
+    EXPECT_EQ(has(names, option.name), !none) << option.name;
+  }
+}
+
+TEST(Tunable, PatternsChooseEachOptionOnceAndInOrder) {
+  EXPECT_EQ(names_of(tunables({"left_right.max_diff", "semi_global.*", "semi_global.penalty_edge"})),
+            (Strings{"semi_global.penalty_small", "semi_global.penalty_large", "semi_global.penalty_edge",
+                     "left_right.max_diff"}));
+  EXPECT_EQ(tunables({"*"}).size(), tunables().size());
+}
+
+TEST(Tunable, APatternThatNamesNothingIsRefusedWithTheNearestName) {
+  try {
+    (void)tunables({"match.*", "facets.edge_mim"});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("facets.edge_min"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW((void)tunables({"no_such.*"}), Error);
+}
+
+TEST(Tunable, TheUsualOnesTakePartInWhatTheConfigComputes) {
+  for (const bool objects : {false, true}) {
+    for (const std::string& preset : preset_names()) {
+      const Config config = Config::preset(preset);
+      const Strings names = names_of(tunables(usual_tunables(config, objects)));
+      const bool semi_global = config.match.method == MatchMethod::semi_global;
+      const bool evidence = config.fusion.method == FusionMethod::evidence;
+      EXPECT_EQ(has(names, "semi_global.penalty_small"), semi_global) << preset;
+      EXPECT_EQ(has(names, "match.window_size"), !semi_global) << preset;
+      EXPECT_EQ(has(names, "figure.margin"), objects && evidence) << preset;
+      EXPECT_EQ(has(names, "intensity.sigma_min"), objects && !evidence) << preset;
+      EXPECT_FALSE(has(names, "match.num_disparities")) << preset;
+      if (objects) continue;
+      for (const std::string& name : names) EXPECT_TRUE(changes_disparities(name)) << name;
+    }
+  }
+}
+
+TEST(Neighbours, ANumberGrowsAndShrinksByTheStepToThreeDigits) {
+  EXPECT_EQ(neighbours(named("figure.margin"), "1.6", 1.6), (Strings{"2.56", "1"}));
+  EXPECT_EQ(neighbours(named("figure.margin"), "1.2345", 1.1), (Strings{"1.36", "1.12"}));
+  EXPECT_EQ(neighbours(named("speckle.size"), "50", 1.1), (Strings{"55", "45", "-1"}));
+  EXPECT_EQ(neighbours(named("background.max_walls"), "3", 1.1), (Strings{"4", "2"}));
+}
+
+TEST(Neighbours, StayWithinTheLimitsAndOdd) {
+  EXPECT_EQ(neighbours(named("match.window_size"), "9", 1.1), (Strings{"11", "7"}));
+  EXPECT_EQ(neighbours(named("match.window_size"), "3", 1.6), (Strings{"5"}));
+  EXPECT_EQ(neighbours(named("match.window_size"), "31", 1.6), (Strings{"19"}));
+  EXPECT_EQ(neighbours(named("semi_global.penalty_large"), "2.3", 1.6), (Strings{"1.44"}));
+}
+
+TEST(Neighbours, FromOffOrNothingWhatThePresetsGiveIsTried) {
+  EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"5"}));
+  EXPECT_EQ(neighbours(named("uniqueness.ratio"), "5", 2), (Strings{"10", "2.5", "-1"}));
+  EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.2"}));
+  EXPECT_EQ(neighbours(named("left_right.method"), "true", 1.6), (Strings{"vote"}));
+}
+
+TEST(Neighbours, EveryValueOfEveryOptionIsAccepted) {
+  for (const Config& start : {Config{}, Config::paper()}) {
+    const auto all = tunables();
+    const auto settings = settings_of(start, all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      std::string value = settings[i].value;
+      // Up to the upper limit, then down to the lower one.
+      for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
+        for (int n = 0; n < 40; ++n) {
+          const Strings around = neighbours(all[i], value, 1.6);
+          for (const std::string& other : around) {
+            EXPECT_NE(other, value) << all[i].name;
+            Config config = start;
+            EXPECT_NO_THROW(set(config, all[i].name, other)) << all[i].name << "=" << other;
+          }
+          if (way >= around.size()) break;
+          value = around[way];
+        }
+      }
+    }
+  }
+}
+
+// ---- the search ----
+
+double value_of(const std::vector<Setting>& settings, const std::string& option) {
+  for (const Setting& setting : settings) {
+    if (setting.option == option) return std::stod(setting.value);
+  }
+  ADD_FAILURE() << option;
+  return 0;
+}
+
+double log_square(double value, double best) {
+  return std::pow(std::log(value / best), 2);
+}
+
+/// A bowl in the logarithm of two options, the same for two frames, and a choice.
+std::vector<Loss> bowl(const std::vector<Setting>& settings) {
+  double loss = 1 + log_square(value_of(settings, "figure.margin"), 4) +
+                log_square(value_of(settings, "speckle.size"), 20);
+  for (const Setting& setting : settings) {
+    if (setting.option == "left_right.method" && setting.value == "true") loss += 1;
+  }
+  return {{loss, 1}, {loss, 1}};
+}
+
+const std::vector<Tunable>& bowl_tunables() {
+  static const auto all = tunables({"figure.margin", "speckle.size", "left_right.method", "group.step"});
+  return all;
+}
+
+SearchResult search_bowl(const SearchConfig& config) {
+  const auto& all = bowl_tunables();
+  return search(all, settings_of(Config{}, all), bowl, config);
+}
+
+TEST(Search, FindsTheLeastOfABowlAndAChoice) {
+  const SearchResult found = search_bowl({});
+  EXPECT_EQ(found.end, SearchEnd::converged);
+  EXPECT_NEAR(value_of(found.best, "figure.margin"), 4, 0.6);
+  EXPECT_NEAR(value_of(found.best, "speckle.size"), 20, 3);
+  EXPECT_TRUE(std::find(found.best.begin(), found.best.end(), Setting{"left_right.method", "vote"}) !=
+              found.best.end());
+  EXPECT_LT(mean_loss(found.best_losses), 1.03);
+  EXPECT_GT(mean_loss(found.start_losses), 2);
+  EXPECT_EQ(value_of(found.best, "group.step"), value_of(found.start, "group.step"));
+}
+
+TEST(Search, TheSameNumberOfEvaluationsGivesTheSameResultAndAnotherSeedAnotherWay) {
+  std::vector<std::vector<Setting>> ways;
+  for (const std::uint32_t seed : {1U, 1U, 2U}) {
+    const auto& all = bowl_tunables();
+    std::vector<Setting> asked;
+    (void)search(all, settings_of(Config{}, all),
+                 [&](const std::vector<Setting>& settings) {
+                   asked.insert(asked.end(), settings.begin(), settings.end());
+                   return bowl(settings);
+                 },
+                 {.evaluations = 12, .seed = seed});
+    EXPECT_EQ(asked.size(), 12 * all.size());
+    ways.push_back(asked);
+  }
+  EXPECT_EQ(ways[0], ways[1]);
+  EXPECT_NE(ways[0], ways[2]);
+}
+
+TEST(Search, MeasuresNothingTwice) {
+  const auto& all = bowl_tunables();
+  std::set<std::string> seen;
+  const SearchResult found = search(all, settings_of(Config{}, all),
+                                    [&](const std::vector<Setting>& settings) {
+                                      std::string key;
+                                      for (const Setting& setting : settings) key += setting.value + " ";
+                                      EXPECT_TRUE(seen.insert(key).second) << key;
+                                      return bowl(settings);
+                                    },
+                                    {});
+  EXPECT_EQ(static_cast<std::size_t>(found.evaluations), seen.size());
+}
+
+TEST(Search, EndsWithTheNumberOfEvaluations) {
+  const SearchResult found = search_bowl({.evaluations = 5});
+  EXPECT_EQ(found.end, SearchEnd::evaluations);
+  EXPECT_EQ(found.evaluations, 5);
+  const SearchResult start_only = search_bowl({.evaluations = 1});
+  EXPECT_EQ(start_only.best, start_only.start);
+  EXPECT_FALSE(start_only.best_losses.empty());
+}
+
+TEST(Search, StoppedAtAnyTimeItReturnsTheBestSoFar) {
+  const auto& all = bowl_tunables();
+  const auto start = settings_of(Config{}, all);
+  double least = std::numeric_limits<double>::infinity();
+  for (const int allowed : {0, 1, 7, 20}) {
+    int measured = 0;
+    std::vector<Setting> reported;
+    const SearchResult found = search(
+        all, start,
+        [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
+          if (measured == allowed) return std::nullopt;
+          ++measured;
+          return bowl(settings);
+        },
+        {}, [&](const std::vector<Setting>& settings) { reported = settings; });
+    EXPECT_EQ(found.end, SearchEnd::stopped);
+    EXPECT_EQ(found.evaluations, allowed);
+    if (allowed == 0) {
+      EXPECT_TRUE(found.start_losses.empty());
+      EXPECT_TRUE(reported.empty());
+      continue;
+    }
+    EXPECT_EQ(reported, found.best);
+    EXPECT_EQ(mean_loss(found.best_losses), mean_loss(bowl(found.best)));
+    EXPECT_LE(mean_loss(found.best_losses), least);
+    least = mean_loss(found.best_losses);
+  }
+}
+
+TEST(Search, KeepsNothingThatHasMoreFaultsThanTheStart) {
+  const auto all = tunables({"figure.margin"});
+  const SearchResult found = search(all, settings_of(Config{}, all),
+                                    [](const std::vector<Setting>& settings) -> std::vector<Loss> {
+                                      const double margin = value_of(settings, "figure.margin");
+                                      return {{log_square(margin, 4), 1, margin > 3 ? 2 : 1}};
+                                    },
+                                    {});
+  EXPECT_GT(value_of(found.best, "figure.margin"), 2.5);
+  EXPECT_LE(value_of(found.best, "figure.margin"), 3);
+}
+
+TEST(Search, LeavesSettingsThatContradictEachOther) {
+  const auto all = tunables({"figure.margin"});
+  const SearchResult found = search(all, settings_of(Config{}, all),
+                                    [](const std::vector<Setting>& settings) -> std::vector<Loss> {
+                                      const double margin = value_of(settings, "figure.margin");
+                                      const double loss = margin > 2 ? std::numeric_limits<double>::infinity()
+                                                                     : log_square(margin, 1);
+                                      return {{loss, 1}};
+                                    },
+                                    {});
+  EXPECT_NEAR(value_of(found.best, "figure.margin"), 1, 0.1);
+}
+
+TEST(ClearlyBetter, AsksForMoreThanTheGainOfOneFrame) {
+  const std::vector<Loss> before{{1, 1}, {1, 1}, {1, 1}, {1, 1}};
+  EXPECT_FALSE(clearly_better(before, {{0, 1}, {1, 1}, {1, 1}, {1, 1}}, {}));
+  EXPECT_TRUE(clearly_better(before, {{0.5, 1}, {0.5, 1}, {1, 1}, {1, 1}}, {}));
+  EXPECT_FALSE(clearly_better(before, {{0.5, 1}, {0.5, 1}, {1, 1}, {1, 1}}, {.standard_errors = 2}));
+  EXPECT_TRUE(clearly_better(before, {{0.5, 1}, {0.4, 1}, {0.5, 1}, {0.4, 1}}, {.standard_errors = 2}));
+  EXPECT_FALSE(clearly_better(before, {{0, 1}, {1.9, 1}, {1, 1}, {1, 1}}, {}));
+  EXPECT_FALSE(clearly_better(before, before, {.least_share = 0}));
+  EXPECT_TRUE(clearly_better({{1, 1}}, {{0.5, 1}}, {}));
+  EXPECT_FALSE(clearly_better({{1, 1}}, {{0.95, 1}}, {.least_share = 0.1}));
+}
+
+TEST(MeanLoss, IsThatOfThingsNotOfFrames) {
+  EXPECT_EQ(mean_loss({{1, 1}, {0, 3}}), 0.25);
+  EXPECT_TRUE(std::isinf(mean_loss({})));
+  EXPECT_TRUE(std::isinf(mean_loss({{1, 0}})));
+}
+
+// ---- a frame's loss ----
+
+TEST(FrameLoss, IsTheCappedErrorWithWrongObjectsAsFaults) {
+  FrameObjects frame;
+  frame.errors.truth.resize(2);
+  frame.errors.truth[0].iou = 0.5;  // E = 1
+  frame.errors.truth[1].iou = 0.1;  // E = 9, counts 2
+  frame.errors.ours.resize(3);
+  frame.errors.ours[0].iou = 0.5;
+  frame.errors.ours[2].mostly_dont_care = true;
+  const Loss loss = loss_of(frame);
+  EXPECT_DOUBLE_EQ(loss.sum, 3);
+  EXPECT_EQ(loss.weight, 2);
+  EXPECT_EQ(loss.faults, 1);
+  frame.partial = true;
+  EXPECT_EQ(loss_of(frame).faults, 0);
+}
+
+TEST(FrameLoss, AHoleCostsHalfOfAWrongDisparity) {
+  DisparityErrors errors;
+  errors.known = 100;
+  errors.matched = 80;
+  errors.bad = {30, 10, 5, 1};
+  EXPECT_DOUBLE_EQ(mean_loss({loss_of(errors)}), 0.2);
+}
+
+TEST(FrameLoss, AddsUnsteadinessWhereThereIsAFrameBefore) {
+  Consistency pixels;
+  pixels.pixels = 10;
+  pixels.matched = 6;
+  pixels.confirmed = 5;
+  pixels.photometric_sum = 1;
+  const double alone = mean_loss({loss_of(pixels, std::nullopt)});
+  EXPECT_DOUBLE_EQ(alone, 0.3);
+  EXPECT_DOUBLE_EQ(mean_loss({loss_of(pixels, Steadiness{})}), alone);
+  Steadiness steady;
+  steady.pixels = steady.still = steady.seen = 10;
+  steady.unsteady = 4;
+  EXPECT_DOUBLE_EQ(mean_loss({loss_of(pixels, steady)}), alone + kUnsteadyWeight * 0.4);
+}
+
+TEST(HeldOut, IsTheShareAskedForDrawnOrTheEndOfASequence) {
+  const auto count = [](const std::vector<bool>& out) { return std::count(out.begin(), out.end(), true); };
+  EXPECT_EQ(count(held_out(10, 0.3, false, 1)), 3);
+  EXPECT_EQ(held_out(10, 0.3, false, 1), held_out(10, 0.3, false, 1));
+  EXPECT_NE(held_out(10, 0.3, false, 1), held_out(10, 0.3, false, 2));
+  EXPECT_EQ(held_out(4, 0.5, true, 1), (std::vector<bool>{false, false, true, true}));
+  EXPECT_EQ(count(held_out(2, 0.01, false, 1)), 1);
+  EXPECT_EQ(count(held_out(2, 0.9, false, 1)), 1);
+  EXPECT_EQ(count(held_out(1, 0.5, false, 1)), 0);
+  EXPECT_TRUE(held_out(0, 0.5, false, 1).empty());
+}
+
+}  // namespace
+}  // namespace cairn
