@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
 
 struct TuneOptions {
   std::vector<std::string> folders;
@@ -46,7 +47,7 @@ constexpr Margin kLeastGain{.least_share = 0.01};
 // ---- time and Ctrl-C ----
 
 /// "90", "60s", "5m", "1.5h".
-std::chrono::duration<double> parse_budget(const std::string& text) {
+Seconds parse_budget(const std::string& text) {
   double value = 0;
   std::string unit;
   try {
@@ -60,7 +61,7 @@ std::chrono::duration<double> parse_budget(const std::string& text) {
   constexpr double kLongest = 30 * 24 * 3600.0;
   if (!(value > 0) || seconds == 0 || value * seconds > kLongest)
     throw Error("--budget: found '" + text.substr(0, 80) + "', expected a time such as 60s, 5m or 1.5h");
-  return std::chrono::duration<double>(value * seconds);
+  return Seconds(value * seconds);
 }
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -229,65 +230,98 @@ std::string reason_to_keep(const Tuned& tuned) {
   return {};
 }
 
-Tuned tune(const Task& task, const TuneOptions& options, std::chrono::duration<double> budget) {
-  const Interruptible interruptible;
-  const auto start_time = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start_time); };
-  Tuned tuned;
-  bool knows_start = false;
+MeasureOptions how_to_measure(const Task& task, const ExecOptions& exec) {
   MeasureOptions how;
   how.goal = task.goal;
-  how.target = wanted_target(options.exec.target);
-  how.threads = options.exec.threads > 0
-                    ? options.exec.threads
-                    : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  how.stop = [&] { return interrupted != 0 || (knows_start && seconds() > budget); };
-  MeasureOptions to_its_end = how;
-  to_its_end.stop = nullptr;
+  how.target = wanted_target(exec.target);
+  how.threads =
+      exec.threads > 0 ? exec.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return how;
+}
 
-  const Progress progress(task.frames.size());
-  int tried = 0;
-  double best = 0;
-  Measures latest;
-  std::vector<MatchedOnce> matched(task.frames.size());
-  const Measure measure = [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
-    const double by_time = seconds() / budget;
-    const double by_count = options.evaluations > 0 ? double(tried) / options.evaluations : 0;
-    progress.bar(std::max(by_time, by_count),
-                 std::to_string(tried) + " tried, " + text_of("%.0f s", seconds().count()) + " of " +
-                     options.budget +
-                     (knows_start ? ", " + goal_word(task.goal) + " " + percent(best) + " (was " +
-                                        percent(mean_loss(losses_of(tuned.before))) + ")"
-                                  : ""));
-    auto measures = measure_frames(task.frames, task.tuned, settings, how, matched);
+/// One search, as far as it has come.
+class TuningRun {
+ public:
+  TuningRun(const Task& task, const TuneOptions& options, Seconds budget)
+      : task_(task),
+        options_(options),
+        budget_(budget),
+        progress_(task.frames.size()),
+        how_(how_to_measure(task, options.exec)),
+        matched_(task.frames.size()) {}
+
+  Tuned to_its_end() {
+    const Interruptible interruptible;
+    SearchConfig config;
+    config.seed = options_.seed;
+    if (options_.evaluations > 0) config.evaluations = options_.evaluations;
+    // What a calibration says of a frame is the frame's: the search starts from what all have in common.
+    const std::vector<Setting> start = settings_of(task_.frames.front().loaded.config, task_.tunables);
+    tuned_.search = search(
+        task_.tunables, start, [&](const auto& settings) { return measure(settings); }, config,
+        [&](const auto& settings) { keep(settings); });
+    tuned_.seconds = seconds().count();
+    tuned_.was_interrupted = interrupted != 0;
+    return std::move(tuned_);
+  }
+
+ private:
+  [[nodiscard]] Seconds seconds() const { return Clock::now() - start_time_; }
+  [[nodiscard]] bool knows_start() const { return !tuned_.before.empty(); }
+
+  std::optional<std::vector<Loss>> measure(const std::vector<Setting>& settings) {
+    show_progress();
+    MeasureOptions how = how_;
+    how.stop = [&] { return interrupted != 0 || (knows_start() && seconds() > budget_); };
+    auto measures = measure_frames(task_.frames, task_.tuned, settings, how, matched_);
     if (!measures) return std::nullopt;
-    ++tried;
-    latest = std::move(*measures);
-    return losses_of(latest);
-  };
-  const auto improved = [&](const std::vector<Setting>& settings) {
-    tuned.after = latest;
-    best = mean_loss(losses_of(latest));
-    if (task.count(task.held_out) > 0)
-      tuned.held_out_after = *measure_frames(task.frames, task.held_out, settings, to_its_end, matched);
-    if (knows_start) return;
-    tuned.before = tuned.after;
-    tuned.held_out_before = tuned.held_out_after;
-    knows_start = true;
-  };
-  SearchConfig config;
-  config.seed = options.seed;
-  if (getenv("ZZ")) config.margin.standard_errors = atof(getenv("ZZ"));
-  if (options.evaluations > 0) config.evaluations = options.evaluations;
-  // What a calibration says of a frame is the frame's: the search starts from what all have in common.
-  const std::vector<Setting> start = settings_of(task.frames.front().loaded.config, task.tunables);
-  tuned.search = search(task.tunables, start, measure, config, improved);
-  tuned.seconds = seconds().count();
-  tuned.was_interrupted = interrupted != 0;
-  if (!knows_start)
+    ++tried_;
+    latest_ = std::move(*measures);
+    return losses_of(latest_);
+  }
+
+  /// What was measured last is the best so far.
+  void keep(const std::vector<Setting>& settings) {
+    const bool is_start = !knows_start();
+    if (is_start && !std::isfinite(mean_loss(losses_of(latest_)))) {
+      throw Error(options_.folders.front() +
+                  ": the truth of the frames to tune on has nothing that can be scored");
+    }
+    tuned_.after = latest_;
+    if (task_.count(task_.held_out) > 0)
+      tuned_.held_out_after = *measure_frames(task_.frames, task_.held_out, settings, how_, matched_);
+    if (!is_start) return;
+    tuned_.before = tuned_.after;
+    tuned_.held_out_before = tuned_.held_out_after;
+  }
+
+  void show_progress() const {
+    const double by_count = options_.evaluations > 0 ? static_cast<double>(tried_) / options_.evaluations : 0;
+    std::string words =
+        std::to_string(tried_) + " tried, " + text_of("%.0f s", seconds().count()) + " of " + options_.budget;
+    if (knows_start()) {
+      words += ", " + goal_word(task_.goal) + " " + percent(mean_loss(losses_of(tuned_.after))) + " (was " +
+               percent(mean_loss(losses_of(tuned_.before))) + ")";
+    }
+    progress_.bar(std::max(seconds() / budget_, by_count), words);
+  }
+
+  const Task& task_;
+  const TuneOptions& options_;
+  Seconds budget_;
+  Clock::time_point start_time_ = Clock::now();
+  Progress progress_;
+  MeasureOptions how_;
+  std::vector<MatchedOnce> matched_;
+  Measures latest_;
+  int tried_ = 0;
+  Tuned tuned_;
+};
+
+Tuned tune(const Task& task, const TuneOptions& options, Seconds budget) {
+  Tuned tuned = TuningRun(task, options, budget).to_its_end();
+  if (tuned.before.empty())
     throw std::runtime_error("stopped before the first evaluation was done; nothing is written");
-  if (!std::isfinite(mean_loss(tuned.search.start_losses)))
-    throw Error(options.folders.front() + ": the truth of the frames to tune on names nothing to score");
   tuned.kept_because = reason_to_keep(tuned);
   return tuned;
 }

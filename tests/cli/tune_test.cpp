@@ -131,6 +131,13 @@ TEST_F(Tune, WithTrueDisparitiesAloneItJudgesThem) {
   EXPECT_LT(found().at("tuned_on").at("loss").at("after"), 0.3);
 }
 
+TEST_F(Tune, ATruthWithoutAnythingToScoreIsRefused) {
+  pair_in("frames/a");
+  const Image<std::uint8_t> no_objects({96, 72}, std::uint8_t{0}, {});
+  io::save_png(at("frames/a/objects.png"), no_objects.view());
+  refuses({"tune", path("frames"), "--truth", "--set", "match.num_disparities=16"}, {"frames", "scored"});
+}
+
 TEST_F(Tune, ContradictorySettingsAreLeft) {
   pair_in("frames/a");
   // Windows of 21 and 31 px do not fit 20 rows.
