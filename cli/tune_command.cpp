@@ -114,8 +114,11 @@ bool mostly_sequence(const std::vector<TuningFrame>& frames) {
 
 void choose_tunables(const TuneOptions& options, Task& task) {
   const bool objects = task.goal == TuningGoal::objects;
-  task.tunables =
-      tunables(options.patterns.empty() ? usual_tunables(task.base.config, objects) : options.patterns);
+  std::vector<std::string> patterns =
+      options.patterns.empty() ? usual_tunables(task.base.config, objects) : options.patterns;
+  // Islands agree with the right image: contradictions would let them all pass.
+  if (options.patterns.empty() && task.goal == TuningGoal::consistency) std::erase(patterns, "speckle.size");
+  task.tunables = tunables(patterns);
   if (objects) return;
   const auto judged = std::stable_partition(task.tunables.begin(), task.tunables.end(),
                                             [](const Tunable& t) { return changes_disparities(t.name); });
