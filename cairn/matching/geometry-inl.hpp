@@ -26,6 +26,7 @@ constexpr bool correlates(Cost cost) {
 }
 
 constexpr int kMargin = 32;  // lanes without candidate before and after a pixel's
+constexpr int kBefore = 16;  // of them before the first: no neighbour of lane 0 is across a cache line
 constexpr int kTile = 64;    // lanes whose box sums are held in registers at a time
 
 /// How wide sums and costs are. Every operator fits these.

@@ -94,7 +94,7 @@ struct CostBlock {
   }
   [[nodiscard]] bool empty() const { return stride == 0; }
   void clear() { std::fill_n(costs.data(), costs.size(), kNone<Lane>); }
-  [[nodiscard]] Lane* of(std::ptrdiff_t pixel) const { return costs.data() + pixel * stride + kMargin; }
+  [[nodiscard]] Lane* of(std::ptrdiff_t pixel) const { return costs.data() + kBefore + pixel * stride; }
 };
 
 /// The winners of one right row, reversed like the row itself.
