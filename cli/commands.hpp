@@ -17,6 +17,7 @@ Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
 Work declare_bench(CLI::App& app);
 Work declare_tune(CLI::App& app);
+Work declare_doctor(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
 
@@ -32,6 +33,8 @@ inline constexpr std::array kCommands{
     Command{"evaluate", "compare results with the truth", declare_evaluate},
     Command{"bench", "time each stage on a stereo pair, with OpenCV's matchers beside it", declare_bench},
     Command{"tune", "search the options that do best on your own frames", declare_tune},
+    Command{"doctor", "tell what is wrong with a rig: order, rows, synchrony, range, exposure, focus",
+            declare_doctor},
     Command{"config", "show every option with its value, unit, range and meaning", declare_config},
     Command{"info", "show version, instruction sets and threads", declare_info},
 };

@@ -142,7 +142,8 @@ int counted(double value, const char* key, int most) {
 
 void check_positive(const std::optional<double>& value, const char* name) {
   if (value && !(*value > 0))
-    throw Error(std::string(name) + " is " + written(*value) + ", expected a positive number");
+    throw ImpossibleCalibration(std::string(name) + " is " + written(*value) + ", expected a positive number",
+                                *value);
 }
 
 float center(const std::optional<double>& value, const char* name) {
@@ -332,6 +333,8 @@ Calibration load_calibration(const fs::path& path) {
     // Numbers that are fine as double may be none as float.
     if (calibration.rig) calibration.rig->validate("calibration");
     return calibration;
+  } catch (const ImpossibleCalibration& error) {
+    throw ImpossibleCalibration(file.string() + ": " + error.what(), error.value());
   } catch (const Error& error) {
     throw Error(file.string() + ": " + error.what());
   }

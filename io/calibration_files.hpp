@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/core/error.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace cairn::io {
 
@@ -15,11 +17,22 @@ struct Calibration {
   std::optional<int> num_disparities;  // `ndisp`: the default of match.num_disparities
 };
 
+/// A calibration that can be read but cannot be true: a focal length or baseline that is not positive.
+class ImpossibleCalibration : public Error {
+ public:
+  ImpossibleCalibration(const std::string& says, double value) : Error(says), value_(value) {}
+  /// The number that cannot be.
+  [[nodiscard]] double value() const { return value_; }
+
+ private:
+  double value_;
+};
+
 /// Reads a calibration, its form recognised by content (docs/formats.md shows each): our own YAML, Middlebury
 /// calib.txt, KITTI calib_cam_to_cam.txt and calib.txt, OpenCV FileStorage YAML/XML/JSON with P1 and P2 or Q,
 /// ROS camera_info YAML (either file of the pair, one file with both, or their folder), key=value lines.
 /// Throws Error (one line: file, what was found, what was expected): missing, no known form, a number that is
-/// none, a focal length or baseline that is not positive, fx ≠ fy.
+/// none, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
 Calibration load_calibration(const std::filesystem::path& path);
 
 /// Throws Error where the calibration was made for pictures of another size.

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/parallel.hpp>
+#include <cairn/diagnosis/correspondences.hpp>
+#include <cairn/matching/sparse_points.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+namespace cairn {
+namespace {
+using sparse::kWindow;
+using sparse::kWindowArea;
+using sparse::Place;
+
+constexpr int kCoarseWidth = 400;  // px; at most, where points are looked for
+constexpr int kFineWidth = 1400;   // px; at most, where there are too few of them
+constexpr std::size_t kEnoughPoints = 100;
+constexpr std::size_t kMostPoints = 500;
+constexpr float kLeastAlike = 0.75F;    // correlation of a match, −1 … 1
+constexpr float kRivalRatio = 1.2F;     // of what the second best place lacks of 1 to what the best lacks
+constexpr float kRivalMargin = 0.005F;  // and this much more
+constexpr int kNear = 2;                // px; so close is no rival, and leads back well enough
+
+/// An image for correlation: its pixels, and of the window at each its sum and one over its deviation.
+struct Level {
+  View<const Gray> gray;
+  Image<float> values;
+  Image<float> sums;
+  Image<float> scales;  // 0 where the window is plain
+};
+
+void sum_window(View<const Gray> image, int x, int y, float& total, float& scale) {
+  int sum = 0;
+  int squares = 0;
+  for (int j = 0; j < kWindow; ++j) {
+    const Gray* row = image.row(y + j) + x;
+    for (int i = 0; i < kWindow; ++i) {
+      sum += row[i];
+      squares += row[i] * row[i];
+    }
+  }
+  const int variance = kWindowArea * squares - sum * sum;
+  total = static_cast<float>(sum);
+  scale = variance > 0 ? 1 / std::sqrt(static_cast<float>(variance)) : 0.0F;
+}
+
+Level make_level(View<const Gray> gray, const Exec& exec) {
+  const Size size = gray.size();
+  const Size places{std::max(0, size.width - kWindow + 1), std::max(0, size.height - kWindow + 1)};
+  Level level{gray, Image<float>(size, exec.pool), Image<float>(places, exec.pool),
+              Image<float>(places, exec.pool)};
+  parallel_for(exec, size.height, 16, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      std::copy_n(level.gray.row(y), size.width, level.values.row(y));
+      if (y >= places.height) continue;
+      for (int x = 0; x < places.width; ++x)
+        sum_window(level.gray, x, y, level.sums(x, y), level.scales(x, y));
+    }
+  });
+  return level;
+}
+
+/// Scores of all places of one search, kept from point to point so that nothing is allocated anew.
+struct Scores {
+  Rect places;
+  std::vector<float> score;
+  [[nodiscard]] float* row(int y) { return score.data() + static_cast<std::ptrdiff_t>(y) * places.width; }
+  /// No neighbour has more.
+  [[nodiscard]] bool is_peak(int x, int y) {
+    const float here = row(y)[x];
+    for (int j = std::max(0, y - 1); j <= std::min(places.height - 1, y + 1); ++j) {
+      for (int i = std::max(0, x - 1); i <= std::min(places.width - 1, x + 1); ++i) {
+        if (row(j)[i] > here) return false;
+      }
+    }
+    return true;
+  }
+};
+
+/// Σ window · image for each place of a row. The sums are whole numbers that float holds exactly.
+void correlate_row(const Level& from, Point p, const Level& in, Rect places, int y, float* sums) {
+  std::fill_n(sums, places.width, 0.0F);
+  for (int j = 0; j < kWindow; ++j) {
+    const float* window = from.values.row(p.y + j) + p.x;
+    const float* row = in.values.row(y + j) + places.x;
+    for (int i = 0; i < kWindow; ++i) {
+      const float weight = window[i];
+      const float* shifted = row + i;
+      for (int x = 0; x < places.width; ++x) sums[x] += weight * shifted[x];
+    }
+  }
+}
+
+void correlate(const Level& from, Point p, const Level& in, Scores& scores) {
+  const Rect places = scores.places;
+  scores.score.resize(static_cast<std::size_t>(places.width) * static_cast<std::size_t>(places.height));
+  const float sum = from.sums(p.x, p.y);
+  const float scale = from.scales(p.x, p.y);
+  for (int k = 0; k < places.height; ++k) {
+    const int y = places.y + k;
+    float* out = scores.row(k);
+    correlate_row(from, p, in, places, y, out);
+    const float* sums = in.sums.row(y) + places.x;
+    const float* scales = in.scales.row(y) + places.x;
+    for (int x = 0; x < places.width; ++x)
+      out[x] = (kWindowArea * out[x] - sum * sums[x]) * scale * scales[x];
+  }
+}
+
+/// Everywhere around `p` where a point may be found again.
+Rect places_around(Point p, Size size) {
+  const int columns = static_cast<int>(kWidestDisparity * static_cast<float>(size.width));
+  const int rows = std::max(4, static_cast<int>(kMostRowsOff * static_cast<float>(size.height)));
+  const int x0 = std::max(0, p.x - columns);
+  const int y0 = std::max(0, p.y - rows);
+  const int x1 = std::min(size.width - kWindow, p.x + columns);
+  const int y1 = std::min(size.height - kWindow, p.y + rows);
+  return {x0, y0, x1 - x0 + 1, y1 - y0 + 1};
+}
+
+/// The place most alike; nullopt where it is little alike, or another nearly as much.
+std::optional<Point> most_alike(const Level& from, Point p, const Level& in, Scores& scores) {
+  scores.places = places_around(p, in.gray.size());
+  correlate(from, p, in, scores);
+  const auto best = std::max_element(scores.score.begin(), scores.score.end());
+  if (best == scores.score.end() || *best < kLeastAlike) return std::nullopt;
+  const auto index = static_cast<int>(best - scores.score.begin());
+  const Point at{index % scores.places.width, index / scores.places.width};
+  const float rival_from = 1 - kRivalRatio * (1 - *best) - kRivalMargin;
+  for (int y = 0; y < scores.places.height; ++y) {
+    const float* row = scores.row(y);
+    for (int x = 0; x < scores.places.width; ++x) {
+      if (row[x] <= rival_from) continue;
+      const bool near = std::abs(x - at.x) <= kNear && std::abs(y - at.y) <= kNear;
+      if (!near && scores.is_peak(x, y)) return std::nullopt;
+    }
+  }
+  return Point{scores.places.x + at.x, scores.places.y + at.y};
+}
+
+/// An image at full size and halved again and again; the last is the coarsest.
+class Pyramid {
+ public:
+  Pyramid(View<const Gray> full, const Exec& exec) : levels_{full} {
+    while (levels_.back().width() > kCoarseWidth) {
+      halves_.push_back(sparse::halved(levels_.back(), exec));
+      levels_.emplace_back(halves_.back().view());
+    }
+  }
+  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  [[nodiscard]] View<const Gray> at(std::size_t level) const { return levels_[level]; }
+
+ private:
+  std::vector<Image<Gray>> halves_;
+  std::vector<View<const Gray>> levels_;
+};
+
+/// From the level where `p` was found at `start`, to the finest one.
+std::optional<Correspondence> follow(const Pyramid& left, const Pyramid& right, std::size_t from, Point p,
+                                     Point start) {
+  constexpr int kMiddle = kWindow / 2;
+  Place place{static_cast<float>(start.x), static_cast<float>(start.y)};
+  for (std::size_t level = from + 1; level-- > 0;) {
+    const auto found = sparse::refine(left.at(level), p, right.at(level), place);
+    if (!found) return std::nullopt;
+    place = *found;
+    if (level == 0) break;
+    p = {2 * p.x + kMiddle, 2 * p.y + kMiddle};
+    place = {2 * place.x + kMiddle, 2 * place.y + kMiddle};
+  }
+  constexpr float kCentre = 0.5F * (kWindow - 1);
+  return Correspondence{static_cast<float>(p.x) + kCentre, static_cast<float>(p.y) + kCentre,
+                        place.x + kCentre, place.y + kCentre};
+}
+
+}  // namespace
+
+Correspondences find_correspondences(const StereoPair& pair, const Exec& exec) {
+  const Pyramid left(pair.left(), exec);
+  const Pyramid right(pair.right(), exec);
+  std::size_t start = left.levels() - 1;
+  std::vector<Point> points = sparse::textured_points(left.at(start), kMostPoints, exec);
+  if (points.size() < kEnoughPoints && start > 0 && left.at(start - 1).width() <= kFineWidth)
+    points = sparse::textured_points(left.at(--start), kMostPoints, exec);
+  const Level left_level = make_level(left.at(start), exec);
+  const Level right_level = make_level(right.at(start), exec);
+  std::vector<std::optional<Correspondence>> found(points.size());
+  parallel_for(exec, static_cast<int>(points.size()), 8, [&](int first, int last) {
+    Scores scores;
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
+      const auto there = most_alike(left_level, points[i], right_level, scores);
+      if (!there) continue;
+      const auto back = most_alike(right_level, *there, left_level, scores);
+      if (!back) continue;
+      const bool returns =
+          std::abs(back->x - points[i].x) <= kNear && std::abs(back->y - points[i].y) <= kNear;
+      if (returns) found[i] = follow(left, right, start, points[i], *there);
+    }
+  });
+  Correspondences all{{}, static_cast<int>(points.size()), pair.size()};
+  for (const auto& one : found) {
+    if (one) all.list.push_back(*one);
+  }
+  return all;
+}
+
+}  // namespace cairn

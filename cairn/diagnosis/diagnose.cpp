@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/robust_fit.hpp>
+#include <cmath>
+#include <cstdio>
+
+namespace cairn {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+std::string text_of(const char* format, double value) {
+  std::array<char, 64> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+std::string percent_text(double share) {
+  return text_of("%.0f %%", 100 * share);
+}
+
+/// What the checks look at, and what they found.
+struct Case {
+  const PairMeasures& measures;
+  const std::optional<StereoRig>& rig;
+  const MatchConfig& range;
+  const DiagnosisConfig& config;
+  std::vector<Finding> findings{};
+
+  void add(FindingKind kind, Severity severity, double value, std::string says) {
+    findings.push_back({kind, severity, value, std::move(says)});
+  }
+  /// A warning from one limit on, broken from the other.
+  static std::optional<Severity> severity(double value, float warn, float broken) {
+    if (value >= static_cast<double>(broken)) return Severity::broken;
+    if (value >= static_cast<double>(warn)) return Severity::warning;
+    return std::nullopt;
+  }
+  [[nodiscard]] double share_below(double disparity_px) const {
+    const auto& d = measures.disparities_px;
+    const auto at = std::lower_bound(d.begin(), d.end(), static_cast<float>(disparity_px));
+    return d.empty() ? 0.0 : static_cast<double>(at - d.begin()) / static_cast<double>(d.size());
+  }
+};
+
+/// Whether a geometry was found, which all that follows rests on.
+bool check_points(Case& c) {
+  const RowAlignment& rows = c.measures.rows;
+  const int textured = c.measures.textured_points;
+  const auto agreeing = static_cast<int>(c.measures.disparities_px.size());
+  const bool enough = agreeing >= c.config.least_points;
+  if (!enough && textured < c.config.least_textured) {
+    c.add(FindingKind::few_points, Severity::note, agreeing,
+          "the left picture has " + std::to_string(textured) + " textured points, and " +
+              std::to_string(agreeing) + " of them are seen in the right one");
+    return false;
+  }
+  if (!enough || 100 * rows.agreeing < c.config.least_agreeing) {
+    c.add(FindingKind::nothing_in_common, Severity::broken, 100 * static_cast<double>(rows.agreeing),
+          "of " + std::to_string(textured) + " textured points " + std::to_string(rows.points) +
+              " are found in the right picture, and " + std::to_string(agreeing) +
+              " of these agree on one geometry");
+    return false;
+  }
+  return true;
+}
+
+/// True where the cameras are in order.
+bool check_order(Case& c) {
+  const double doffs = c.rig ? static_cast<double>(c.rig->doffs_px) : 0.0;
+  const double negative = c.share_below(std::min(0.0, -doffs) - 1);
+  if (100 * negative < static_cast<double>(c.config.break_swapped)) return true;
+  c.add(FindingKind::swapped, Severity::broken, 100 * negative,
+        percent_text(negative) + " of " + std::to_string(c.measures.disparities_px.size()) +
+            " points have a negative disparity, in the middle " +
+            text_of("%+.1f px", c.measures.disparity_px(0.5)));
+  return false;
+}
+
+void check_rows(Case& c) {
+  const RowAlignment& rows = c.measures.rows;
+  const auto left_over = static_cast<double>(rows.left_over_rows);
+  if (const auto severity = Case::severity(left_over, c.config.warn_left_over, c.config.break_left_over)) {
+    c.add(FindingKind::rectification, *severity, left_over,
+          "1 point in 10 is " + text_of("%.1f rows", left_over) +
+              " or more off even if shift and roll are taken back");
+  }
+  const double slope = static_cast<double>(rows.rows_per_px);
+  const double worse =
+      std::abs(static_cast<double>(rows.offset_rows)) + std::abs(slope) * 0.5 * (c.measures.size.width - 1);
+  if (const auto severity = Case::severity(worse, c.config.warn_rows, c.config.break_rows)) {
+    c.add(FindingKind::rows, *severity, worse,
+          "the right picture stands " + text_of("%+.2f rows", static_cast<double>(rows.offset_rows)) +
+              " lower in its middle, turned by " + text_of("%+.2f degrees", kDegrees * std::atan(slope)) +
+              ": " + text_of("%.2f rows", worse) + " at its worse side");
+  }
+}
+
+/// A range that `nearest` fits in, with a quarter to spare, a multiple of 16.
+int suggested_range(double nearest) {
+  return std::min(1024, 16 * static_cast<int>(std::ceil(std::max(1.0, 1.25 * nearest) / 16)));
+}
+
+void check_range(Case& c) {
+  const double first = c.range.min_disparity;
+  const double last = first + c.range.num_disparities - 1;
+  const double nearest = c.measures.disparity_px(0.98);
+  const double furthest = c.measures.disparity_px(0.02);
+  const double beyond = c.share_below(first - 1) + 1 - c.share_below(last + 1);
+  if (const auto severity = Case::severity(100 * beyond, c.config.warn_beyond, c.config.break_beyond)) {
+    const int from =
+        furthest < first - 1 ? static_cast<int>(std::floor(furthest)) - 4 : c.range.min_disparity;
+    c.add(FindingKind::range_too_small, *severity, 100 * beyond,
+          percent_text(beyond) + " of the points lie outside " + text_of("%.0f", first) +
+              text_of(" ... %.0f px", last) + "; nearly all lie in " + text_of("%.0f", furthest) +
+              text_of(" ... %.0f px", nearest) + ": match.min_disparity=" + std::to_string(from) +
+              ", match.num_disparities=" + std::to_string(suggested_range(nearest - from)));
+    return;
+  }
+  const double use = (nearest - first) / (last - first + 1);
+  constexpr int kSmallRange = 64;
+  if (c.range.num_disparities <= kSmallRange || 100 * use >= static_cast<double>(c.config.least_range_use))
+    return;
+  c.add(FindingKind::range_too_large, Severity::note, 100 * use,
+        "the nearest points have " + text_of("%.0f px", nearest) + " of a range up to " +
+            text_of("%.0f px", last) +
+            ": match.num_disparities=" + std::to_string(suggested_range(nearest - first)) + " would do");
+}
+
+void check_infinity(Case& c) {
+  const double doffs = c.rig ? static_cast<double>(c.rig->doffs_px) : 0.0;
+  const double behind = c.share_below(-doffs - 1);
+  if (100 * behind < static_cast<double>(c.config.warn_behind)) return;
+  c.add(FindingKind::behind_infinity, Severity::warning, 100 * behind,
+        percent_text(behind) + " of the points have d + doffs below -1 px (doffs " + text_of("%.1f", doffs) +
+            ", the furthest " + text_of("%.1f px", c.measures.disparity_px(0.02)) + ")");
+}
+
+void check_one_exposure(Case& c, const char* camera, const Exposure& exposure) {
+  const auto white = static_cast<double>(exposure.white);
+  const auto black = static_cast<double>(exposure.black);
+  const double worse = std::max(white, black);
+  if (const auto severity = Case::severity(100 * worse, c.config.warn_clipped, c.config.break_clipped)) {
+    c.add(FindingKind::exposure, *severity, 100 * worse,
+          "in the " + std::string(camera) + " picture " + percent_text(worse) + " of the pixels are " +
+              (white >= black ? "white (254, 255)" : "black (0, 1)"));
+  }
+  if (exposure.contrast < c.config.least_contrast) {
+    c.add(FindingKind::dark, Severity::warning, static_cast<double>(exposure.contrast),
+          "the " + std::string(camera) + " picture's levels span " +
+              text_of("%.0f of 255", static_cast<double>(exposure.contrast)));
+  }
+}
+
+void check_brightness(Case& c) {
+  const BrightnessDifference& b = c.measures.brightness;
+  if (b.median < c.config.warn_brightness) return;
+  c.add(FindingKind::brightness, Severity::warning, static_cast<double>(b.median),
+        "right = " + text_of("%.2f", static_cast<double>(b.gain)) + " x left " +
+            text_of("%+.0f", static_cast<double>(b.offset)) + " grey levels; " +
+            text_of("%.0f", static_cast<double>(b.median)) + " apart in the middle");
+}
+
+void check_sharpness(Case& c) {
+  const auto left = static_cast<double>(c.measures.left_sharpness.edge_px);
+  const auto right = static_cast<double>(c.measures.right_sharpness.edge_px);
+  const auto limit = static_cast<double>(c.config.warn_edge);
+  const auto ratio = static_cast<double>(c.config.warn_edge_ratio);
+  if (left == 0 || right == 0) return;
+  const double worse = std::max(left, right);
+  const std::string numbers = text_of("left %.1f px", left) + text_of(", right %.1f px", right);
+  if (std::min(left, right) >= limit) {
+    c.add(FindingKind::blur, Severity::warning, worse, "edges are wide in both pictures: " + numbers);
+  } else if (worse >= limit || worse >= ratio * std::min(left, right)) {
+    c.add(FindingKind::blur, Severity::warning, worse,
+          "edges are wide in the " + std::string(left > right ? "left" : "right") + " picture: " + numbers);
+  }
+}
+
+/// What can be said of a calibration by the size of the pictures alone.
+void check_camera(Case& c) {
+  if (!c.rig) return;
+  const StereoRig& rig = *c.rig;
+  const Size size = c.measures.size;
+  const double view = 2 * kDegrees * std::atan(0.5 * size.width / static_cast<double>(rig.focal_px));
+  constexpr double kNarrowest = 10;
+  constexpr double kWidest = 140;
+  if (view < kNarrowest || view > kWidest) {
+    c.add(FindingKind::calibration, Severity::broken, static_cast<double>(rig.focal_px),
+          "a focal length of " + text_of("%g px", static_cast<double>(rig.focal_px)) + " sees " +
+              text_of("%.1f degrees", view) + " on " + std::to_string(size.width) +
+              " columns (in millimetres, or of another size?)");
+  }
+  const double off_x = std::abs(static_cast<double>(rig.cx_px) / size.width - 0.5);
+  const double off_y = std::abs(static_cast<double>(rig.cy_px) / size.height - 0.5);
+  constexpr double kFurthest = 0.3;
+  if (std::max(off_x, off_y) > kFurthest) {
+    c.add(FindingKind::calibration, Severity::broken,
+          static_cast<double>(off_x > off_y ? rig.cx_px : rig.cy_px),
+          "the principal point (" + text_of("%.0f, ", static_cast<double>(rig.cx_px)) +
+              text_of("%.0f", static_cast<double>(rig.cy_px)) + ") is far from the middle of " + text(size) +
+              " pictures: a calibration for another size?");
+  }
+}
+
+/// Distances that nobody sees with a stereo camera: a wrong unit of the baseline.
+void check_distances(Case& c) {
+  if (!c.rig) return;
+  const double scale = static_cast<double>(c.rig->focal_px) * static_cast<double>(c.rig->baseline_m);
+  const double doffs = static_cast<double>(c.rig->doffs_px);
+  const double nearest = scale / std::max(0.5, c.measures.disparity_px(0.98) + doffs);
+  const double furthest = scale / std::max(0.5, c.measures.disparity_px(0.05) + doffs);
+  constexpr double kNearestBeyond = 200;
+  constexpr double kFurthestWithin = 0.04;
+  if (nearest <= kNearestBeyond && furthest >= kFurthestWithin) return;
+  const bool far = nearest > kNearestBeyond;
+  c.add(FindingKind::calibration, Severity::broken, static_cast<double>(c.rig->baseline_m),
+        "with a baseline of " + text_of("%g m", static_cast<double>(c.rig->baseline_m)) +
+            (far ? " the nearest points would be " : " the furthest points would be ") +
+            text_of("%g m away", far ? nearest : furthest) + ": a wrong unit of length?");
+}
+
+}  // namespace
+
+double PairMeasures::disparity_px(double share) const {
+  if (disparities_px.empty()) return std::nan("");
+  const auto last = static_cast<double>(disparities_px.size() - 1);
+  return static_cast<double>(disparities_px[static_cast<std::size_t>(std::lround(share * last))]);
+}
+
+PairMeasures measure_pair(const StereoPair& pair, const Exec& exec) {
+  const Correspondences found = find_correspondences(pair, exec);
+  const Correspondences agreeing = agreeing_ones(found);
+  PairMeasures measures;
+  measures.size = pair.size();
+  measures.textured_points = found.points;
+  measures.rows = measure_row_alignment(found);
+  for (const Correspondence& c : agreeing.list) measures.disparities_px.push_back(c.disparity());
+  std::sort(measures.disparities_px.begin(), measures.disparities_px.end());
+  measures.brightness = measure_brightness_difference(pair, agreeing);
+  measures.left_exposure = measure_exposure(pair.left());
+  measures.right_exposure = measure_exposure(pair.right());
+  measures.left_sharpness = measure_sharpness(pair.left(), measures.left_exposure.contrast);
+  measures.right_sharpness = measure_sharpness(pair.right(), measures.right_exposure.contrast);
+  return measures;
+}
+
+std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<StereoRig>& rig,
+                              const MatchConfig& range, const DiagnosisConfig& config) {
+  Case c{measures, rig, range, config};
+  check_camera(c);
+  if (check_points(c)) {
+    if (check_order(c)) {
+      check_distances(c);
+      check_range(c);
+      check_infinity(c);
+    }
+    check_rows(c);
+    check_brightness(c);
+  }
+  check_one_exposure(c, "left", measures.left_exposure);
+  check_one_exposure(c, "right", measures.right_exposure);
+  check_sharpness(c);
+  return united({c.findings});
+}
+
+std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs) {
+  std::vector<Finding> all;
+  for (const FindingInfo& kind : kFindings) {
+    std::optional<Finding> worst;
+    std::vector<std::size_t> frames;
+    for (std::size_t i = 0; i < of_pairs.size(); ++i) {
+      for (const Finding& one : of_pairs[i]) {
+        if (one.kind != kind.kind) continue;
+        if (frames.empty() || frames.back() != i) frames.push_back(i);
+        if (!worst || one.severity > worst->severity) worst = one;
+      }
+    }
+    if (!worst) continue;
+    if (kind.kind == FindingKind::range_too_large && frames.size() < of_pairs.size()) continue;
+    worst->frames = std::move(frames);
+    all.push_back(std::move(*worst));
+  }
+  return all;
+}
+
+}  // namespace cairn

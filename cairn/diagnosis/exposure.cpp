@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <array>
+#include <cairn/diagnosis/exposure.hpp>
+#include <cairn/diagnosis/robust_fit.hpp>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace cairn {
+namespace {
+
+constexpr std::size_t kLevels = 256;
+
+int level_below(const std::array<std::int64_t, kLevels>& counts, std::int64_t pixels) {
+  std::int64_t sum = 0;
+  for (std::size_t level = 0; level < kLevels; ++level) {
+    sum += counts[level];
+    if (sum > pixels) return static_cast<int>(level);
+  }
+  return kLevels - 1;
+}
+
+constexpr int kRadius = 4;  // px, of the windows compared
+
+/// nullopt beyond the border and where the camera had no level for it.
+std::optional<double> mean_around(View<const Gray> image, float x_px, float y_px) {
+  const auto x0 = static_cast<int>(std::lround(x_px)) - kRadius;
+  const auto y0 = static_cast<int>(std::lround(y_px)) - kRadius;
+  constexpr int kSide = 2 * kRadius + 1;
+  if (x0 < 0 || y0 < 0 || x0 + kSide > image.width() || y0 + kSide > image.height()) return std::nullopt;
+  int sum = 0;
+  for (int y = y0; y < y0 + kSide; ++y) {
+    for (int x = x0; x < x0 + kSide; ++x) {
+      const int level = image(x, y);
+      if (level <= 1 || level >= 254) return std::nullopt;
+      sum += level;
+    }
+  }
+  return static_cast<double>(sum) / (kSide * kSide);
+}
+
+}  // namespace
+
+Exposure measure_exposure(View<const Gray> image) {
+  std::array<std::int64_t, kLevels> counts{};
+  for (int y = 0; y < image.height(); ++y) {
+    const Gray* row = image.row(y);
+    for (int x = 0; x < image.width(); ++x) ++counts[row[x]];
+  }
+  const std::int64_t area = image.size().area();
+  const auto share = [&](std::int64_t count) { return static_cast<float>(count) / static_cast<float>(area); };
+  return {share(counts[0] + counts[1]), share(counts[254] + counts[255]),
+          static_cast<float>(level_below(counts, area - 1 - area / 100) - level_below(counts, area / 100))};
+}
+
+BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing) {
+  constexpr double kMiddle = 128;
+  constexpr double kScale = 4;  // grey levels, of what windows usually differ by
+  constexpr std::size_t kLeast = 20;
+  constexpr double kLeastSpread = 20;  // grey levels between the darker and the brighter windows
+  std::vector<Equation<2>> equations;
+  std::vector<double> differences;
+  std::vector<double> levels;
+  for (const Correspondence& c : agreeing.list) {
+    const auto left = mean_around(pair.left(), c.x_left, c.y_left);
+    const auto right = mean_around(pair.right(), c.x_right, c.y_right);
+    if (!left || !right) continue;
+    equations.push_back({{1, (*left - kMiddle) / kMiddle}, *right - *left});
+    differences.push_back(std::abs(*right - *left));
+    levels.push_back(*left);
+  }
+  BrightnessDifference result;
+  result.points = static_cast<int>(equations.size());
+  if (equations.size() < kLeast) return result;
+  result.median = static_cast<float>(quantile(differences, 0.5));
+  if (quantile(levels, 0.9) - quantile(levels, 0.1) < kLeastSpread) {
+    std::vector<double> signed_differences;
+    for (const auto& e : equations) signed_differences.push_back(e.value);
+    result.offset = static_cast<float>(quantile(signed_differences, 0.5));
+    return result;
+  }
+  const std::array<double, 2> fit = fit_robustly<2>(equations, kScale);
+  result.gain = static_cast<float>(1 + fit[1] / kMiddle);
+  result.offset = static_cast<float>(fit[0] - fit[1]);
+  return result;
+}
+
+}  // namespace cairn

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/core/fields.hpp>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cairn {
+
+/// note: worth knowing; warning: results suffer; broken: no result can be trusted before it is mended.
+enum class Severity : std::uint8_t { note, warning, broken };
+inline constexpr std::array kSeverities{Choice<Severity>{"note", Severity::note},
+                                        Choice<Severity>{"warning", Severity::warning},
+                                        Choice<Severity>{"broken", Severity::broken}};
+
+/// What may be wrong with a rig. The order is that of a report: a cause before what follows from it.
+enum class FindingKind : std::uint8_t {
+  sizes,
+  impossible_calibration,
+  calibration,
+  few_points,
+  nothing_in_common,
+  swapped,
+  rectification,
+  rows,
+  synchrony,
+  range_too_small,
+  range_too_large,
+  behind_infinity,
+  exposure,
+  dark,
+  brightness,
+  blur
+};
+
+/// What is known of a kind beforehand. The number's meaning and unit are those of Finding::value.
+struct FindingInfo {
+  FindingKind kind;
+  std::string_view name;
+  std::string_view number;
+  std::string_view unit;
+  std::string_view remedy;
+};
+inline constexpr std::array kFindings{
+    FindingInfo{FindingKind::sizes, "sizes", "the right picture's area over the left one's", "",
+                "Set both cameras to the same resolution and binning, and rectify both to one size."},
+    FindingInfo{
+        FindingKind::impossible_calibration, "impossible calibration", "the number that cannot be",
+        "as the file says",
+        "Correct the file: focal length and baseline are positive; a negative baseline means that left "
+        "and right stand in the wrong order."},
+    FindingInfo{
+        FindingKind::calibration, "calibration contradicts the picture", "the number that cannot be",
+        "see the sentence",
+        "Give the calibration that was made for these pictures, at their size, with lengths in metres "
+        "and pixels."},
+    FindingInfo{FindingKind::few_points, "too little to see", "textured points found in both pictures",
+                "points",
+                "Point the cameras at something with texture, in good light, and run the doctor again: it "
+                "cannot judge rows, order and range on this."},
+    FindingInfo{FindingKind::nothing_in_common, "pictures do not match", "points that agree on one geometry",
+                "%",
+                "See whether both pictures show the same scene at the same moment, neither upside down nor "
+                "mirrored; then whether the pair was rectified at all (cairn rectify)."},
+    FindingInfo{FindingKind::swapped, "cameras swapped", "points with a negative disparity", "%",
+                "Exchange the two pictures, or the cameras' cables or names, and calibrate anew if the "
+                "calibration was made like this."},
+    FindingInfo{FindingKind::rectification, "not rectified",
+                "rows that 1 in 10 points is still off once shift and roll are taken back", "rows",
+                "Rectify the pair with its calibration (cairn rectify); if it is rectified, calibrate anew "
+                "(cairn calibrate): a lens or a mount has moved."},
+    FindingInfo{
+        FindingKind::rows, "rows misaligned", "rows that the right picture is off, at the worse side", "rows",
+        "Calibrate anew and tighten the mounts. Up to epipolar_correction.max_rows the preset default "
+        "takes shift and roll back by itself, for some time per frame."},
+    FindingInfo{FindingKind::synchrony, "not synchronised", "frames that the right camera lags behind",
+                "frames",
+                "Trigger both cameras by one signal, and pair pictures by their time stamps, not by their "
+                "order of arrival."},
+    FindingInfo{FindingKind::range_too_small, "disparity range too small", "points outside the range", "%",
+                "Widen the range: set match.min_disparity and match.num_disparities (or ndisp in the "
+                "calibration) as the sentence says."},
+    FindingInfo{FindingKind::range_too_large, "disparity range too large", "the range's use", "%",
+                "Narrow the range: it costs time and invites false matches. Leave it where nearer things are "
+                "still to come."},
+    FindingInfo{
+        FindingKind::behind_infinity, "points behind infinity", "points with d + doffs below -1 px", "%",
+        "Check doffs in the calibration (cx of the right camera less cx of the left one), and whether "
+        "the rectification shifts one picture."},
+    FindingInfo{FindingKind::exposure, "clipped exposure", "pixels at the first or last grey level", "%",
+                "Shorten (white) or lengthen (black) the exposure, or lower the gain: nothing can be matched "
+                "where the level does not change."},
+    FindingInfo{FindingKind::dark, "little contrast",
+                "grey levels between the darkest and the brightest hundredth", "grey levels",
+                "Lengthen the exposure or add light; noise and rounding are as strong as texture here."},
+    FindingInfo{FindingKind::brightness, "cameras see unequal brightness",
+                "how much the right picture differs, in the middle", "grey levels",
+                "Lock exposure, gain and white balance of both cameras to the same values."},
+    FindingInfo{FindingKind::blur, "blurred", "pixels that an edge takes", "px",
+                "Focus the camera, clean its lens, or shorten the exposure if it moves."}};
+
+constexpr const FindingInfo& info(FindingKind kind) {
+  return kFindings[static_cast<std::size_t>(kind)];
+}
+
+/// One thing that is wrong.
+struct Finding {
+  FindingKind kind = FindingKind::sizes;
+  Severity severity = Severity::note;
+  double value = 0;                   // see FindingInfo::number and unit
+  std::string says;                   // one sentence with the numbers, without a full stop
+  std::vector<std::size_t> frames{};  // indices of the pairs that show it
+};
+
+/// The findings of many pairs by kind, in the order of kFindings, each with the severity, number and sentence
+/// of the pair where it is worst, and all pairs that show it. A range is too large only where it is so for
+/// every pair that could tell.
+std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs);
+
+}  // namespace cairn

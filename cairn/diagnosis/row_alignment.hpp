@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/diagnosis/correspondences.hpp>
+
+namespace cairn {
+
+/// How well the two images' rows are the same, from correspondences. What the left image shows in row y
+/// should stand in the right one's row y; where the cameras differ by a small shift or turn it stands at y +
+/// offset_rows + rows_per_px · (x_right − (width − 1)/2), and where the pair is not rectified it strays
+/// further.
+struct RowAlignment {
+  int points = 0;            // correspondences
+  float offset_rows = 0;     // in the middle column
+  float rows_per_px = 0;     // the roll's tangent
+  float agreeing = 0;        // share of the points within a row of what a smooth distortion explains
+  float left_over_rows = 0;  // how far 9 in 10 points at most are off once shift and roll are taken back
+  static constexpr int kMostBins = 8;
+  /// Points by y_right − y_left, rounded, from −8 to 8 rows; the outermost count all beyond.
+  std::array<int, 2 * kMostBins + 1> histogram{};
+};
+
+/// Below 24 points the roll stays 0, below 40 that agree the left-over does. The smooth distortion is a
+/// polynomial of the second degree in the place and of the first in the disparity, which lens distortion, a
+/// turn about any axis, a wrong focal length and cameras at unequal heights make; it is fitted robustly
+/// (Cauchy's weights).
+RowAlignment measure_row_alignment(const Correspondences& found);
+
+/// Where the points agree, those within a row of the smooth distortion: the others are false matches.
+Correspondences agreeing_ones(const Correspondences& found);
+
+}  // namespace cairn

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/synchrony.hpp>
+#include <cmath>
+#include <io/atomic_file.hpp>
+#include <io/calibration_files.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr double kDegrees = 57.29577951308232;
+constexpr std::size_t kLongestSequence = 60;  // pictures in memory at a time
+
+struct DoctorOptions {
+  InputOptions input;
+  ExecOptions exec;
+  std::optional<std::string> json;
+  int frames = 40;
+};
+
+/// What became of one pair.
+struct Examined {
+  std::string name;
+  std::optional<Size> size;              // of the left picture
+  std::optional<PairMeasures> measures;  // nothing where the pictures differ in size
+  std::vector<Finding> findings;
+};
+
+// ---- one pair ----
+
+/// The pair, or nothing and a finding where the sizes differ. Throws Error for anything else.
+std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examined& examined,
+                                            const Exec& exec) {
+  if (!files.right) throw Error(files.left.string() + ": there is no right picture");
+  try {
+    io::PicturePair pictures = io::load_pair(files.left, *files.right, exec.pool);
+    examined.size = pictures.left.gray.size();
+    return pictures;
+  } catch (const Error&) {
+    const Size left = io::load_picture(files.left, exec.pool).gray.size();
+    const Size right = io::load_picture(*files.right, exec.pool).gray.size();
+    if (left == right) throw;
+    examined.size = left;
+    examined.findings.push_back({FindingKind::sizes, Severity::broken,
+                                 static_cast<double>(right.area()) / static_cast<double>(left.area()),
+                                 "the left picture is " + text(left) + ", the right one " + text(right)});
+    return std::nullopt;
+  }
+}
+
+/// The calibration; empty with a finding where it cannot be true, or is of other pictures.
+io::Calibration calibration_or_find(const io::FrameFiles& files, const std::string& given,
+                                    Examined& examined) {
+  std::optional<fs::path> path = files.calib;
+  if (!given.empty()) path = given;
+  if (!path) return {};
+  io::Calibration calibration;
+  try {
+    calibration = io::load_calibration(*path);
+  } catch (const io::ImpossibleCalibration& error) {
+    examined.findings.push_back(
+        {FindingKind::impossible_calibration, Severity::broken, error.value(), error.what()});
+    return {};
+  }
+  if (calibration.image_size && examined.size && *calibration.image_size != *examined.size) {
+    examined.findings.push_back({FindingKind::calibration, Severity::broken,
+                                 static_cast<double>(calibration.image_size->width),
+                                 "the calibration is of " + text(*calibration.image_size) +
+                                     " pictures, these are " + text(*examined.size)});
+    calibration.rig.reset();
+  }
+  return calibration;
+}
+
+Examined examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
+  Examined examined{files.name, {}, {}, {}};
+  const std::optional<io::PicturePair> pictures = load_or_find(files, examined, exec);
+  const io::Calibration calibration = calibration_or_find(files, options.input.calib, examined);
+  if (!pictures) return examined;
+  const Config config = resolve(options.input.config, calibration.num_disparities).config;
+  examined.measures = measure_pair(StereoPair::from(pictures->left.gray, pictures->right.gray), exec);
+  for (Finding& finding : diagnose(*examined.measures, calibration.rig, config.match, DiagnosisConfig{}))
+    examined.findings.push_back(std::move(finding));
+  return examined;
+}
+
+// ---- a folder ----
+
+/// At most `most` of them, from the first to the last.
+std::vector<io::FrameFiles> spread(const std::vector<io::FrameFiles>& frames, std::size_t most) {
+  if (frames.size() <= most) return frames;
+  std::vector<io::FrameFiles> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(frames[i * frames.size() / most]);
+  return some;
+}
+
+struct Diagnosis {
+  std::size_t pairs_in_all = 0;
+  std::vector<Examined> pairs;
+  std::optional<Synchrony> synchrony;
+  std::vector<Finding> findings;
+};
+
+std::optional<Finding> find_sizes(const std::vector<Examined>& pairs) {
+  Finding finding{FindingKind::sizes, Severity::note, 1, {}};
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    if (pairs[i].size == pairs[0].size) continue;
+    finding.value = static_cast<double>(pairs[i].size->area()) / static_cast<double>(pairs[0].size->area());
+    if (finding.says.empty()) {
+      finding.says = pairs[0].name + " is " + text(*pairs[0].size) + ", " + pairs[i].name + " is " +
+                     text(*pairs[i].size) + ": more than one rig, or more than one setting";
+    }
+    finding.frames.push_back(i);
+  }
+  if (finding.says.empty()) return std::nullopt;
+  return finding;
+}
+
+/// Consecutive pairs from the folder's start, as long as they are of one size.
+Synchrony synchrony_of(const std::vector<io::FrameFiles>& frames, const Exec& exec) {
+  std::vector<io::PicturePair> pictures;
+  std::vector<StereoPair> pairs;
+  for (std::size_t i = 0; i < std::min(frames.size(), kLongestSequence); ++i) {
+    io::PicturePair one = io::load_pair(frames[i].left, *frames[i].right, exec.pool);
+    if (!pictures.empty() && one.left.gray.size() != pictures.front().left.gray.size()) break;
+    pictures.push_back(std::move(one));
+  }
+  pairs.reserve(pictures.size());
+  for (const io::PicturePair& one : pictures)
+    pairs.push_back(StereoPair::from(one.left.gray, one.right.gray));
+  return measure_synchrony(pairs, exec);
+}
+
+Diagnosis examine_all(const DoctorOptions& options) {
+  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+  (void)resolve(options.input.config);  // a bad option is one before any work
+  const Exec exec = make_exec(options.exec);
+  const std::vector<io::FrameFiles> some = spread(frames, static_cast<std::size_t>(options.frames));
+  Diagnosis diagnosis{frames.size(), {}, {}, {}};
+  std::vector<std::vector<Finding>> findings;
+  {
+    const Progress progress(some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      progress.at(i, some[i].name);
+      diagnosis.pairs.push_back(examine(some[i], options, exec));
+      findings.push_back(diagnosis.pairs.back().findings);
+    }
+  }
+  diagnosis.findings = united(findings);
+  const auto add = [&](const std::optional<Finding>& finding) {
+    if (!finding) return;
+    const auto after = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                    [&](const Finding& other) { return other.kind >= finding->kind; });
+    if (after == diagnosis.findings.end() || after->kind != finding->kind)
+      diagnosis.findings.insert(after, *finding);
+  };
+  const bool measured = std::all_of(diagnosis.pairs.begin(), diagnosis.pairs.end(),
+                                    [](const Examined& one) { return one.measures.has_value(); });
+  if (frames.size() > 1 && measured) {
+    diagnosis.synchrony = synchrony_of(frames, exec);
+    add(diagnose(*diagnosis.synchrony));
+  }
+  add(find_sizes(diagnosis.pairs));
+  return diagnosis;
+}
+
+// ---- numbers ----
+
+/// One number of a pair: its key in JSON, its name and format on the terminal.
+struct Number {
+  const char* key;
+  const char* name;
+  const char* format;
+  double (*of)(const PairMeasures&);
+};
+
+constexpr std::array kNumbers{
+    Number{"textured_points", "textured points", "%.0f",
+           [](const PairMeasures& m) { return double(m.textured_points); }},
+    Number{"found_points", "found in both pictures", "%.0f",
+           [](const PairMeasures& m) { return double(m.rows.points); }},
+    Number{"agreeing_percent", "agree on one geometry, %", "%.0f",
+           [](const PairMeasures& m) { return 100 * double(m.rows.agreeing); }},
+    Number{"offset_rows", "right picture lower, rows", "%+.2f",
+           [](const PairMeasures& m) { return double(m.rows.offset_rows); }},
+    Number{"roll_degrees", "right picture turned, degrees", "%+.3f",
+           [](const PairMeasures& m) { return kDegrees * std::atan(double(m.rows.rows_per_px)); }},
+    Number{"left_over_rows", "left over, rows", "%.2f",
+           [](const PairMeasures& m) { return double(m.rows.left_over_rows); }},
+    Number{"furthest_px", "disparity, 1 % below, px", "%.1f",
+           [](const PairMeasures& m) { return m.disparity_px(0.01); }},
+    Number{"median_px", "disparity, middle, px", "%.1f",
+           [](const PairMeasures& m) { return m.disparity_px(0.5); }},
+    Number{"nearest_px", "disparity, 1 % above, px", "%.1f",
+           [](const PairMeasures& m) { return m.disparity_px(0.99); }},
+    Number{"gain", "gain, right to left", "%.3f",
+           [](const PairMeasures& m) { return double(m.brightness.gain); }},
+    Number{"offset", "offset, grey levels", "%+.1f",
+           [](const PairMeasures& m) { return double(m.brightness.offset); }},
+    Number{"brightness_difference", "brightness apart, grey levels", "%.1f",
+           [](const PairMeasures& m) { return double(m.brightness.median); }},
+    Number{"left_contrast", "contrast left, grey levels", "%.0f",
+           [](const PairMeasures& m) { return double(m.left_exposure.contrast); }},
+    Number{"right_contrast", "contrast right, grey levels", "%.0f",
+           [](const PairMeasures& m) { return double(m.right_exposure.contrast); }},
+    Number{"left_white_percent", "white left, %", "%.1f",
+           [](const PairMeasures& m) { return 100 * double(m.left_exposure.white); }},
+    Number{"right_white_percent", "white right, %", "%.1f",
+           [](const PairMeasures& m) { return 100 * double(m.right_exposure.white); }},
+    Number{"left_black_percent", "black left, %", "%.1f",
+           [](const PairMeasures& m) { return 100 * double(m.left_exposure.black); }},
+    Number{"right_black_percent", "black right, %", "%.1f",
+           [](const PairMeasures& m) { return 100 * double(m.right_exposure.black); }},
+    Number{"left_edge_px", "edges left, px", "%.2f",
+           [](const PairMeasures& m) { return double(m.left_sharpness.edge_px); }},
+    Number{"right_edge_px", "edges right, px", "%.2f",
+           [](const PairMeasures& m) { return double(m.right_sharpness.edge_px); }}};
+
+std::string numbers_text(const std::vector<Examined>& pairs) {
+  const bool several = pairs.size() > 1;
+  Table table(several ? std::vector<std::string>{"measured", "least", "median", "most"}
+                      : std::vector<std::string>{"measured", ""});
+  for (const Number& number : kNumbers) {
+    std::vector<double> values;
+    for (const Examined& pair : pairs) {
+      if (pair.measures) values.push_back(number.of(*pair.measures));
+    }
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    std::sort(values.begin(), values.end());
+    if (values.empty()) continue;
+    const std::string median = text_of(number.format, values[values.size() / 2]);
+    if (several) {
+      table.add({number.name, text_of(number.format, values.front()), median,
+                 text_of(number.format, values.back())});
+    } else {
+      table.add({number.name, median});
+    }
+  }
+  return table.text();
+}
+
+using Histogram = decltype(RowAlignment::histogram);
+
+Histogram histogram_of(const std::vector<Examined>& pairs) {
+  Histogram sum{};
+  for (const Examined& pair : pairs) {
+    for (std::size_t i = 0; pair.measures && i < sum.size(); ++i) sum[i] += pair.measures->rows.histogram[i];
+  }
+  return sum;
+}
+
+/// "rows off       -1     0    +1" and the points below it; bins that are empty at either end are left out.
+std::string histogram_text(const Histogram& histogram) {
+  const auto is_used = [](int count) { return count > 0; };
+  const auto first = std::find_if(histogram.begin(), histogram.end(), is_used);
+  const auto last = std::find_if(histogram.rbegin(), histogram.rend(), is_used).base();
+  if (first == histogram.end()) return {};
+  std::vector<std::string> rows{"rows off"};
+  std::vector<std::string> counts{"points"};
+  for (auto bin = first; bin != last; ++bin) {
+    const int at = static_cast<int>(bin - histogram.begin()) - RowAlignment::kMostBins;
+    const std::string beyond = std::abs(at) == RowAlignment::kMostBins ? " or more" : "";
+    rows.push_back(text_of(at == 0 ? "%.0f" : "%+.0f", at) + beyond);
+    counts.push_back(std::to_string(*bin));
+  }
+  Table table(std::move(rows));
+  table.add(std::move(counts));
+  return table.text();
+}
+
+// ---- words ----
+
+std::string name_of(Severity severity) {
+  for (const auto& choice : kSeverities) {
+    if (choice.value == severity) return std::string(choice.name);
+  }
+  return {};
+}
+
+std::string frames_text(const Finding& finding, const std::vector<Examined>& pairs) {
+  constexpr std::size_t kNamed = 3;
+  if (pairs.size() < 2 || finding.frames.empty()) return {};
+  std::string all =
+      ", in " + std::to_string(finding.frames.size()) + " of " + std::to_string(pairs.size()) + " pairs";
+  if (finding.frames.size() == pairs.size()) return all;
+  for (std::size_t i = 0; i < std::min(kNamed, finding.frames.size()); ++i)
+    all += (i == 0 ? " (" : ", ") + pairs[finding.frames[i]].name;
+  return all + (finding.frames.size() > kNamed ? ", ...)" : ")");
+}
+
+std::string findings_text(const Diagnosis& diagnosis) {
+  if (diagnosis.findings.empty()) return "nothing wrong found\n";
+  std::string all;
+  for (const Finding& finding : diagnosis.findings) {
+    std::string severity = name_of(finding.severity);
+    severity.resize(9, ' ');
+    all += severity + std::string(info(finding.kind).name) + ": " + finding.says +
+           frames_text(finding, diagnosis.pairs) + "\n         " + std::string(info(finding.kind).remedy) +
+           "\n";
+  }
+  return all;
+}
+
+// ---- JSON ----
+
+Json number_json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json finding_json(const Finding& finding, const std::vector<Examined>& pairs) {
+  Json frames = Json::array();
+  for (const std::size_t i : finding.frames) frames.push_back(pairs[i].name);
+  const FindingInfo& known = info(finding.kind);
+  return {{"finding", known.name},
+          {"severity", name_of(finding.severity)},
+          {"value", number_json(finding.value)},
+          {"number", known.number},
+          {"unit", known.unit},
+          {"says", finding.says},
+          {"remedy", known.remedy},
+          {"pairs", frames}};
+}
+
+std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
+  Json j{{"cairn", CAIRN_VERSION}, {"broken", is_broken}, {"pairs_in_all", diagnosis.pairs_in_all}};
+  j["findings"] = Json::array();
+  for (const Finding& finding : diagnosis.findings)
+    j["findings"].push_back(finding_json(finding, diagnosis.pairs));
+  j["pairs"] = Json::array();
+  for (const Examined& pair : diagnosis.pairs) {
+    Json one{{"name", pair.name}, {"width", pair.size->width}, {"height", pair.size->height}};
+    one["measured"] = nullptr;
+    if (pair.measures) {
+      for (const Number& number : kNumbers)
+        one["measured"][number.key] = number_json(number.of(*pair.measures));
+      one["measured"]["rows_histogram"] = pair.measures->rows.histogram;
+    }
+    j["pairs"].push_back(std::move(one));
+  }
+  j["synchrony"] = nullptr;
+  if (diagnosis.synchrony) {
+    const Synchrony& s = *diagnosis.synchrony;
+    j["synchrony"] = {{"frames", s.frames},
+                      {"lag", s.lag()},
+                      {"motion", s.motion},
+                      {"agreement", s.agreement},
+                      {"left_repeats", s.left_repeats},
+                      {"right_repeats", s.right_repeats}};
+  }
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+int examine_and_tell(const DoctorOptions& options) {
+  const Diagnosis diagnosis = examine_all(options);
+  const bool is_broken =
+      std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                  [](const Finding& finding) { return finding.severity == Severity::broken; });
+  if (options.json) io::write_file(*options.json, diagnosis_json(diagnosis, is_broken));
+  std::cout << findings_text(diagnosis) << "\n" << numbers_text(diagnosis.pairs);
+  if (const std::string rows = histogram_text(histogram_of(diagnosis.pairs)); !rows.empty())
+    std::cout << "\n" << rows;
+  return is_broken ? 1 : 0;
+}
+
+}  // namespace
+
+Work declare_doctor(CLI::App& app) {
+  auto options = std::make_shared<DoctorOptions>();
+  add_input_options(app, options->input);
+  add_exec_options(app, options->exec);
+  app.add_option("--frames", options->frames, "how many pairs of a folder are measured, spread evenly")
+      ->check(CLI::Range(1, 100000).name(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--json", options->json, "also write findings and measurements into this file, as JSON")
+      ->type_name("FILE");
+  app.footer(
+      "Says what is wrong with the rig: each finding with what was measured and what to do.\n"
+      "Exit codes: 0 nothing is broken, 1 something is, 2 bad usage, file or option.\n"
+      "docs/doctor.md explains each finding.");
+  return [options] { return examine_and_tell(*options); };
+}
+
+}  // namespace cairn::cli
