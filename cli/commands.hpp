@@ -17,6 +17,8 @@ Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
 Work declare_bench(CLI::App& app);
 Work declare_tune(CLI::App& app);
+Work declare_calibrate(CLI::App& app);
+Work declare_rectify(CLI::App& app);
 Work declare_doctor(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
@@ -35,6 +37,8 @@ inline constexpr std::array kCommands{
     Command{"tune", "search the options that do best on your own frames", declare_tune},
     Command{"doctor", "tell what is wrong with a rig: order, rows, synchrony, range, exposure, focus",
             declare_doctor},
+    Command{"calibrate", "find both raw cameras from pictures of a checkerboard", declare_calibrate},
+    Command{"rectify", "turn raw pictures into those of a rectified pair", declare_rectify},
     Command{"config", "show every option with its value, unit, range and meaning", declare_config},
     Command{"info", "show version, instruction sets and threads", declare_info},
 };

@@ -191,7 +191,7 @@ constexpr std::array kNumbers{
     Number{"found_points", "found in both pictures", "%.0f",
            [](const PairMeasures& m) { return double(m.rows.points); }},
     Number{"agreeing_percent", "agree on one geometry, %", "%.0f",
-           [](const PairMeasures& m) { return 100 * double(m.rows.agreeing); }},
+           [](const PairMeasures& m) { return 100 * m.rows.agreeing_share(); }},
     Number{"offset_rows", "right picture lower, rows", "%+.2f",
            [](const PairMeasures& m) { return double(m.rows.offset_rows); }},
     Number{"roll_degrees", "right picture turned, degrees", "%+.3f",

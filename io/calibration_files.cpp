@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
 #include <io/calibration_forms.hpp>
 #include <io/raster.hpp>
@@ -255,6 +256,12 @@ Statement from_projections(const Projection& left, const Projection& right) {
   return says;
 }
 
+StereoRig rig_of(const Projection& left, const Projection& right) {
+  const Calibration calibration = judged(from_projections(left, right));
+  calibration.rig->validate("calibration");
+  return *calibration.rig;
+}
+
 Statement read_key_value_lines(std::string_view text) {
   const Pairs pairs = pairs_of(text, '=');
   Statement says;
@@ -338,6 +345,25 @@ Calibration load_calibration(const fs::path& path) {
   } catch (const Error& error) {
     throw Error(file.string() + ": " + error.what());
   }
+}
+
+void save_calibration(const fs::path& path, const StereoRig& rig, Size image) {
+  std::string file;
+  const auto add = [&](const char* key, float value) {
+    std::array<char, 32> digits{};
+    file +=
+        std::string(key) + "=" +
+        std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr) +
+        "\n";
+  };
+  add("fx", rig.focal_px);
+  add("fy", rig.focal_px);
+  add("cx", rig.cx_px);
+  add("cy", rig.cy_px);
+  add("baseline", rig.baseline_m);
+  add("doffs", rig.doffs_px);
+  write_file(path, file + "width=" + std::to_string(image.width) +
+                       "\nheight=" + std::to_string(image.height) + "\n");
 }
 
 void check_size(const Calibration& calibration, Size image, const fs::path& path) {

@@ -35,6 +35,9 @@ class ImpossibleCalibration : public Error {
 /// none, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
 Calibration load_calibration(const std::filesystem::path& path);
 
+/// Writes a rectified pair's calibration as key=value lines, whole or not at all. Throws Error.
+void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image);
+
 /// Throws Error where the calibration was made for pictures of another size.
 void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);
 /// Throws Error where its number of disparities is none that match.num_disparities takes.

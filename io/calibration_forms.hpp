@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <io/calibration_files.hpp>
+#include <io/raw_calibration.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,8 @@ using Projection = std::array<double, 12>;
 Projection projection_of(const std::vector<double>& numbers, std::string_view key);
 /// Focal length, centre, baseline and doffs of two rectified cameras; their fourth columns are in px · m.
 Statement from_projections(const Projection& left, const Projection& right);
+/// The same, judged: throws Error where it is no pair.
+StereoRig rig_of(const Projection& left, const Projection& right);
 
 Statement read_key_value_lines(std::string_view text);
 Statement read_middlebury(std::string_view text);
@@ -43,6 +46,9 @@ Statement read_opencv_xml(std::string_view text);
 /// Our own YAML, OpenCV's, ROS': by their keys. `path` finds the other camera's file of a ROS pair; nothing
 /// where the text is no YAML map.
 std::optional<Statement> read_yaml(std::string_view text, const std::filesystem::path& path);
+
+/// The cameras of OpenCV's YAML, XML and JSON, and of a ROS pair.
+RawCalibration read_raw(std::string_view text, const std::filesystem::path& path);
 
 /// left.yaml ↔ right.yaml, *_left ↔ *_right, left_* ↔ right_*; nothing where the name has neither word.
 std::optional<std::filesystem::path> other_camera(const std::filesystem::path& path);

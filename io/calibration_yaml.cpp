@@ -13,6 +13,7 @@ namespace cairn::io {
 namespace {
 
 namespace fs = std::filesystem;
+using Numbers = std::vector<double>;
 
 /// A matrix as OpenCV and ROS write it.
 struct Matrix {
@@ -209,7 +210,8 @@ Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
   return says;
 }
 
-Statement read_ros_file(const YAML::Node& camera, const fs::path& path) {
+/// The other camera's file beside the one that is named.
+YAML::Node ros_partner(const fs::path& path) {
   const std::optional<fs::path> partner = other_camera(path);
   std::error_code unknown;
   if (!partner || !fs::is_regular_file(*partner, unknown)) {
@@ -219,7 +221,106 @@ Statement read_ros_file(const YAML::Node& camera, const fs::path& path) {
   }
   const std::vector<YAML::Node> documents = documents_of(read_file(*partner, kMostTextBytes));
   if (documents.empty()) throw Error("the other camera's file " + partner->filename().string() + " is empty");
-  return from_ros_pair(camera, documents.front());
+  return documents.front();
+}
+
+/// Both cameras, from one file with both or from the two of a pair; nothing where the file is no camera_info.
+std::optional<std::pair<YAML::Node, YAML::Node>> ros_pair(const std::vector<YAML::Node>& documents,
+                                                          const fs::path& path) {
+  const YAML::Node& map = documents.front();
+  if (documents.size() == 2 && ros_projection(map)) return std::pair{map, documents.back()};
+  if (map["left"] && map["right"]) return std::pair{map["left"], map["right"]};
+  if (ros_projection(map)) return std::pair{map, ros_partner(path)};
+  return std::nullopt;
+}
+
+// ---- raw cameras ----
+
+template <std::size_t N>
+std::array<double, N> fixed(const std::vector<double>& numbers, const char* key) {
+  if (numbers.size() != N) {
+    throw Error(std::string(key) + " has " + std::to_string(numbers.size()) + " numbers, expected " +
+                std::to_string(N));
+  }
+  std::array<double, N> array{};
+  std::copy(numbers.begin(), numbers.end(), array.begin());
+  return array;
+}
+
+using Names = std::initializer_list<const char*>;
+
+/// The numbers of the matrix that has one of these names.
+template <class Document>
+std::optional<std::vector<double>> matrix_named(const Document& document, Names names) {
+  for (const char* name : names) {
+    if (const std::optional<Matrix> matrix = matrix_at(document, name)) return matrix->data;
+  }
+  return std::nullopt;
+}
+
+template <std::size_t N, class Document>
+std::optional<std::array<double, N>> fixed_named(const Document& document, Names names) {
+  const auto numbers = matrix_named(document, names);
+  if (!numbers) return std::nullopt;
+  return fixed<N>(*numbers, *names.begin());
+}
+
+template <std::size_t N, class Document>
+std::array<double, N> needed(const Document& document, Names names) {
+  if (const auto numbers = fixed_named<N>(document, names)) return *numbers;
+  throw Error(std::string("has no ") + *names.begin() + ", expected the calibration of raw cameras");
+}
+
+Size raw_size(const Statement& says) {
+  constexpr double kMost = 32768;
+  const auto counted = [](const std::optional<double>& side, const char* name) {
+    if (side && *side >= 1 && *side <= kMost && *side == static_cast<int>(*side))
+      return static_cast<int>(*side);
+    throw Error(std::string("has no ") + name + " of the pictures, expected a whole number");
+  };
+  return {counted(says.width, "width"), counted(says.height, "height")};
+}
+
+template <class Document>
+RawCalibration read_raw_opencv(const Document& document) {
+  RawCalibration raw;
+  Statement says;
+  read_size(document, says);
+  raw.image_size = raw_size(says);
+  raw.left.matrix = needed<9>(document, {"M1", "K1", "cameraMatrix1", "camera_matrix_1"});
+  raw.right.matrix = needed<9>(document, {"M2", "K2", "cameraMatrix2", "camera_matrix_2"});
+  raw.left.distortion = matrix_named(document, {"D1", "distCoeffs1", "dist_coeffs_1"}).value_or(Numbers{});
+  raw.right.distortion = matrix_named(document, {"D2", "distCoeffs2", "dist_coeffs_2"}).value_or(Numbers{});
+  raw.left.rotation = fixed_named<9>(document, {"R1"});
+  raw.right.rotation = fixed_named<9>(document, {"R2"});
+  raw.left.projection = fixed_named<12>(document, {"P1"});
+  raw.right.projection = fixed_named<12>(document, {"P2"});
+  raw.rotation = fixed_named<9>(document, {"R"});
+  raw.translation_m = fixed_named<3>(document, {"T"});
+  return raw;
+}
+
+RawCamera raw_camera(const YAML::Node& camera) {
+  if (const YAML::Node model = camera["distortion_model"]; model && model.IsScalar()) {
+    const std::string name = model.Scalar();
+    if (name != "plumb_bob" && name != "rational_polynomial")
+      throw Error("distortion_model is " + excerpt(name) + ", expected plumb_bob or rational_polynomial");
+  }
+  return {needed<9>(camera, {"camera_matrix"}),
+          matrix_named(camera, {"distortion_coefficients"}).value_or(Numbers{}),
+          needed<9>(camera, {"rectification_matrix"}), ros_projection(camera)};
+}
+
+RawCalibration raw_from_ros(const YAML::Node& one, const YAML::Node& other) {
+  RawCalibration raw;
+  Statement says;
+  read_size(one, says);
+  raw.image_size = raw_size(says);
+  raw.left = raw_camera(one);
+  raw.right = raw_camera(other);
+  if (!raw.left.projection || !raw.right.projection) throw Error("the other camera has no projection_matrix");
+  if ((*raw.left.projection)[3] < (*raw.right.projection)[3]) std::swap(raw.left, raw.right);
+  return raw;
 }
 
 // ---- our own ----
@@ -262,11 +363,23 @@ std::optional<Statement> read_yaml(std::string_view text, const fs::path& path) 
   const std::vector<YAML::Node> documents = documents_of(text);
   if (documents.empty() || !documents.front().IsMap()) return std::nullopt;
   const YAML::Node& map = documents.front();
-  if (documents.size() == 2 && ros_projection(map)) return from_ros_pair(map, documents.back());
-  if (map["left"] && map["right"]) return from_ros_pair(map["left"], map["right"]);
-  if (ros_projection(map)) return read_ros_file(map, path);
+  if (const auto pair = ros_pair(documents, path)) return from_ros_pair(pair->first, pair->second);
   if (const std::optional<Statement> says = read_opencv(map)) return says;
   return read_own(map);
+} catch (const YAML::Exception& exception) {
+  throw Error("is no calibration: " + exception.msg);
+}
+
+RawCalibration read_raw(std::string_view text, const fs::path& path) try {
+  if (trimmed(text).starts_with('<')) {
+    const std::string xml = without_comments(text);
+    return read_raw_opencv(std::string_view(xml));
+  }
+  const std::vector<YAML::Node> documents = documents_of(text);
+  if (documents.empty() || !documents.front().IsMap())
+    throw Error("is no YAML map, expected the calibration of raw cameras");
+  if (const auto pair = ros_pair(documents, path)) return raw_from_ros(pair->first, pair->second);
+  return read_raw_opencv(documents.front());
 } catch (const YAML::Exception& exception) {
   throw Error("is no calibration: " + exception.msg);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <io/calibration_forms.hpp>
 #include <io/dataset.hpp>
 #include <system_error>
 
@@ -24,6 +25,12 @@ bool is_file(const fs::path& path) {
 std::optional<fs::path> file(const fs::path& path) {
   if (is_file(path)) return path;
   return std::nullopt;
+}
+
+bool is_picture(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  return is_file(path) && std::find(kPictureExtensions.begin(), kPictureExtensions.end(), extension) !=
+                              kPictureExtensions.end();
 }
 
 std::optional<fs::path> picture(const fs::path& folder, const std::string& stem) {
@@ -103,6 +110,39 @@ std::vector<FrameFiles> find_frames(const fs::path& folder) {
   std::sort(frames.begin(), frames.end(),
             [](const FrameFiles& a, const FrameFiles& b) { return a.name < b.name; });
   return frames;
+}
+
+std::vector<FrameFiles> find_pairs(const fs::path& folder) {
+  check_folder(folder);
+  const bool in_folders = fs::is_directory(folder / "left") && fs::is_directory(folder / "right");
+  std::vector<FrameFiles> pairs;
+  std::error_code reason;
+  for (fs::directory_iterator it(in_folders ? folder / "left" : folder, reason), end; !reason && it != end;
+       it.increment(reason)) {
+    const fs::path& left = it->path();
+    if (!is_picture(left)) continue;
+    std::optional<fs::path> right = folder / "right" / left.filename();
+    if (!in_folders) {
+      const bool is_left = left.filename().string().find("left") != std::string::npos;
+      right = is_left ? other_camera(left) : std::nullopt;
+    }
+    if (right && is_file(*right)) pairs.push_back({left.stem().string(), folder, left, *right, {}});
+  }
+  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
+  if (pairs.size() < 2) {
+    try {
+      return find_frames(folder);
+    } catch (const Error&) {
+      if (pairs.empty()) {
+        throw Error(folder.string() +
+                    ": holds no pairs, expected left01.jpg and right01.jpg, left/01.jpg and right/01.jpg, or "
+                    "01/left.jpg and 01/right.jpg, and so on");
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(),
+            [](const FrameFiles& a, const FrameFiles& b) { return a.name < b.name; });
+  return pairs;
 }
 
 TruthFiles find_truth(const fs::path& folder) {

@@ -24,6 +24,11 @@ struct FrameFiles {
 /// otherwise each of its sub-folders with one is, sorted by name. Throws Error where there is none.
 std::vector<FrameFiles> find_frames(const std::filesystem::path& folder);
 
+/// The pairs of pictures in a folder for a calibration, in the order of their names: files whose names differ
+/// in the words left and right alone (left01.jpg, right01.jpg), the same names in sub-folders left/ and
+/// right/, or find_frames(). Throws Error where there is none.
+std::vector<FrameFiles> find_pairs(const std::filesystem::path& folder);
+
 /// What is known to be true of one frame; every part may be missing.
 struct TruthFiles {
   std::filesystem::path folder;                       // where it was found

@@ -48,7 +48,7 @@ struct Case {
 bool check_points(Case& c) {
   const RowAlignment& rows = c.measures.rows;
   const int textured = c.measures.textured_points;
-  const auto agreeing = static_cast<int>(c.measures.disparities_px.size());
+  const int agreeing = rows.agreeing;
   const bool enough = agreeing >= c.config.least_points;
   if (!enough && textured < c.config.least_textured) {
     c.add(FindingKind::few_points, Severity::note, agreeing,
@@ -56,8 +56,8 @@ bool check_points(Case& c) {
               std::to_string(agreeing) + " of them are seen in the right one");
     return false;
   }
-  if (!enough || 100 * rows.agreeing < c.config.least_agreeing) {
-    c.add(FindingKind::nothing_in_common, Severity::broken, 100 * static_cast<double>(rows.agreeing),
+  if (!enough || 100 * rows.agreeing_share() < static_cast<double>(c.config.least_agreeing)) {
+    c.add(FindingKind::nothing_in_common, Severity::broken, 100 * rows.agreeing_share(),
           "of " + std::to_string(textured) + " textured points " + std::to_string(rows.points) +
               " are found in the right picture, and " + std::to_string(agreeing) +
               " of these agree on one geometry");
@@ -108,7 +108,11 @@ void check_range(Case& c) {
   const double nearest = c.measures.disparity_px(0.98);
   const double furthest = c.measures.disparity_px(0.02);
   const double beyond = c.share_below(first - 1) + 1 - c.share_below(last + 1);
-  if (const auto severity = Case::severity(100 * beyond, c.config.warn_beyond, c.config.break_beyond)) {
+  const double points_beyond = beyond * static_cast<double>(c.measures.disparities_px.size());
+  const bool is_chance = 100 * beyond < static_cast<double>(c.config.break_beyond) &&
+                         points_beyond < static_cast<double>(c.config.least_points);
+  if (const auto severity = Case::severity(100 * beyond, c.config.warn_beyond, c.config.break_beyond);
+      severity && !is_chance) {
     const int from =
         furthest < first - 1 ? static_cast<int>(std::floor(furthest)) - 4 : c.range.min_disparity;
     c.add(FindingKind::range_too_small, *severity, 100 * beyond,
@@ -221,6 +225,33 @@ void check_distances(Case& c) {
             text_of("%g m away", far ? nearest : furthest) + ": a wrong unit of length?");
 }
 
+/// Disparities that one of a point's nearest points has as well, roughly: a false match is alone with its
+/// own.
+std::vector<float> supported_disparities(const std::vector<Correspondence>& points) {
+  constexpr std::size_t kNeighbours = 4;
+  constexpr float kAlike = 0.15F;
+  constexpr float kAlikePx = 3;
+  std::vector<float> supported;
+  std::vector<std::pair<float, float>> nearest;  // squared distance, disparity
+  for (const Correspondence& c : points) {
+    nearest.clear();
+    for (const Correspondence& other : points) {
+      const float x = other.x_left - c.x_left;
+      const float y = other.y_left - c.y_left;
+      nearest.emplace_back(x * x + y * y, other.disparity());
+    }
+    const std::size_t count = std::min(nearest.size(), kNeighbours + 1);
+    std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end());
+    const float tolerance = std::max(kAlikePx, kAlike * std::abs(c.disparity()));
+    int alike = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      alike += std::abs(nearest[i].second - c.disparity()) <= tolerance ? 1 : 0;
+    if (alike > 1) supported.push_back(c.disparity());  // itself is one of them
+  }
+  std::sort(supported.begin(), supported.end());
+  return supported;
+}
+
 }  // namespace
 
 double PairMeasures::disparity_px(double share) const {
@@ -236,8 +267,7 @@ PairMeasures measure_pair(const StereoPair& pair, const Exec& exec) {
   measures.size = pair.size();
   measures.textured_points = found.points;
   measures.rows = measure_row_alignment(found);
-  for (const Correspondence& c : agreeing.list) measures.disparities_px.push_back(c.disparity());
-  std::sort(measures.disparities_px.begin(), measures.disparities_px.end());
+  measures.disparities_px = supported_disparities(agreeing.list);
   measures.brightness = measure_brightness_difference(pair, agreeing);
   measures.left_exposure = measure_exposure(pair.left());
   measures.right_exposure = measure_exposure(pair.right());

@@ -24,14 +24,14 @@ struct DiagnosisConfig {
   float break_left_over = 2.5F;
   float warn_behind = 10;
   float break_swapped = 60;
-  float warn_beyond = 3;
+  float warn_beyond = 4;
   float break_beyond = 50;
   float least_range_use = 20;
-  float warn_clipped = 15;
+  float warn_clipped = 20;
   float break_clipped = 60;
   float least_contrast = 40;
   float warn_brightness = 12;
-  float warn_edge = 5;
+  float warn_edge = 4.5F;
   float warn_edge_ratio = 1.6F;
 };
 template <class V>
@@ -75,7 +75,7 @@ struct PairMeasures {
   Size size;
   int textured_points = 0;  // of the left image
   RowAlignment rows;
-  std::vector<float> disparities_px;  // of the points that agree, ascending
+  std::vector<float> disparities_px;  // of the points that agree and are not alone with it, ascending
   BrightnessDifference brightness;
   Exposure left_exposure;
   Exposure right_exposure;

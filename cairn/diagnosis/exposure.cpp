@@ -57,7 +57,7 @@ Exposure measure_exposure(View<const Gray> image) {
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing) {
   constexpr double kMiddle = 128;
   constexpr double kScale = 4;  // grey levels, of what windows usually differ by
-  constexpr std::size_t kLeast = 20;
+  constexpr std::size_t kLeast = 50;
   constexpr double kLeastSpread = 20;  // grey levels between the darker and the brighter windows
   std::vector<Equation<2>> equations;
   std::vector<double> differences;

@@ -22,7 +22,7 @@ struct BrightnessDifference {
   float median = 0;  // of |right − left|, grey levels
 };
 /// Compares means of windows of 9×9 px around correspondences (those that agree in their rows), robustly.
-/// Fewer than 20 windows: no difference is measured. Where the windows' brightness hardly varies the gain
+/// Fewer than 50 windows: no difference is measured. Where the windows' brightness hardly varies the gain
 /// stays 1 and the offset takes it all.
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing);
 

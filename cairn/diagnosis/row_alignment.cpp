@@ -11,7 +11,8 @@ namespace {
 constexpr double kAgreeRows = 1.0;
 constexpr double kCloseRows = 0.5;
 constexpr double kGain = 1.15;  // so many times as many points must be close before a distortion is believed
-constexpr std::size_t kLeastForLine = 24;
+constexpr double kLeastForLine = 24;
+constexpr double kCertain = 5;  // standard errors of the roll
 constexpr std::size_t kLeastForField = 40;
 
 using LineTerms = std::array<double, 2>;
@@ -83,16 +84,34 @@ std::array<double, 2> line_through(const Correspondences& found, std::vector<Equ
   return fit_robustly<2>(kept, kAlmostSquares);
 }
 
+/// Whether a roll is more than what few points on a small part of the picture make up.
+bool is_certain(const std::vector<Equation<2>>& equations, const std::array<double, 2>& line) {
+  double count = 0;
+  double sum = 0;
+  double squares = 0;
+  double residuals = 0;
+  for (const Equation<2>& e : equations) {
+    const double residual = e.value - predicted(line, e.terms);
+    if (std::abs(residual) > kAgreeRows) continue;
+    count += 1;
+    sum += e.terms[1];
+    squares += e.terms[1] * e.terms[1];
+    residuals += residual * residual;
+  }
+  if (count < kLeastForLine) return false;
+  const double spread = squares - sum * sum / count;
+  return std::abs(line[1]) * std::sqrt(spread * count) > kCertain * std::sqrt(residuals);
+}
+
 Rows rows_of(const Correspondences& found) {
   const Frame frame = frame_of(found);
   Rows rows;
   const auto lines = equations_of<2>(found, [&](const Correspondence& c) { return frame.line(c); });
-  if (found.list.size() >= kLeastForLine) {
-    rows.line = fit_robustly<2>(lines, kCloseRows);
-  } else {
+  rows.line = fit_robustly<2>(lines, kCloseRows);
+  if (!is_certain(lines, rows.line)) {
     const auto shifts =
         equations_of<1>(found, [](const Correspondence&) { return std::array<double, 1>{1}; });
-    rows.line[0] = fit_robustly<1>(shifts, kCloseRows)[0];
+    rows.line = {fit_robustly<1>(shifts, kCloseRows)[0], 0};
   }
   rows.expected = values_of<2>(lines, rows.line);
   if (found.list.size() < kLeastForField) return rows;
@@ -122,8 +141,7 @@ RowAlignment measure_row_alignment(const Correspondences& found) {
   const Frame frame = frame_of(found);
   result.offset_rows = static_cast<float>(rows.line[0]);
   result.rows_per_px = static_cast<float>(rows.line[1] / frame.unit);
-  result.agreeing =
-      static_cast<float>(within(found, rows.expected, kAgreeRows)) / static_cast<float>(found.list.size());
+  result.agreeing = static_cast<int>(within(found, rows.expected, kAgreeRows));
   if (!rows.is_field) return result;
   std::vector<double> left_over;
   for (std::size_t i = 0; i < rows.expected.size(); ++i) {

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <io/raw_calibration.hpp>
+#include <io/stereo_calibration.hpp>
+#include <iostream>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+struct CalibrateOptions {
+  std::string folder;
+  std::string board;
+  double square_m = 0;
+  std::string output = "calib.yaml";
+};
+
+/// "9x6"
+io::Board board_of(const CalibrateOptions& options) {
+  constexpr int kFewest = 3;
+  constexpr int kMost = 100;
+  io::Board board{0, 0, options.square_m};
+  const char* end = options.board.data() + options.board.size();
+  const auto columns = std::from_chars(options.board.data(), end, board.columns);
+  const bool has_mark = columns.ptr != end && *columns.ptr == 'x';
+  const auto rows = std::from_chars(has_mark ? columns.ptr + 1 : end, end, board.rows);
+  const bool is_read = has_mark && rows.ec == std::errc{} && rows.ptr == end;
+  if (!is_read || std::min(board.columns, board.rows) < kFewest ||
+      std::max(board.columns, board.rows) > kMost)
+    throw Error("--board " + options.board +
+                ": expected the inner corners of the board, COLUMNSxROWS, e.g. 9x6, each in 3 ... 100");
+  return board;
+}
+
+/// Pairs of one size.
+struct Sightings {
+  Size size;
+  std::vector<std::string> names;
+  std::vector<io::BoardSighting> list;
+  std::vector<std::string> without_board;
+
+  [[nodiscard]] std::size_t pairs() const { return names.size() + without_board.size(); }
+};
+
+Sightings& of_size(std::vector<Sightings>& groups, Size size) {
+  const auto found =
+      std::find_if(groups.begin(), groups.end(), [&](const Sightings& group) { return group.size == size; });
+  if (found != groups.end()) return *found;
+  groups.push_back({size, {}, {}, {}});
+  return groups.back();
+}
+
+/// What the folder shows of the board, in the size that most of its pairs have; the others' names go to
+/// `of_other_size`.
+Sightings look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& board,
+                  std::vector<std::string>& of_other_size) {
+  std::vector<Sightings> groups;
+  const Progress progress(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    progress.at(i, pairs[i].name);
+    if (!pairs[i].right) throw Error(pairs[i].left.string() + ": there is no right picture");
+    const io::PicturePair pictures = io::load_pair(pairs[i].left, *pairs[i].right);
+    Sightings& group = of_size(groups, pictures.left.gray.size());
+    auto left = io::find_board(pictures.left.gray, board);
+    auto right = io::find_board(pictures.right.gray, board);
+    if (left && right) {
+      group.names.push_back(pairs[i].name);
+      group.list.push_back({std::move(*left), std::move(*right)});
+    } else {
+      group.without_board.push_back(pairs[i].name);
+    }
+  }
+  const auto most =
+      std::max_element(groups.begin(), groups.end(),
+                       [](const Sightings& a, const Sightings& b) { return a.pairs() < b.pairs(); });
+  for (const Sightings& group : groups) {
+    if (group.size == most->size) continue;
+    of_other_size.insert(of_other_size.end(), group.names.begin(), group.names.end());
+    of_other_size.insert(of_other_size.end(), group.without_board.begin(), group.without_board.end());
+  }
+  return std::move(*most);
+}
+
+std::string named(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += " " + name;
+  return all;
+}
+
+int calibrate(const CalibrateOptions& options) {
+  const io::Board board = board_of(options);
+  std::vector<std::string> of_other_size;
+  const Sightings sightings = look_at(io::find_pairs(options.folder), board, of_other_size);
+  const io::StereoCalibration found = io::calibrate_stereo(sightings.list, board, sightings.size);
+  const StereoRig rig = io::Rectifier(found.raw).rig();
+  const std::string error = text_of("%.3f px", found.error_px);
+  io::save_raw_calibration(
+      options.output, found.raw,
+      {"two raw cameras in OpenCV's model, lengths in metres; P1, P2: once rectified",
+       "board " + options.board + ", squares of " + text_of("%g m", board.square_m) + ", " +
+           std::to_string(sightings.list.size()) + " pairs, reprojection error " + error});
+  const auto worst = std::max_element(found.pair_error_px.begin(), found.pair_error_px.end());
+  std::cout << "pairs used          " << sightings.list.size() << " of "
+            << sightings.pairs() + of_other_size.size() << "\n";
+  if (!sightings.without_board.empty())
+    std::cout << "whole board unseen " << named(sightings.without_board) << "\n";
+  if (!of_other_size.empty()) std::cout << "of another size    " << named(of_other_size) << "\n";
+  std::cout << "reprojection error  " << error << " (left alone " << text_of("%.3f", found.left_error_px)
+            << ", right alone " << text_of("%.3f", found.right_error_px) << ")\n"
+            << "worst pair          "
+            << sightings.names[static_cast<std::size_t>(worst - found.pair_error_px.begin())] << ", "
+            << text_of("%.3f px", *worst) << "\n"
+            << "rows, rectified     " << text_of("%.3f px", found.rows_error_px) << " apart\n"
+            << "rectified pair      focal length " << text_of("%.2f px", static_cast<double>(rig.focal_px))
+            << ", baseline " << text_of("%.4f m", static_cast<double>(rig.baseline_m)) << ", "
+            << text(sightings.size) << "\n"
+            << "written             " << options.output << "\n";
+  return 0;
+}
+
+}  // namespace
+
+Work declare_calibrate(CLI::App& app) {
+  auto options = std::make_shared<CalibrateOptions>();
+  app.add_option(
+         "FOLDER", options->folder,
+         "pairs of pictures of a checkerboard: left01.jpg and right01.jpg ..., left/ and right/, or a "
+         "folder for each pair")
+      ->required()
+      ->type_name("");
+  app.add_option("--board", options->board, "inner corners of the board, columns x rows: 9x6")
+      ->required()
+      ->type_name("CxR");
+  app.add_option("--square", options->square_m, "side of a square in metres")
+      ->required()
+      ->check(CLI::Range(1e-4, 10.0).name(""))
+      ->type_name("METRES");
+  app.add_option("-o,--output", options->output,
+                 "OpenCV YAML with both cameras (M1 D1 M2 D2 R T) and what rectifies them (R1 R2 P1 P2)")
+      ->type_name("FILE")
+      ->capture_default_str();
+  app.footer("docs/use_your_own_camera.md leads from here to objects.");
+  return [options] { return calibrate(*options); };
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <io/atomic_file.hpp>
+#include <io/calibration_files.hpp>
+#include <io/raw_calibration.hpp>
+#include <io/stereo_calibration.hpp>
+#include <iostream>
+
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RectifyOptions {
+  InputOptions input;
+  std::string output;
+};
+
+void save(const fs::path& path, const io::Picture& picture) {
+  if (picture.rgb.empty()) {
+    io::save_png(path, picture.gray.view());
+  } else {
+    io::save_png(path, picture.rgb.view());
+  }
+}
+
+int rectify(const RectifyOptions& options) {
+  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+  const io::Rectifier rectify_pair(io::load_raw_calibration(options.input.calib));
+  const Progress progress(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    progress.at(i, frames[i].name);
+    if (!frames[i].right) throw Error(frames[i].left.string() + ": there is no right picture");
+    const io::PicturePair raw = io::load_pair(frames[i].left, *frames[i].right);
+    io::PicturePair rectified;
+    try {
+      rectified = rectify_pair(raw);
+    } catch (const Error& error) {
+      throw Error(options.input.calib + ": " + error.what());
+    }
+    const fs::path folder =
+        frames.size() == 1 ? fs::path(options.output) : options.output / fs::path(frames[i].name);
+    io::make_folder(folder);
+    save(folder / "left.png", rectified.left);
+    save(folder / "right.png", rectified.right);
+    io::save_calibration(folder / "calib.txt", rectify_pair.rig(), rectified.left.gray.size());
+  }
+  progress.clear();
+  std::cout << "rectified " << frames.size() << (frames.size() == 1 ? " pair into " : " pairs into ")
+            << options.output << ": left.png, right.png, calib.txt\n";
+  return 0;
+}
+
+}  // namespace
+
+Work declare_rectify(CLI::App& app) {
+  auto options = std::make_shared<RectifyOptions>();
+  app.add_option(
+         "LEFT", options->input.left,
+         "left picture as the camera took it, or a folder with left.png and right.png, or a folder of "
+         "such folders")
+      ->required()
+      ->type_name("");
+  app.add_option("RIGHT", options->input.right, "right picture; not with a folder")->type_name("");
+  app.add_option("--calib", options->input.calib,
+                 "what cairn calibrate wrote; or OpenCV YAML or XML with M1 D1 M2 D2 R T, or ROS camera_info")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", options->output,
+                 "folder for left.png, right.png and calib.txt; several pairs get a folder each in it")
+      ->required()
+      ->type_name("DIR");
+  return [options] { return rectify(*options); };
+}
+
+}  // namespace cairn::cli

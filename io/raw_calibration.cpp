@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <io/atomic_file.hpp>
+#include <io/calibration_forms.hpp>
+#include <io/raw_calibration.hpp>
+#include <io/read_file.hpp>
+#include <span>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string written(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string matrix_text(const char* name, int rows, std::span<const double> numbers) {
+  const int columns = static_cast<int>(numbers.size()) / rows;
+  std::string text = std::string(name) + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
+                     "\n   cols: " + std::to_string(columns) + "\n   dt: d\n   data: [ ";
+  for (std::size_t i = 0; i < numbers.size(); ++i) text += (i == 0 ? "" : ", ") + written(numbers[i]);
+  return text + " ]\n";
+}
+
+void check_camera(const RawCamera& camera, const std::string& name) {
+  if (!(camera.matrix[0] > 0 && camera.matrix[4] > 0)) {
+    throw Error("the " + name + " camera's focal lengths are " + written(camera.matrix[0]) + " and " +
+                written(camera.matrix[4]) + ", expected positive numbers");
+  }
+  const std::size_t count = camera.distortion.size();
+  if (count != 0 && count != 4 && count != 5 && count != 8 && count != 12 && count != 14) {
+    throw Error("the " + name + " camera has " + std::to_string(count) +
+                " distortion coefficients, expected 0, 4, 5, 8, 12 or 14");
+  }
+}
+
+void check(const RawCalibration& calibration) {
+  check_camera(calibration.left, "left");
+  check_camera(calibration.right, "right");
+  const bool rectifies = calibration.left.rotation && calibration.left.projection &&
+                         calibration.right.rotation && calibration.right.projection;
+  if (!rectifies && !(calibration.rotation && calibration.translation_m))
+    throw Error("has neither R and T nor R1, R2, P1 and P2, expected how the cameras stand to each other");
+}
+
+}  // namespace
+
+RawCalibration load_raw_calibration(const fs::path& path) {
+  const std::string text = read_file(path, kMostTextBytes);
+  try {
+    RawCalibration calibration = read_raw(text, path);
+    check(calibration);
+    return calibration;
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+}
+
+void save_raw_calibration(const fs::path& path, const RawCalibration& calibration,
+                          const std::vector<std::string>& remarks) {
+  std::string text = "%YAML:1.0\n---\n";
+  for (const std::string& remark : remarks) text += "# " + remark + "\n";
+  text += "image_width: " + std::to_string(calibration.image_size.width) +
+          "\nimage_height: " + std::to_string(calibration.image_size.height) + "\n";
+  text += matrix_text("M1", 3, calibration.left.matrix) + matrix_text("D1", 1, calibration.left.distortion) +
+          matrix_text("M2", 3, calibration.right.matrix) + matrix_text("D2", 1, calibration.right.distortion);
+  if (calibration.rotation) text += matrix_text("R", 3, *calibration.rotation);
+  if (calibration.translation_m) text += matrix_text("T", 3, *calibration.translation_m);
+  if (calibration.left.rotation) text += matrix_text("R1", 3, *calibration.left.rotation);
+  if (calibration.right.rotation) text += matrix_text("R2", 3, *calibration.right.rotation);
+  if (calibration.left.projection) text += matrix_text("P1", 3, *calibration.left.projection);
+  if (calibration.right.projection) text += matrix_text("P2", 3, *calibration.right.projection);
+  write_file(path, text);
+}
+
+}  // namespace cairn::io
