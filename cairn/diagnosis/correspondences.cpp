@@ -176,6 +176,21 @@ std::optional<Correspondence> follow(const Pyramid& left, const Pyramid& right, 
                         place.x + kCentre, place.y + kCentre};
 }
 
+bool has_border(View<const Gray> image, Point p) {
+  return p.x > 0 && p.y > 0 && p.x + kWindow < image.width() && p.y + kWindow < image.height();
+}
+
+/// From the right image's window where the left one's leads nowhere: the sharper picture's window is told
+/// from the blurred one's better than the other way round.
+std::optional<Correspondence> follow_either(const Pyramid& left, const Pyramid& right, std::size_t from,
+                                            Point p, Point start) {
+  if (const auto found = follow(left, right, from, p, start)) return found;
+  if (!has_border(right.at(from), start)) return std::nullopt;
+  const auto found = follow(right, left, from, start, p);
+  if (!found) return std::nullopt;
+  return Correspondence{found->x_right, found->y_right, found->x_left, found->y_left};
+}
+
 }  // namespace
 
 Correspondences find_correspondences(const StereoPair& pair, const Exec& exec) {
@@ -197,7 +212,7 @@ Correspondences find_correspondences(const StereoPair& pair, const Exec& exec) {
       if (!back) continue;
       const bool returns =
           std::abs(back->x - points[i].x) <= kNear && std::abs(back->y - points[i].y) <= kNear;
-      if (returns) found[i] = follow(left, right, start, points[i], *there);
+      if (returns) found[i] = follow_either(left, right, start, points[i], *there);
     }
   });
   Correspondences all{{}, static_cast<int>(points.size()), pair.size()};

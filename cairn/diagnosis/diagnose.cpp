@@ -81,15 +81,17 @@ bool check_order(Case& c) {
 void check_rows(Case& c) {
   const RowAlignment& rows = c.measures.rows;
   const auto left_over = static_cast<double>(rows.left_over_rows);
-  if (const auto severity = Case::severity(left_over, c.config.warn_left_over, c.config.break_left_over)) {
-    c.add(FindingKind::rectification, *severity, left_over,
+  const auto distorted = Case::severity(left_over, c.config.warn_left_over, c.config.break_left_over);
+  if (distorted) {
+    c.add(FindingKind::rectification, *distorted, left_over,
           "1 point in 10 is " + text_of("%.1f rows", left_over) +
               " or more off even if shift and roll are taken back");
   }
   const double slope = static_cast<double>(rows.rows_per_px);
   const double worse =
       std::abs(static_cast<double>(rows.offset_rows)) + std::abs(slope) * 0.5 * (c.measures.size.width - 1);
-  if (const auto severity = Case::severity(worse, c.config.warn_rows, c.config.break_rows)) {
+  if (const auto severity = Case::severity(worse, c.config.warn_rows, c.config.break_rows);
+      severity && (!distorted || *severity > *distorted)) {
     c.add(FindingKind::rows, *severity, worse,
           "the right picture stands " + text_of("%+.2f rows", static_cast<double>(rows.offset_rows)) +
               " lower in its middle, turned by " + text_of("%+.2f degrees", kDegrees * std::atan(slope)) +

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/synchrony.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/noise.hpp"
+#include "support/samples.hpp"
+#include "support/synthetic_scene.hpp"
+
+/// A good pair that is broken on purpose, one way at a time.
+namespace cairn {
+namespace {
+
+/// A picture from another: where each of its pixels comes from, and what becomes of the level there.
+template <class Place, class Tone>
+Image<Gray> made_of(View<const Gray> image, Place place, Tone tone) {
+  Image<Gray> result(image.size());
+  const auto level = [&](int x, int y) {
+    return static_cast<double>(
+        image(std::clamp(x, 0, image.width() - 1), std::clamp(y, 0, image.height() - 1)));
+  };
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const auto [from_x, from_y] = place(x, y);
+      const int x0 = static_cast<int>(std::floor(from_x));
+      const int y0 = static_cast<int>(std::floor(from_y));
+      const double u = from_x - x0;
+      const double v = from_y - y0;
+      const double above = (1 - u) * level(x0, y0) + u * level(x0 + 1, y0);
+      const double below = (1 - u) * level(x0, y0 + 1) + u * level(x0 + 1, y0 + 1);
+      const double value = tone((1 - v) * above + v * below);
+      result(x, y) = static_cast<Gray>(std::clamp(std::lround(value), 0L, 255L));
+    }
+  }
+  return result;
+}
+
+struct Place {
+  double x = 0;
+  double y = 0;
+};
+Place same_place(int x, int y) {
+  return {static_cast<double>(x), static_cast<double>(y)};
+}
+double same_tone(double level) {
+  return level;
+}
+
+Image<Gray> toned(View<const Gray> image, double gain, double offset) {
+  return made_of(image, same_place, [=](double level) { return gain * level + offset; });
+}
+
+/// The mean of 2 · radius + 1 pixels each way.
+Image<Gray> blurred(View<const Gray> image, int radius) {
+  Image<Gray> result(image.size());
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      int sum = 0;
+      int count = 0;
+      for (int j = std::max(0, y - radius); j <= std::min(image.height() - 1, y + radius); ++j) {
+        for (int i = std::max(0, x - radius); i <= std::min(image.width() - 1, x + radius); ++i) {
+          sum += image(i, j);
+          ++count;
+        }
+      }
+      result(x, y) = static_cast<Gray>(sum / count);
+    }
+  }
+  return result;
+}
+
+class Diagnosis : public testing::Test {
+ protected:
+  [[nodiscard]] View<const Gray> left() const { return sample_.pictures.left.gray; }
+  [[nodiscard]] View<const Gray> right() const { return sample_.pictures.right.gray; }
+  [[nodiscard]] std::vector<Finding> findings(View<const Gray> l, View<const Gray> r) const {
+    return diagnose(measure_pair(StereoPair::from(l, r), {}), rig_, range_, {});
+  }
+  [[nodiscard]] static std::string says(const std::vector<Finding>& found) {
+    return found.empty() ? "" : found[0].says;
+  }
+  [[nodiscard]] static double value(const std::vector<Finding>& found) {
+    return found.empty() ? 0.0 : found[0].value;
+  }
+  /// The same picture changes happen to both cameras.
+  template <class Change>
+  [[nodiscard]] std::vector<Finding> findings_of_both(Change change) const {
+    const Image<Gray> l = change(left());
+    const Image<Gray> r = change(right());
+    return findings(l, r);
+  }
+  /// Nothing but this was found.
+  void finds(const std::vector<Finding>& found, FindingKind kind, Severity severity) const {
+    ASSERT_EQ(names(found), std::string(info(kind).name));
+    EXPECT_EQ(static_cast<int>(found[0].severity), static_cast<int>(severity)) << found[0].says;
+    EXPECT_FALSE(found[0].says.empty());
+  }
+  [[nodiscard]] static std::string names(const std::vector<Finding>& found) {
+    std::string all;
+    for (const Finding& finding : found)
+      all += (all.empty() ? "" : ", ") + std::string(info(finding.kind).name);
+    return all;
+  }
+
+  samples::Sample sample_ = samples::load("four_in_a_row");
+  std::optional<StereoRig> rig_ = sample_.calibration.rig;
+  MatchConfig range_ = sample_.suited().match;
+};
+
+TEST_F(Diagnosis, IsSilentOnEverySample) {
+  for (const char* name : samples::kNames) {
+    const samples::Sample sample = samples::load(name);
+    const auto found =
+        diagnose(measure_pair(sample.pair(), {}), sample.calibration.rig, sample.suited().match, {});
+    EXPECT_EQ(names(found), "") << name;
+  }
+}
+
+TEST_F(Diagnosis, SeesSwappedCameras) {
+  const auto found = findings(right(), left());
+  finds(found, FindingKind::swapped, Severity::broken);
+  EXPECT_GT(value(found), 90);
+}
+
+TEST_F(Diagnosis, MeasuresAVerticalShift) {
+  for (const double rows : {-2.0, 1.25, 3.0}) {
+    const auto lower = made_of(
+        right(),
+        [=](int x, int y) {
+          return Place{double(x), y - rows};
+        },
+        same_tone);
+    const RowAlignment measured = measure_pair(StereoPair::from(left(), lower), {}).rows;
+    EXPECT_NEAR(static_cast<double>(measured.offset_rows), rows, 0.12);
+    EXPECT_NEAR(static_cast<double>(measured.rows_per_px), 0, 0.0012);
+    const auto bin = static_cast<std::size_t>(RowAlignment::kMostBins + std::lround(rows));
+    EXPECT_EQ(*std::max_element(measured.histogram.begin(), measured.histogram.end()),
+              measured.histogram[bin]);
+    const auto found = findings(left(), lower);
+    finds(found, FindingKind::rows, Severity::warning);
+    EXPECT_NEAR(value(found), std::abs(rows), 0.3);
+  }
+}
+
+TEST_F(Diagnosis, CallsAShiftBeyondTheCorrectionBroken) {
+  const auto lower = made_of(
+      right(),
+      [](int x, int y) {
+        return Place{double(x), y - 9.0};
+      },
+      same_tone);
+  finds(findings(left(), lower), FindingKind::rows, Severity::broken);
+}
+
+TEST_F(Diagnosis, MeasuresARoll) {
+  const double tangent = 0.015;
+  const double middle = 0.5 * (right().width() - 1);
+  const auto rolled = made_of(
+      right(),
+      [=](int x, int y) {
+        return Place{double(x), y - tangent * (x - middle)};
+      },
+      same_tone);
+  EXPECT_NEAR(static_cast<double>(measure_pair(StereoPair::from(left(), rolled), {}).rows.rows_per_px),
+              tangent, 0.0015);
+  finds(findings(left(), rolled), FindingKind::rows, Severity::warning);
+}
+
+TEST_F(Diagnosis, SeesThatAPairIsNotRectified) {
+  // Lenses that are not corrected, and a right one whose focal length is not the left one's.
+  const double middle_x = 0.5 * (right().width() - 1);
+  const double middle_y = 0.5 * (right().height() - 1);
+  const auto scaled = made_of(
+      right(),
+      [=](int x, int y) {
+        return Place{double(x), middle_y + (y - middle_y) * 1.04};
+      },
+      same_tone);
+  const auto scaled_found = findings(left(), scaled);
+  finds(scaled_found, FindingKind::rectification, Severity::broken);
+  const auto keystone = made_of(
+      right(),
+      [=](int x, int y) {
+        return Place{double(x), y + 5 * (x - middle_x) / middle_x * (y - middle_y) / middle_y};
+      },
+      same_tone);
+  EXPECT_NE(names(findings(left(), keystone)).find("not rectified"), std::string::npos);
+}
+
+TEST_F(Diagnosis, SeesPicturesOfDifferentScenes) {
+  const samples::Sample other = samples::load("overlap");
+  finds(findings(left(), other.pictures.right.gray), FindingKind::nothing_in_common, Severity::broken);
+}
+
+TEST_F(Diagnosis, SeesAPictureThatIsUpsideDown) {
+  const auto turned = made_of(
+      right(),
+      [&](int x, int y) {
+        return Place{double(right().width() - 1 - x), double(right().height() - 1 - y)};
+      },
+      same_tone);
+  finds(findings(left(), turned), FindingKind::nothing_in_common, Severity::broken);
+}
+
+TEST_F(Diagnosis, SaysWhenThereIsTooLittleToSee) {
+  const auto plain = support::picture(left().size(), 1, 1, [](int x, int) { return 60 + 0.3 * x; });
+  const auto other = support::picture(left().size(), 1, 2, [](int x, int) { return 60 + 0.3 * x; });
+  finds(findings(plain, other), FindingKind::few_points, Severity::note);
+}
+
+TEST_F(Diagnosis, SeesARangeThatIsTooSmallAndNamesOneThatSuits) {
+  range_.num_disparities = 14;
+  auto found = findings(left(), right());
+  finds(found, FindingKind::range_too_small, Severity::warning);
+  EXPECT_NE(says(found).find("match.num_disparities=32"), std::string::npos) << says(found);
+  range_.num_disparities = 4;
+  found = findings(left(), right());
+  finds(found, FindingKind::range_too_small, Severity::broken);
+  range_ = {.min_disparity = 12, .num_disparities = 32};
+  found = findings(left(), right());
+  finds(found, FindingKind::range_too_small, Severity::warning);
+  EXPECT_NE(says(found).find("match.min_disparity=3"), std::string::npos) << says(found);
+}
+
+TEST_F(Diagnosis, SeesARangeThatIsTooLarge) {
+  range_.num_disparities = 256;
+  const auto found = findings(left(), right());
+  finds(found, FindingKind::range_too_large, Severity::note);
+  EXPECT_NE(says(found).find("match.num_disparities=32"), std::string::npos) << says(found);
+}
+
+TEST_F(Diagnosis, SeesPointsBehindInfinity) {
+  rig_->doffs_px = -14;
+  finds(findings(left(), right()), FindingKind::behind_infinity, Severity::warning);
+}
+
+TEST_F(Diagnosis, MeasuresGainAndOffset) {
+  const auto darker = toned(right(), 0.7, 5);
+  const BrightnessDifference before = measure_pair(StereoPair::from(left(), right()), {}).brightness;
+  const BrightnessDifference after = measure_pair(StereoPair::from(left(), darker), {}).brightness;
+  EXPECT_NEAR(static_cast<double>(after.gain), 0.7 * static_cast<double>(before.gain), 0.02);
+  EXPECT_NEAR(static_cast<double>(after.offset), 0.7 * static_cast<double>(before.offset) + 5, 2);
+  finds(findings(left(), darker), FindingKind::brightness, Severity::warning);
+}
+
+TEST_F(Diagnosis, SeesWhichCameraIsBlurred) {
+  const auto soft = blurred(right(), 2);
+  const auto soft_left = blurred(left(), 2);
+  auto found = findings(left(), soft);
+  finds(found, FindingKind::blur, Severity::warning);
+  EXPECT_NE(says(found).find("in the right picture"), std::string::npos) << says(found);
+  found = findings(soft_left, right());
+  finds(found, FindingKind::blur, Severity::warning);
+  EXPECT_NE(says(found).find("in the left picture"), std::string::npos) << says(found);
+  found = findings_of_both([](View<const Gray> image) { return blurred(image, 3); });
+  finds(found, FindingKind::blur, Severity::warning);
+  EXPECT_NE(says(found).find("in both pictures"), std::string::npos) << says(found);
+}
+
+TEST_F(Diagnosis, SeesClippedExposure) {
+  const auto bright = [](View<const Gray> image) { return toned(image, 1.9, 25); };
+  auto found = findings_of_both(bright);
+  finds(found, FindingKind::exposure, Severity::warning);
+  EXPECT_NE(says(found).find("white"), std::string::npos) << says(found);
+  const auto dark = [](View<const Gray> image) { return toned(image, 2, -180); };
+  found = findings_of_both(dark);
+  ASSERT_FALSE(found.empty());
+  EXPECT_NE(found.back().says.find("black"), std::string::npos) << found.back().says;
+}
+
+TEST_F(Diagnosis, SeesTooLittleContrast) {
+  const auto dim = [](View<const Gray> image) { return toned(image, 0.15, 3); };
+  const auto found = findings_of_both(dim);
+  EXPECT_NE(names(found).find("little contrast"), std::string::npos) << names(found);
+}
+
+TEST_F(Diagnosis, SeesACalibrationInTheWrongUnits) {
+  const StereoRig good = *rig_;
+  rig_->baseline_m = 1000 * good.baseline_m;
+  finds(findings(left(), right()), FindingKind::calibration, Severity::broken);
+  rig_->baseline_m = 0.001F * good.baseline_m;
+  finds(findings(left(), right()), FindingKind::calibration, Severity::broken);
+  rig_ = good;
+  rig_->focal_px = 4;  // millimetres
+  EXPECT_EQ(names(findings(left(), right())).find("calibration contradicts"), 0U);
+}
+
+TEST_F(Diagnosis, SeesACalibrationOfPicturesOfAnotherSize) {
+  rig_->focal_px *= 2;
+  rig_->cx_px *= 2;
+  rig_->cy_px *= 2;
+  finds(findings(left(), right()), FindingKind::calibration, Severity::broken);
+}
+
+TEST_F(Diagnosis, SurvivesTheSmallestPictures) {
+  for (const Size size : {Size{1, 1}, Size{3, 200}, Size{200, 2}, Size{9, 9}, Size{17, 12}}) {
+    const auto picture = synthetic::random_dots(size, 1);
+    const auto measures = measure_pair(StereoPair::from(picture, picture), {});
+    EXPECT_EQ(measures.size, size);
+    (void)diagnose(measures, rig_, range_, {});
+  }
+}
+
+TEST_F(Diagnosis, IsTheSameOnAnyNumberOfThreads) {
+  const auto pair = StereoPair::from(left(), right());
+  const auto one = measure_pair(pair, {});
+  const auto three = measure_pair(pair, Exec::with_threads(3));
+  EXPECT_EQ(one.disparities_px, three.disparities_px);
+  EXPECT_EQ(one.rows.offset_rows, three.rows.offset_rows);
+  EXPECT_EQ(one.rows.histogram, three.rows.histogram);
+  EXPECT_EQ(one.brightness.gain, three.brightness.gain);
+}
+
+TEST(FindingKinds, AreDescribedInTheirOrder) {
+  for (std::size_t i = 0; i < kFindings.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(kFindings[i].kind), i);
+    EXPECT_FALSE(kFindings[i].remedy.empty());
+  }
+}
+
+TEST(United, KeepsTheWorstOfAKindAndAllFramesThatShowIt) {
+  const Finding light{FindingKind::rows, Severity::warning, 1, "light"};
+  const Finding heavy{FindingKind::rows, Severity::broken, 9, "heavy"};
+  const Finding large{FindingKind::range_too_large, Severity::note, 5, "large"};
+  const auto all = united({{light, large}, {}, {heavy, large}});
+  ASSERT_EQ(all.size(), 1U);  // the second pair needs the whole range
+  EXPECT_EQ(all[0].says, "heavy");
+  EXPECT_EQ(all[0].frames, (std::vector<std::size_t>{0, 2}));
+}
+
+// ---- sequences ----
+
+/// A textured board that jumps about before a textured wall, drawn for both cameras.
+class Sequence {
+ public:
+  explicit Sequence(int frames, bool moves = true) {
+    support::Noise noise(7);
+    for (int i = 0; i < frames; ++i) {
+      const int x = moves ? 30 + static_cast<int>(90 * noise.uniform()) : 60;
+      const int y = moves ? 10 + static_cast<int>(60 * noise.uniform()) : 40;
+      left_.push_back(drawn({x, y}, 0));
+      right_.push_back(drawn({x - 12, y}, 4));
+    }
+  }
+  /// The right pictures come `late` frames late.
+  [[nodiscard]] std::vector<StereoPair> pairs(int late) const {
+    std::vector<StereoPair> all;
+    const int count = static_cast<int>(left_.size());
+    for (int i = std::max(0, late); i < std::min(count, count + late); ++i) {
+      all.push_back(
+          StereoPair::from(left_[static_cast<std::size_t>(i)], right_[static_cast<std::size_t>(i - late)]));
+    }
+    return all;
+  }
+
+ private:
+  Image<Gray> drawn(Point board, int wall_disparity) {
+    Image<Gray> image(kSize);
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        const int u = x - board.x;
+        const int v = y - board.y;
+        const bool is_board = u >= 0 && v >= 0 && u < 40 && v < 30;
+        image(x, y) = is_board ? board_(u, v) : wall_(x + wall_disparity, y);
+      }
+    }
+    return image;
+  }
+
+  static constexpr Size kSize{160, 100};
+  static Image<Gray> texture(Size size, std::uint32_t seed) {
+    const Image<Gray> dots = synthetic::random_dots(size, seed);
+    return blurred(dots, 1);
+  }
+  Image<Gray> wall_ = texture({kSize.width + 8, kSize.height}, 1);
+  Image<Gray> board_ = texture({40, 30}, 2);
+  std::vector<Image<Gray>> left_;
+  std::vector<Image<Gray>> right_;
+};
+
+TEST(SynchronyOfASequence, IsSilentWhereBothCamerasRunTogether) {
+  for (const bool moves : {true, false}) {
+    const Sequence sequence(14, moves);
+    const Synchrony measured = measure_synchrony(sequence.pairs(0), {});
+    EXPECT_EQ(measured.lag(), 0);
+    EXPECT_FALSE(diagnose(measured));
+  }
+}
+
+TEST(SynchronyOfASequence, IsLostByAsManyFramesAsItSays) {
+  const Sequence sequence(16);
+  for (const int late : {-2, -1, 1, 2}) {
+    const Synchrony measured = measure_synchrony(sequence.pairs(late), {});
+    EXPECT_EQ(measured.lag(), late);
+    const auto finding = diagnose(measured);
+    ASSERT_TRUE(finding);
+    EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::broken));
+    EXPECT_EQ(finding->value, late);
+  }
+}
+
+TEST(SynchronyOfASequence, SeesACameraThatRepeatsItsPicture) {
+  const Sequence sequence(14);
+  std::vector<StereoPair> pairs = sequence.pairs(0);
+  pairs[5] = StereoPair::from(pairs[5].left(), pairs[4].right());
+  const Synchrony measured = measure_synchrony(pairs, {});
+  EXPECT_EQ(measured.right_repeats, 1);
+  EXPECT_EQ(measured.left_repeats, 0);
+  EXPECT_TRUE(diagnose(measured));
+}
+
+TEST(SynchronyOfASequence, NeedsNoSequence) {
+  EXPECT_FALSE(diagnose(measure_synchrony({}, {})));
+  const Sequence one(1);
+  EXPECT_FALSE(diagnose(measure_synchrony(one.pairs(0), {})));
+}
+
+}  // namespace
+}  // namespace cairn
