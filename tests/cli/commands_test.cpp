@@ -20,6 +20,9 @@ TEST_F(Command, ShowsHelpForEveryCommandAndForNone) {
                                                     {"evaluate", "--help"},
                                                     {"bench", "--help"},
                                                     {"tune", "--help"},
+                                                    {"doctor", "--help"},
+                                                    {"calibrate", "--help"},
+                                                    {"rectify", "--help"},
                                                     {"config", "--help"},
                                                     {"info", "--help"}}) {
     const Outcome outcome = run(arguments);

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/geometry.hpp>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "support/samples.hpp"
+
+namespace cairn::command {
+namespace {
+
+using Json = nlohmann::json;
+using Doctor = CommandTest;
+
+std::string sample(const std::string& name) {
+  return samples::folder(name).string();
+}
+
+TEST_F(Doctor, FindsNothingWrongInTheSamples) {
+  const Outcome outcome = run({"doctor", sample(""), "--json", path("doctor.json")});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out.find("nothing wrong found"), 0U) << outcome.out;
+  const Json j = Json::parse(content(at("doctor.json")));
+  EXPECT_EQ(j["broken"], false);
+  EXPECT_EQ(j["findings"].size(), 0U);
+  ASSERT_EQ(j["pairs"].size(), 4U);
+  EXPECT_EQ(j["pairs"][0]["name"], "dim_light");
+  EXPECT_GT(j["pairs"][0]["measured"]["found_points"], 20);
+  EXPECT_EQ(j["pairs"][0]["measured"]["rows_histogram"].size(), 17U);
+}
+
+TEST_F(Doctor, SaysWhatIsWrongAndWhatToDoAndExitsWithOne) {
+  const fs::path folder = samples::folder("overlap");
+  const Outcome outcome =
+      run({"doctor", folder / "right.png", folder / "left.png", "--json", path("d.json")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out.find("broken   cameras swapped: "), 0U) << outcome.out;
+  EXPECT_NE(outcome.out.find("Exchange the two pictures"), std::string::npos) << outcome.out;
+  const Json j = Json::parse(content(at("d.json")));
+  EXPECT_EQ(j["broken"], true);
+  EXPECT_EQ(j["findings"][0]["finding"], "cameras swapped");
+  EXPECT_EQ(j["findings"][0]["severity"], "broken");
+  EXPECT_EQ(j["findings"][0]["unit"], "%");
+  EXPECT_EQ(j["findings"][0]["pairs"], Json::array({"right"}));
+}
+
+TEST_F(Doctor, WarningsAloneExitWithZero) {
+  const fs::path folder = samples::folder("overlap");
+  const Outcome outcome = run({"doctor", folder, "--set", "match.num_disparities=16"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out.find("warning  disparity range too small: "), 0U) << outcome.out;
+}
+
+TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
+  const auto pair = pair_in("pair");
+  const auto other = pair_in("other", {64, 48});
+  const Outcome outcome = run({"doctor", pair[0], other[1]});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.out.find("broken   sizes: the left picture is 96x72, the right one 64x48"), 0U)
+      << outcome.out;
+}
+
+TEST_F(Doctor, SeesPairsOfDifferentSizesInAFolder) {
+  pair_in("rig/a");
+  pair_in("rig/b", {128, 96});
+  const Outcome outcome = run({"doctor", path("rig")});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.out.find("note     sizes: a is 96x72, b is 128x96"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Doctor, SeesANegativeBaselineAndACalibrationOfAnotherSize) {
+  write(at("negative.txt"), "fx=300\nfy=300\ncx=160\ncy=120\nbaseline=-0.1\n");
+  Outcome outcome = run({"doctor", sample("overlap"), "--calib", path("negative.txt")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("broken   impossible calibration: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("-0.1"), std::string::npos) << outcome.out;
+  write(at("large.txt"), "fx=300\nfy=300\ncx=640\ncy=480\nbaseline=0.1\nwidth=1280\nheight=960\n");
+  outcome = run({"doctor", sample("overlap"), "--calib", path("large.txt")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("the calibration is of 1280x960 pictures"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Doctor, NamesThePairsOfAFolderThatAreBad) {
+  for (const char* name : {"one", "three", "two"}) {
+    const fs::path folder = samples::folder("overlap");
+    fs::create_directories(at("rig") / name);
+    const bool is_swapped = name == std::string("two");
+    fs::copy(folder / "left.png", at("rig") / name / (is_swapped ? "right.png" : "left.png"));
+    fs::copy(folder / "right.png", at("rig") / name / (is_swapped ? "left.png" : "right.png"));
+  }
+  const Outcome outcome = run({"doctor", path("rig")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("in 1 of 3 pairs (two)"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Doctor, RefusesBadInput) {
+  const auto pair = pair_in("pair");
+  refuses({"doctor", path("none.png"), pair[1]}, {"none.png"});
+  refuses({"doctor", pair[0]}, {"left.png", "right"});
+  refuses({"doctor", pair[0], pair[1], "--calib", path("none.txt")}, {"none.txt"});
+  refuses({"doctor", pair[0], pair[1], "--frames", "0"}, {"--frames"});
+  refuses({"doctor", pair[0], pair[1], "--set", "match.num_disparities=0"}, {"match.num_disparities"});
+  write(at("noise.txt"), "no calibration at all");
+  refuses({"doctor", pair[0], pair[1], "--calib", path("noise.txt")}, {"noise.txt"});
+}
+
+}  // namespace
+}  // namespace cairn::command

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/geometry.hpp>
+#include <io/calibration_files.hpp>
+#include <io/raw_calibration.hpp>
+#include <io/stereo_calibration.hpp>
+
+#include "command.hpp"
+
+/// cairn calibrate and cairn rectify, on the checkerboard that comes with Debian's opencv-doc.
+namespace cairn::command {
+namespace {
+
+const fs::path kBoards = "/usr/share/doc/opencv-doc/examples/data";
+
+bool is_built_in() {
+  try {
+    (void)io::calibrate_stereo({}, {}, {});
+  } catch (const Error& error) {
+    return std::string(error.what()).find("not built in") == std::string::npos;
+  }
+  return true;
+}
+
+/// Without ones or with a word why the test cannot be.
+class RawCameras : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+    if (!fs::exists(kBoards / "left01.jpg"))
+      GTEST_SKIP() << "no checkerboards in " << kBoards << " (opencv-doc)";
+  }
+};
+
+double number_after(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + words.size()));
+}
+
+TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
+  Outcome outcome =
+      run({"calibrate", kBoards, "--board", "9x6", "--square", "0.025", "-o", path("calib.yaml")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_LT(number_after(outcome.out, "reprojection error  "), 0.5) << outcome.out;
+  EXPECT_LT(number_after(outcome.out, "rows, rectified     "), 0.5) << outcome.out;
+  EXPECT_NE(outcome.out.find("13 of 14"), std::string::npos) << outcome.out;
+
+  // Raw, the pair is not fit for use; rectified, its rows are.
+  const fs::path left = kBoards / "left01.jpg";
+  const fs::path right = kBoards / "right01.jpg";
+  outcome = run({"doctor", left, right});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("not rectified"), std::string::npos) << outcome.out;
+  outcome = run({"rectify", "--calib", path("calib.yaml"), left, right, "-o", path("pair")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  outcome = run({"doctor", path("pair"), "--set", "match.num_disparities=144"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_EQ(outcome.out.find("rows misaligned"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("not rectified"), std::string::npos) << outcome.out;
+
+  // The calibration beside the pair says what that of the raw cameras says of it.
+  const auto beside = io::load_calibration(at("pair") / "calib.txt");
+  const auto raw = io::load_calibration(at("calib.yaml"));
+  ASSERT_TRUE(beside.rig && raw.rig);
+  EXPECT_EQ(beside.rig->focal_px, raw.rig->focal_px);
+  EXPECT_EQ(beside.rig->cx_px, raw.rig->cx_px);
+  EXPECT_FLOAT_EQ(beside.rig->baseline_m, raw.rig->baseline_m);
+  EXPECT_NEAR(static_cast<double>(beside.rig->baseline_m), 0.083, 0.002);
+  outcome = run({"segment", path("pair"), "-o", path("result")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(at("result") / "objects.json"));
+}
+
+TEST_F(RawCameras, RefuseABoardThatIsNotThere) {
+  pair_in("boards/a");
+  pair_in("boards/b");
+  refuses({"calibrate", path("boards"), "--board", "9x6", "--square", "0.025", "-o", path("c.yaml")},
+          {"the whole board is seen in 0 pairs"});
+  refuses({"calibrate", kBoards.string(), "--board", "nine", "--square", "0.025"}, {"--board nine", "9x6"});
+  refuses({"calibrate", kBoards.string(), "--board", "9x6", "--square", "0"}, {"--square"});
+  fs::create_directories(at("empty"));
+  refuses({"calibrate", path("empty"), "--board", "9x6", "--square", "1"}, {"holds no pairs"});
+}
+
+TEST_F(RawCameras, RefuseACalibrationOfAnotherSize) {
+  io::RawCalibration raw{{640, 480}, {}, {}, {}, {}};
+  raw.left.matrix = raw.right.matrix = {500, 0, 320, 0, 500, 240, 0, 0, 1};
+  raw.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  raw.translation_m = {-0.1, 0, 0};
+  io::save_raw_calibration(at("raw.yaml"), raw, {});
+  const auto pair = pair_in("pair");
+  refuses({"rectify", "--calib", path("raw.yaml"), pair[0], pair[1], "-o", path("out")},
+          {"raw.yaml", "640x480", "96x72"});
+}
+
+TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {
+  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+  io::RawCalibration raw{{64, 48}, {}, {}, {}, {}};
+  raw.left.matrix = raw.right.matrix = {60, 0, 31.5, 0, 60, 23.5, 0, 0, 1};
+  raw.left.rotation = raw.right.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  raw.left.projection = {60, 0, 31.5, 0, 0, 60, 23.5, 0, 0, 0, 1, 0};
+  raw.right.projection = {60, 0, 31.5, -6, 0, 60, 23.5, 0, 0, 0, 1, 0};
+  const io::Rectifier rectify(raw);
+  EXPECT_FLOAT_EQ(rectify.rig().baseline_m, 0.1F);
+  EXPECT_FLOAT_EQ(rectify.rig().focal_px, 60);
+  std::mt19937 random(1);
+  io::PicturePair pair{{Image<Gray>(Size{64, 48}), {}}, {Image<Gray>(Size{64, 48}), {}}};
+  for (Image<Gray>* image : {&pair.left.gray, &pair.right.gray}) {
+    for (int y = 0; y < 48; ++y) {
+      for (int x = 0; x < 64; ++x) (*image)(x, y) = static_cast<Gray>(random() % 256);
+    }
+  }
+  const io::PicturePair same = rectify(pair);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      ASSERT_EQ(same.left.gray(x, y), pair.left.gray(x, y));
+      ASSERT_EQ(same.right.gray(x, y), pair.right.gray(x, y));
+    }
+  }
+}
+
+TEST(Calibration, FindsCamerasThatWereDrawn) {
+  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+  // Corners of a board that stands in eight places, seen by two cameras without distortion, 0.2 m apart.
+  const io::Board board{7, 5, 0.04};
+  constexpr double kFocal = 600;
+  std::vector<io::BoardSighting> sightings;
+  for (int place = 0; place < 8; ++place) {
+    const double turn = 0.5 * std::sin(place * 2.0);
+    const double tilt = 0.5 * std::cos(place * 3.0);
+    io::BoardSighting sighting;
+    for (int row = 0; row < board.rows; ++row) {
+      for (int column = 0; column < board.columns; ++column) {
+        const double u = board.square_m * (column - 3);
+        const double v = board.square_m * (row - 2);
+        const double x = u * std::cos(turn) - v * std::sin(turn) * std::sin(tilt) + 0.05 * (place % 3);
+        const double y = v * std::cos(tilt) - 0.04 * (place % 2);
+        const double z = 0.9 + 0.05 * place + u * std::sin(turn) + v * std::cos(turn) * std::sin(tilt);
+        const auto seen = [&](double camera_x) {
+          return std::array{static_cast<float>(320 + kFocal * (x - camera_x) / z),
+                            static_cast<float>(240 + kFocal * y / z)};
+        };
+        sighting.left.push_back(seen(0));
+        sighting.right.push_back(seen(0.2));
+      }
+    }
+    sightings.push_back(std::move(sighting));
+  }
+  const auto found = io::calibrate_stereo(sightings, board, {640, 480});
+  EXPECT_LT(found.error_px, 0.01);
+  EXPECT_LT(found.rows_error_px, 0.01);
+  EXPECT_EQ(found.pair_error_px.size(), sightings.size());
+  EXPECT_NEAR(found.raw.left.matrix[0], kFocal, 1);
+  EXPECT_NEAR(found.raw.right.matrix[2], 320, 1);
+  EXPECT_NEAR((*found.raw.translation_m)[0], -0.2, 0.001);
+}
+
+}  // namespace
+}  // namespace cairn::command

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/synchrony.hpp>
+#include <cairn/pipeline/config.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <io/calibration_files.hpp>
+#include <io/dataset.hpp>
+#include <io/image_files.hpp>
+#include <string>
+#include <vector>
+
+/// The doctor has nothing to say of good pairs, real and rendered.
+namespace cairn {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path data() {
+  const char* named = std::getenv("CAIRN_DATA");
+  return named != nullptr ? fs::path(named) : fs::path(CAIRN_SOURCE_DIR) / "../shared/data";
+}
+
+/// Every folder below with a left picture.
+std::vector<fs::path> pairs_below(const fs::path& folder) {
+  std::vector<fs::path> pairs;
+  if (!fs::exists(folder)) return pairs;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().filename() == "left.png") pairs.push_back(entry.path().parent_path());
+  return pairs;
+}
+
+class GoodPairs : public testing::TestWithParam<const char*> {};
+
+TEST_P(GoodPairs, AreNothingToComplainAbout) {
+  const auto pairs = pairs_below(data() / GetParam());
+  if (pairs.empty()) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
+  for (const fs::path& folder : pairs) {
+    const auto frame = io::find_frames(folder).front();
+    const auto pictures = io::load_pair(frame.left, *frame.right);
+    io::Calibration calibration;
+    if (frame.calib) calibration = io::load_calibration(*frame.calib);
+    MatchConfig range = Config{}.match;
+    range.num_disparities = calibration.num_disparities.value_or(range.num_disparities);
+    const auto measures = measure_pair(StereoPair::from(pictures.left.gray, pictures.right.gray), {});
+    for (const Finding& finding : diagnose(measures, calibration.rig, range, {}))
+      ADD_FAILURE() << folder << ": " << info(finding.kind).name << ": " << finding.says;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Collections, GoodPairs,
+                         testing::Values("rendered/dev/320x240", "rendered/dev/640x480",
+                                         "real/middlebury2001", "real/middlebury2003", "real/middlebury2005",
+                                         "real/middlebury2006", "real/middlebury2014", "real/rc_tabletop",
+                                         "real/kitti_pairs", "real/boofcv_bumblebee2", "real/indoor_pairs"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           for (char& c : name) c = c == '/' ? '_' : c;
+                           return name;
+                         });
+
+class GoodSequences : public testing::TestWithParam<const char*> {};
+
+TEST_P(GoodSequences, RunTogetherAndAreFoundOutWhereTheyAreMadeNotTo) {
+  if (!fs::exists(data() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
+  const auto frames = io::find_frames(data() / GetParam());
+  std::vector<io::PicturePair> pictures;
+  for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
+  for (const int late : {0, 1}) {
+    std::vector<StereoPair> pairs;
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+      pairs.push_back(
+          StereoPair::from(pictures[i + static_cast<std::size_t>(late)].left.gray, pictures[i].right.gray));
+    const Synchrony measured = measure_synchrony(pairs, Exec::with_threads(2));
+    EXPECT_EQ(measured.lag(), late);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Collections, GoodSequences,
+                         testing::Values("rendered/dev/sequences/dev_seqA",
+                                         "rendered/dev/sequences/dev_seqB"),
+                         [](const auto& test) { return std::string(test.param).substr(23); });
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <io/calibration_files.hpp>
+#include <io/dataset.hpp>
+#include <io/raw_calibration.hpp>
+#include <string>
+
+#include "support/temporary_folder.hpp"
+
+namespace cairn {
+namespace {
+
+using support::has;
+using support::refusal;
+using support::survives_damage;
+using support::TemporaryFolder;
+
+io::RawCalibration example() {
+  io::RawCalibration raw{{640, 480}, {}, {}, {}, {}};
+  raw.left.matrix = {533.5, 0, 342.25, 0, 533.25, 234.5, 0, 0, 1};
+  raw.right.matrix = {537, 0, 327, 0, 536, 250, 0, 0, 1};
+  raw.left.distortion = {-0.28, 0.1, 1.5e-3, -1e-4, 0.03};
+  raw.right.distortion = {-0.3, 0.14, 0, 0};
+  raw.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  raw.translation_m = {-0.083, 0.001, 0.0004};
+  return raw;
+}
+
+TEST(RawCalibration, IsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  io::RawCalibration raw = example();
+  raw.left.rotation = raw.right.rotation = raw.rotation;
+  raw.left.projection = {500, 0, 320, 0, 0, 500, 240, 0, 0, 0, 1, 0};
+  raw.right.projection = {500, 0, 320, -41.5, 0, 500, 240, 0, 0, 0, 1, 0};
+  io::save_raw_calibration(folder.path() / "calib.yaml", raw, {"a remark: with a colon"});
+  const io::RawCalibration read = io::load_raw_calibration(folder.path() / "calib.yaml");
+  EXPECT_EQ(read.image_size, raw.image_size);
+  EXPECT_EQ(read.left.matrix, raw.left.matrix);
+  EXPECT_EQ(read.right.distortion, raw.right.distortion);
+  EXPECT_EQ(read.left.distortion, raw.left.distortion);
+  EXPECT_EQ(read.rotation, raw.rotation);
+  EXPECT_EQ(read.translation_m, raw.translation_m);
+  EXPECT_EQ(read.right.projection, raw.right.projection);
+  // And as a rectified pair's by what reads those.
+  const io::Calibration rectified = io::load_calibration(folder.path() / "calib.yaml");
+  ASSERT_TRUE(rectified.rig);
+  EXPECT_FLOAT_EQ(rectified.rig->baseline_m, 0.083F);
+  EXPECT_EQ(rectified.image_size, raw.image_size);
+}
+
+TEST(RawCalibration, IsReadFromOpenCvsXmlAndOtherNames) {
+  const TemporaryFolder folder;
+  const auto matrix = [](const std::string& name, const char* rows, const char* cols, const char* data) {
+    return "<" + name + " type_id=\"opencv-matrix\"><rows>" + rows + "</rows><cols>" + cols +
+           "</cols><dt>d</dt><data>" + data + "</data></" + name + ">\n";
+  };
+  const std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>\n<imageSize>640 480</imageSize>\n" +
+                          matrix("cameraMatrix1", "3", "3", "500 0 320 0 501 240 0 0 1") +
+                          matrix("distCoeffs1", "1", "5", "0.1 0.2 0 0 0.3") +
+                          matrix("cameraMatrix2", "3", "3", "510 0 321 0 511 241 0 0 1") +
+                          matrix("distCoeffs2", "1", "5", "0 0 0 0 0") +
+                          matrix("R", "3", "3", "1 0 0 0 1 0 0 0 1") + matrix("T", "3", "1", "-0.1 0 0") +
+                          "</opencv_storage>\n";
+  const io::RawCalibration raw = io::load_raw_calibration(folder.with("calib.xml", xml));
+  EXPECT_EQ(raw.left.matrix[4], 501);
+  EXPECT_EQ(raw.right.matrix[2], 321);
+  EXPECT_EQ(raw.left.distortion.size(), 5U);
+  ASSERT_TRUE(raw.translation_m);
+  EXPECT_EQ((*raw.translation_m)[0], -0.1);
+}
+
+std::string ros(const std::string& fourth, const std::string& model = "plumb_bob") {
+  return "image_width: 640\nimage_height: 480\n"
+         "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [551, 0, 321, 0, 552, 239, 0, 0, 1]\n"
+         "distortion_model: " +
+         model +
+         "\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [-0.1, 0.02, 0, 0, 0]\n"
+         "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+         "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [550, 0, 320, " +
+         fourth + ", 0, 550, 240, 0, 0, 0, 1, 0]\n";
+}
+
+TEST(RawCalibration, IsReadFromARosPairWhicheverIsNamed) {
+  const TemporaryFolder folder;
+  const auto left = folder.with("left.yaml", ros("0"));
+  const auto right = folder.with("right.yaml", ros("-66"));
+  for (const auto& named : {left, right}) {
+    const io::RawCalibration raw = io::load_raw_calibration(named);
+    EXPECT_EQ((*raw.right.projection)[3], -66);
+    EXPECT_EQ((*raw.left.projection)[3], 0);
+    EXPECT_EQ(raw.left.matrix[0], 551);
+  }
+}
+
+TEST(RawCalibration, RefusesWhatCannotRectify) {
+  const TemporaryFolder folder;
+  const auto refuses = [&](const std::string& text, const std::vector<std::string>& words) {
+    const auto file = folder.with("calib.yaml", text);
+    std::vector<std::string_view> all(words.begin(), words.end());
+    const std::string message = refusal([&] { (void)io::load_raw_calibration(file); });
+    EXPECT_NE(message.find("calib.yaml"), std::string::npos) << message;
+    for (const std::string_view word : all) EXPECT_NE(message.find(word), std::string::npos) << message;
+  };
+  refuses("focal_px: 500\nwidth: 640\nheight: 480\n", {"M1"});
+  refuses("[]", {"map"});
+  io::RawCalibration raw = example();
+  raw.rotation.reset();
+  io::save_raw_calibration(folder.path() / "calib.yaml", raw, {});
+  EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(folder.path() / "calib.yaml"); }).find("R and T"),
+            std::string::npos);
+  raw = example();
+  raw.left.distortion = {1, 2, 3};
+  io::save_raw_calibration(folder.path() / "calib.yaml", raw, {});
+  EXPECT_NE(
+      refusal([&] { (void)io::load_raw_calibration(folder.path() / "calib.yaml"); }).find("3 distortion"),
+      std::string::npos);
+  (void)folder.with("right.yaml", ros("-66"));
+  const auto fisheye = folder.with("left.yaml", ros("0", "equidistant"));
+  EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(fisheye); }).find("equidistant"), std::string::npos);
+  EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(folder.path() / "none"); }).find("none"),
+            std::string::npos);
+}
+
+TEST(Pairs, AreFoundByNamesInFoldersAndAsFrames) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"a/left02.jpg", "a/right02.jpg", "a/left01.jpg", "a/right01.jpg", "a/left03.jpg", "a/notes_left.txt",
+        "a/notes_right.txt", "b/left/7.png", "b/right/7.png", "b/left/8.png", "c/one/left.png",
+        "c/one/right.png", "c/two/left.png", "c/two/right.png", "d/nothing.txt"})
+    (void)folder.with(name, "");
+  const auto by_name = io::find_pairs(folder.path() / "a");
+  ASSERT_EQ(by_name.size(), 2U);
+  EXPECT_EQ(by_name[0].name, "left01");
+  EXPECT_EQ(by_name[1].right, folder.path() / "a" / "right02.jpg");
+  const auto in_folders = io::find_pairs(folder.path() / "b");
+  ASSERT_EQ(in_folders.size(), 1U);
+  EXPECT_EQ(in_folders[0].right, folder.path() / "b" / "right" / "7.png");
+  EXPECT_EQ(io::find_pairs(folder.path() / "c").size(), 2U);
+  EXPECT_NE(refusal([&] { (void)io::find_pairs(folder.path() / "d"); }).find("holds no pairs"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace cairn
