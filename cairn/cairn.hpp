@@ -38,3 +38,5 @@
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above
 #include <cairn/pipeline/segmenter.hpp>          // Segmenter: the same for video
+#include <cairn/diagnosis/diagnose.hpp>          // measure_pair, diagnose: what is wrong with a rig
+#include <cairn/diagnosis/synchrony.hpp>         // measure_synchrony

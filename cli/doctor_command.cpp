@@ -373,6 +373,26 @@ int examine_and_tell(const DoctorOptions& options) {
   return is_broken ? 1 : 0;
 }
 
+/// Every finding with its number and remedy, and every limit.
+std::string explanation() {
+  std::string all;
+  for (const FindingInfo& known : kFindings) {
+    all += std::string(known.name) + "\n    measured: " + std::string(known.number) +
+           (known.unit.empty() ? "" : " (" + std::string(known.unit) + ")") +
+           "\n    remedy:   " + std::string(known.remedy) + "\n";
+  }
+  DiagnosisConfig config;
+  std::string lines;
+  fields(config, [&](const char* name, const auto& value, const char* unit, const char* help, const auto&) {
+    std::string start = name;
+    start.resize(18, ' ');
+    std::string amount = text_of("%g ", static_cast<double>(value)) + unit;
+    amount.resize(std::max<std::size_t>(amount.size(), 16), ' ');
+    lines += start + amount + help + "\n";
+  });
+  return all + "\nlimits\n" + lines;
+}
+
 }  // namespace
 
 Work declare_doctor(CLI::App& app) {
@@ -385,6 +405,14 @@ Work declare_doctor(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--json", options->json, "also write findings and measurements into this file, as JSON")
       ->type_name("FILE");
+  app.add_flag_callback(
+         "--explain",
+         [] {
+           std::cout << explanation();
+           throw CLI::Success();
+         },
+         "print every finding with its number and remedy, and every limit, and do nothing else")
+      ->trigger_on_parse();
   app.footer(
       "Says what is wrong with the rig: each finding with what was measured and what to do.\n"
       "Exit codes: 0 nothing is broken, 1 something is, 2 bad usage, file or option.\n"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/geometry.hpp>
+#include <cairn/diagnosis/findings.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
@@ -93,6 +94,17 @@ TEST_F(Doctor, NamesThePairsOfAFolderThatAreBad) {
   const Outcome outcome = run({"doctor", path("rig")});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("in 1 of 3 pairs (two)"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Doctor, ExplainsEveryFindingWithoutAPair) {
+  const Outcome outcome = run({"doctor", "--explain"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "");
+  for (const FindingInfo& known : kFindings) {
+    EXPECT_NE(outcome.out.find(known.name), std::string::npos) << known.name;
+    EXPECT_NE(outcome.out.find(known.remedy), std::string::npos) << known.remedy;
+  }
+  EXPECT_NE(outcome.out.find("warn_rows"), std::string::npos);
 }
 
 TEST_F(Doctor, RefusesBadInput) {
