@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/diagnosis/findings.hpp>
 #include <optional>
