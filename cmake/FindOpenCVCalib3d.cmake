@@ -1,4 +1,4 @@
-# OpenCV's matchers, for the benchmarks alone: target opencv_calib3d. See FindOpenCVImgproc.cmake for why not by OpenCV's
+# OpenCV's matchers and camera models: target OpenCVCalib3d::calib3d. See FindOpenCVImgproc.cmake for why not by OpenCV's
 # own package file.
 find_path(OpenCVCalib3d_INCLUDE_DIR opencv2/calib3d.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVCalib3d_LIBRARY opencv_calib3d)
@@ -7,9 +7,9 @@ mark_as_advanced(OpenCVCalib3d_INCLUDE_DIR OpenCVCalib3d_LIBRARY)
 if(OpenCVCalib3d_INCLUDE_DIR AND OpenCVCalib3d_LIBRARY)
   find_package(OpenCVImgproc QUIET)
   set(OpenCVCalib3d_FOUND ${OpenCVImgproc_FOUND})
-  if(OpenCVCalib3d_FOUND AND NOT TARGET opencv_calib3d)
-    add_library(opencv_calib3d UNKNOWN IMPORTED)
-    set_target_properties(opencv_calib3d PROPERTIES
+  if(OpenCVCalib3d_FOUND AND NOT TARGET OpenCVCalib3d::calib3d)
+    add_library(OpenCVCalib3d::calib3d UNKNOWN IMPORTED)
+    set_target_properties(OpenCVCalib3d::calib3d PROPERTIES
       IMPORTED_LOCATION ${OpenCVCalib3d_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${OpenCVCalib3d_INCLUDE_DIR}
       INTERFACE_LINK_LIBRARIES OpenCVImgproc::imgproc)
@@ -17,4 +17,8 @@ if(OpenCVCalib3d_INCLUDE_DIR AND OpenCVCalib3d_LIBRARY)
 else()
   find_package(OpenCV QUIET COMPONENTS core imgproc calib3d)
   set(OpenCVCalib3d_FOUND ${OpenCV_FOUND})
+  if(OpenCVCalib3d_FOUND AND NOT TARGET OpenCVCalib3d::calib3d)
+    add_library(OpenCVCalib3d::calib3d INTERFACE IMPORTED)
+    target_link_libraries(OpenCVCalib3d::calib3d INTERFACE opencv_calib3d)
+  endif()
 endif()

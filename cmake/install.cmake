@@ -52,7 +52,7 @@ write_basic_package_version_file(cairnConfigVersion.cmake COMPATIBILITY SameMino
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cairnConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/cairnConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT dev)
 if(CAIRN_IO AND static_library)
-  install(FILES cmake/FindOpenCVImgproc.cmake DESTINATION ${package_dir} COMPONENT dev)
+  install(FILES cmake/FindOpenCVImgproc.cmake cmake/FindOpenCVCalib3d.cmake DESTINATION ${package_dir} COMPONENT dev)
 endif()
 
 # ---- for pkg-config ----
@@ -83,8 +83,12 @@ list(JOIN static_requires " " static_requires)
 cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "" "${static_requires}" "-pthread")
 if(CAIRN_IO)
   # OpenCV by its libraries: its own .pc file names every module.
+  set(opencv_libs "-lopencv_imgproc -lopencv_core")
+  if(CAIRN_HAS_CALIBRATION)
+    string(PREPEND opencv_libs "-lopencv_calib3d ")
+  endif()
   cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results"
-    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "-lopencv_imgproc -lopencv_core")
+    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "${opencv_libs}")
 endif()
 
 # ---- the command ----

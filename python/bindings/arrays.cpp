@@ -58,7 +58,7 @@ bool has_plain_rows(const py::array& array, py::ssize_t pixel_bytes) {
   return aligned && dense && stacked && channels;
 }
 
-py::array with_plain_rows(py::array array, py::ssize_t pixel_bytes) {
+py::array with_plain_rows(const py::array& array, py::ssize_t pixel_bytes) {
   return has_plain_rows(array, pixel_bytes) ? array : py::array(array.attr("copy")());
 }
 
@@ -105,7 +105,7 @@ struct Accepted<std::uint8_t> {
 template <class T>
 Borrowed<T>::Borrowed(const py::object& value, const char* name) {
   using Number = typename Accepted<T>::Number;
-  const std::string type = py::str(py::dtype::of<Number>()).cast<std::string>();
+  const auto type = py::str(py::dtype::of<Number>()).cast<std::string>();
   const std::string expected = "an array (height, width) of " + type;
   py::array array = array_like(value, name, expected);
   if (array.ndim() != 2) refuse(name, described(array), expected);
@@ -115,7 +115,7 @@ Borrowed<T>::Borrowed(const py::object& value, const char* name) {
     array = array.attr("astype")(type);
   }
   const Size size = size_of(array, name, expected);
-  keep_ = with_plain_rows(std::move(array), static_cast<py::ssize_t>(sizeof(Number)));
+  keep_ = with_plain_rows(array, static_cast<py::ssize_t>(sizeof(Number)));
   view_ = view_over<T>(keep_, size);
 }
 template class Borrowed<std::uint8_t>;
@@ -125,8 +125,8 @@ template class Borrowed<std::int32_t>;
 template class Borrowed<float>;
 template class Borrowed<Reject>;
 
-BorrowedDisparities::BorrowedDisparities(const py::object& array, const char* name)
-    : Borrowed<float>(array, name) {
+BorrowedDisparities::BorrowedDisparities(const py::object& value, const char* name)
+    : Borrowed<float>(value, name) {
   const View<const float> px = view();
   for (int y = 0; y < px.height(); ++y) {
     const float* row = px.row(y);
@@ -139,8 +139,8 @@ BorrowedDisparities::BorrowedDisparities(const py::object& array, const char* na
   }
 }
 
-BorrowedMask::BorrowedMask(const py::object& array, const char* name) {
-  if (!array.is_none()) mask_.emplace(array, name);
+BorrowedMask::BorrowedMask(const py::object& value, const char* name) {
+  if (!value.is_none()) mask_.emplace(value, name);
 }
 
 Picture::Picture(const py::object& value, const char* name, bool bgr, const Pool& pool) {
@@ -152,7 +152,7 @@ Picture::Picture(const py::object& value, const char* name, bool bgr, const Pool
     refuse(name, described(array), expected);
   }
   const Size size = size_of(array, name, expected);
-  keep_ = with_plain_rows(std::move(array), colour ? 3 : 1);
+  keep_ = with_plain_rows(array, colour ? 3 : 1);
   if (!colour) {
     gray_ = view_over<Gray>(keep_, size);
     return;

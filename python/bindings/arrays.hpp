@@ -54,7 +54,7 @@ class Array : public py::array {
 template <class T>
 class Borrowed {
  public:
-  Borrowed(const py::object& array, const char* name);
+  Borrowed(const py::object& value, const char* name);
   [[nodiscard]] View<const T> view() const { return view_; }
   [[nodiscard]] Size size() const { return view_.size(); }
 
@@ -73,13 +73,13 @@ extern template class Borrowed<Reject>;
 /// Disparities from outside: floats, each a hole (NaN, ±inf) or within ±kMaxDisparity. Throws Error.
 class BorrowedDisparities : public Borrowed<float> {
  public:
-  BorrowedDisparities(const py::object& array, const char* name);
+  BorrowedDisparities(const py::object& value, const char* name);
 };
 
 /// None: an empty view.
 class BorrowedMask {
  public:
-  BorrowedMask(const py::object& array, const char* name);
+  BorrowedMask(const py::object& value, const char* name);
   [[nodiscard]] View<const std::uint8_t> view() const {
     return mask_ ? mask_->view() : View<const std::uint8_t>();
   }
@@ -92,7 +92,7 @@ class BorrowedMask {
 /// the grey of colours and the order B, G, R need an image of their own, from `pool`.
 class Picture {
  public:
-  Picture(const py::object& array, const char* name, bool bgr, const Pool& pool);
+  Picture(const py::object& value, const char* name, bool bgr, const Pool& pool);
   [[nodiscard]] View<const Gray> gray() const { return gray_; }
   [[nodiscard]] View<const Rgb> rgb() const { return rgb_; }  // empty where it is grey
   [[nodiscard]] Size size() const { return gray_.size(); }

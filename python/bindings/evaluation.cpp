@@ -67,6 +67,7 @@ std::string percent(double share) {
 
 ObjectSummary summary_of(const std::vector<ObjectErrors>& frames) {
   std::vector<FrameObjects> all;
+  all.reserve(frames.size());
   for (const ObjectErrors& errors : frames) all.push_back({errors, false});
   return summarise(all);
 }
