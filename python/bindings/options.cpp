@@ -150,6 +150,7 @@ Exec make_exec(int threads, const std::string& target) {
 
 std::vector<std::string> names_of(const std::vector<Target>& targets) {
   std::vector<std::string> names;
+  names.reserve(targets.size());
   for (const Target target : targets) names.emplace_back(name(target));
   return names;
 }
@@ -196,8 +197,9 @@ void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) 
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const std::string& candidate) {
-      return std::any_of(all.begin(), all.end(),
-                         [&](const OptionInfo& o) { return o.name == candidate + "." + name; });
+      return std::any_of(all.begin(), all.end(), [&](const OptionInfo& o) {
+        return group_of(o) == candidate && name_in_group(o) == name;
+      });
     });
     if (group == groups.end() && groups.empty())
       throw py::type_error("there is no keyword argument '" + name + "'");

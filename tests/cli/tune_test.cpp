@@ -150,7 +150,7 @@ TEST_F(Tune, ContradictorySettingsAreLeft) {
 }
 
 TEST_F(Tune, CtrlCKeepsTheBestSoFar) {
-  pair_in("frames/a", {160, 120});
+  pair_in("frames/a", {960, 720});  // so large that no machine is through within the second
   const std::string line = "timeout --preserve-status -s INT 1 '" CAIRN_COMMAND "' tune '" + path("frames") +
                            "' --options '*' --budget 1h -o '" + path("tuned.yaml") + "' --json '" +
                            path("found.json") + "' > '" + path("out") + "' 2> '" + path("err") + "'";

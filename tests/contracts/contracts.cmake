@@ -54,9 +54,10 @@ if(CAIRN_IO)
   cairn_contract(commands_answer_help ${here}/commands_answer_help.sh $<TARGET_FILE:cairn_cli>)
   cairn_contract(manual_pages_and_completion ${here}/manual.sh $<TARGET_FILE:cairn_cli> ${PROJECT_BINARY_DIR}/manual)
   cairn_contract(docs_are_as_generated ${PROJECT_SOURCE_DIR}/docs/update.sh --check ${PROJECT_BINARY_DIR})
-  find_package(Python3 QUIET COMPONENTS Interpreter)
-  if(Python3_FOUND)
-    cairn_contract(shown_code_runs ${Python3_EXECUTABLE} ${here}/shown_code_runs.py
+  # Debian's Python, which has Debian's modules.
+  find_program(CAIRN_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  if(CAIRN_SYSTEM_PYTHON)
+    cairn_contract(shown_code_runs ${CAIRN_SYSTEM_PYTHON} ${here}/shown_code_runs.py
       ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
     cairn_contract(site_builds_and_its_links_lead_somewhere ${PROJECT_SOURCE_DIR}/docs/site/build.sh ${PROJECT_BINARY_DIR})
     set_tests_properties(contracts/site_builds_and_its_links_lead_somewhere PROPERTIES

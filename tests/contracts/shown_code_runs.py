@@ -10,7 +10,9 @@ A fenced block of a page is
 unless one of these stands in the line before it:
   <!-- code: ... -->, <!-- output: ... -->   it is generated; docs/update.sh --check looks after it
   <!-- not run: WHY -->                      it is let alone
-That folder holds left.png, right.png and calib.txt of a sample, frames/ with all samples and truth/, the same.
+That folder holds left.png, right.png and calib.txt of a sample, frames/ with all samples and truth/, the same. A page
+that speaks of boards/ gets OpenCV's checkerboards there, and the first of them as left.png and right.png; where
+Debian's opencv-doc is not installed, what it shows is not run.
 """
 import os
 import re
@@ -60,6 +62,17 @@ def pages(source):
     return sorted(source / p for p in found if (source / p).exists())
 
 
+BOARDS = Path("/usr/share/doc/opencv-doc/examples/data")
+
+
+def raw_scene(folder):
+    (folder / "boards").mkdir()
+    for file in [*BOARDS.glob("left[0-9]*.jpg"), *BOARDS.glob("right[0-9]*.jpg")]:
+        shutil.copy(file, folder / "boards")
+    for side in ("left", "right"):  # what is in a picture tells its format, not its name
+        shutil.copy(BOARDS / f"{side}01.jpg", folder / f"{side}.png")
+
+
 def scene(source, folder):
     for name in ("left.png", "right.png", "calib.txt"):
         shutil.copy(source / "samples/four_in_a_row" / name, folder)
@@ -107,7 +120,12 @@ def main(source, build, compiler):
         python = [b for b in checked if b.language == "python"] if has_module else []
         with tempfile.TemporaryDirectory() as scratch:
             folder = Path(scratch)
-            if any(b.language != "cpp" for b in checked):
+            if any("boards/" in b.text for b in checked):
+                if not (BOARDS / "left01.jpg").exists():
+                    print(f"{page}: not run: there is no {BOARDS}")
+                    continue
+                raw_scene(folder)
+            elif any(b.language != "cpp" for b in checked):
                 scene(source, folder)
             results = [run_shell(b, folder, environment) for b in checked if b.language == "sh"]
             results += [run_python(python, folder, environment)] if python else []
