@@ -87,6 +87,7 @@ Target wanted_target(std::string_view wanted, std::string_view source) {
   const std::optional<Target> target = target_named(wanted);
   if (!target) {
     std::vector<std::string> names;
+    names.reserve(kNames.size());
     for (const auto& [unused, text] : kNames) names.emplace_back(text);
     const std::string close = nearest(wanted, names);
     throw Error(std::string(source) + ": unknown instruction set '" + std::string(wanted) +

@@ -23,6 +23,6 @@ std::string_view name(Target target);
 std::optional<Target> target_named(std::string_view name);
 /// The target that a user asked for by name. Throws Error, which begins with `source` ("--target"), where
 /// there is none of this name, or where this build or this processor lacks it.
-Target wanted_target(std::string_view name, std::string_view source);
+Target wanted_target(std::string_view wanted, std::string_view source);
 
 }  // namespace cairn

@@ -271,8 +271,8 @@ inline void flag_low_sums(const std::uint32_t* columns, int width, int window, c
     verdict[x] |= static_cast<std::int32_t>(sums[x]) < limits[x] ? why : Reject::none;
 }
 
-constexpr HolesAndJumps kHole = 1;
-constexpr HolesAndJumps kIsJump = 256;
+inline constexpr HolesAndJumps kHole = 1;
+inline constexpr HolesAndJumps kIsJump = 256;
 
 inline void mark_jumps(const float* here, const float* below, int width, float jump,
                        HolesAndJumps* CAIRN_RESTRICT marks) {
@@ -312,8 +312,8 @@ inline float power_of_two(float t) {
   return std::bit_cast<float>((whole + 127) << 23) * fraction;
 }
 
-constexpr float kLeastMean = 1e-6F;  // keeps costs that are all 0 from dividing by it
-constexpr float kGreatestExponent = 30.0F;
+inline constexpr float kLeastMean = 1e-6F;  // keeps costs that are all 0 from dividing by it
+inline constexpr float kGreatestExponent = 30.0F;
 
 inline float logistic(float log_odds) {
   constexpr float kLog2OfE = 1.44269504F;

@@ -198,9 +198,10 @@ void sums_of_kept(const CostBlock<std::int16_t>& block, int count, std::array<st
       of_pixel[i] = lanes::ZeroSum(d);
       for (int first = 0; first < count; first += kTile / 2) {
         CAIRN_UNROLL
-        for (int v = 0; v < kVectors<Width, kTile / 2>; ++v)
-          of_pixel[i] =
-              lanes::AddPairs(d, of_pixel[i], lanes::Load(d, costs + first + v * lane_count<Width>()));
+        for (int v = 0; v < kVectors<Width, kTile / 2>; ++v) {
+          const auto some = lanes::Load(d, costs + first + v * lane_count<Width>());
+          of_pixel[i] = lanes::AddPairs(d, of_pixel[i], some);
+        }
       }
     }
     lanes::Store(lanes::FoldEach<lanes::Sum>(SumTag(), of_pixel), lanes::Folded<SumTag>(),
