@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 PICTURES = {".png", ".svg", ".jpg"}
@@ -86,28 +87,46 @@ class Assembly:
                 shutil.copy(self.source / path, self.pages / path)
 
 
+def markdown_of(name, text):
+    """A docstring: its signature and what is indented as code, the rest as prose."""
+    parts = []
+    for paragraph in re.split(r"\n\s*\n", text):
+        if not parts and paragraph.startswith(f"{name}("):
+            lines = textwrap.wrap(paragraph, 76, subsequent_indent="    ", break_long_words=False)
+            parts.append("```python\n" + "\n".join(lines) + "\n```")
+        elif re.search(r"^  ", paragraph, re.M):
+            parts.append(f"```text\n{paragraph}\n```")
+        else:
+            parts.append(re.sub(r"([*_<>])", r"\\\1", paragraph))
+    return "\n\n".join(parts) + "\n"
+
+
 def python_reference(build):
     sys.path.insert(0, str(build / "python"))
     cairn = importlib.import_module("cairn")
     parts = ["# Python\n", inspect.getdoc(cairn) or ""]
-
-    def entry(level, name, thing):
-        parts.append(f"\n{'#' * level} {name}\n")
-        text = inspect.getdoc(thing) if not isinstance(thing, (int, float, str, bool)) else repr(thing)
-        parts.append(f"```text\n{text or name}\n```\n")
-
+    first = ["segment", "Segmenter", "options"]  # the others follow by name
     public = [n for n in getattr(cairn, "__all__", dir(cairn)) if not n.startswith("_")]
+    public.sort(key=lambda n: (first.index(n) if n in first else len(first), n))
     things = {n: getattr(cairn, n) for n in public if not inspect.ismodule(getattr(cairn, n))}
-    for title, wanted in (("Functions", lambda t: not inspect.isclass(t)), ("Types", inspect.isclass)):
-        parts.append(f"\n## {title}\n")
-        for name, thing in things.items():
-            if not wanted(thing):
-                continue
-            entry(3, name, thing)
-            if inspect.isclass(thing):
-                for member, value in vars(thing).items():
-                    if not member.startswith("_") and inspect.getdoc(value):
-                        entry(4, f"{name}.{member}", value)
+
+    parts.append("\n## Functions\n")
+    for name, thing in things.items():
+        if callable(thing) and not inspect.isclass(thing):
+            parts.append(f"\n### {name}\n\n{markdown_of(name, inspect.getdoc(thing) or '')}")
+    parts.append("\n## Types\n")
+    for name, thing in things.items():
+        if not inspect.isclass(thing):
+            continue
+        parts.append(f"\n### {name}\n\n{markdown_of(name, inspect.getdoc(thing) or '')}")
+        members = {m: inspect.getdoc(v) for m, v in vars(thing).items() if not m.startswith("_")}
+        for member, text in members.items():
+            if text and text != inspect.getdoc(int):
+                parts.append(f"\n#### {name}.{member}\n\n{markdown_of(member, text)}")
+    parts.append("\n## Numbers\n\n| name | value |\n|---|---|")
+    for name, thing in things.items():
+        if not callable(thing):
+            parts.append(f"| {name} | {thing!r} |".replace("_", "\\_"))
     return "\n".join(parts) + "\n"
 
 
