@@ -31,9 +31,10 @@ io::Board board_of(const CalibrateOptions& options) {
   const auto rows = std::from_chars(has_mark ? columns.ptr + 1 : end, end, board.rows);
   const bool is_read = has_mark && rows.ec == std::errc{} && rows.ptr == end;
   if (!is_read || std::min(board.columns, board.rows) < kFewest ||
-      std::max(board.columns, board.rows) > kMost)
+      std::max(board.columns, board.rows) > kMost) {
     throw Error("--board " + options.board +
                 ": expected the inner corners of the board, COLUMNSxROWS, e.g. 9x6, each in 3 ... 100");
+  }
   return board;
 }
 
