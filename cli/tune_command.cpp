@@ -102,7 +102,7 @@ struct Task {
   ResolvedConfig base;                  // without what a calibration says
   bool names_disparities = false;       // match.num_disparities is the user's, not the calibration's
 
-  [[nodiscard]] int count(const std::vector<bool>& chosen) const {
+  [[nodiscard]] static int count(const std::vector<bool>& chosen) {
     return static_cast<int>(std::count(chosen.begin(), chosen.end(), true));
   }
 };
@@ -146,9 +146,10 @@ std::vector<bool> frames_held_out(const TuneOptions& options, const Task& task) 
   for (const TuningFrame& frame : task.frames) {
     if (std::find(names.begin(), names.end(), frame.name) == names.end()) names.push_back(frame.name);
   }
-  if (names.size() < 2)
+  if (names.size() < 2) {
     throw Error("--holdout: " + options.folders.front() +
                 " has one frame, expected two or more to share out");
+  }
   const std::vector<bool> drawn =
       held_out(static_cast<int>(names.size()), options.holdout, task.sequence, options.seed);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -223,9 +224,10 @@ std::string goal_word(TuningGoal goal) {
 /// Why the start should be kept; empty where what was found is better.
 std::string reason_to_keep(const Tuned& tuned) {
   const SearchResult& s = tuned.search;
-  if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain))
+  if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain)) {
     return "nothing that was tried is better by " + percent(kLeastGain.least_share) +
            " and by more than chance";
+  }
   const double before = mean_loss(losses_of(tuned.held_out_before));
   const double after = mean_loss(losses_of(tuned.held_out_after));
   if (!tuned.held_out_before.empty() && std::isfinite(before) && after > before)

@@ -243,12 +243,14 @@ std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<Tuning
   if (stopped) return std::nullopt;
   if (options.goal == TuningGoal::consistency) compare_neighbours(frames, indices, outcomes);
   std::vector<FrameMeasure> measures;
+  measures.reserve(outcomes.size());
   for (Outcome& outcome : outcomes) measures.push_back(std::move(outcome.measure));
   return measures;
 }
 
 std::vector<Loss> losses_of(const std::vector<FrameMeasure>& measures) {
   std::vector<Loss> losses;
+  losses.reserve(measures.size());
   for (const FrameMeasure& measure : measures) losses.push_back(measure.loss);
   return losses;
 }

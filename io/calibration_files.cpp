@@ -142,9 +142,10 @@ int counted(double value, const char* key, int most) {
 }
 
 void check_positive(const std::optional<double>& value, const char* name) {
-  if (value && !(*value > 0))
+  if (value && !(*value > 0)) {
     throw ImpossibleCalibration(std::string(name) + " is " + written(*value) + ", expected a positive number",
                                 *value);
+  }
 }
 
 float center(const std::optional<double>& value, const char* name) {

@@ -302,7 +302,7 @@ RawCalibration read_raw_opencv(const Document& document) {
 
 RawCamera raw_camera(const YAML::Node& camera) {
   if (const YAML::Node model = camera["distortion_model"]; model && model.IsScalar()) {
-    const std::string name = model.Scalar();
+    const std::string& name = model.Scalar();
     if (name != "plumb_bob" && name != "rational_polynomial")
       throw Error("distortion_model is " + excerpt(name) + ", expected plumb_bob or rational_polynomial");
   }
