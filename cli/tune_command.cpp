@@ -293,7 +293,7 @@ class TuningRun {
                   ": the truth of the frames to tune on has nothing that can be scored");
     }
     tuned_.after = latest_;
-    if (task_.count(task_.held_out) > 0)
+    if (Task::count(task_.held_out) > 0)
       tuned_.held_out_after = *measure_frames(task_.frames, task_.held_out, settings, how_, matched_);
     if (!is_start) return;
     tuned_.before = tuned_.after;
@@ -433,10 +433,10 @@ std::string end_words(const Tuned& tuned) {
 }
 
 std::string summary(const Task& task, const Tuned& tuned) {
-  const int held = task.count(task.held_out);
+  const int held = Task::count(task.held_out);
   std::string all = plural(task.frames.size(), "frame") + (task.sequence ? ", a sequence" : "");
   if (held > 0)
-    all += ": tuned on " + std::to_string(task.count(task.tuned)) + ", held out " + std::to_string(held);
+    all += ": tuned on " + std::to_string(Task::count(task.tuned)) + ", held out " + std::to_string(held);
   all += "; " + plural(task.tunables.size(), "option") + ", " +
          plural(static_cast<std::size_t>(tuned.search.evaluations), "evaluation") + " in " +
          cli::text_of("%.1f s", tuned.seconds) + ": " + end_words(tuned) + "\n";
@@ -487,9 +487,9 @@ std::string tuning_json(const Task& task, const Tuned& tuned, const TuneOptions&
   j["seconds"] = tuned.seconds;
   j["end"] = tuned.was_interrupted ? "interrupted" : kEnds[static_cast<std::size_t>(tuned.search.end)];
   j["tuned_on"] = json_of(figures_of(tuned.before, task.goal), figures_of(tuned.after, task.goal),
-                          task.count(task.tuned));
+                          Task::count(task.tuned));
   j["held_out"] = json_of(figures_of(tuned.held_out_before, task.goal),
-                          figures_of(tuned.held_out_after, task.goal), task.count(task.held_out));
+                          figures_of(tuned.held_out_after, task.goal), Task::count(task.held_out));
   j["held_out_frames"] = Json::array();
   for (std::size_t i = 0; i < task.frames.size(); ++i) {
     if (task.held_out[i]) j["held_out_frames"].push_back(task.frames[i].name);

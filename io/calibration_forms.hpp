@@ -4,12 +4,12 @@
 
 #include <array>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/raw_calibration.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+#include "calibration_files.hpp"
+#include "raw_calibration.hpp"
 
 /// The forms of calibration files, one function each; internal to io. All throw Error without a file's name.
 namespace cairn::io {

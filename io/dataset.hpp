@@ -4,10 +4,10 @@
 
 #include <cairn/evaluation/object_error.hpp>
 #include <filesystem>
-#include <io/image_files.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+#include "image_files.hpp"
 
 namespace cairn::io {
 

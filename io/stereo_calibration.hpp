@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cairn/core/stereo_pair.hpp>
-#include <io/image_files.hpp>
-#include <io/raw_calibration.hpp>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
+#include "image_files.hpp"
+#include "raw_calibration.hpp"
 
 /// From raw cameras to rectified pairs, by OpenCV's calib3d. Built without it (CAIRN_CALIBRATION=OFF) every
 /// function here throws an Error that says so.
