@@ -66,11 +66,24 @@ bool check_points(Case& c) {
   return true;
 }
 
+/// True where nearly all points are negative, none of the range holds them, and it would once exchanged: a
+/// doffs above 0 allows negative disparities, but whoever searches a positive range expects none.
+bool fits_exchanged(const Case& c) {
+  const double first = c.range.min_disparity;
+  const double last = first + c.range.num_disparities - 1;
+  const double inside = c.share_below(last + 1) - c.share_below(first - 1);
+  const double inside_exchanged = c.share_below(1 - first) - c.share_below(-last - 1);
+  return 100 * (1 - inside) >= static_cast<double>(c.config.break_beyond) &&
+         100 * inside_exchanged >= static_cast<double>(c.config.break_swapped);
+}
+
 /// True where the cameras are in order.
 bool check_order(Case& c) {
   const double doffs = c.rig ? static_cast<double>(c.rig->doffs_px) : 0.0;
-  const double negative = c.share_below(std::min(0.0, -doffs) - 1);
-  if (100 * negative < static_cast<double>(c.config.break_swapped)) return true;
+  const double negative = c.share_below(-1);
+  const double impossible = c.share_below(std::min(0.0, -doffs) - 1);
+  const auto limit = static_cast<double>(c.config.break_swapped);
+  if (100 * impossible < limit && !(100 * negative >= limit && fits_exchanged(c))) return true;
   c.add(FindingKind::swapped, Severity::broken, 100 * negative,
         percent_text(negative) + " of " + std::to_string(c.measures.disparities_px.size()) +
             " points have a negative disparity, in the middle " +

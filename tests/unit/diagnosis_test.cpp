@@ -128,6 +128,13 @@ TEST_F(Diagnosis, SeesSwappedCameras) {
   EXPECT_GT(value(found), 90);
 }
 
+TEST_F(Diagnosis, SeesSwappedCamerasWhereDoffsAllowsNegativeDisparities) {
+  rig_->doffs_px = 40;
+  finds(findings(right(), left()), FindingKind::swapped, Severity::broken);
+  range_ = {.min_disparity = -40, .num_disparities = 64};  // whoever looks for them expects them
+  EXPECT_EQ(names(findings(right(), left())), "");
+}
+
 TEST_F(Diagnosis, MeasuresAVerticalShift) {
   for (const double rows : {-2.0, 1.25, 3.0}) {
     const auto lower = made_of(
