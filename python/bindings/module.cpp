@@ -29,6 +29,7 @@ PYBIND11_MODULE(_cairn, m) {
   cairn::python::bind_objects(m);
   cairn::python::bind_frame(m);
   cairn::python::bind_evaluation(m);
+  cairn::python::bind_diagnosis(m);
   cairn::python::bind_io(m);
 
   m.attr("__name__") = own_name;

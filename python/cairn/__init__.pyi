@@ -5,7 +5,7 @@
 
 import enum
 import os
-from typing import Any, Dict, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
+from typing import Any, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
 
 import numpy
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ MaskLike = Union[NDArray[numpy.uint8], NDArray[numpy.bool_], None]  # (H, W)
 LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)
 NumbersLike = NDArray[Any]  # (H, W)
 RigLike = Union["Rig", "Calibration", None]
+PairsLike = Iterable[Tuple[ImageLike, ImageLike]]  # (left, right)
 PathLike = Union[str, "os.PathLike[str]"]
 Points = Sequence[Tuple[float, float, float, float]]  # x_left, y_left, x_right, y_right; px
 
@@ -154,6 +155,20 @@ class Basins:
     @property
     def count(self) -> int: ...
 
+class BrightnessDifference:
+    """What the right camera makes of the left one's brightness: right = gain * left + offset."""
+    @property
+    def points(self) -> int:
+        """windows compared; with fewer than 50 no difference is measured"""
+    @property
+    def gain(self) -> float: ...
+    @property
+    def offset(self) -> float:
+        """grey levels"""
+    @property
+    def median(self) -> float:
+        """of |right - left|, grey levels"""
+
 class Calibration:
     """What a calibration file says of a rectified pair. Stands wherever a Rig does; segment() then also checks the pictures' size and takes the file's number of disparities as default."""
     @property
@@ -282,6 +297,18 @@ class Exec:
     def heap_allocations(self) -> int:
         """how many image buffers its pool has asked the heap for"""
 
+class Exposure:
+    """How one camera used its 256 grey levels."""
+    @property
+    def black(self) -> float:
+        """0 to 1: share of the pixels at level 0 or 1"""
+    @property
+    def white(self) -> float:
+        """0 to 1: share of the pixels at level 254 or 255"""
+    @property
+    def contrast(self) -> float:
+        """grey levels between the darkest and the brightest hundredth of the pixels"""
+
 class Facets:
     """The picture cut into connected pieces that no clear edge runs through."""
     @property
@@ -289,6 +316,30 @@ class Facets:
         """(H, W) int32, read-only: 0 to count - 1"""
     @property
     def count(self) -> int: ...
+
+class Finding:
+    """One thing that is wrong with a rig."""
+    @property
+    def kind(self) -> str:
+        """what it is, 'cameras swapped'; `cairn doctor` calls it the same"""
+    @property
+    def severity(self) -> str:
+        """'note', 'warning': results suffer, or 'broken': no result can be trusted"""
+    @property
+    def value(self) -> float:
+        """the number that was measured"""
+    @property
+    def number(self) -> str:
+        """what that number is, in words"""
+    @property
+    def unit(self) -> str:
+        """its unit; may be empty"""
+    @property
+    def says(self) -> str:
+        """one sentence with the numbers"""
+    @property
+    def remedy(self) -> str:
+        """what to do about it"""
 
 class FoundObjectScore:
     """What became of one object of ours."""
@@ -551,6 +602,38 @@ class Option:
     def help(self) -> str:
         """what it does"""
 
+class PairMeasures:
+    """All that measure_pair() measures of one pair."""
+    @property
+    def size(self) -> Tuple[int, int]:
+        """(width, height), px"""
+    @property
+    def textured_points(self) -> int:
+        """of the left picture, that were looked for in the right one"""
+    @property
+    def rows(self) -> RowAlignment:
+        """a RowAlignment"""
+    @property
+    def disparities_px(self) -> NDArray[numpy.float32]:
+        """float32, px, ascending: of the points that agree and are not alone with theirs; a copy"""
+    def disparity_px(self, share: float) -> float:
+        """The disparity, px, that `share` (0 to 1) of the points stay below; NaN without points."""
+    @property
+    def brightness(self) -> BrightnessDifference:
+        """a BrightnessDifference"""
+    @property
+    def left_exposure(self) -> Exposure:
+        """an Exposure"""
+    @property
+    def right_exposure(self) -> Exposure:
+        """an Exposure"""
+    @property
+    def left_sharpness(self) -> Sharpness:
+        """a Sharpness"""
+    @property
+    def right_sharpness(self) -> Sharpness:
+        """a Sharpness"""
+
 class Region:
     """A set of connected pixels. Mean and variance are over its valid pixels: of grey levels, or of disparities in px."""
     @property
@@ -624,6 +707,30 @@ class Rig:
         """
     def __eq__(self, other: object) -> bool: ...
 
+class RowAlignment:
+    """How well the rows of both pictures are the same: what the left one shows in row y should stand in the right one's row y; it stands at y + offset_rows + rows_per_px * (x - (width - 1) / 2)."""
+    @property
+    def points(self) -> int:
+        """found in both pictures"""
+    @property
+    def agreeing(self) -> int:
+        """those of them within a row of what a smooth distortion explains"""
+    @property
+    def agreeing_share(self) -> float:
+        """0 to 1: agreeing / points"""
+    @property
+    def offset_rows(self) -> float:
+        """rows, in the middle column"""
+    @property
+    def rows_per_px(self) -> float:
+        """tangent of the roll"""
+    @property
+    def left_over_rows(self) -> float:
+        """rows that 9 in 10 points at most are off once shift and roll are taken back"""
+    @property
+    def histogram(self) -> Dict[int, int]:
+        """by rows that the right point is lower, -8 to 8: points; the outermost count all beyond"""
+
 class SceneDisparity:
     """Disparity with everything that speaks against it, ground and speckle included."""
     @property
@@ -694,6 +801,37 @@ class Segmenter:
     def rig(self) -> Optional[Rig]: ...
     @property
     def exec(self) -> Exec: ...
+
+class Sharpness:
+    """How many pixels an edge takes from dark to bright."""
+    @property
+    def edges(self) -> int:
+        """that were measured"""
+    @property
+    def edge_px(self) -> float:
+        """px, a quarter of them are narrower; 1 = a step; 0 = too few edges"""
+
+class Synchrony:
+    """Whether the two cameras of a sequence took their pictures at the same moments."""
+    @property
+    def frames(self) -> int: ...
+    @property
+    def lag(self) -> int:
+        """frames that the right camera is late, as the numbers say; 0 without evidence"""
+    @property
+    def motion(self) -> Dict[int, float]:
+        """by frames that the right camera is late, -2 to 2: correlation of the changes in both pictures, -1 to
+        1; 0 where nothing changes
+        """
+    @property
+    def agreement(self) -> Dict[int, float]:
+        """by the same: share of the textured points that agree in their rows, 0 to 1; 0 where not tried"""
+    @property
+    def left_repeats(self) -> int:
+        """frames in which only the left picture is the one before once more"""
+    @property
+    def right_repeats(self) -> int:
+        """the same of the right one"""
 
 class TrueObjectScore:
     """How well one true object was found."""
@@ -786,6 +924,27 @@ def correct_epipolar(
     evidence: Literal["winner", "minimum", "full"] = ...,
 ) -> EpipolarCorrection:
     """Both: compensates a small misalignment of the cameras, as vibration makes it, before the matching."""
+
+@overload
+def diagnose(
+    measures: PairMeasures,
+    rig: RigLike = None,
+    *,
+    limits: Optional[Dict[str, Any]] = None,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+) -> List[Finding]: ...
+@overload
+def diagnose(synchrony: Synchrony) -> Optional[Finding]: ...
 
 def disparity_errors(
     ours_px: FloatsLike,
@@ -1147,6 +1306,23 @@ def measure(
     min_confidence: float = ...,
 ) -> Objects:
     """Turns fused regions into objects: what is floor, background, too small, unseen or unlikely is none."""
+
+def measure_pair(
+    left: ImageLike,
+    right: ImageLike,
+    *,
+    bgr: bool = False,
+    exec: Optional[Exec] = None,
+) -> PairMeasures:
+    """Measures what diagnose() judges: rows, disparities, brightness, exposure and sharpness of a pair.
+    left, right: (H, W) or (H, W, 3) uint8 of one size; they need not be rectified.
+    """
+
+def measure_synchrony(pairs: PairsLike, *, bgr: bool = False, exec: Optional[Exec] = None) -> Synchrony:
+    """Measures whether both cameras of consecutive pairs, (left, right) each and all of one size, took
+    their pictures at the same moments. All of them are held at once; of fewer than 8 nothing is
+    measured but repeats.
+    """
 
 def object_errors(
     ours: LabelsLike,

@@ -57,3 +57,12 @@ def stages(left, right, rig):
     frame = cairn.segment(left, rig=rig, disparity_map=disparity)
     # [/stages]
     return frame
+
+
+def doctor(left, right, rig, pairs):
+    # [doctor]
+    for finding in cairn.diagnose(cairn.measure_pair(left, right), rig):
+        print(f"{finding.severity}, {finding.kind}: {finding.says}. {finding.remedy}")
+    late = cairn.measure_synchrony(pairs).lag  # frames that the right camera is late
+    # [/doctor]
+    return late

@@ -17,7 +17,7 @@ def test_the_example_prints_what_the_first_one_in_cpp_prints(source, sample):
     assert done.stdout.splitlines()[:-1] == printed_in_readme != []
 
 
-def test_the_guide_runs(sample):
+def test_the_guide_runs(sample, capsys):
     rig = guide.rigs(sample.folder)
     assert isinstance(rig, cairn.Calibration)
     frame, pixels, trusted, hidden = guide.frame_of(sample.left, sample.right, rig)
@@ -27,3 +27,5 @@ def test_the_guide_runs(sample):
     found = guide.video([(sample.left, sample.right)] * 2, rig)
     assert found[0] == found[1] and found[0][0][0] == 1
     assert guide.stages(sample.left, sample.right, rig).objects
+    assert guide.doctor(sample.right, sample.left, rig, [(sample.left, sample.right)] * 2) == 0
+    assert capsys.readouterr().out.startswith("broken, cameras swapped: ")

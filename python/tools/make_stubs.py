@@ -24,7 +24,7 @@ HEAD = '''\
 
 import enum
 import os
-from typing import Any, Dict, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
+from typing import Any, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
 
 import numpy
 from numpy.typing import NDArray
@@ -36,6 +36,7 @@ MaskLike = Union[NDArray[numpy.uint8], NDArray[numpy.bool_], None]  # (H, W)
 LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)
 NumbersLike = NDArray[Any]  # (H, W)
 RigLike = Union["Rig", "Calibration", None]
+PairsLike = Iterable[Tuple[ImageLike, ImageLike]]  # (left, right)
 PathLike = Union[str, "os.PathLike[str]"]
 Points = Sequence[Tuple[float, float, float, float]]  # x_left, y_left, x_right, y_right; px
 
@@ -63,6 +64,9 @@ PROPERTIES = {
     "timings": "Dict[str, float]",
     "bad_of_matched": "Dict[float, float]",
     "bad_of_known": "Dict[float, float]",
+    "histogram": "Dict[int, int]",
+    "motion": "Dict[int, float]",
+    "agreement": "Dict[int, float]",
 }
 
 

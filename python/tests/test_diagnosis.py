@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""What is wrong with a rig, as the doctor finds it."""
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+
+import cairn
+
+
+@pytest.fixture(scope="module")
+def measures(sample):
+    return cairn.measure_pair(sample.left, sample.right)
+
+
+def sequence(frames, late=0):
+    """Noise that drifts by a pixel more or less each time; the right camera may be `late` by so many frames."""
+    texture = np.random.default_rng(1).integers(0, 256, (48, 160), np.uint8)
+    shifts = np.cumsum(np.random.default_rng(2).integers(0, 4, frames + 4)) + 4
+    lefts = [np.ascontiguousarray(texture[:, s % 60 : s % 60 + 96]) for s in shifts]
+    rights = [np.ascontiguousarray(texture[:, s % 60 + 3 : s % 60 + 99]) for s in shifts]
+    return [(lefts[i + 2], rights[i + 2 - late]) for i in range(frames)]
+
+
+def test_nothing_is_said_of_a_good_pair(sample, measures):
+    assert cairn.diagnose(measures, sample.calibration) == []
+    assert measures.size == (320, 240) and measures.rows.agreeing > 24
+    assert abs(measures.rows.offset_rows) < 0.5 and sum(measures.rows.histogram.values()) == measures.rows.points
+    assert list(measures.rows.histogram) == list(range(-8, 9))
+    disparities = measures.disparities_px
+    assert disparities.dtype == np.float32 and (np.diff(disparities) >= 0).all()
+    assert measures.disparity_px(0) == disparities[0] and measures.disparity_px(1) == disparities[-1]
+    assert 0.8 < measures.brightness.gain < 1.2 and measures.left_exposure.contrast > 40
+    assert measures.left_sharpness.edges >= 50 and 1 <= measures.right_sharpness.edge_px < 4.5
+    for part in (measures, measures.rows, measures.brightness, measures.left_exposure, measures.left_sharpness):
+        assert type(part).__name__ in repr(part)
+
+
+def test_swapped_cameras_are_told(sample):
+    (found,) = cairn.diagnose(cairn.measure_pair(sample.right, sample.left), sample.calibration)
+    assert (found.kind, found.severity, found.unit) == ("cameras swapped", "broken", "%")
+    assert found.value > 60 and "negative disparity" in found.says and "Exchange" in found.remedy
+    assert found.says in repr(found) and found.number == "points with a negative disparity"
+
+
+def test_findings_are_those_of_the_doctor(sample, command, tmp_path):
+    cairn.save_png(tmp_path / "left.png", sample.right)
+    cairn.save_png(tmp_path / "right.png", sample.left)
+    report = tmp_path / "report.json"
+    subprocess.run([command, "doctor", tmp_path / "left.png", tmp_path / "right.png", "--json", report], capture_output=True)
+    told = json.loads(report.read_text())["findings"]
+    found = cairn.diagnose(cairn.measure_pair(sample.right, sample.left))
+    assert [(f.kind, f.severity, f.says) for f in found] == [(t["finding"], t["severity"], t["says"]) for t in told] != []
+
+
+def test_the_range_is_the_calibrations_unless_it_is_given(sample, measures):
+    def kinds(*arguments, **keywords):
+        return [f.kind for f in cairn.diagnose(measures, *arguments, **keywords)]
+
+    assert kinds(sample.calibration, num_disparities=2) == ["disparity range too small"]
+    assert kinds(sample.calibration, config=cairn.Config(match={"num_disparities": 2})) == ["disparity range too small"]
+    assert kinds(sample.calibration, config=cairn.Config(match={"window_size": 7})) == []
+    assert kinds(num_disparities=320) == ["disparity range too large"]
+
+
+def test_limits_are_ones_own(sample, measures):
+    strict = cairn.diagnose(measures, sample.calibration, limits={"warn_edge": np.float32(1), "least_points": 9})
+    assert [f.kind for f in strict] == ["blurred"] and strict[0].severity == "warning"
+    assert "warn_rows = 0.75 rows (0 … 100): " in cairn.diagnose.__doc__
+
+
+def test_cameras_that_run_together_are_no_finding():
+    together = cairn.measure_synchrony(sequence(14))
+    assert together.frames == 14 and together.lag == 0 and cairn.diagnose(together) is None
+    assert list(together.motion) == [-2, -1, 0, 1, 2] == list(together.agreement)
+    assert cairn.diagnose(cairn.measure_synchrony([])) is None
+
+
+@pytest.mark.parametrize("late", [-1, 2])
+def test_a_camera_that_is_late_is_told(late):
+    measured = cairn.measure_synchrony(iter(sequence(16, late)), exec=cairn.Exec(2))
+    found = cairn.diagnose(measured)
+    assert measured.lag == late == found.value and found.kind == "not synchronised" and found.severity == "broken"
+    assert f"lag {late}" in repr(measured)
+
+
+def test_a_picture_that_is_repeated_is_counted():
+    pairs = sequence(5)
+    pairs[3] = (pairs[3][0], pairs[2][1])
+    moving = cairn.measure_synchrony(pairs)
+    assert moving.left_repeats == 0 and moving.right_repeats >= 1 and cairn.diagnose(moving).severity == "warning"
+
+
+def test_the_smallest_pictures_are_measured():
+    dot = np.zeros((1, 1), np.uint8)
+    measured = cairn.measure_pair(dot, dot)
+    assert np.isnan(measured.disparity_px(0.5)) and len(measured.disparities_px) == 0 and "1x1" in repr(measured)
+    assert cairn.diagnose(measured)[0].kind == "too little to see"
+
+
+def test_what_cannot_be_judged_is_refused_by_name(sample, measures):
+    left, right = sample.gray()
+    half = left[:, :160]
+    calls = {
+        "stereo pair: left image is 320x240, right image is 160x240": lambda: cairn.measure_pair(left, half),
+        "right: found": lambda: cairn.measure_pair(left, right.astype(float)),
+        "left of pair 1: is 160x240, expected 320x240 as left of pair 0 is": lambda: cairn.measure_synchrony([(left, right), (half, half)]),
+        "right of pair 0: is 160x240": lambda: cairn.measure_synchrony([(left, half)]),
+        "right of pair 0: found": lambda: cairn.measure_synchrony([(left, None)]),
+        r"pairs: found a value of type tuple as number 1, expected \(left, right\)": lambda: cairn.measure_synchrony([(left, right), (left,)]),
+        "pairs: found a value of type int": lambda: cairn.measure_synchrony(3),
+        "exec: found a value of type int": lambda: cairn.measure_pair(left, right, exec=2),
+        "rig: found a value of type str": lambda: cairn.diagnose(measures, "calib.txt"),
+        "config: found a value of type int": lambda: cairn.diagnose(measures, config=3),
+        "unknown option 'match.num_disparitys'": lambda: cairn.diagnose(measures, num_disparitys=3),
+        "share: found 1.5, expected 0 … 1": lambda: measures.disparity_px(1.5),
+        "limits: there is no 'warn_row', did you mean 'warn_rows'": lambda: cairn.diagnose(measures, limits={"warn_row": 1}),
+        "limits: warn_rows: found -1, expected a number, 0 … 100": lambda: cairn.diagnose(measures, limits={"warn_rows": -1}),
+        "limits: warn_rows: found 'x', expected a number": lambda: cairn.diagnose(measures, limits={"warn_rows": "x"}),
+        "limits: least_points: found 8.5, expected a whole number, 8 … 500": lambda: cairn.diagnose(measures, limits={"least_points": 8.5}),
+        "the calibration is for 320x240": lambda: cairn.diagnose(cairn.measure_pair(half, half), sample.calibration),
+    }
+    for words, call in calls.items():
+        with pytest.raises(cairn.Error, match=words):
+            call()
+            pytest.fail(f"not refused: {words}")
+    with pytest.raises(TypeError):
+        cairn.diagnose([measures])
