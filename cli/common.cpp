@@ -124,11 +124,28 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
 
 }  // namespace
 
+namespace {
+
+/// left.png and right.png, or a folder for each such pair; else pairs named as `cairn calibrate` takes them.
+std::vector<io::FrameFiles> frames_in(const fs::path& folder) {
+  try {
+    return io::find_frames(folder);
+  } catch (const Error&) {
+    try {
+      return io::find_pairs(folder);
+    } catch (const Error&) {  // says less of what is usual
+    }
+    throw;
+  }
+}
+
+}  // namespace
+
 std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
   if (options.right.empty() && fs::is_directory(options.left, ignored)) {
-    auto frames = io::find_frames(options.left);
+    auto frames = frames_in(options.left);
     if (!options.disparity.empty() && frames.size() > 1) {
       throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
                   " frames of " + options.left + "; give one frame");
@@ -137,6 +154,9 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   }
   if (options.right.empty() && options.disparity.empty() && fs::exists(options.left, ignored)) {
     throw Error(options.left + ": a left picture alone, expected the right one as well");
+  }
+  if (options.right.empty() && options.disparity.empty()) {
+    throw Error(options.left + ": is not there, expected a file or a folder");
   }
   return {frame_of_files(options)};
 }

@@ -140,9 +140,10 @@ Report work_on(const io::FrameFiles& files, const SegmentOptions& options, const
 }
 
 /// Whether `input` is a folder of frames, each with a result of its own, rather than the only frame itself.
-bool is_folder_of_frames(const fs::path& input, const io::FrameFiles& first) {
+bool is_folder_of_frames(const fs::path& input, const std::vector<io::FrameFiles>& frames) {
   std::error_code ignored;
-  return fs::is_directory(input, ignored) && !fs::equivalent(first.folder, input, ignored);
+  return frames.size() > 1 ||
+         (fs::is_directory(input, ignored) && !fs::equivalent(frames.front().folder, input, ignored));
 }
 
 /// Files that are asked for without a folder for them.
@@ -158,7 +159,7 @@ int segment_all(const SegmentOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // a bad option is one whatever the frames hold
   Exec exec = make_exec(options.exec);
-  const bool many = is_folder_of_frames(options.input.left, frames.front());
+  const bool many = is_folder_of_frames(options.input.left, frames);
   const Progress progress(frames.size());
   std::vector<io::EncodedFrame> encoded;
   for (std::size_t i = 0; i < frames.size(); ++i) {

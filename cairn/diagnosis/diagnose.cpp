@@ -150,8 +150,9 @@ void check_range(Case& c) {
 void check_infinity(Case& c) {
   const double doffs = c.rig ? static_cast<double>(c.rig->doffs_px) : 0.0;
   const double behind = c.share_below(-doffs - 1);
-  if (100 * behind < static_cast<double>(c.config.warn_behind)) return;
-  c.add(FindingKind::behind_infinity, Severity::warning, 100 * behind,
+  const auto severity = Case::severity(100 * behind, c.config.warn_behind, c.config.break_behind);
+  if (!severity) return;
+  c.add(FindingKind::behind_infinity, *severity, 100 * behind,
         percent_text(behind) + " of the points have d + doffs below -1 px (doffs " + text_of("%.1f", doffs) +
             ", the furthest " + text_of("%.1f px", c.measures.disparity_px(0.02)) + ")");
 }

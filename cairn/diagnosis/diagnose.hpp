@@ -23,6 +23,7 @@ struct DiagnosisConfig {
   float warn_left_over = 1;
   float break_left_over = 2.5F;
   float warn_behind = 10;
+  float break_behind = 60;
   float break_swapped = 60;
   float warn_beyond = 4;
   float break_beyond = 50;
@@ -51,6 +52,7 @@ void fields(DiagnosisConfig& c, V&& v) {
   v("break_left_over", c.break_left_over, "rows", "the same, broken", range(0.0F, 100.0F));
   v("warn_behind", c.warn_behind, "%", "points behind infinity, from which on it is a warning",
     range(0.0F, 100.0F));
+  v("break_behind", c.break_behind, "%", "the same, broken", range(0.0F, 100.0F));
   v("break_swapped", c.break_swapped, "%", "points with a negative disparity that mean swapped cameras",
     range(0.0F, 100.0F));
   v("warn_beyond", c.warn_beyond, "%", "points outside the disparity range, from which on it is a warning",

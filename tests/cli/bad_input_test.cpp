@@ -40,6 +40,11 @@ TEST_F(BadInput, PairsThatAreNone) {
   refuses({"segment", path("pair")}, {"pair", "right"});
 }
 
+TEST_F(BadInput, APathThatLeadsNowhere) {
+  for (const char* command : {"segment", "disparity", "doctor"})
+    refuses({command, path("nowhere")}, {"nowhere", "is not there"});
+}
+
 TEST_F(BadInput, ImagesThatTheMethodDoesNotFit) {
   const auto one = pair_in("one", {1, 1});
   const auto small = pair_in("small", {8, 8});

@@ -61,6 +61,19 @@ TEST_F(Command, SegmentPrintsATableAndWritesNothingWithoutAFolder) {
   EXPECT_EQ(everything(), before);
 }
 
+TEST_F(Command, SegmentTakesPairsThatDifferInTheirNamesAlone) {
+  pair_in("pair");
+  fs::create_directories(at("recording"));
+  for (const char* number : {"01", "02"}) {
+    fs::copy_file(at("pair/left.png"), at("recording") / ("left" + std::string(number) + ".png"));
+    fs::copy_file(at("pair/right.png"), at("recording") / ("right" + std::string(number) + ".png"));
+  }
+  const Outcome outcome =
+      run({"segment", path("recording"), "--set", "match.num_disparities=16", "-o", path("out")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(at("out/left01/objects.json")) && fs::exists(at("out/left02/objects.json")));
+}
+
 TEST_F(Command, SegmentWritesAResultThatEvaluateReads) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);

@@ -245,6 +245,8 @@ TEST_F(Diagnosis, SeesARangeThatIsTooLarge) {
 TEST_F(Diagnosis, SeesPointsBehindInfinity) {
   rig_->doffs_px = -14;
   finds(findings(left(), right()), FindingKind::behind_infinity, Severity::warning);
+  rig_->doffs_px = -50;  // nothing is left before it
+  finds(findings(left(), right()), FindingKind::behind_infinity, Severity::broken);
 }
 
 TEST_F(Diagnosis, MeasuresGainAndOffset) {
