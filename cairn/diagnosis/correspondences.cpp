@@ -158,13 +158,14 @@ class Pyramid {
   std::vector<View<const Gray>> levels_;
 };
 
-/// From the level where `p` was found at `start`, to the finest one.
-std::optional<Correspondence> follow(const Pyramid& left, const Pyramid& right, std::size_t from, Point p,
+/// From the level where `p` of one image was found at `start` of the other, to the finest one; the one counts
+/// as the left.
+std::optional<Correspondence> follow(const Pyramid& image, const Pyramid& other, std::size_t from, Point p,
                                      Point start) {
   constexpr int kMiddle = kWindow / 2;
   Place place{static_cast<float>(start.x), static_cast<float>(start.y)};
   for (std::size_t level = from + 1; level-- > 0;) {
-    const auto found = sparse::refine(left.at(level), p, right.at(level), place);
+    const auto found = sparse::refine(image.at(level), p, other.at(level), place);
     if (!found) return std::nullopt;
     place = *found;
     if (level == 0) break;

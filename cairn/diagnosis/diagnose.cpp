@@ -100,7 +100,7 @@ void check_rows(Case& c) {
           "1 point in 10 is " + text_of("%.1f rows", left_over) +
               " or more off even if shift and roll are taken back");
   }
-  const double slope = static_cast<double>(rows.rows_per_px);
+  const auto slope = static_cast<double>(rows.rows_per_px);
   const double worse =
       std::abs(static_cast<double>(rows.offset_rows)) + std::abs(slope) * 0.5 * (c.measures.size.width - 1);
   if (const auto severity = Case::severity(worse, c.config.warn_rows, c.config.break_rows);
@@ -228,7 +228,7 @@ void check_camera(Case& c) {
 void check_distances(Case& c) {
   if (!c.rig) return;
   const double scale = static_cast<double>(c.rig->focal_px) * static_cast<double>(c.rig->baseline_m);
-  const double doffs = static_cast<double>(c.rig->doffs_px);
+  const auto doffs = static_cast<double>(c.rig->doffs_px);
   const double nearest = scale / std::max(0.5, c.measures.disparity_px(0.98) + doffs);
   const double furthest = scale / std::max(0.5, c.measures.disparity_px(0.05) + doffs);
   constexpr double kNearestBeyond = 200;

@@ -76,6 +76,7 @@ BrightnessDifference measure_brightness_difference(const StereoPair& pair, const
   result.median = static_cast<float>(quantile(differences, 0.5));
   if (quantile(levels, 0.9) - quantile(levels, 0.1) < kLeastSpread) {
     std::vector<double> signed_differences;
+    signed_differences.reserve(equations.size());
     for (const auto& e : equations) signed_differences.push_back(e.value);
     result.offset = static_cast<float>(quantile(signed_differences, 0.5));
     return result;

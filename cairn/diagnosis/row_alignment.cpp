@@ -60,6 +60,7 @@ std::vector<Equation<N>> equations_of(const Correspondences& found, Terms terms)
 template <std::size_t N>
 std::vector<double> values_of(const std::vector<Equation<N>>& equations, const std::array<double, N>& p) {
   std::vector<double> values;
+  values.reserve(equations.size());
   for (const Equation<N>& e : equations) values.push_back(predicted(p, e.terms));
   return values;
 }

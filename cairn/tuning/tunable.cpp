@@ -51,6 +51,7 @@ bool fits(std::string_view name, std::string_view pattern) {
 
 [[noreturn]] void refuse(const std::string& pattern, const std::vector<Tunable>& all) {
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Tunable& tunable : all) names.push_back(tunable.name);
   const std::string close = nearest(pattern, names);
   throw Error("no option to tune is named '" + pattern.substr(0, 80) + "'" +
