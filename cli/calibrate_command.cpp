@@ -64,8 +64,7 @@ Sightings look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& boa
   const Progress progress(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     progress.at(i, pairs[i].name);
-    if (!pairs[i].right) throw Error(pairs[i].left.string() + ": there is no right picture");
-    const io::PicturePair pictures = io::load_pair(pairs[i].left, *pairs[i].right);
+    const io::PicturePair pictures = io::load_pair(pairs[i].left, right_of(pairs[i]));
     Sightings& group = of_size(groups, pictures.left.gray.size());
     auto left = io::find_board(pictures.left.gray, board);
     auto right = io::find_board(pictures.right.gray, board);

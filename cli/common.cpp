@@ -122,10 +122,6 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
   return files;
 }
 
-}  // namespace
-
-namespace {
-
 /// left.png and right.png, or a folder for each such pair; else pairs named as `cairn calibrate` takes them.
 std::vector<io::FrameFiles> frames_in(const fs::path& folder) {
   try {
@@ -161,6 +157,11 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   return {frame_of_files(options)};
 }
 
+const fs::path& right_of(const io::FrameFiles& files) {
+  if (!files.right) throw Error(files.left.string() + ": there is no right picture");
+  return *files.right;
+}
+
 namespace {
 
 DisparityMap load_given(const fs::path& path, Size size, const fs::path& left, const Exec& exec) {
@@ -184,8 +185,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     frame.left = io::load_picture(files.left, exec.pool);
     frame.given = load_given(options.disparity, frame.left.gray.size(), files.left, exec);
   } else {
-    if (!files.right) throw Error(files.left.string() + ": there is no right picture");
-    io::PicturePair pair = io::load_pair(files.left, *files.right, exec.pool);
+    io::PicturePair pair = io::load_pair(files.left, right_of(files), exec.pool);
     frame.left = std::move(pair.left);
     frame.right = std::move(pair.right.gray);
   }

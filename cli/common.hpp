@@ -59,6 +59,8 @@ void add_input_options(CLI::App& app, InputOptions& options);
 
 /// The frames that the options name: one pair, one folder, or a folder of folders.
 std::vector<io::FrameFiles> frames_of(const InputOptions& options);
+/// Throws Error where the frame has none.
+const std::filesystem::path& right_of(const io::FrameFiles& files);
 
 /// A frame with all that is needed to work on it.
 struct LoadedFrame {

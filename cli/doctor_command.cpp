@@ -42,14 +42,14 @@ struct Examined {
 /// The pair, or nothing and a finding where the sizes differ. Throws Error for anything else.
 std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examined& examined,
                                             const Exec& exec) {
-  if (!files.right) throw Error(files.left.string() + ": there is no right picture");
+  const fs::path& right_file = right_of(files);
   try {
-    io::PicturePair pictures = io::load_pair(files.left, *files.right, exec.pool);
+    io::PicturePair pictures = io::load_pair(files.left, right_file, exec.pool);
     examined.size = pictures.left.gray.size();
     return pictures;
   } catch (const Error&) {
     const Size left = io::load_picture(files.left, exec.pool).gray.size();
-    const Size right = io::load_picture(*files.right, exec.pool).gray.size();
+    const Size right = io::load_picture(right_file, exec.pool).gray.size();
     if (left == right) throw;
     examined.size = left;
     examined.findings.push_back({FindingKind::sizes, Severity::broken,

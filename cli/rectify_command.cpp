@@ -34,8 +34,7 @@ int rectify(const RectifyOptions& options) {
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
-    if (!frames[i].right) throw Error(frames[i].left.string() + ": there is no right picture");
-    const io::PicturePair raw = io::load_pair(frames[i].left, *frames[i].right);
+    const io::PicturePair raw = io::load_pair(frames[i].left, right_of(frames[i]));
     io::PicturePair rectified;
     try {
       rectified = rectify_pair(raw);

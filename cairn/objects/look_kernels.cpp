@@ -17,8 +17,7 @@
 #endif
 
 #if CAIRN_WITH_HWY
-// Only what Target names; see matching/kernels.cpp.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <cairn/core/highway_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/objects/look_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -37,33 +36,12 @@ HWY_AFTER_NAMESPACE();
 #define CAIRN_KERNEL_TARGET plain_kernels
 #include <cairn/objects/look_kernels-inl.hpp>
 
+#include <cairn/core/of_target.hpp>
+
 namespace cairn::kernels {
 
 const LookKernels* look_kernels(Target target) {
-  switch (target) {
-    case Target::scalar:
-      return &plain_kernels::kLookKernels;
-#if CAIRN_WITH_HWY
-#if HWY_TARGETS & HWY_SSE4
-    case Target::sse4:
-      return &N_SSE4::kLookKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Target::avx2:
-      return &N_AVX2::kLookKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Target::avx512:
-      return &N_AVX3::kLookKernels;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Target::neon:
-      return &N_NEON::kLookKernels;
-#endif
-#endif
-    default:
-      return nullptr;
-  }
+  CAIRN_OF_TARGET(target, kLookKernels)
 }
 
 const LookKernels& look_kernels(const Exec& exec) {

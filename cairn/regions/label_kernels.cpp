@@ -7,8 +7,7 @@
 #include <cairn/regions/label_kernels_plain.hpp>
 
 #if CAIRN_WITH_HWY
-// Only what Target names; see matching/kernels.cpp.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <cairn/core/highway_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/regions/label_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -22,33 +21,14 @@ HWY_AFTER_NAMESPACE();
 #endif
 
 #if !CAIRN_WITH_HWY || HWY_ONCE
+#include <cairn/core/of_target.hpp>
+
 namespace cairn::kernels {
 
+namespace plain_kernels = plain_labels;
+
 const LabelKernels* label_kernels(Target target) {
-  switch (target) {
-    case Target::scalar:
-      return &plain_labels::kLabelKernels;
-#if CAIRN_WITH_HWY
-#if HWY_TARGETS & HWY_SSE4
-    case Target::sse4:
-      return &N_SSE4::kLabelKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Target::avx2:
-      return &N_AVX2::kLabelKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Target::avx512:
-      return &N_AVX3::kLabelKernels;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Target::neon:
-      return &N_NEON::kLabelKernels;
-#endif
-#endif
-    default:
-      return nullptr;
-  }
+  CAIRN_OF_TARGET(target, kLabelKernels)
 }
 
 const LabelKernels& label_kernels(const Exec& exec) {

@@ -17,7 +17,7 @@ compgen -G "$build_dir/python/cairn/*.so" >/dev/null && module=("$build_dir")
 config=build/docs/mkdocs.yml
 "$python" docs/site/assemble.py . build/docs/pages "${module[@]}"
 # Without the module its page is not in the contents.
-sed -e "s|\.\./\.\./build/docs/||" ${module[0]:+-e 's|^\( *\)- C++: .*|&\n\1- Python: api/python.md|'} docs/site/mkdocs.yml >"$config"
+sed ${module[0]:+-e 's|^\( *\)- C++: .*|&\n\1- Python: api/python.md|'} -e '' docs/site/mkdocs.yml >"$config"
 mkdir -p build/docs/pages/api
 doxygen docs/site/Doxyfile
 mkdocs build --strict --config-file "$config" >build/docs/mkdocs.log 2>&1 || {
