@@ -151,9 +151,11 @@ TEST_F(Tune, ContradictorySettingsAreLeft) {
 
 TEST_F(Tune, CtrlCKeepsTheBestSoFar) {
   pair_in("frames/a", {960, 720});  // so large that no machine is through within the second
-  const std::string line = "timeout --preserve-status -s INT 1 '" CAIRN_COMMAND "' tune '" + path("frames") +
-                           "' --options '*' --budget 1h -o '" + path("tuned.yaml") + "' --json '" +
-                           path("found.json") + "' > '" + path("out") + "' 2> '" + path("err") + "'";
+  // In the foreground timeout signals once; else its group as well, and the second signal ends the program.
+  const std::string line = "timeout --foreground --preserve-status -s INT 1 '" CAIRN_COMMAND "' tune '" +
+                           path("frames") + "' --options '*' --budget 1h -o '" + path("tuned.yaml") +
+                           "' --json '" + path("found.json") + "' > '" + path("out") + "' 2> '" +
+                           path("err") + "'";
   const int status = std::system(line.c_str());
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0) << content(at("err"));
