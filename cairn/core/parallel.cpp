@@ -14,7 +14,49 @@
 #include <oneapi/tbb/task_group.h>
 #endif
 
+// ThreadSanitizer does not see how oneTBB's library, built without it, hands work from thread to thread: it
+// is told so here. A closure that is read before that is not watched; for oneTBB's headers see
+// tests/tsan.supp.
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#define CAIRN_NOT_WATCHED __attribute__((no_sanitize("thread"), noinline))
+#else
+#define CAIRN_NOT_WATCHED
+#endif
+
 namespace cairn {
+
+#if CAIRN_WITH_TBB
+namespace {
+
+/// What a thread did before give(), another one may rely on after take(). For ThreadSanitizer only.
+class HandOver {
+ public:
+#if defined(__SANITIZE_THREAD__)
+  void give() {
+    __tsan_release(this);
+  }
+  void take() {
+    __tsan_acquire(this);
+  }
+#else
+  void give() {}
+  void take() {}
+#endif
+};
+
+// At the end of a scope, however it is left.
+struct GiveLast {
+  HandOver& over;
+  ~GiveLast() { over.give(); }
+};
+struct TakeLast {
+  HandOver& over;
+  ~TakeLast() { over.take(); }
+};
+
+}  // namespace
+#endif
 
 class Workers {
  public:
@@ -41,10 +83,22 @@ class Workers {
     const int part = std::max(grain, (count + threads_ * 4 - 1) / (threads_ * 4));
     const int parts = (count + part - 1) / part;
     // Isolated: who waits for the last part must not begin a side work meanwhile, which takes much longer.
-    arena_.execute([&] {
-      oneapi::tbb::this_task_arena::isolate([&] {
+    HandOver begun;
+    HandOver done;
+    const TakeLast last{done};
+    const auto do_part = [&](int i) {
+      const GiveLast part_last{done};
+      body(i * part, std::min(count, (i + 1) * part));
+    };
+    begun.give();
+    arena_.execute([&]() CAIRN_NOT_WATCHED {
+      oneapi::tbb::this_task_arena::isolate([&]() CAIRN_NOT_WATCHED {
         oneapi::tbb::parallel_for(
-            0, parts, [&](int i) { body(i * part, std::min(count, (i + 1) * part)); },
+            0, parts,
+            [&](int i) CAIRN_NOT_WATCHED {
+              begun.take();
+              do_part(i);
+            },
             oneapi::tbb::simple_partitioner{});
       });
     });
@@ -98,15 +152,19 @@ void parallel_for(const Exec& exec, int count, int grain, const std::function<vo
 #if CAIRN_WITH_TBB
 class SideWork::Running {
  public:
-  Running(std::shared_ptr<Workers> workers, std::function<void()> work) : workers_(std::move(workers)) {
-    workers_->arena().execute([&] {
-      group_.run([this, work = std::move(work)] {
-        if (!given_up_) work();
+  Running(std::shared_ptr<Workers> workers, std::function<void()> work)
+      : workers_(std::move(workers)), work_(std::move(work)) {
+    begun_.give();
+    workers_->arena().execute([this]() CAIRN_NOT_WATCHED {
+      group_.run([this]() CAIRN_NOT_WATCHED {
+        begun_.take();
+        begin();
       });
     });
   }
   void wait() {
-    workers_->arena().execute([&] { group_.wait(); });
+    const TakeLast last{done_};
+    workers_->arena().execute([this]() CAIRN_NOT_WATCHED { group_.wait(); });
   }
   /// Does not cancel the group: that would end the loops inside the work, too, which then went on with what
   /// they had not written.
@@ -116,8 +174,16 @@ class SideWork::Running {
   }
 
  private:
+  void begin() {
+    const GiveLast last{done_};
+    if (!given_up_) work_();
+  }
+
   std::shared_ptr<Workers> workers_;
+  std::function<void()> work_;
   std::atomic<bool> given_up_ = false;
+  HandOver begun_;
+  HandOver done_;
   oneapi::tbb::task_group group_;
 };
 
