@@ -133,13 +133,10 @@ struct Visit {
 
 void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& criteria, Visit& visit) {
   Absorption absorption(regions.brief(node), regions.squares(node), criteria);
+  if (!has_near_neighbour(regions, node, absorption)) return;
   visit.neighbours.clear();
   regions.start_visit(node);
   regions.append_new_neighbours(node, visit.neighbours);
-  const auto is_near = [&](std::int32_t neighbour) {
-    return absorption.is_near(regions.brief(neighbour).mean);
-  };
-  if (std::none_of(visit.neighbours.begin(), visit.neighbours.end(), is_near)) return;
 
   visit.untried.reset(absorption.mean());
   const auto add_from = [&](std::size_t first) {

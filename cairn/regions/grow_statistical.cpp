@@ -116,7 +116,7 @@ void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorpti
 /// Lets `region` grow; false where nothing fused.
 bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& criteria, Visit& visit) {
   Absorption absorption(regions.brief(region), regions.squares(region), criteria);
-  if (!absorption.may_absorb()) return false;
+  if (!absorption.may_absorb() || !has_near_neighbour(regions, region, absorption)) return false;
   visit.found.clear();
   regions.start_visit(region);
   regions.append_new_neighbours(region, visit.found);
@@ -201,7 +201,8 @@ class SmallRegions {
         sizes_(size_count(regions, min_region_area)),
         first_(static_cast<std::size_t>(sizes_), -1, exec.pool),
         entries_(static_cast<std::size_t>(regions.count()), exec.pool) {
-    for (std::int32_t i = 0; i < regions.count(); ++i) {
+    // Lists grow at their front. From the last to the first, so that most of them are in order.
+    for (std::int32_t i = regions.count() - 1; i >= 0; --i) {
       if (regions.is_alive(i)) enter(i);
     }
   }
@@ -221,7 +222,8 @@ class SmallRegions {
       for (std::int32_t i = first_[pixels]; i >= 0; i = entries_.begin()[i].next) {
         of_one_size.push_back(placed(regions_, entries_.begin()[i].region));
       }
-      std::sort(of_one_size.begin(), of_one_size.end());
+      if (!std::is_sorted(of_one_size.begin(), of_one_size.end()))
+        std::sort(of_one_size.begin(), of_one_size.end());
       for (const Placed entry : of_one_size) {
         const std::int32_t region = region_of(entry);
         // Others may have fused with it meanwhile; then it stands among the larger ones too.
@@ -266,6 +268,15 @@ void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, c
     regions.absorb(target, region);
     small.enter(target);
   });
+}
+
+bool has_near_neighbour(GrowingRegions& regions, std::int32_t region, const Absorption& absorption) {
+  // Without a branch: whether the next one is near cannot be foretold.
+  bool has_one = false;
+  regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
+    has_one |= absorption.is_near(regions.brief(neighbour).mean) & (neighbour != region);
+  });
+  return has_one;
 }
 
 bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,

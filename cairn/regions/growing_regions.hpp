@@ -206,6 +206,9 @@ class Absorption {
   double sigma_ = 0;
 };
 
+/// Whether Eq. (1) holds for any neighbour. Most visits end with this.
+bool has_near_neighbour(GrowingRegions& regions, std::int32_t region, const Absorption& absorption);
+
 /// fuse_small_regions() on regions that are growing already.
 void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, const Exec& exec);
 
