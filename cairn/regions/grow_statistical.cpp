@@ -20,6 +20,34 @@ std::int32_t region_of(Placed entry) {
   return static_cast<std::int32_t>(entry & 0xFFFFFFFFU);
 }
 
+/// Sorts what is in order but for a few that come too late: those are sorted apart. The lists keep their
+/// memory from one call to the next.
+class SortStragglers {
+ public:
+  void operator()(std::vector<Placed>& entries) {
+    late_.clear();
+    std::size_t kept = 0;
+    Placed last = 0;
+    for (const Placed entry : entries) {
+      if (entry < last) {
+        late_.push_back(entry);
+      } else {
+        entries[kept++] = last = entry;
+      }
+    }
+    if (late_.empty()) return;
+    std::sort(late_.begin(), late_.end());
+    sorted_.resize(entries.size());
+    entries.resize(kept);
+    std::merge(entries.begin(), entries.end(), late_.begin(), late_.end(), sorted_.begin());
+    entries.swap(sorted_);
+  }
+
+ private:
+  std::vector<Placed> late_;
+  std::vector<Placed> sorted_;
+};
+
 /// A neighbour of the visited region. Nothing but the visited region changes during a visit, so the mean is
 /// kept here.
 struct Neighbour {
@@ -36,6 +64,7 @@ struct Visit {
   std::vector<Neighbour> gained;
   std::vector<Neighbour> merged;
   std::vector<Placed> order;  // of the pass
+  SortStragglers sort_order;
 };
 
 /// Lists of neighbours are short, and mostly in order as regions are numbered so.
@@ -143,8 +172,8 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
     count += static_cast<std::size_t>(regions.is_alive(i) & (stale[i] != 0));
   }
   order.resize(count);
-  // At first they are in order, as basins are numbered so.
-  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
+  // Basins are numbered in this order; but a region that absorbed an earlier one goes by that one's place.
+  visit.sort_order(order);
   bool fused = false;
   for (const Placed entry : order) {
     const std::int32_t region = region_of(entry);
@@ -199,10 +228,9 @@ class SmallRegions {
       : regions_(regions),
         min_region_area_(min_region_area),
         sizes_(size_count(regions, min_region_area)),
-        first_(static_cast<std::size_t>(sizes_), -1, exec.pool),
+        lists_(static_cast<std::size_t>(sizes_), {-1, -1}, exec.pool),
         entries_(static_cast<std::size_t>(regions.count()), exec.pool) {
-    // Lists grow at their front. From the last to the first, so that most of them are in order.
-    for (std::int32_t i = regions.count() - 1; i >= 0; --i) {
+    for (std::int32_t i = 0; i < regions.count(); ++i) {
       if (regions.is_alive(i)) enter(i);
     }
   }
@@ -210,20 +238,23 @@ class SmallRegions {
     const auto pixels = regions_.pixel_count(region);
     if (pixels >= min_region_area_ && regions_.brief(region).valid_count > 0) return;
     if (regions_.is_floor(region)) return;
-    entries_.push_back({region, first_[pixels]});
-    first_[pixels] = static_cast<std::int32_t>(entries_.size()) - 1;
+    const auto entry = static_cast<std::int32_t>(entries_.size());
+    entries_.push_back({region, -1});
+    OfOneSize& list = lists_[pixels];
+    (list.first < 0 ? list.first : entries_.begin()[list.last].next) = entry;
+    list.last = entry;
   }
   /// Calls fuse(region) for each; fuse() may enter larger ones.
   template <class Fuse>
   void for_each(Fuse fuse) {
     std::vector<Placed> of_one_size;
+    SortStragglers sort;
     for (std::int32_t pixels = 0; pixels < sizes_; ++pixels) {
       of_one_size.clear();
-      for (std::int32_t i = first_[pixels]; i >= 0; i = entries_.begin()[i].next) {
+      for (std::int32_t i = lists_[pixels].first; i >= 0; i = entries_.begin()[i].next) {
         of_one_size.push_back(placed(regions_, entries_.begin()[i].region));
       }
-      if (!std::is_sorted(of_one_size.begin(), of_one_size.end()))
-        std::sort(of_one_size.begin(), of_one_size.end());
+      sort(of_one_size);
       for (const Placed entry : of_one_size) {
         const std::int32_t region = region_of(entry);
         // Others may have fused with it meanwhile; then it stands among the larger ones too.
@@ -236,6 +267,10 @@ class SmallRegions {
   struct Entry {
     std::int32_t region;
     std::int32_t next;  // of the same size, −1 = none
+  };
+  struct OfOneSize {  // entries, in the order in which they came
+    std::int32_t first;
+    std::int32_t last;
   };
   /// One more than the most pixels that an entry can have.
   static std::int32_t size_count(const GrowingRegions& regions, std::int64_t min_region_area) {
@@ -254,7 +289,7 @@ class SmallRegions {
   const GrowingRegions& regions_;
   std::int64_t min_region_area_;
   std::int32_t sizes_;
-  Scratch<std::int32_t> first_;  // per number of pixels: the entry last made
+  Scratch<OfOneSize> lists_;  // per number of pixels
   ScratchList<Entry> entries_;
 };
 
