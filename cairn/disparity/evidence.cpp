@@ -61,7 +61,8 @@ Image<float> textured(View<const Gray> left, const DisparityMap& disparity, floa
 
 float noise_sigma(View<const Gray> image) {
   if (image.width() < 3 || image.height() < 3) return 0;
-  const kernels::RowKernels& run = kernels::row_kernels(Exec{});
+  const Exec exec;
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
   // Two counters for each response: neighbours often respond alike, and one would wait for the other.
   std::array<std::array<std::int64_t, kGreatestResponse + 1>, 2> counts{};
   std::vector<std::uint16_t> response(static_cast<std::size_t>(image.width()));
