@@ -3,6 +3,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/disparity_map.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -40,17 +41,17 @@ DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const R
   DisparityMap map{std::move(refined_px), {}};
   const Size size = map.disparity_px.size();
   map.reject = Image<Reject>(size, exec.pool);
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       float* const d = map.disparity_px.row(y);
       Reject* const reject = map.reject.row(y);
-      for (int x = 0; x < size.width; ++x) reject[x] = std::isnan(d[x]) ? Reject::border : Reject::none;
+      run.mark_holes(d, size.width, reject);
       for (const auto& verdict : verdicts) {
         assert(verdict.size() == size);
-        const Reject* const more = verdict.row(y);
-        for (int x = 0; x < size.width; ++x) reject[x] |= more[x];
+        run.add_reasons(verdict.row(y), size.width, reject);
       }
-      for (int x = 0; x < size.width; ++x) d[x] = reject[x] == Reject::none ? d[x] : kHole;
+      run.punch_holes(reject, size.width, d);
     }
   });
   return map;

@@ -8,6 +8,7 @@
 #include <cairn/core/target.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/matching/match.hpp>
 #include <cairn/regions/gradient.hpp>
 #include <cmath>
 #include <cstdlib>

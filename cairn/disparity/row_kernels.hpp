@@ -2,16 +2,30 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <bit>
 #include <cairn/core/exec.hpp>
 #include <cairn/disparity/confidence.hpp>
 #include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what find_evidence(), gradient(), edge_strength(), reject_textureless(),
-/// estimate_confidence() and fit_background() do for each pixel of a row, and for each point of a sample.
-/// Private to the library.
+/// The seam to the instruction sets: what the checks of single pixels, find_evidence(), gradient(),
+/// edge_strength(), estimate_confidence() and fit_background() do for each pixel of a row, and for each point
+/// of a sample. Private to the library.
 namespace cairn::kernels {
+
+/// A left pixel's claim to the right pixel that it is matched with, as one number: of two the smaller wins,
+/// by its cost, then by its disparity, which is the smaller one where x is. Costs are not negative, so that
+/// their bits are in their order; the sign that a zero may have is left out.
+using Claim = std::uint64_t;
+inline constexpr Claim kNoClaim = ~Claim{0};
+constexpr Claim claim_of(float cost, std::int32_t x) {
+  constexpr std::uint32_t kNoSign = 0x7FFFFFFF;
+  return Claim{std::bit_cast<std::uint32_t>(cost) & kNoSign} << 32 | static_cast<std::uint32_t>(x);
+}
+constexpr std::int32_t claimant(Claim claim) {
+  return static_cast<std::int32_t>(claim & 0xFFFFFFFF);
+}
 
 /// One side of a symmetric smoothing kernel in 1/256: weights[i] stands at +i and −i.
 struct RowWeights {
@@ -52,6 +66,20 @@ struct ConfidenceRow {
 /// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
 /// rounds in another order than it is written in, so that each gives the same bits.
 struct RowKernels {
+  /// reject_inconsistent() where matches lie in the pixels' own row, by vote and by the right winners.
+  /// Working memory: `partners` and `back` width numbers, `claims` one more.
+  void (*compare_with_votes)(const std::int16_t* best, const float* cost, int width, int max_diff,
+                             std::int32_t* partners, Claim* claims, Reject* verdict);
+  void (*compare_with_right)(const std::int16_t* best, const std::int16_t* best_right, int width,
+                             int max_diff, std::int32_t* partners, std::int32_t* back, Reject* verdict);
+  /// Reject::not_unique where runner_up · share < cost · 100.
+  void (*compare_with_runner_up)(const float* cost, const float* runner_up, int width, float share,
+                                 Reject* verdict);
+  /// Reject::border where there is no disparity (NaN).
+  void (*mark_holes)(const float* disparity_px, int width, Reject* reject);
+  void (*add_reasons)(const Reject* more, int width, Reject* reject);
+  /// NaN where there is a reason.
+  void (*punch_holes)(const Reject* reject, int width, float* disparity_px);
   /// The rows −radius … +radius around a row, smoothed down and then across: `rows[i]` stands for row i −
   /// radius, `width` samples of `channels` interleaved bytes each. Writes 1/16 levels. `padded`: width + 2 ·
   /// radius samples, `sum`: width, working memory.

@@ -373,6 +373,6 @@ void match_rows(const MatchTask& task, int first, int last) {
 }  // namespace
 
 extern const MatchKernels kMatchKernels;
-const MatchKernels kMatchKernels{match_rows, filter_row, refine_row, look_back};
+const MatchKernels kMatchKernels{match_rows, filter_row, refine_row};
 
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/reject.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/subpixel.hpp>
 #include <cstdint>
@@ -41,10 +40,6 @@ struct MatchKernels {
   void (*filter_row)(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
                      std::int16_t* columns, Gray* out);
   void (*refine_row)(SubpixelMethod method, const RefinedRow& row);
-  /// One row of reject_inconsistent(): `back`: the disparity of each right pixel. Rows of images, but for
-  /// `back`.
-  void (*look_back)(const std::int16_t* best, const std::int32_t* back, int width, int max_diff,
-                    Reject* verdict);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -65,23 +65,5 @@ inline void refine_row(SubpixelMethod method, const RefinedRow& row) {
                                      : refine_row<SubpixelMethod::equiangular>(row);
 }
 
-inline void look_back(const std::int16_t* best, const std::int32_t* back, int width, int max_diff,
-                      Reject* verdict) {
-  const I i32;
-  const VI none = lanes::Set(i32, std::int32_t{kNoMatch});
-  const VI last = lanes::Set(i32, width - 1);
-  for (int x = 0; x < width; x += lane_count<Wide>()) {
-    const VI d = lanes::LoadWidened(i32, best + x);
-    // Held inside the row: where there is no match, and beyond the row's end.
-    const VI partner = lanes::Sub(lanes::CountFrom(i32, x), d);
-    const VI inside = lanes::Min(lanes::Max(partner, lanes::Zero(i32)), last);
-    const VI difference = lanes::Abs(lanes::Sub(d, lanes::GatherIndex(i32, back, inside)));
-    const auto differs = lanes::Gt(difference, lanes::Set(i32, max_diff));
-    const VI code = lanes::Set(i32, static_cast<std::int32_t>(Reject::left_right));
-    const VI found = lanes::IfThenZeroElse(lanes::Eq(d, none), lanes::IfThenElseZero(differs, code));
-    lanes::StoreNarrowed(i32, found, reinterpret_cast<std::uint8_t*>(verdict) + x);
-  }
-}
-
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET
