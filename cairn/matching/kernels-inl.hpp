@@ -11,6 +11,8 @@ namespace {
 template <Cost kCost, class Width, bool kDouble>
 class Band {
   using Lane = typename Width::Cost;
+  using KeptTag =
+      std::conditional_t<std::is_same_v<Width, Wide>, F, I>;  // of costs that are made Matches' own
   using Strip = kernels::CAIRN_KERNEL_TARGET::Strip<Width>;
   using CostBlock = kernels::CAIRN_KERNEL_TARGET::CostBlock<Lane>;
   using RightRow = kernels::CAIRN_KERNEL_TARGET::RightRow<Lane>;
@@ -139,6 +141,7 @@ class Band {
   /// So many left pixels and one row of the right image: what is done before the block is looked at.
   struct Work {
     const Strip* strip = nullptr;
+    const Rows<Width>* rows = nullptr;
     int x_first = 0;
     int x_last = 0;
     bool begins = false;  // with the first strip
@@ -149,20 +152,24 @@ class Band {
     const auto unwanted = [&](const Strip& strip) { return !wanted(strip, y); };
     const auto first = std::find_if_not(strips_.begin(), strips_.end(), unwanted);
     const auto last = std::find_if_not(strips_.rbegin(), strips_.rend(), unwanted).base();
+    // Once for all blocks: what was just written number by number and is copied at once must be waited for.
+    rows_.clear();
+    for (const Strip& strip : strips_) rows_.emplace_back(strip, g_, exists_);
     for (int x = 0; x < g_.width; x += step_) {
       for (auto strip = first; strip < last; ++strip) {
         if (unwanted(*strip)) continue;
-        const Work work{&*strip, x, std::min(x + step_, g_.width), strip == first, strip + 1 == last};
+        const auto* const rows = &rows_[static_cast<std::size_t>(strip - strips_.begin())];
+        const Work work{&*strip, rows, x, std::min(x + step_, g_.width), strip == first, strip + 1 == last};
         fill(work);
         look_at(work, y);
       }
+      if (keeps_costs_ && mine(y + 1)) expect_evidence(x, y + 1);
     }
   }
 
   void fill(const Work& work) const {
-    const auto [strip, x_first, x_last, begins, ends] = work;
-    const Rows<Width> rows(*strip, g_, exists_);
-    for_each_tile([&, x_first = x_first, x_last = x_last]<int kLanes>(int first) {
+    const auto [strip, rows, x_first, x_last, begins, ends] = work;
+    for_each_tile([&, rows = rows, x_first = x_first, x_last = x_last]<int kLanes>(int first) {
       const int least_d = g_.first_d + first;
       const int most_d = least_d + kLanes - 1;
       // From x_inside to x_border − 1 nothing is clipped and nothing missing.
@@ -172,7 +179,7 @@ class Band {
       const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
       const auto slide_over = [&]<Place kPlace>(int begin, int end) {
         if (begin < end)
-          slide<kCost, Width, kDouble, kLanes, kPlace>(rows, first, begin, end, begin - x_first, block_);
+          slide<kCost, Width, kDouble, kLanes, kPlace>(*rows, first, begin, end, begin - x_first, block_);
       };
       slide_over.template operator()<Place::border>(x_first, x_inside);
       slide_over.template operator()<Place::inside>(x_inside, x_border);
@@ -182,7 +189,7 @@ class Band {
   }
 
   void look_at(const Work& work, int y) {
-    const auto [strip, x_first, x_last, begins, ends] = work;
+    const auto [strip, rows, x_first, x_last, begins, ends] = work;
     if (full_ && mine(y + strip->row)) {
       RightRow& right = right_row(y + strip->row);
       radius_ > 0 ? update_right<Width, true>(block_.costs, g_, x_first, x_last - x_first, right)
@@ -242,20 +249,31 @@ class Band {
     }
     alignas(64) std::array<Lane, kBlock> runner_up;
     runner_up.fill(kNone<Lane>);
-    for_each_tile([&]<int kLanes>(int first) {
-      alignas(64) std::array<Lane, kBlock> of_tile;
-      least_costs<Width, kLanes>(block, first, of_tile);
-      for (std::size_t i = 0; i < kBlock; ++i) runner_up[i] = std::min(runner_up[i], of_tile[i]);
-    });
-    alignas(64) std::array<Lane, kBlock> before;
-    alignas(64) std::array<Lane, kBlock> after;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      before[i] = around[4 * i];
-      after[i] = around[4 * i + 2];
-    }
-    store_costs(before, pixels, task_.out.cost_before.row(y) + x_first);
-    store_costs(after, pixels, task_.out.cost_after.row(y) + x_first);
+    for_each_tile([&]<int kLanes>(int first) { keep_least<Width, kLanes>(block, first, runner_up); });
+    // Only now, as vectors: what was just written number by number would have to be waited for.
+    store_neighbours(around, pixels, task_.out.cost_before.row(y) + x_first,
+                     task_.out.cost_after.row(y) + x_first);
     store_costs(runner_up, pixels, task_.out.runner_up.row(y) + x_first);
+  }
+
+  static void store_neighbours(const std::array<Lane, 4 * kBlock>& around, int pixels, float* before,
+                               float* after) {
+    for (int i = 0; i < pixels; i += lane_count<Wide>()) {
+      const auto [first, third] = lanes::LoadFirstAndThird(KeptTag(), around.data() + 4 * i);
+      lanes::Store(as_costs(Width(), first), F(), before + i);
+      lanes::Store(as_costs(Width(), third), F(), after + i);
+    }
+  }
+
+  /// Asks for the memory that a block's maps are written to, a row before: more of them are written than a
+  /// processor looks ahead for.
+  CAIRN_LANES_INLINE void expect_evidence(int x_first, int y) const {
+    const Matches& out = task_.out;
+    expect_writes(out.cost.row(y) + x_first, kBlock);
+    expect_writes(out.best.row(y) + x_first, kBlock);
+    for (const Image<float>* map : {&out.cost_before, &out.cost_after, &out.runner_up})
+      expect_writes(map->row(y) + x_first, kBlock);
+    if (full_) expect_writes(out.mean_cost.row(y) + x_first, kBlock);
   }
 
   void store_costs(const std::array<Lane, kBlock>& kept, int pixels, float* to) const {
@@ -334,6 +352,7 @@ class Band {
   Scratch<std::int32_t> candidates_;  // [x]: so many
   RowWinners winners_;
   std::vector<Strip> strips_;
+  std::vector<Rows<Width>> rows_;  // of these
   std::vector<RightRow> right_rows_;
 };
 

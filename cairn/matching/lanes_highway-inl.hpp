@@ -220,6 +220,27 @@ template <class D, class T>
 HWY_INLINE Vec<D> LoadWidened(D d, const T* from) {
   return PromoteTo(d, LoadU(Rebind<T, D>(), from));
 }
+/// The first and the third number of each four.
+template <class D>
+struct FirstAndThird {
+  Vec<D> first;
+  Vec<D> third;
+};
+template <class D>
+HWY_INLINE FirstAndThird<D> LoadFirstAndThird(D d, const float* fours) {
+  const int n = static_cast<int>(Lanes(d));
+  const auto lower = ConcatEven(d, LoadU(d, fours + n), LoadU(d, fours));
+  const auto upper = ConcatEven(d, LoadU(d, fours + 3 * n), LoadU(d, fours + 2 * n));
+  return {ConcatEven(d, upper, lower), ConcatOdd(d, upper, lower)};
+}
+template <class D>
+HWY_INLINE FirstAndThird<D> LoadFirstAndThird(D d, const std::int16_t* fours) {
+  const Repartition<std::int16_t, D> d16;
+  const auto lower = BitCast(d, LoadU(d16, fours));
+  const auto upper = BitCast(d, LoadU(d16, fours + 2 * Lanes(d)));
+  return {ShiftRight<16>(ShiftLeft<16>(ConcatEven(d, upper, lower))),
+          ShiftRight<16>(ShiftLeft<16>(ConcatOdd(d, upper, lower)))};
+}
 template <class D, class T>
 HWY_INLINE void StoreNarrowed(D, Vec<D> v, T* to) {
   const Rebind<T, D> small;

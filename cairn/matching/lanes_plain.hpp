@@ -123,12 +123,6 @@ template <class T>
 T Or(T a, T b) {
   return static_cast<T>(a | b);
 }
-inline std::int32_t Abs(std::int32_t a) {
-  return std::abs(a);
-}
-inline std::int32_t GatherIndex(Tag<std::int32_t>, const std::int32_t* from, std::int32_t index) {
-  return from[index];
-}
 template <int kBits>
 std::int32_t ShiftRight(std::int32_t a) {
   return a >> kBits;
@@ -235,6 +229,15 @@ inline float SumByHalves(Tag<float>, float value) {
 template <class T>
 std::int32_t LoadWidened(Tag<std::int32_t>, const T* from) {
   return *from;
+}
+template <class T>
+struct FirstAndThird {
+  T first;
+  T third;
+};
+template <class T, class Kept>
+FirstAndThird<T> LoadFirstAndThird(Tag<T>, const Kept* fours) {
+  return {fours[0], fours[2]};
 }
 template <class T>
 void StoreNarrowed(Tag<std::int32_t>, std::int32_t value, T* to) {

@@ -106,12 +106,13 @@ struct RightRow {
   void clear() { std::fill_n(cost.data(), cost.size(), kNone<Lane>); }
 };
 
-/// The least of a tile's costs for each pixel of a block. `first`: the tile's first lane.
+/// Keeps in `least`, for each pixel of a block, what is less in a tile. `first`: the tile's first lane.
 template <class Width, int kLanes>
-void least_costs(const CostBlock<typename Width::Cost>& block, int first,
-                 std::array<typename Width::Cost, kBlock>& least) {
+void keep_least(const CostBlock<typename Width::Cost>& block, int first,
+                std::array<typename Width::Cost, kBlock>& least) {
   using Tag = typename Width::CostTag;
   const Tag d;
+  const lanes::Folded<Tag> folded;
   constexpr int kPixels = lanes::kFolded<Tag>;
   const typename Width::Cost* costs = block.of(0) + first;
   const std::ptrdiff_t stride = block.stride;
@@ -125,7 +126,9 @@ void least_costs(const CostBlock<typename Width::Cost>& block, int first,
         of_pixel[i] = lanes::Min(of_pixel[i], lanes::Load(d, costs + v * lane_count<Width>()));
       costs += stride;
     }
-    lanes::Store(lanes::FoldEach<lanes::Lesser>(d, of_pixel), lanes::Folded<Tag>(), least.data() + pixel);
+    const auto of_tile = lanes::FoldEach<lanes::Lesser>(d, of_pixel);
+    lanes::Store(lanes::Min(of_tile, lanes::Load(folded, least.data() + pixel)), folded,
+                 least.data() + pixel);
   }
 }
 
@@ -220,16 +223,23 @@ CAIRN_LANES_INLINE VF sum_from_kept(const std::int32_t* sum_of_kept, int count, 
   return lanes::ConvertTo(F(), lanes::Sub(lanes::ShiftRight<Width::kShift>(from_0), of_none));
 }
 
-/// As Matches has them.
+/// Costs that were kept, as Matches has them.
+CAIRN_LANES_INLINE VF as_costs(Wide, VF kept) {
+  return kept;
+}
+template <class Width>
+CAIRN_LANES_INLINE VF as_costs(Width, VI kept) {
+  const VI from_0 = lanes::Add(kept, lanes::Set(I(), 32768));
+  const auto none = lanes::RebindMask(F(), lanes::Eq(from_0, lanes::Set(I(), 65535)));
+  return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
+                           lanes::ConvertTo(F(), lanes::ShiftRight<Width::kShift>(from_0)));
+}
 CAIRN_LANES_INLINE VF as_costs(Wide, const float* kept) {
   return lanes::LoadU(F(), kept);
 }
 template <class Width>
 CAIRN_LANES_INLINE VF as_costs(Width, const std::int16_t* kept) {
-  const VI from_0 = lanes::Add(lanes::LoadWidened(I(), kept), lanes::Set(I(), 32768));
-  const auto none = lanes::RebindMask(F(), lanes::Eq(from_0, lanes::Set(I(), 65535)));
-  return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
-                           lanes::ConvertTo(F(), lanes::ShiftRight<Width::kShift>(from_0)));
+  return as_costs(Width(), lanes::LoadWidened(I(), kept));
 }
 
 /// Numbers of lanes, kept in the costs' own type.
