@@ -172,6 +172,10 @@ Picture::Picture(const py::object& value, const char* name, bool bgr, const Pool
   gray_ = own_gray_;
 }
 
+Array<std::uint8_t> Picture::copy() const {
+  return rgb_.empty() ? array_from(copied(gray_)) : array_from(copied(rgb_));
+}
+
 void expect_size(Size found, const char* name, Size expected, const char* other) {
   if (found == expected) return;
   throw Error(std::string(name) + ": is " + text(found) + ", expected " + text(expected) + " as " + other +

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
 #include <cairn/disparity/reject.hpp>
@@ -97,6 +98,8 @@ class Picture {
   [[nodiscard]] View<const Gray> gray() const { return gray_; }
   [[nodiscard]] View<const Rgb> rgb() const { return rgb_; }  // empty where it is grey
   [[nodiscard]] Size size() const { return gray_.size(); }
+  /// Grey, or colour in the order R, G, B, as an array of its own.
+  [[nodiscard]] Array<std::uint8_t> copy() const;
 
  private:
   py::array keep_;
@@ -110,6 +113,14 @@ class Picture {
 void expect_size(Size found, const char* name, Size expected, const char* other);
 
 // ---- out ----
+
+/// An image of its own of what is borrowed.
+template <class T>
+Image<T> copied(View<const T> from, const Pool& pool = {}) {
+  Image<T> image(from.size(), pool);
+  for (int y = 0; y < from.height(); ++y) std::copy_n(from.row(y), from.width(), image.row(y));
+  return image;
+}
 
 /// The numbers that a pixel is made of, as numpy knows them.
 template <class T>

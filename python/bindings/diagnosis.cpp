@@ -14,6 +14,7 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 #include "rig.hpp"
 
 namespace cairn::python {
@@ -246,27 +247,32 @@ void bind_parts(py::module_& m) {
                              "by rows that the right point is lower, -8 to 8: points; the outermost count "
                              "all beyond")
       .def("__repr__",
-           [](const RowAlignment& self) { return "<cairn.RowAlignment " + rows_text(self) + ">"; });
+           [](const RowAlignment& self) { return "<cairn.RowAlignment " + rows_text(self) + ">"; })
+      .def(pickled<RowAlignment>());
   py::class_<Exposure>(m, "Exposure", "How one camera used its 256 grey levels.")
       .def_readonly("black", &Exposure::black, "0 to 1: share of the pixels at level 0 or 1")
       .def_readonly("white", &Exposure::white, "0 to 1: share of the pixels at level 254 or 255")
       .def_readonly("contrast", &Exposure::contrast,
                     "grey levels between the darkest and the brightest hundredth of the pixels")
-      .def("__repr__", &exposure_repr);
+      .def("__repr__", &exposure_repr)
+      .def(pickled<Exposure>());
   py::class_<BrightnessDifference>(
       m, "BrightnessDifference",
       "What the right camera makes of the left one's brightness: right = gain * left + offset.")
       .def_readonly("points", &BrightnessDifference::points,
                     "windows compared; with fewer than 50 no difference is measured")
-      .def_readonly("gain", &BrightnessDifference::gain)
+      .def_readonly("gain", &BrightnessDifference::gain,
+                    "factor on the left one's grey levels; 1 where both agree, or too little varies")
       .def_readonly("offset", &BrightnessDifference::offset, "grey levels")
       .def_readonly("median", &BrightnessDifference::median, "of |right - left|, grey levels")
-      .def("__repr__", &brightness_repr);
+      .def("__repr__", &brightness_repr)
+      .def(pickled<BrightnessDifference>());
   py::class_<Sharpness>(m, "Sharpness", "How many pixels an edge takes from dark to bright.")
       .def_readonly("edges", &Sharpness::edges, "that were measured")
       .def_readonly("edge_px", &Sharpness::edge_px,
                     "px, a quarter of them are narrower; 1 = a step; 0 = too few edges")
-      .def("__repr__", &sharpness_repr);
+      .def("__repr__", &sharpness_repr)
+      .def(pickled<Sharpness>());
 }
 
 void bind_measures(py::module_& m) {
@@ -292,10 +298,11 @@ void bind_measures(py::module_& m) {
       .def_readonly("right_exposure", &PairMeasures::right_exposure, "an Exposure")
       .def_readonly("left_sharpness", &PairMeasures::left_sharpness, "a Sharpness")
       .def_readonly("right_sharpness", &PairMeasures::right_sharpness, "a Sharpness")
-      .def("__repr__", &measures_repr);
+      .def("__repr__", &measures_repr)
+      .def(pickled<PairMeasures>());
   py::class_<Synchrony>(m, "Synchrony",
                         "Whether the two cameras of a sequence took their pictures at the same moments.")
-      .def_readonly("frames", &Synchrony::frames)
+      .def_readonly("frames", &Synchrony::frames, "pairs that were looked at")
       .def_property_readonly("lag", &Synchrony::lag,
                              "frames that the right camera is late, as the numbers say; 0 without evidence")
       .def_property_readonly(
@@ -308,7 +315,8 @@ void bind_measures(py::module_& m) {
       .def_readonly("left_repeats", &Synchrony::left_repeats,
                     "frames in which only the left picture is the one before once more")
       .def_readonly("right_repeats", &Synchrony::right_repeats, "the same of the right one")
-      .def("__repr__", &synchrony_repr);
+      .def("__repr__", &synchrony_repr)
+      .def(pickled<Synchrony>());
   py::class_<Finding>(m, "Finding", "One thing that is wrong with a rig.")
       .def_property_readonly("kind", &known_text<&FindingInfo::name>,
                              "what it is, 'cameras swapped'; `cairn doctor` calls it the same")
@@ -319,7 +327,8 @@ void bind_measures(py::module_& m) {
       .def_property_readonly("unit", &known_text<&FindingInfo::unit>, "its unit; may be empty")
       .def_readonly("says", &Finding::says, "one sentence with the numbers")
       .def_property_readonly("remedy", &known_text<&FindingInfo::remedy>, "what to do about it")
-      .def("__repr__", &finding_repr);
+      .def("__repr__", &finding_repr)
+      .def(pickled<Finding>());
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 
 namespace cairn::python {
 namespace {
@@ -50,12 +51,6 @@ ArrayOf<Reject> flat(const Config& config, const Exec& exec, const Matches& matc
 ArrayOf<Reject> textureless(const Config& config, const Exec& exec, const ImageArgument& left, bool bgr) {
   const Picture in(left, "left", bgr, exec.pool);
   return array_from(released([&] { return reject_textureless(in.gray(), config.texture, exec); }));
-}
-
-Image<float> copied(View<const float> from, const Pool& pool) {
-  Image<float> image(from.size(), pool);
-  for (int y = 0; y < from.height(); ++y) std::copy_n(from.row(y), from.width(), image.row(y));
-  return image;
 }
 
 /// combine() itself takes a list of fixed length; the union of the verdicts is one verdict.
@@ -157,9 +152,11 @@ void bind_disparity(py::module_& m) {
                              "float32, px; NaN = hole")
       .def_property_readonly("reject", always_shown(&DisparityMap::reject),
                              "uint8, the bits of cairn.Reject; 0 = none")
-      .def("__repr__", [](const DisparityMap& self) {
-        return "<cairn.DisparityMap " + text(self.disparity_px.size()) + ">";
-      });
+      .def("__repr__",
+           [](const DisparityMap& self) {
+             return "<cairn.DisparityMap " + text(self.disparity_px.size()) + ">";
+           })
+      .def(pickled<DisparityMap>());
 
   def_stage(
       m, "reject_inconsistent", {"left_right"},

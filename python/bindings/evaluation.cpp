@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 
 namespace cairn::python {
 namespace {
@@ -86,62 +87,87 @@ void bind_evaluation(py::module_& m) {
                              "by threshold in px: share of the matched that is off by more")
       .def_property_readonly("bad_of_known", &by_threshold<&DisparityErrors::bad_of_known>,
                              "the same of the known; a hole counts as bad")
-      .def_property_readonly("mean_absolute_px", &DisparityErrors::mean_absolute_px)
-      .def_property_readonly("root_mean_square_px", &DisparityErrors::root_mean_square_px)
+      .def_property_readonly("mean_absolute_px", &DisparityErrors::mean_absolute_px,
+                             "mean of |ours - truth| over the matched, px; NaN where nothing is")
+      .def_property_readonly("root_mean_square_px", &DisparityErrors::root_mean_square_px,
+                             "root of the mean square of the same, px; NaN where nothing is matched")
       .def(py::self += py::self)
-      .def("__repr__", [](const DisparityErrors& self) {
-        return "<cairn.DisparityErrors density " + percent(self.density()) + ", off by more than 1 px " +
-               percent(self.bad_of_matched(1)) + " of the matched>";
-      });
+      .def("__repr__",
+           [](const DisparityErrors& self) {
+             return "<cairn.DisparityErrors density " + percent(self.density()) + ", off by more than 1 px " +
+                    percent(self.bad_of_matched(1)) + " of the matched>";
+           })
+      .def(pickled<DisparityErrors>());
   py::class_<TrueObjectScore>(m, "TrueObjectScore", "How well one true object was found.")
-      .def_property_readonly("id", [](const TrueObjectScore& self) { return number(self.id); })
-      .def_readonly("pixel_count", &TrueObjectScore::pixel_count)
+      .def_property_readonly(
+          "id", [](const TrueObjectScore& self) { return number(self.id); },
+          "its number in the truth, from 1 on")
+      .def_readonly("pixel_count", &TrueObjectScore::pixel_count, "its area, px")
       .def_property_readonly(
           "found", [](const TrueObjectScore& self) { return number(self.found); },
           "our object of greatest IoU; 0 = none")
-      .def_readonly("iou", &TrueObjectScore::iou)
-      .def_readonly("boundary_f", &TrueObjectScore::boundary_f, "0 to 1")
-      .def_readonly("over_segmented", &TrueObjectScore::over_segmented)
-      .def_readonly("under_segmented", &TrueObjectScore::under_segmented)
+      .def_readonly("iou", &TrueObjectScore::iou,
+                    "0 to 1: intersection over union with `found`; 0 where nothing overlaps")
+      .def_readonly("boundary_f", &TrueObjectScore::boundary_f,
+                    "0 to 1: how much of both outlines lies within the tolerance of the other")
+      .def_readonly("over_segmented", &TrueObjectScore::over_segmented,
+                    "two or more of ours lie mostly on it and cover more than half of it")
+      .def_readonly("under_segmented", &TrueObjectScore::under_segmented,
+                    "more than half of it lies in one of ours that holds more than half of another, too")
       .def_property_readonly("error", &TrueObjectScore::error,
                              "the paper's E, Eq. 5: 1 / IoU - 1; inf where nothing overlaps")
-      .def("__repr__", [](const TrueObjectScore& self) {
-        return "<cairn.TrueObjectScore " + std::to_string(number(self.id)) + ": IoU " +
-               std::to_string(self.iou) + " with our " + std::to_string(number(self.found)) + ">";
-      });
+      .def("__repr__",
+           [](const TrueObjectScore& self) {
+             return "<cairn.TrueObjectScore " + std::to_string(number(self.id)) + ": IoU " +
+                    std::to_string(self.iou) + " with our " + std::to_string(number(self.found)) + ">";
+           })
+      .def(pickled<TrueObjectScore>());
   py::class_<FoundObjectScore>(m, "FoundObjectScore", "What became of one object of ours.")
-      .def_property_readonly("id", [](const FoundObjectScore& self) { return number(self.id); })
-      .def_readonly("pixel_count", &FoundObjectScore::pixel_count)
+      .def_property_readonly(
+          "id", [](const FoundObjectScore& self) { return number(self.id); },
+          "its number among ours, from 1 on")
+      .def_readonly("pixel_count", &FoundObjectScore::pixel_count, "its area outside don't-care, px")
       .def_property_readonly(
           "best", [](const FoundObjectScore& self) { return number(self.best); },
           "the true object of greatest IoU; 0 = none")
-      .def_readonly("iou", &FoundObjectScore::iou)
+      .def_readonly("iou", &FoundObjectScore::iou,
+                    "0 to 1: intersection over union with `best`; 0 where nothing overlaps")
       .def_readonly("phantom", &FoundObjectScore::phantom, "large enough, and hardly on any true object")
-      .def("__repr__", [](const FoundObjectScore& self) {
-        return "<cairn.FoundObjectScore " + std::to_string(number(self.id)) + ": IoU " +
-               std::to_string(self.iou) + (self.phantom ? ", a phantom>" : ">");
-      });
+      .def("__repr__",
+           [](const FoundObjectScore& self) {
+             return "<cairn.FoundObjectScore " + std::to_string(number(self.id)) + ": IoU " +
+                    std::to_string(self.iou) + (self.phantom ? ", a phantom>" : ">");
+           })
+      .def(pickled<FoundObjectScore>());
   py::class_<ObjectErrors>(m, "ObjectErrors", "One frame against its truth.")
       .def_readonly("truth", &ObjectErrors::truth, "a list of TrueObjectScore")
-      .def_readonly("ours", &ObjectErrors::ours, "a list of FoundObjectScore");
+      .def_readonly("ours", &ObjectErrors::ours, "a list of FoundObjectScore")
+      .def("__repr__",
+           [](const ObjectErrors& self) {
+             return "<cairn.ObjectErrors " + std::to_string(self.truth.size()) + " true objects, " +
+                    std::to_string(self.ours.size()) + " of ours>";
+           })
+      .def(pickled<ObjectErrors>());
   py::class_<ObjectSummary>(m, "ObjectSummary",
                             "Many frames as one: counts, and means over all their objects.")
-      .def_readonly("frames", &ObjectSummary::frames)
-      .def_readonly("true_objects", &ObjectSummary::true_objects)
-      .def_readonly("our_objects", &ObjectSummary::our_objects)
-      .def_readonly("phantoms", &ObjectSummary::phantoms)
-      .def_readonly("mean_error", &ObjectSummary::mean_error, "of the paper's E, each capped at 2")
-      .def_readonly("median_error", &ObjectSummary::median_error)
-      .def_readonly("mean_iou", &ObjectSummary::mean_iou)
-      .def_readonly("mean_boundary_f", &ObjectSummary::mean_boundary_f)
+      .def_readonly("frames", &ObjectSummary::frames, "how many were summarised")
+      .def_readonly("true_objects", &ObjectSummary::true_objects, "that were scored")
+      .def_readonly("our_objects", &ObjectSummary::our_objects, "all of ours but those mostly on don't-care")
+      .def_readonly("phantoms", &ObjectSummary::phantoms, "objects of ours that hardly lie on a true one")
+      .def_readonly("mean_error", &ObjectSummary::mean_error, "of the paper's E, each capped at 2; 0 is best")
+      .def_readonly("median_error", &ObjectSummary::median_error, "of the same, 0 to 2")
+      .def_readonly("mean_iou", &ObjectSummary::mean_iou, "over all scored objects, 0 to 1")
+      .def_readonly("mean_boundary_f", &ObjectSummary::mean_boundary_f, "over all scored objects, 0 to 1")
       .def_property_readonly("recall_50", &ObjectSummary::recall_50,
                              "share of the true objects found with IoU >= 0.5")
       .def_property_readonly("precision_50", &ObjectSummary::precision_50, "share of ours with IoU >= 0.5")
-      .def("__repr__", [](const ObjectSummary& self) {
-        return "<cairn.ObjectSummary " + std::to_string(self.frames) + " frames: recall " +
-               percent(self.recall_50()) + ", precision " + percent(self.precision_50()) + ", mean E " +
-               percent(self.mean_error) + ">";
-      });
+      .def("__repr__",
+           [](const ObjectSummary& self) {
+             return "<cairn.ObjectSummary " + std::to_string(self.frames) + " frames: recall " +
+                    percent(self.recall_50()) + ", precision " + percent(self.precision_50()) + ", mean E " +
+                    percent(self.mean_error) + ">";
+           })
+      .def(pickled<ObjectSummary>());
 
   m.def("disparity_errors", &compare_disparities, "ours_px"_a, "truth_px"_a, "excluded"_a = py::none(),
         "skip_left"_a = 0,

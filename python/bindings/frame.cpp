@@ -15,6 +15,7 @@
 #include "disparity.hpp"
 #include "objects.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 #include "rig.hpp"
 
 namespace cairn::python {
@@ -26,6 +27,18 @@ struct PyFrame {
   Frame frame;
   io::Provenance provenance;
 };
+
+py::tuple frame_state(const PyFrame& self) {
+  return versioned(py::make_tuple(self.left.copy(), state_of(self.frame), state_of(self.provenance)));
+}
+
+std::unique_ptr<PyFrame> frame_of(const py::tuple& state) {
+  const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
+  auto frame = std::make_unique<PyFrame>(PyFrame{Picture(parts[0], "left", false, {}), {}, {}});
+  restore(parts[1], frame->frame);
+  restore(parts[2], frame->provenance);
+  return frame;
+}
 
 /// Everything that a call needs to know besides its pictures.
 struct Recipe {
@@ -104,11 +117,16 @@ class PySegmenter {
       : recipe_{config_of(config, preset, options), calibration_of(rig)},
         segmenter_(recipe_.config.config, recipe_.calibration.calibration.rig, exec_of(exec)) {}
 
+  PySegmenter(Recipe recipe, Exec exec)
+      : recipe_(std::move(recipe)),
+        segmenter_(recipe_.config.config, recipe_.calibration.calibration.rig, std::move(exec)) {}
+
   [[nodiscard]] std::unique_ptr<PyFrame> segment(const ImageArgument& left, const ImageArgument& right,
                                                  bool bgr) const {
     return segment_pair(left, right, bgr, recipe_, segmenter_.exec());
   }
   [[nodiscard]] const PyConfig& config() const { return recipe_.config; }
+  [[nodiscard]] const PyCalibration& calibration() const { return recipe_.calibration; }
   [[nodiscard]] const std::optional<StereoRig>& rig() const { return segmenter_.rig(); }
   [[nodiscard]] const Exec& exec() const { return segmenter_.exec(); }
 
@@ -116,6 +134,19 @@ class PySegmenter {
   Recipe recipe_;
   Segmenter segmenter_;
 };
+
+/// Its buffers stay behind: the copy has a pool of its own.
+py::tuple segmenter_state(const PySegmenter& self) {
+  return versioned(py::make_tuple(state_of(self.config()), state_of(self.calibration()), self.exec()));
+}
+
+std::unique_ptr<PySegmenter> segmenter_of(const py::tuple& state) {
+  const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
+  Recipe recipe;
+  restore(parts[0], recipe.config);
+  restore(parts[1], recipe.calibration);
+  return std::make_unique<PySegmenter>(std::move(recipe), exec_of(parts[2]));
+}
 
 // ---- what the classes show ----
 
@@ -251,11 +282,14 @@ void bind_frame_class(py::module_& m) {
            "pictures, "
            "overlay.png, disparity_view.png and objects.json; whole or not at all.")
       .def("_repr_png_", &overlay_png)
+      .def(py::pickle(&frame_state, &frame_of))
       .def("__repr__", &frame_repr);
 
   py::class_<SceneDisparity>(m, "SceneDisparity",
                              "Disparity with everything that speaks against it, ground and speckle included.")
-      .def_readonly("disparity_map", &SceneDisparity::disparity)
+      .def(pickled<SceneDisparity>())
+      .def_readonly("disparity_map", &SceneDisparity::disparity,
+                    "disparity and reject as the DisparityMap that stages take")
       .def_property_readonly(
           "disparity",
           [](const py::object& self) {
@@ -268,10 +302,11 @@ void bind_frame_class(py::module_& m) {
             return array_over(self.cast<const SceneDisparity&>().disparity.reject, self, false);
           },
           "(H, W) uint8, bits of cairn.Reject")
-      .def_readonly("ground", &SceneDisparity::ground)
+      .def_readonly("ground", &SceneDisparity::ground, "the floor as a plane, or why there is none")
       .def_property_readonly("floor", shown(&SceneDisparity::floor),
                              "(H, W) uint8, 255 = floor; None where there is none")
-      .def_readonly("epipolar", &SceneDisparity::epipolar)
+      .def_readonly("epipolar", &SceneDisparity::epipolar,
+                    "an EpipolarOffset: how far the right picture's rows were off, rows")
       .def_property_readonly("confidence", shown(&SceneDisparity::confidence),
                              "(H, W) float32, 0 to 1; or None")
       .def("__repr__", [](const SceneDisparity& self) {
@@ -289,9 +324,10 @@ void bind_frame(py::module_& m) {
   const std::string about =
       "left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's order): "
       "what stands at "
-      "(x, y) on the left stands at (x - d, y) on the right. Grey arrays whose rows are dense are used where "
-      "they lie, "
-      "without a copy; do not write to them meanwhile. rig: a Rig, a Calibration, or None: no metres then. "
+      "(x, y) on the left stands at (x - d, y) on the right. Arrays whose rows are dense are used where they "
+      "lie, without a copy, grey ones and RGB; do not write to them meanwhile. Matching works on grey, which "
+      "is computed from colours; bgr=True and other layouts cost a copy. rig: a Rig, a Calibration, or None: "
+      "no metres then. "
       "preset, then "
       "config (a Config or a file's name), then the options; later ones win. Other Python threads run "
       "meanwhile. "
@@ -327,9 +363,11 @@ void bind_frame(py::module_& m) {
            "exec"_a = py::none(), "The arguments are those of segment().")
       .def("segment", &PySegmenter::segment, "left"_a, "right"_a, py::kw_only(), "bgr"_a = false,
            "One frame.")
-      .def_property_readonly("config", &PySegmenter::config)
-      .def_property_readonly("rig", &PySegmenter::rig)
-      .def_property_readonly("exec", &PySegmenter::exec)
+      .def_property_readonly("config", &PySegmenter::config, "the Config that it works with")
+      .def_property_readonly("rig", &PySegmenter::rig, "the Rig that it measures with, or None")
+      .def_property_readonly("exec", &PySegmenter::exec,
+                             "the Exec that it works with: its own threads and pool of images")
+      .def(py::pickle(&segmenter_state, &segmenter_of))
       .def("__repr__", [](const PySegmenter& self) {
         return "<cairn.Segmenter " + py::repr(py::cast(self.config())).cast<std::string>() + ", " +
                (self.rig() ? py::repr(py::cast(*self.rig())).cast<std::string>() : "no rig") + ">";

@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "disparity.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 #include "rig.hpp"
 
 namespace cairn::python {
@@ -62,14 +63,15 @@ void bind_ground(py::module_& m) {
 
   py::class_<GroundPlane>(m, "GroundPlane",
                           "A plane as the left picture's disparity: d = a * x + b * y + c, all in px.")
-      .def_readonly("a", &GroundPlane::a)
-      .def_readonly("b", &GroundPlane::b)
-      .def_readonly("c", &GroundPlane::c)
-      .def("disparity_px", &GroundPlane::disparity_px, "x"_a, "y"_a)
+      .def_readonly("a", &GroundPlane::a, "px of disparity for each px to the right")
+      .def_readonly("b", &GroundPlane::b, "px of disparity for each px downwards; a floor's is above 0")
+      .def_readonly("c", &GroundPlane::c, "px of disparity at x = 0, y = 0")
+      .def("disparity_px", &GroundPlane::disparity_px, "x"_a, "y"_a,
+           "The plane's disparity at (x, y), px; below 0 beyond the horizon.")
       .def("__iter__",
            [](const GroundPlane& self) { return py::iter(py::make_tuple(self.a, self.b, self.c)); })
-      .def("__repr__",
-           [](const GroundPlane& self) { return "<cairn.GroundPlane " + plane_text(self) + ">"; });
+      .def("__repr__", [](const GroundPlane& self) { return "<cairn.GroundPlane " + plane_text(self) + ">"; })
+      .def(pickled<GroundPlane>());
   py::class_<Ground>(m, "Ground", "The floor, or why there is none.")
       .def_readonly("plane", &Ground::plane, "a GroundPlane, or None")
       .def_readonly("support", &Ground::support,
@@ -78,18 +80,23 @@ void bind_ground(py::module_& m) {
       .def_property_readonly("refusal", &refusal,
                              "why there is no plane, in words; 'none' where there is one")
       .def("__bool__", [](const Ground& self) { return self.plane.has_value(); })
-      .def("__repr__", [](const Ground& self) {
-        if (!self.plane) return "<cairn.Ground none: " + refusal(self) + ">";
-        return "<cairn.Ground " + plane_text(*self.plane) + ", support " + std::to_string(self.support) + ">";
-      });
+      .def("__repr__",
+           [](const Ground& self) {
+             if (!self.plane) return "<cairn.Ground none: " + refusal(self) + ">";
+             return "<cairn.Ground " + plane_text(*self.plane) + ", support " + std::to_string(self.support) +
+                    ">";
+           })
+      .def(pickled<Ground>());
   py::class_<Background>(m, "Background", "The planes that bound the scene from behind: floor and walls.")
       .def_readonly("planes", &Background::planes, "a list of GroundPlane")
       .def_readonly("has_floor", &Background::has_floor, "whether the first of them is the floor")
       .def("disparity_px", &Background::disparity_px, "x"_a, "y"_a, "Of the nearest of them, at least 0; px.")
-      .def("__repr__", [](const Background& self) {
-        return "<cairn.Background " + std::to_string(self.planes.size()) + " planes" +
-               (self.has_floor ? ", the first is the floor>" : ">");
-      });
+      .def("__repr__",
+           [](const Background& self) {
+             return "<cairn.Background " + std::to_string(self.planes.size()) + " planes" +
+                    (self.has_floor ? ", the first is the floor>" : ">");
+           })
+      .def(pickled<Background>());
 
   def_stage(
       m, "fit_ground", {"ground"},

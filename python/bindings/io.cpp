@@ -74,9 +74,11 @@ Array<std::uint8_t> draw_objects(const ImageArgument& left, const Objects& objec
   return array_from(released([&] { return io::draw_objects(in.gray(), in.rgb(), objects, mask.view()); }));
 }
 
-/// Where a grey picture's pixels are read from: for the test that none are copied.
-std::size_t address_of_pixels(const ImageArgument& image) {
-  return reinterpret_cast<std::size_t>(Picture(image, "image", false, {}).gray().data());
+/// Where a picture's pixels, grey or colours, are read from: for the test that none are copied.
+std::size_t address_of_pixels(const ImageArgument& image, bool bgr) {
+  const Picture in(image, "image", bgr, {});
+  if (in.rgb().empty()) return reinterpret_cast<std::size_t>(in.gray().data());
+  return reinterpret_cast<std::size_t>(in.rgb().data());
 }
 
 }  // namespace
@@ -104,7 +106,7 @@ void bind_io(py::module_& m) {
         "uint8, RGB.");
   m.def("draw_objects", &draw_objects, "left"_a, "objects"_a, "floor"_a = py::none(), py::kw_only(),
         "bgr"_a = false, "The left picture with the objects drawn in: (h, w, 3) uint8, RGB.");
-  m.def("_address_of_pixels", &address_of_pixels, "image"_a);
+  m.def("_address_of_pixels", &address_of_pixels, "image"_a, "bgr"_a = false);
 }
 
 }  // namespace cairn::python

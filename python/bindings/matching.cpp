@@ -8,6 +8,7 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 
 namespace cairn::python {
 namespace {
@@ -85,7 +86,8 @@ void bind_matching(py::module_& m) {
       m, "EpipolarOffset",
       "How far the right picture's rows are off: what the left one shows in row y stands in "
       "column x of the right one at row y + rows + rows_per_px * (x - (width - 1) / 2).")
-      .def(py::init(&make_offset), "rows"_a = 0.0F, "rows_per_px"_a = 0.0F)
+      .def(py::init(&make_offset), "rows"_a = 0.0F, "rows_per_px"_a = 0.0F,
+           "rows: -1024 to 1024; rows_per_px: -1 to 1. For shift_rows().")
       .def_readonly("rows", &EpipolarOffset::rows, "rows, in the middle column")
       .def_readonly("rows_per_px", &EpipolarOffset::rows_per_px, "tangent of the roll")
       .def_readonly("points", &EpipolarOffset::points, "textured points found again in the right picture")
@@ -93,16 +95,24 @@ void bind_matching(py::module_& m) {
       .def_property_readonly(
           "outcome", &outcome,
           "'off', 'too few textured points', 'the points do not agree', 'aligned' or 'corrected'")
-      .def("__repr__", [](const EpipolarOffset& self) {
-        return "<cairn.EpipolarOffset " + outcome(self) + ": " + std::to_string(self.rows) + " rows, " +
-               std::to_string(self.rows_per_px) + " rows per px, " + std::to_string(self.agreeing) + " of " +
-               std::to_string(self.points) + " points agree>";
-      });
+      .def("__repr__",
+           [](const EpipolarOffset& self) {
+             return "<cairn.EpipolarOffset " + outcome(self) + ": " + std::to_string(self.rows) + " rows, " +
+                    std::to_string(self.rows_per_px) + " rows per px, " + std::to_string(self.agreeing) +
+                    " of " + std::to_string(self.points) + " points agree>";
+           })
+      .def(pickled<EpipolarOffset>());
   py::class_<EpipolarCorrection>(m, "EpipolarCorrection", "What correct_epipolar() makes.")
-      .def_readonly("offset", &EpipolarCorrection::offset)
+      .def_readonly("offset", &EpipolarCorrection::offset, "an EpipolarOffset: what was found")
       .def_property_readonly(
           "right", shown(&EpipolarCorrection::right),
-          "(H, W) uint8, the right picture moved; None where the pair is to be matched as it is");
+          "(H, W) uint8, the right picture moved; None where the pair is to be matched as it is")
+      .def("__repr__",
+           [](const EpipolarCorrection& self) {
+             return "<cairn.EpipolarCorrection " + outcome(self.offset) +
+                    (self.right.empty() ? ", the pair as it is>" : ", the right picture moved>");
+           })
+      .def(pickled<EpipolarCorrection>());
 
   py::class_<Matches>(m, "Matches",
                       "The outcome of correlation for each pixel of the left picture (best_right: of the "
@@ -123,7 +133,8 @@ void bind_matching(py::module_& m) {
                              "float32, at best - 1; inf = no such candidate")
       .def_property_readonly("cost_after", shown(&Matches::cost_after),
                              "float32, at best + 1; inf = no such candidate")
-      .def("__repr__", [](const Matches& self) { return "<cairn.Matches " + text(self.best.size()) + ">"; });
+      .def("__repr__", [](const Matches& self) { return "<cairn.Matches " + text(self.best.size()) + ">"; })
+      .def(pickled<Matches>());
   m.attr("NO_MATCH") = int{kNoMatch};
 
   def_stage(m, "find_epipolar_offset", {"epipolar_correction", "match"},

@@ -15,6 +15,7 @@
 #include "bindings.hpp"
 #include "disparity.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 #include "rig.hpp"
 
 namespace cairn::python {
@@ -125,10 +126,12 @@ void bind_classes(py::module_& m) {
       .def_property_readonly("disparity_region", &disparity_region,
                              "for each fused region the disparity region that it follows")
       .def("__len__", [](const Fusion& self) { return self.parts.size(); })
-      .def("__repr__", [](const Fusion& self) {
-        return "<cairn.Fusion " + text(self.labels.size()) + ", " + std::to_string(self.parts.size()) +
-               " regions>";
-      });
+      .def("__repr__",
+           [](const Fusion& self) {
+             return "<cairn.Fusion " + text(self.labels.size()) + ", " + std::to_string(self.parts.size()) +
+                    " regions>";
+           })
+      .def(pickled<Fusion>());
 
   py::class_<Object>(m, "Object", "Something that stands or hangs in front of the background.")
       .def_property_readonly(
@@ -164,7 +167,8 @@ void bind_classes(py::module_& m) {
                     "0 to 1: of its outline, what lies at the picture's border")
       .def_readonly("confidence", &Object::confidence,
                     "0 to 1: how likely it covers a true object by more than half")
-      .def("__repr__", &object_repr);
+      .def("__repr__", &object_repr)
+      .def(pickled<Object>());
 
   py::class_<Objects>(m, "Objects",
                       "The objects of a frame, nearest first: a sequence of Object, and their map.")
@@ -187,7 +191,8 @@ void bind_classes(py::module_& m) {
           "__iter__",
           [](const Objects& self) { return py::make_iterator(self.list.begin(), self.list.end()); },
           py::keep_alive<0, 1>())
-      .def("__repr__", &objects_repr);
+      .def("__repr__", &objects_repr)
+      .def(pickled<Objects>());
 }
 
 }  // namespace

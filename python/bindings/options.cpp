@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "bindings.hpp"
+#include "pickling.hpp"
 
 namespace cairn::python {
 namespace {
@@ -249,7 +250,9 @@ void bind_options(py::module_& m) {
   py::class_<OptionInfo>(m, "Option",
                          "One option of the method, as the command and the reference page name it.")
       .def_readonly("name", &OptionInfo::name, "its group and name, 'match.window_size'")
-      .def_property_readonly("group", [](const OptionInfo& self) { return group_of(self); })
+      .def_property_readonly(
+          "group", [](const OptionInfo& self) { return group_of(self); },
+          "the stage that it belongs to, 'match'")
       .def_readonly("type", &OptionInfo::type, "'int', 'float', 'bool', 'choice' or 'points'")
       .def_property_readonly(
           "default", [](const OptionInfo& self) { return option_value(self); },
@@ -257,7 +260,8 @@ void bind_options(py::module_& m) {
       .def_readonly("unit", &OptionInfo::unit, "may be empty")
       .def_readonly("range", &OptionInfo::domain, "'3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'")
       .def_readonly("help", &OptionInfo::help, "what it does")
-      .def("__repr__", &option_repr);
+      .def("__repr__", &option_repr)
+      .def(pickled<OptionInfo>());
   m.def(
       "options", [](const std::string& preset) { return options(Config::preset(preset)); },
       py::arg("preset") = "default", "Every option with its value in a preset, in the order of the stages.");
@@ -274,7 +278,9 @@ void bind_options(py::module_& m) {
              if (!file.is_none()) path = py::str(file).cast<std::string>();
              return make_config(preset, path, groups);
            }),
-           py::arg("preset") = "default", py::arg("file") = py::none())
+           py::arg("preset") = "default", py::arg("file") = py::none(),
+           "preset: one of preset_names(). file: a configuration file's name, or None. Then a dict for each "
+           "group of options().")
       .def_readonly("preset", &PyConfig::preset, "what it started from")
       .def("__getitem__", &option_of, py::arg("name"),
            "The value of an option by its full name, 'match.window_size'.")
@@ -289,7 +295,8 @@ void bind_options(py::module_& m) {
             return io::config_yaml(self.config) == io::config_yaml(other.config);
           },
           py::is_operator())
-      .def("__repr__", &config_repr);
+      .def("__repr__", &config_repr)
+      .def(pickled<PyConfig>());
   note_groups(m, "Config", all_groups(), true);
 
   py::class_<Exec>(
@@ -297,14 +304,22 @@ void bind_options(py::module_& m) {
       "How the work is done: threads, instruction set, a pool of image buffers. Never changes a result.")
       .def(py::init(&make_exec), py::arg("threads") = 0, py::arg("target") = "best",
            "threads: 0 = one for each processor. target: 'best' or one of supported_targets().")
-      .def_property_readonly("threads", &Exec::threads)
+      .def_property_readonly("threads", &Exec::threads, "how many work, the caller's among them; 1 or more")
       .def_property_readonly(
           "target", [](const Exec& self) { return std::string(name(active_target(self))); },
           "the instruction set that the kernels run on")
       .def_property_readonly(
           "heap_allocations", [](const Exec& self) { return self.pool.heap_allocations(); },
           "how many image buffers its pool has asked the heap for")
-      .def("__repr__", &exec_repr);
+      .def("__repr__", &exec_repr)
+      .def(py::pickle(
+          [](const Exec& self) {
+            return versioned(py::make_tuple(self.threads(), std::string(name(self.target))));
+          },
+          [](const py::tuple& state) {
+            const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
+            return make_exec(parts[0].cast<int>(), parts[1].cast<std::string>());
+          }));
   m.def(
       "compiled_targets", [] { return names_of(compiled_targets()); },
       "The instruction sets in this build, slowest first.");

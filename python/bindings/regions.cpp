@@ -16,6 +16,7 @@
 #include "bindings.hpp"
 #include "disparity.hpp"
 #include "options.hpp"
+#include "pickling.hpp"
 #include "rig.hpp"
 
 namespace cairn::python {
@@ -192,45 +193,58 @@ void bind_classes(py::module_& m) {
   py::class_<Region>(m, "Region",
                      "A set of connected pixels. Mean and variance are over its valid pixels: of grey "
                      "levels, or of disparities in px.")
-      .def_readonly("pixel_count", &Region::pixel_count)
+      .def_readonly("pixel_count", &Region::pixel_count, "its area, px")
       .def_readonly("valid_count", &Region::valid_count, "pixels that carry a value")
       .def_property_readonly(
           "box", [](const Region& self) { return box(self.box); }, "(x, y, width, height), px")
-      .def_readonly("mean", &Region::mean)
-      .def_readonly("variance", &Region::variance)
+      .def_readonly("mean", &Region::mean,
+                    "of its valid pixels: grey levels, 0 to 255, or px of disparity; 0 without any")
+      .def_readonly("variance", &Region::variance,
+                    "of its valid pixels (population), at least 0: grey levels squared, or px squared")
       .def_readonly("is_floor", &Region::is_floor, "the one floor region of a disparity segmentation")
-      .def("__repr__", &region_repr);
+      .def("__repr__", &region_repr)
+      .def(pickled<Region>());
   py::class_<Segmentation>(m, "Segmentation", "Regions: every pixel belongs to one.")
       .def_property_readonly("labels", always_shown(&Segmentation::labels),
                              "(H, W) int32, read-only: indexes `regions`")
       .def_readonly("regions", &Segmentation::regions,
                     "a list of Region, in raster order of their first pixel")
       .def("__len__", [](const Segmentation& self) { return self.regions.size(); })
-      .def("__repr__", [](const Segmentation& self) {
-        return "<cairn.Segmentation " + text(self.labels.size()) + ", " +
-               std::to_string(self.regions.size()) + " regions>";
-      });
+      .def("__repr__",
+           [](const Segmentation& self) {
+             return "<cairn.Segmentation " + text(self.labels.size()) + ", " +
+                    std::to_string(self.regions.size()) + " regions>";
+           })
+      .def(pickled<Segmentation>());
   py::class_<Basins>(m, "Basins", "What watershed() makes.")
       .def_property_readonly("labels", always_shown(&Basins::labels),
                              "(H, W) int32, read-only: 0 to count - 1")
-      .def_readonly("count", &Basins::count)
-      .def("__repr__", [](const Basins& self) {
-        return "<cairn.Basins " + text(self.labels.size()) + ", " + std::to_string(self.count) + " basins>";
-      });
+      .def_readonly("count", &Basins::count, "how many basins there are, 1 or more")
+      .def("__repr__",
+           [](const Basins& self) {
+             return "<cairn.Basins " + text(self.labels.size()) + ", " + std::to_string(self.count) +
+                    " basins>";
+           })
+      .def(pickled<Basins>());
   py::class_<RegionGraph>(m, "RegionGraph", "Regions and which of them touch (4-neighbourhood).")
       .def("__len__", [](const RegionGraph& self) { return self.nodes.size(); })
       .def("neighbours", &neighbours, py::arg("region"), "The regions that touch this one, ascending.")
-      .def("__repr__", [](const RegionGraph& self) {
-        return "<cairn.RegionGraph " + std::to_string(self.nodes.size()) + " regions, " +
-               std::to_string(self.arcs.size() / 2) + " borders>";
-      });
+      .def("__repr__",
+           [](const RegionGraph& self) {
+             return "<cairn.RegionGraph " + std::to_string(self.nodes.size()) + " regions, " +
+                    std::to_string(self.arcs.size() / 2) + " borders>";
+           })
+      .def(pickled<RegionGraph>());
   py::class_<Facets>(m, "Facets", "The picture cut into connected pieces that no clear edge runs through.")
       .def_property_readonly("labels", always_shown(&Facets::labels),
                              "(H, W) int32, read-only: 0 to count - 1")
-      .def_readonly("count", &Facets::count)
-      .def("__repr__", [](const Facets& self) {
-        return "<cairn.Facets " + text(self.labels.size()) + ", " + std::to_string(self.count) + " facets>";
-      });
+      .def_readonly("count", &Facets::count, "how many facets there are, 1 or more")
+      .def("__repr__",
+           [](const Facets& self) {
+             return "<cairn.Facets " + text(self.labels.size()) + ", " + std::to_string(self.count) +
+                    " facets>";
+           })
+      .def(pickled<Facets>());
 }
 
 }  // namespace

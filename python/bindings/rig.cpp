@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bindings.hpp"
+#include "pickling.hpp"
 
 namespace cairn::python {
 namespace {
@@ -92,7 +93,8 @@ void bind_rig(py::module_& m) {
           "camera's "
           "frame; None at or beyond infinity.")
       .def("__eq__", &equal, py::is_operator())
-      .def("__repr__", &rig_repr);
+      .def("__repr__", &rig_repr)
+      .def(pickled<StereoRig>());
 
   py::class_<PyCalibration>(
       m, "Calibration",
@@ -106,7 +108,8 @@ void bind_rig(py::module_& m) {
       .def_property_readonly(
           "num_disparities", [](const PyCalibration& self) { return self.calibration.num_disparities; },
           "the default of match.num_disparities, or None")
-      .def("__repr__", &calibration_repr);
+      .def("__repr__", &calibration_repr)
+      .def(pickled<PyCalibration>());
   m.def(
       "load_calibration",
       [](const std::filesystem::path& path) {

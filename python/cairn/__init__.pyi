@@ -153,7 +153,8 @@ class Basins:
     def labels(self) -> NDArray[numpy.int32]:
         """(H, W) int32, read-only: 0 to count - 1"""
     @property
-    def count(self) -> int: ...
+    def count(self) -> int:
+        """how many basins there are, 1 or more"""
 
 class BrightnessDifference:
     """What the right camera makes of the left one's brightness: right = gain * left + offset."""
@@ -161,7 +162,8 @@ class BrightnessDifference:
     def points(self) -> int:
         """windows compared; with fewer than 50 no difference is measured"""
     @property
-    def gain(self) -> float: ...
+    def gain(self) -> float:
+        """factor on the left one's grey levels; 1 where both agree, or too little varies"""
     @property
     def offset(self) -> float:
         """grey levels"""
@@ -210,7 +212,10 @@ class Config:
         figure: FigureOptions = ...,
         group: GroupOptions = ...,
         objects: ObjectsOptions = ...,
-    ) -> None: ...
+    ) -> None:
+        """preset: one of preset_names(). file: a configuration file's name, or None. Then a dict for each
+        group of options().
+        """
     @property
     def preset(self) -> str:
         """what it started from"""
@@ -240,9 +245,11 @@ class DisparityErrors:
     def bad_of_known(self) -> Dict[float, float]:
         """the same of the known; a hole counts as bad"""
     @property
-    def mean_absolute_px(self) -> float: ...
+    def mean_absolute_px(self) -> float:
+        """mean of |ours - truth| over the matched, px; NaN where nothing is"""
     @property
-    def root_mean_square_px(self) -> float: ...
+    def root_mean_square_px(self) -> float:
+        """root of the mean square of the same, px; NaN where nothing is matched"""
     def __iadd__(self, arg0: DisparityErrors) -> DisparityErrors: ...
 
 class DisparityMap:
@@ -257,14 +264,16 @@ class DisparityMap:
 class EpipolarCorrection:
     """What correct_epipolar() makes."""
     @property
-    def offset(self) -> EpipolarOffset: ...
+    def offset(self) -> EpipolarOffset:
+        """an EpipolarOffset: what was found"""
     @property
     def right(self) -> Optional[NDArray[numpy.uint8]]:
         """(H, W) uint8, the right picture moved; None where the pair is to be matched as it is"""
 
 class EpipolarOffset:
     """How far the right picture's rows are off: what the left one shows in row y stands in column x of the right one at row y + rows + rows_per_px * (x - (width - 1) / 2)."""
-    def __init__(self, rows: float = 0.0, rows_per_px: float = 0.0) -> None: ...
+    def __init__(self, rows: float = 0.0, rows_per_px: float = 0.0) -> None:
+        """rows: -1024 to 1024; rows_per_px: -1 to 1. For shift_rows()."""
     @property
     def rows(self) -> float:
         """rows, in the middle column"""
@@ -289,7 +298,8 @@ class Exec:
     def __init__(self, threads: int = 0, target: str = 'best') -> None:
         """threads: 0 = one for each processor. target: 'best' or one of supported_targets()."""
     @property
-    def threads(self) -> int: ...
+    def threads(self) -> int:
+        """how many work, the caller's among them; 1 or more"""
     @property
     def target(self) -> str:
         """the instruction set that the kernels run on"""
@@ -315,7 +325,8 @@ class Facets:
     def labels(self) -> NDArray[numpy.int32]:
         """(H, W) int32, read-only: 0 to count - 1"""
     @property
-    def count(self) -> int: ...
+    def count(self) -> int:
+        """how many facets there are, 1 or more"""
 
 class Finding:
     """One thing that is wrong with a rig."""
@@ -344,14 +355,17 @@ class Finding:
 class FoundObjectScore:
     """What became of one object of ours."""
     @property
-    def id(self) -> int: ...
+    def id(self) -> int:
+        """its number among ours, from 1 on"""
     @property
-    def pixel_count(self) -> int: ...
+    def pixel_count(self) -> int:
+        """its area outside don't-care, px"""
     @property
     def best(self) -> int:
         """the true object of greatest IoU; 0 = none"""
     @property
-    def iou(self) -> float: ...
+    def iou(self) -> float:
+        """0 to 1: intersection over union with `best`; 0 where nothing overlaps"""
     @property
     def phantom(self) -> bool:
         """large enough, and hardly on any true object"""
@@ -454,12 +468,16 @@ class Ground:
 class GroundPlane:
     """A plane as the left picture's disparity: d = a * x + b * y + c, all in px."""
     @property
-    def a(self) -> float: ...
+    def a(self) -> float:
+        """px of disparity for each px to the right"""
     @property
-    def b(self) -> float: ...
+    def b(self) -> float:
+        """px of disparity for each px downwards; a floor's is above 0"""
     @property
-    def c(self) -> float: ...
-    def disparity_px(self, x: float, y: float) -> float: ...
+    def c(self) -> float:
+        """px of disparity at x = 0, y = 0"""
+    def disparity_px(self, x: float, y: float) -> float:
+        """The plane's disparity at (x, y), px; below 0 beyond the horizon."""
     def __iter__(self) -> Iterator[float]: ...
 
 HOLE_16: int
@@ -544,22 +562,29 @@ class ObjectErrors:
 class ObjectSummary:
     """Many frames as one: counts, and means over all their objects."""
     @property
-    def frames(self) -> int: ...
+    def frames(self) -> int:
+        """how many were summarised"""
     @property
-    def true_objects(self) -> int: ...
+    def true_objects(self) -> int:
+        """that were scored"""
     @property
-    def our_objects(self) -> int: ...
+    def our_objects(self) -> int:
+        """all of ours but those mostly on don't-care"""
     @property
-    def phantoms(self) -> int: ...
+    def phantoms(self) -> int:
+        """objects of ours that hardly lie on a true one"""
     @property
     def mean_error(self) -> float:
-        """of the paper's E, each capped at 2"""
+        """of the paper's E, each capped at 2; 0 is best"""
     @property
-    def median_error(self) -> float: ...
+    def median_error(self) -> float:
+        """of the same, 0 to 2"""
     @property
-    def mean_iou(self) -> float: ...
+    def mean_iou(self) -> float:
+        """over all scored objects, 0 to 1"""
     @property
-    def mean_boundary_f(self) -> float: ...
+    def mean_boundary_f(self) -> float:
+        """over all scored objects, 0 to 1"""
     @property
     def recall_50(self) -> float:
         """share of the true objects found with IoU >= 0.5"""
@@ -585,7 +610,8 @@ class Option:
     def name(self) -> str:
         """its group and name, 'match.window_size'"""
     @property
-    def group(self) -> str: ...
+    def group(self) -> str:
+        """the stage that it belongs to, 'match'"""
     @property
     def type(self) -> str:
         """'int', 'float', 'bool', 'choice' or 'points'"""
@@ -637,7 +663,8 @@ class PairMeasures:
 class Region:
     """A set of connected pixels. Mean and variance are over its valid pixels: of grey levels, or of disparities in px."""
     @property
-    def pixel_count(self) -> int: ...
+    def pixel_count(self) -> int:
+        """its area, px"""
     @property
     def valid_count(self) -> int:
         """pixels that carry a value"""
@@ -645,9 +672,11 @@ class Region:
     def box(self) -> Tuple[int, int, int, int]:
         """(x, y, width, height), px"""
     @property
-    def mean(self) -> float: ...
+    def mean(self) -> float:
+        """of its valid pixels: grey levels, 0 to 255, or px of disparity; 0 without any"""
     @property
-    def variance(self) -> float: ...
+    def variance(self) -> float:
+        """of its valid pixels (population), at least 0: grey levels squared, or px squared"""
     @property
     def is_floor(self) -> bool:
         """the one floor region of a disparity segmentation"""
@@ -734,7 +763,8 @@ class RowAlignment:
 class SceneDisparity:
     """Disparity with everything that speaks against it, ground and speckle included."""
     @property
-    def disparity_map(self) -> DisparityMap: ...
+    def disparity_map(self) -> DisparityMap:
+        """disparity and reject as the DisparityMap that stages take"""
     @property
     def disparity(self) -> NDArray[numpy.float32]:
         """(H, W) float32, px, read-only; NaN = hole"""
@@ -742,12 +772,14 @@ class SceneDisparity:
     def reject(self) -> NDArray[numpy.uint8]:
         """(H, W) uint8, bits of cairn.Reject"""
     @property
-    def ground(self) -> Ground: ...
+    def ground(self) -> Ground:
+        """the floor as a plane, or why there is none"""
     @property
     def floor(self) -> Optional[NDArray[numpy.uint8]]:
         """(H, W) uint8, 255 = floor; None where there is none"""
     @property
-    def epipolar(self) -> EpipolarOffset: ...
+    def epipolar(self) -> EpipolarOffset:
+        """an EpipolarOffset: how far the right picture's rows were off, rows"""
     @property
     def confidence(self) -> Optional[NDArray[numpy.float32]]:
         """(H, W) float32, 0 to 1; or None"""
@@ -796,11 +828,14 @@ class Segmenter:
     def segment(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> Frame:
         """One frame."""
     @property
-    def config(self) -> Config: ...
+    def config(self) -> Config:
+        """the Config that it works with"""
     @property
-    def rig(self) -> Optional[Rig]: ...
+    def rig(self) -> Optional[Rig]:
+        """the Rig that it measures with, or None"""
     @property
-    def exec(self) -> Exec: ...
+    def exec(self) -> Exec:
+        """the Exec that it works with: its own threads and pool of images"""
 
 class Sharpness:
     """How many pixels an edge takes from dark to bright."""
@@ -814,7 +849,8 @@ class Sharpness:
 class Synchrony:
     """Whether the two cameras of a sequence took their pictures at the same moments."""
     @property
-    def frames(self) -> int: ...
+    def frames(self) -> int:
+        """pairs that were looked at"""
     @property
     def lag(self) -> int:
         """frames that the right camera is late, as the numbers say; 0 without evidence"""
@@ -836,21 +872,26 @@ class Synchrony:
 class TrueObjectScore:
     """How well one true object was found."""
     @property
-    def id(self) -> int: ...
+    def id(self) -> int:
+        """its number in the truth, from 1 on"""
     @property
-    def pixel_count(self) -> int: ...
+    def pixel_count(self) -> int:
+        """its area, px"""
     @property
     def found(self) -> int:
         """our object of greatest IoU; 0 = none"""
     @property
-    def iou(self) -> float: ...
+    def iou(self) -> float:
+        """0 to 1: intersection over union with `found`; 0 where nothing overlaps"""
     @property
     def boundary_f(self) -> float:
-        """0 to 1"""
+        """0 to 1: how much of both outlines lies within the tolerance of the other"""
     @property
-    def over_segmented(self) -> bool: ...
+    def over_segmented(self) -> bool:
+        """two or more of ours lie mostly on it and cover more than half of it"""
     @property
-    def under_segmented(self) -> bool: ...
+    def under_segmented(self) -> bool:
+        """more than half of it lies in one of ours that holds more than half of another, too"""
     @property
     def error(self) -> float:
         """the paper's E, Eq. 5: 1 / IoU - 1; inf where nothing overlaps"""
@@ -1037,11 +1078,12 @@ def estimate_disparity(
     """The method's first half: matching and every check, ground and speckle included. Returns a
     SceneDisparity.
     left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's
-    order): what stands at (x, y) on the left stands at (x - d, y) on the right. Grey arrays whose rows
-    are dense are used where they lie, without a copy; do not write to them meanwhile. rig: a Rig, a
-    Calibration, or None: no metres then. preset, then config (a Config or a file's name), then the
-    options; later ones win. Other Python threads run meanwhile. Raises cairn.Error for what cannot be
-    used.
+    order): what stands at (x, y) on the left stands at (x - d, y) on the right. Arrays whose rows are
+    dense are used where they lie, without a copy, grey ones and RGB; do not write to them meanwhile.
+    Matching works on grey, which is computed from colours; bgr=True and other layouts cost a copy. rig:
+    a Rig, a Calibration, or None: no metres then. preset, then config (a Config or a file's name), then
+    the options; later ones win. Other Python threads run meanwhile. Raises cairn.Error for what cannot
+    be used.
     """
 
 def external_disparity(
@@ -1470,12 +1512,13 @@ def segment(
 ) -> Frame:
     """Objects from a stereo pair: the whole method. Returns a Frame.
     left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's
-    order): what stands at (x, y) on the left stands at (x - d, y) on the right. Grey arrays whose rows
-    are dense are used where they lie, without a copy; do not write to them meanwhile. rig: a Rig, a
-    Calibration, or None: no metres then. preset, then config (a Config or a file's name), then the
-    options; later ones win. Other Python threads run meanwhile. Raises cairn.Error for what cannot be
-    used. disparity_map instead of right: a map from elsewhere, (H, W) float32 in px, NaN = hole, or a
-    DisparityMap.
+    order): what stands at (x, y) on the left stands at (x - d, y) on the right. Arrays whose rows are
+    dense are used where they lie, without a copy, grey ones and RGB; do not write to them meanwhile.
+    Matching works on grey, which is computed from colours; bgr=True and other layouts cost a copy. rig:
+    a Rig, a Calibration, or None: no metres then. preset, then config (a Config or a file's name), then
+    the options; later ones win. Other Python threads run meanwhile. Raises cairn.Error for what cannot
+    be used. disparity_map instead of right: a map from elsewhere, (H, W) float32 in px, NaN = hole, or
+    a DisparityMap.
     """
 
 def segment_disparity(

@@ -35,6 +35,23 @@ def test_grey_pictures_are_read_where_they_lie():
     assert _cairn._address_of_pixels(picture) == address(picture)
 
 
+def test_colours_are_read_where_they_lie():
+    picture = np.zeros((48, 64, 3), np.uint8)
+    for there in (picture, picture[5:40, 7:50], picture[3:4], picture[::2], picture[:, :1]):
+        assert _cairn._address_of_pixels(there) == address(there)
+    for other in (picture[:, :, ::-1], picture[::-1], picture[:, ::2], np.asfortranarray(picture)):
+        assert _cairn._address_of_pixels(other) != address(other)
+    assert _cairn._address_of_pixels(picture, bgr=True) != address(picture)  # another order, another array
+
+
+def test_a_frame_holds_the_colours_themselves(sample):
+    left = sample.left.copy()
+    frame = cairn.segment(left, sample.right, sample.calibration)
+    before = frame.overlay()
+    left[:] = 255 - left  # what the guide warns of
+    assert not same(frame.overlay(), before)
+
+
 def test_pixels_that_do_not_lie_side_by_side_are_copied():
     picture = np.zeros((48, 64), np.uint8)
     for other in (picture[:, ::2], picture.T, picture[::-1], picture[:, ::-1], np.asfortranarray(picture)):

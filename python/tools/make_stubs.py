@@ -182,7 +182,7 @@ def class_stub(name, cls):
             members.append(property_stub(key, value))
         elif isinstance(value, staticmethod):
             members.append(function_stub(key, value.__func__, name, "@staticmethod\n"))
-        elif key == "__hash__" or not (callable(value) and getattr(value, "__doc__", None)):
+        elif key in ("__hash__", "__getstate__", "__setstate__") or not (callable(value) and getattr(value, "__doc__", None)):
             continue
         elif re.match(rf"{key}\(", value.__doc__) and key != "__repr__":
             members.append(function_stub(key, value, name))
