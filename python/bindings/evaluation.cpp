@@ -11,6 +11,7 @@
 #include "bindings.hpp"
 #include "options.hpp"
 #include "pickling.hpp"
+#include "whole.hpp"
 
 namespace cairn::python {
 namespace {
@@ -21,7 +22,8 @@ View<const Id> as_ids(View<const std::int32_t> labels) {
 }
 
 DisparityErrors compare_disparities(const FloatsArgument& ours_px, const FloatsArgument& truth_px,
-                                    const MaskArgument& excluded, int skip_left) {
+                                    const MaskArgument& excluded, Whole leftmost) {
+  const int skip_left = leftmost.value;
   const Borrowed<float> ours(ours_px, "ours_px");
   const Borrowed<float> truth(truth_px, "truth_px");
   const BorrowedMask mask(excluded, "excluded");
@@ -31,8 +33,9 @@ DisparityErrors compare_disparities(const FloatsArgument& ours_px, const FloatsA
   return released([&] { return disparity_errors(ours.view(), truth.view(), mask.view(), skip_left); });
 }
 
-ObjectErrors compare_objects(const LabelsArgument& ours, const LabelsArgument& truth, int min_area,
+ObjectErrors compare_objects(const LabelsArgument& ours, const LabelsArgument& truth, Whole least_area,
                              float boundary_tolerance) {
+  const int min_area = least_area.value;
   const Borrowed<std::int32_t> found(ours, "ours");
   const Borrowed<std::int32_t> known(truth, "truth");
   expect_size(found.size(), "ours", known.size(), "truth");

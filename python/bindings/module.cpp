@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "refusals.hpp"
 
 namespace py = pybind11;
 
@@ -18,6 +19,12 @@ PYBIND11_MODULE(_cairn, m) {
   m.attr("Error").attr("__doc__") =
       "Bad input: what was found, what was expected, which argument, option or file. The command says the "
       "same.";
+  const py::object both = py::make_tuple(m.attr("Error"), py::handle(PyExc_TypeError));
+  py::register_exception<cairn::python::ArgumentError>(m, "ArgumentError", both);
+  m.attr("ArgumentError").attr("__doc__") =
+      "An Error that is a TypeError as well: an argument of a wrong type, one that there is not, or none "
+      "where "
+      "one is wanted.";
   m.attr("__version__") = CAIRN_VERSION;
 
   cairn::python::bind_options(m);
@@ -32,5 +39,6 @@ PYBIND11_MODULE(_cairn, m) {
   cairn::python::bind_diagnosis(m);
   cairn::python::bind_io(m);
 
+  cairn::python::refuse_plainly(m);
   m.attr("__name__") = own_name;
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
 #include <io/config_files.hpp>
 #include <sstream>
 
 #include "bindings.hpp"
 #include "pickling.hpp"
+#include "refusals.hpp"
+#include "whole.hpp"
 
 namespace cairn::python {
 namespace {
@@ -19,6 +22,12 @@ std::string option_text(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
   if (py::hasattr(value, "dtype") && py::hasattr(value, "tolist")) return option_text(value.attr("tolist")());
+  if (py::isinstance<py::float_>(value)) {  // 64.0 stands for 64
+    const auto number = value.cast<double>();
+    constexpr double kMostExact = 1LL << 53;
+    if (is_whole(number) && std::abs(number) <= kMostExact)
+      return std::to_string(static_cast<std::int64_t>(number));
+  }
   if (!py::isinstance<py::sequence>(value)) return py::str(value).cast<std::string>();
   std::string text;  // points: [(x_left, y_left, x_right, y_right), …]
   for (const py::handle& entry : value) {
@@ -46,6 +55,11 @@ py::object option_value(const OptionInfo& option) {
   return points;
 }
 
+std::string file_name(const py::object& value, const char* name, const char* expected) {
+  if (py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__")) return py::str(value);
+  throw ArgumentError(std::string(name) + ": found " + shown(value) + ", expected " + expected);
+}
+
 std::string group_of(const OptionInfo& option) {
   return option.name.substr(0, option.name.find('.'));
 }
@@ -58,19 +72,31 @@ bool is_group(const std::string& name) {
   return std::any_of(all.begin(), all.end(), [&](const OptionInfo& o) { return group_of(o) == name; });
 }
 
+/// A keyword that is no group: perhaps an option by its name alone, or one misspelt.
+[[noreturn]] void refuse_keyword(const std::string& name) {
+  std::vector<std::string> known = all_groups();
+  for (const OptionInfo& option : options(Config{})) {
+    if (name_in_group(option) != name) continue;
+    throw ArgumentError("there is no keyword argument '" + name + "', did you mean " + group_of(option) +
+                        "={'" + name + "': …}?");
+  }
+  for (const char* other : {"rig", "preset", "config", "exec", "bgr"}) known.emplace_back(other);
+  const std::string close = nearest(name, known);
+  throw ArgumentError(
+      "there is no keyword argument '" + name + "'" +
+      (close.empty() ? "; cairn.options() lists the options" : ", did you mean '" + close + "'?"));
+}
+
 void set_groups(Config& config, const py::kwargs& groups) {
   for (const auto& [key, value] : groups) {
     const auto group = key.cast<std::string>();
+    const bool has_options = py::isinstance<py::dict>(value) && py::len(value) > 0;
+    if (!is_group(group) && !has_options) refuse_keyword(group);
     if (!py::isinstance<py::dict>(value)) {
-      if (!is_group(group)) throw py::type_error("there is no keyword argument '" + group + "'");
-      throw Error("options " + group + ": found a value of type " +
-                  py::type::of(value).attr("__name__").cast<std::string>() +
-                  ", expected a dict such as match={\"num_disparities\": 64}");
+      throw ArgumentError("options " + group + ": found " + shown(value) +
+                          ", expected a dict such as match={\"num_disparities\": 64}");
     }
-    const auto entries = py::reinterpret_borrow<py::dict>(value);
-    if (entries.empty() && !is_group(group))
-      throw py::type_error("there is no keyword argument '" + group + "'");
-    for (const auto& [name, setting] : entries) {
+    for (const auto& [name, setting] : py::reinterpret_borrow<py::dict>(value)) {
       set(config, group + "." + py::str(name).cast<std::string>(), option_text(setting));
     }
   }
@@ -138,7 +164,8 @@ std::string exec_repr(const Exec& exec) {
          "')";
 }
 
-Exec make_exec(int threads, const std::string& target) {
+Exec make_exec(Whole wanted, const std::string& target) {
+  const int threads = wanted.value;
   constexpr int kMostThreads = 1024;
   if (threads < 0 || threads > kMostThreads) {
     throw Error("threads: found " + std::to_string(threads) + ", expected 0 … " +
@@ -176,11 +203,8 @@ PyConfig make_config(const std::string& preset, const std::optional<std::string>
 PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups) {
   if (config.is_none()) return make_config(preset, std::nullopt, groups);
   if (!py::isinstance<PyConfig>(config)) {
-    if (py::isinstance<py::str>(config) || py::hasattr(config, "__fspath__")) {
-      return make_config(preset, py::str(config).cast<std::string>(), groups);
-    }
-    throw Error("config: found a value of type " + py::type::of(config).attr("__name__").cast<std::string>() +
-                ", expected a cairn.Config, the name of a file, or None");
+    const std::string file = file_name(config, "config", "a cairn.Config, the name of a file, or None");
+    return make_config(preset, file, groups);
   }
   auto made = config.cast<PyConfig>();
   if (preset != "default" && preset != made.preset) {
@@ -203,7 +227,7 @@ void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) 
       });
     });
     if (group == groups.end() && groups.empty())
-      throw py::type_error("there is no keyword argument '" + name + "'");
+      throw ArgumentError("there is no keyword argument '" + name + "'");
     set(config, (group == groups.end() ? groups.front() : *group) + "." + name, option_text(value));
   }
 }
@@ -211,15 +235,13 @@ void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) 
 Exec exec_of(const py::object& exec) {
   if (exec.is_none()) return Exec::with_threads(0);
   if (py::isinstance<Exec>(exec)) return exec.cast<Exec>();
-  throw Error("exec: found a value of type " + py::type::of(exec).attr("__name__").cast<std::string>() +
-              ", expected a cairn.Exec or None");
+  throw ArgumentError("exec: found " + shown(exec) + ", expected a cairn.Exec or None");
 }
 
 Config stage_config(const py::object& config) {
   if (config.is_none()) return {};
   if (py::isinstance<PyConfig>(config)) return config.cast<const PyConfig&>().config;
-  throw Error("config: found a value of type " + py::type::of(config).attr("__name__").cast<std::string>() +
-              ", expected a cairn.Config or None");
+  throw ArgumentError("config: found " + shown(config) + ", expected a cairn.Config or None");
 }
 
 std::string with_options(const std::string& doc, const Groups& groups, bool grouped) {
@@ -275,7 +297,7 @@ void bind_options(py::module_& m) {
       "Raises cairn.Error for an unknown name or a value out of range.")
       .def(py::init([](const std::string& preset, const py::object& file, const py::kwargs& groups) {
              std::optional<std::string> path;
-             if (!file.is_none()) path = py::str(file).cast<std::string>();
+             if (!file.is_none()) path = file_name(file, "file", "the name of a file or None");
              return make_config(preset, path, groups);
            }),
            py::arg("preset") = "default", py::arg("file") = py::none(),
@@ -318,7 +340,7 @@ void bind_options(py::module_& m) {
           },
           [](const py::tuple& state) {
             const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
-            return make_exec(parts[0].cast<int>(), parts[1].cast<std::string>());
+            return make_exec({parts[0].cast<int>()}, parts[1].cast<std::string>());
           }));
   m.def(
       "compiled_targets", [] { return names_of(compiled_targets()); },

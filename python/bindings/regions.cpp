@@ -18,6 +18,7 @@
 #include "options.hpp"
 #include "pickling.hpp"
 #include "rig.hpp"
+#include "whole.hpp"
 
 namespace cairn::python {
 namespace {
@@ -137,7 +138,8 @@ Segmentation merged(const Config&, const Exec& exec, const LabelsArgument& label
 template <Merges (*grow)(const RegionGraph&, const GrowCriteria&, const Exec&)>
 Array<std::int32_t> grown(const Config&, const Exec& exec, const RegionGraph& graph,
                           double mean_difference_max, double deviation_max, double sigma_min,
-                          std::int64_t min_region_area) {
+                          Whole least_area) {
+  const std::int64_t min_region_area = least_area.value;
   if (!(mean_difference_max >= 0 && deviation_max >= 0 && sigma_min > 0 && std::isfinite(sigma_min)) ||
       min_region_area < 0) {
     throw Error("growing: found mean_difference_max " + std::to_string(mean_difference_max) +
@@ -176,7 +178,8 @@ Segmentation facets_as_segmentation(const Config&, const Exec& exec, const Facet
 
 // ---- what the classes show ----
 
-std::vector<std::int32_t> neighbours(const RegionGraph& self, std::int32_t node) {
+std::vector<std::int32_t> neighbours(const RegionGraph& self, Whole region) {
+  const int node = region.value;
   if (node < 0 || static_cast<std::size_t>(node) >= self.nodes.size())
     throw py::index_error("no such region");
   const auto at = static_cast<std::size_t>(node);

@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "pickling.hpp"
+#include "refusals.hpp"
 
 namespace cairn::python {
 namespace {
@@ -60,8 +61,7 @@ PyCalibration calibration_of(const RigArgument& rig) {
   if (rig.is_none()) return {};
   if (py::isinstance<PyCalibration>(rig)) return rig.cast<PyCalibration>();
   if (py::isinstance<StereoRig>(rig)) return {{rig.cast<StereoRig>(), {}, {}}, {}};
-  throw Error("rig: found a value of type " + py::type::of(rig).attr("__name__").cast<std::string>() +
-              ", expected a cairn.Rig, a cairn.Calibration or None");
+  throw ArgumentError("rig: found " + shown(rig) + ", expected a cairn.Rig, a cairn.Calibration or None");
 }
 
 std::optional<StereoRig> rig_of(const RigArgument& rig) {

@@ -136,6 +136,10 @@ class ObjectsOptions(TypedDict, total=False):
     max_area: float  # % of the image, 0 … 100: larger regions are background
     min_confidence: float  # 0 … 1: regions less likely than this to be an object are none
 
+class ArgumentError:
+    """An Error that is a TypeError as well: an argument of a wrong type, one that there is not, or none where one is wanted."""
+    ...
+
 class Background:
     """The planes that bound the scene from behind: floor and walls."""
     @property

@@ -82,22 +82,20 @@ def test_a_calibrations_search_range_is_a_default(sample):
 def test_what_is_no_option_is_refused(sample):
     with pytest.raises(TypeError, match="no keyword argument 'window_size'"):
         cairn.segment(sample.left, sample.right, window_size=9)
-    with pytest.raises(cairn.Error, match="options match: found a value of type int, expected a dict"):
+    with pytest.raises(cairn.Error, match="options match: found 9, expected a dict"):
         cairn.segment(sample.left, sample.right, match=9)
     with pytest.raises(cairn.Error, match="unknown option 'match.windowsize', did you mean 'match.window_size'"):
         cairn.match(sample.left, sample.right, windowsize=9)
     with pytest.raises(cairn.Error, match="unknown preset 'papr'.*did you mean 'paper'"):
         cairn.segment(sample.left, sample.right, preset="papr")
-    with pytest.raises(cairn.Error, match="config: found a value of type int"):
+    with pytest.raises(cairn.Error, match="config: found 3"):
         cairn.segment(sample.left, sample.right, config=3)
     with pytest.raises(cairn.Error, match="preset: found 'paper' beside a config"):
         cairn.segment(sample.left, sample.right, preset="paper", config=cairn.Config())
-    with pytest.raises(cairn.Error, match="rig: found a value of type str"):
+    with pytest.raises(cairn.Error, match="rig: found 'calib.txt'"):
         cairn.segment(sample.left, sample.right, "calib.txt")
-    with pytest.raises(cairn.Error, match="exec: found a value of type int"):
+    with pytest.raises(cairn.Error, match="exec: found 2"):
         cairn.segment(sample.left, sample.right, exec=2)
-    with pytest.raises(TypeError):
-        cairn.noise = cairn.watershed(np.zeros((3, 3), np.uint16), sigma=2)
 
 
 def test_exec_never_changes_a_result(sample):
