@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <string>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -8,13 +9,27 @@
 
 namespace py = pybind11;
 
+namespace {
+
+/// It is found when the first array is made; a missing one is better told at once.
+void need_numpy() {
+  try {
+    py::module_::import("numpy");
+  } catch (const py::error_already_set& error) {
+    const auto python = py::str(py::module_::import("sys").attr("executable")).cast<std::string>();
+    const auto why = py::str(error.value()).cast<std::string>();
+    throw py::import_error("cairn needs numpy, and " + python + " cannot import it: " + why);
+  }
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_cairn, m) {
   // Users know these by the package's name, and so do error messages and help().
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "cairn";
 
-  // numpy is found when the first array is made; a missing one is better told now.
-  py::module_::import("numpy");
+  need_numpy();
   py::register_exception<cairn::Error>(m, "Error", PyExc_ValueError);
   m.attr("Error").attr("__doc__") =
       "Bad input: what was found, what was expected, which argument, option or file. The command says the "

@@ -77,8 +77,9 @@ bool is_group(const std::string& name) {
   std::vector<std::string> known = all_groups();
   for (const OptionInfo& option : options(Config{})) {
     if (name_in_group(option) != name) continue;
-    throw ArgumentError("there is no keyword argument '" + name + "', did you mean " + group_of(option) +
-                        "={'" + name + "': …}?");
+    std::string text = "there is no keyword argument '";
+    text.append(name).append("', did you mean ").append(group_of(option));
+    throw ArgumentError(text.append("={'").append(name).append("': …}?"));
   }
   for (const char* other : {"rig", "preset", "config", "exec", "bgr"}) known.emplace_back(other);
   const std::string close = nearest(name, known);

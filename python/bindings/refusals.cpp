@@ -313,7 +313,7 @@ std::string shown(const py::handle& value) {
   constexpr std::size_t kLongest = 60;
   const bool is_plain = value.is_none() || py::isinstance<py::str>(value) ||
                         py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value);
-  const std::string text = is_plain ? py::repr(value).cast<std::string>() : "";
+  std::string text = is_plain ? py::repr(value).cast<std::string>() : "";
   if (is_plain && text.size() <= kLongest) return text;
   return "a value of type " + py::type::of(value).attr("__name__").cast<std::string>();
 }

@@ -9,7 +9,12 @@
 Every stage of the method is a function of its C++ name; cairn.options() lists what can be set.
 """
 
-from . import _cairn
+try:
+    from . import _cairn
+except ImportError as error:
+    from ._import_error import explained
+
+    raise explained(error) from None
 from ._cairn import *  # noqa: F403
 from ._cairn import __version__ as __version__
 
