@@ -137,7 +137,7 @@ Image<ObjectId> clusters(const Points& points, Size size, const Settings& settin
 std::vector<report::Score> score_all(const std::vector<report::TrueFrame>& frames, const Settings& settings,
                                      int threads) {
   std::vector<report::Score> scores(frames.size());
-  report::for_each_index(frames.size(), threads, [&](std::size_t i, const Exec&) {
+  for_each_index(frames.size(), threads, [&](std::size_t i, const Exec&) {
     const report::TrueFrame& frame = frames[i];
     const StereoPair pair = StereoPair::from(frame.pictures.left.gray, frame.pictures.right.gray);
     const auto matcher =

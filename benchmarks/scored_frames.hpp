@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/cairn.hpp>
+#include <cairn/core/each_index.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
 #include <filesystem>
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "each_index.hpp"
 #include "statistics.hpp"
 
 /// Frames with their truth in memory, and how well a configuration does on them.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/tuning/tune.hpp>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -13,7 +14,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <thread>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -40,9 +40,6 @@ struct TuneOptions {
   std::string output = "tuned.yaml";
   std::string json;
 };
-
-/// Nothing that gains less is worth a configuration of one's own.
-constexpr Margin kLeastGain{.least_share = 0.01};
 
 // ---- time and Ctrl-C ----
 
@@ -92,43 +89,11 @@ class Interruptible {
 // ---- what is tuned, on what ----
 
 struct Task {
-  std::vector<TuningFrame> frames;
-  TuningGoal goal = TuningGoal::objects;
-  std::vector<bool> tuned;     // by frame
-  std::vector<bool> held_out;  // by frame; the others
-  bool sequence = false;
-  std::vector<Tunable> tunables;
-  std::vector<std::string> not_judged;  // asked for, but they change nothing that can be judged
-  ResolvedConfig base;                  // without what a calibration says
-  bool names_disparities = false;       // match.num_disparities is the user's, not the calibration's
-
-  [[nodiscard]] static int count(const std::vector<bool>& chosen) {
-    return static_cast<int>(std::count(chosen.begin(), chosen.end(), true));
-  }
+  std::vector<TuningFiles> files;
+  std::vector<TuningFrame> frames;  // of the files
+  ResolvedConfig base;              // without what a calibration says
+  bool names_disparities = false;   // match.num_disparities is the user's, not the calibration's
 };
-
-bool mostly_sequence(const std::vector<TuningFrame>& frames) {
-  const auto following = std::count_if(frames.begin(), frames.end(), [](const auto& f) { return f.follows; });
-  return frames.size() > 1 && 2 * following > static_cast<std::ptrdiff_t>(frames.size()) - 1;
-}
-
-void choose_tunables(const TuneOptions& options, Task& task) {
-  const bool objects = task.goal == TuningGoal::objects;
-  std::vector<std::string> patterns =
-      options.patterns.empty() ? usual_tunables(task.base.config, objects) : options.patterns;
-  // Islands agree with the right image: contradictions would let them all pass.
-  if (options.patterns.empty() && task.goal == TuningGoal::consistency) std::erase(patterns, "speckle.size");
-  task.tunables = tunables(patterns);
-  if (objects) return;
-  const auto judged = std::stable_partition(task.tunables.begin(), task.tunables.end(),
-                                            [](const Tunable& t) { return changes_disparities(t.name); });
-  for (auto t = judged; t != task.tunables.end(); ++t) task.not_judged.push_back(t->name);
-  task.tunables.erase(judged, task.tunables.end());
-  if (task.tunables.empty()) {
-    throw Error("--options " + options.patterns.front() +
-                ": changes no disparity, and without true objects nothing else can be judged");
-  }
-}
 
 /// Whether --config or --set say how many disparities there are.
 bool names_disparities(const ConfigOptions& options) {
@@ -138,45 +103,14 @@ bool names_disparities(const ConfigOptions& options) {
          resolve(options, kOther).config.match.num_disparities;
 }
 
-/// Frames of one name in several folders show the same scene: they stay together.
-std::vector<bool> frames_held_out(const TuneOptions& options, const Task& task) {
-  std::vector<bool> out(task.frames.size(), false);
-  if (options.holdout <= 0) return out;
-  std::vector<std::string> names;
-  for (const TuningFrame& frame : task.frames) {
-    if (std::find(names.begin(), names.end(), frame.name) == names.end()) names.push_back(frame.name);
-  }
-  if (names.size() < 2) {
-    throw Error("--holdout: " + options.folders.front() +
-                " has one frame, expected two or more to share out");
-  }
-  const std::vector<bool> drawn =
-      held_out(static_cast<int>(names.size()), options.holdout, task.sequence, options.seed);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto name = std::find(names.begin(), names.end(), task.frames[i].name);
-    out[i] = drawn[static_cast<std::size_t>(name - names.begin())];
-  }
-  return out;
-}
-
 Task read_task(const TuneOptions& options) {
   Task task;
   task.base = resolve(options.input.config);
   validate(task.base.config);
   task.names_disparities = names_disparities(options.input.config);
   (void)tunables(options.patterns);  // a bad name is one whatever the frames hold
-  task.frames = load_tuning_frames(options.folders, options.input, options.truth);
-  task.goal = goal_of(task.frames);
-  if (task.goal == TuningGoal::consistency && task.base.config.match.evidence != Evidence::full) {
-    throw Error(
-        "option match.evidence: without --truth the right image's winners judge the left one's; expected "
-        "full");
-  }
-  task.sequence = mostly_sequence(task.frames);
-  task.held_out = frames_held_out(options, task);
-  task.tuned = task.held_out;
-  task.tuned.flip();
-  choose_tunables(options, task);
+  task.files = load_tuning_files(options.folders, options.input, options.truth);
+  for (const TuningFiles& files : task.files) task.frames.push_back(files.frame());
   return task;
 }
 
@@ -194,21 +128,6 @@ void require_writable(const std::string& file) {
 
 using Measures = std::vector<FrameMeasure>;
 
-struct Tuned {
-  SearchResult search;
-  Measures before;  // on the frames tuned on
-  Measures after;
-  Measures held_out_before;
-  Measures held_out_after;
-  double seconds = 0;
-  bool was_interrupted = false;
-  std::string kept_because;  // why the start is kept; empty where it is not
-
-  [[nodiscard]] const std::vector<Setting>& settings() const {
-    return kept_because.empty() ? search.best : search.start;
-  }
-};
-
 std::string goal_word(TuningGoal goal) {
   switch (goal) {
     case TuningGoal::objects:
@@ -221,113 +140,26 @@ std::string goal_word(TuningGoal goal) {
   return {};
 }
 
-/// Why the start should be kept; empty where what was found is better.
-std::string reason_to_keep(const Tuned& tuned) {
-  const SearchResult& s = tuned.search;
-  if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain)) {
-    return "nothing that was tried is better by " + percent(kLeastGain.least_share) +
-           " and by more than chance";
-  }
-  const double before = mean_loss(losses_of(tuned.held_out_before));
-  const double after = mean_loss(losses_of(tuned.held_out_after));
-  if (!tuned.held_out_before.empty() && std::isfinite(before) && after > before)
-    return "what was found is worse on the frames held out";
-  return {};
+/// What stands beside the bar.
+std::string words(const TuneProgress& now, const std::string& budget) {
+  std::string text =
+      std::to_string(now.evaluations) + " tried, " + text_of("%.0f s", now.seconds) + " of " + budget;
+  if (now.best)
+    text += ", " + goal_word(now.goal) + " " + percent(*now.best) + " (was " + percent(*now.before) + ")";
+  return text;
 }
 
-MeasureOptions how_to_measure(const Task& task, const ExecOptions& exec) {
-  MeasureOptions how;
-  how.goal = task.goal;
-  how.target = wanted_target(exec.target);
-  how.threads =
-      exec.threads > 0 ? exec.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return how;
-}
-
-/// One search, as far as it has come.
-class TuningRun {
- public:
-  TuningRun(const Task& task, const TuneOptions& options, Seconds budget)
-      : task_(task),
-        options_(options),
-        budget_(budget),
-        progress_(task.frames.size()),
-        how_(how_to_measure(task, options.exec)),
-        matched_(task.frames.size()) {}
-
-  Tuned to_its_end() {
-    const Interruptible interruptible;
-    SearchConfig config;
-    config.seed = options_.seed;
-    if (options_.evaluations > 0) config.evaluations = options_.evaluations;
-    // What a calibration says of a frame is the frame's: the search starts from what all have in common.
-    const std::vector<Setting> start = settings_of(task_.frames.front().loaded.config, task_.tunables);
-    tuned_.search = search(
-        task_.tunables, start, [&](const auto& settings) { return measure(settings); }, config,
-        [&](const auto& settings) { keep(settings); });
-    tuned_.seconds = seconds().count();
-    tuned_.was_interrupted = interrupted != 0;
-    return std::move(tuned_);
-  }
-
- private:
-  [[nodiscard]] Seconds seconds() const { return Clock::now() - start_time_; }
-  [[nodiscard]] bool knows_start() const { return !tuned_.before.empty(); }
-
-  std::optional<std::vector<Loss>> measure(const std::vector<Setting>& settings) {
-    show_progress();
-    MeasureOptions how = how_;
-    how.stop = [&] { return interrupted != 0 || (knows_start() && seconds() > budget_); };
-    auto measures = measure_frames(task_.frames, task_.tuned, settings, how, matched_);
-    if (!measures) return std::nullopt;
-    ++tried_;
-    latest_ = std::move(*measures);
-    return losses_of(latest_);
-  }
-
-  /// What was measured last is the best so far.
-  void keep(const std::vector<Setting>& settings) {
-    const bool is_start = !knows_start();
-    if (is_start && !std::isfinite(mean_loss(losses_of(latest_)))) {
-      throw Error(options_.folders.front() +
-                  ": the truth of the frames to tune on has nothing that can be scored");
-    }
-    tuned_.after = latest_;
-    if (Task::count(task_.held_out) > 0)
-      tuned_.held_out_after = *measure_frames(task_.frames, task_.held_out, settings, how_, matched_);
-    if (!is_start) return;
-    tuned_.before = tuned_.after;
-    tuned_.held_out_before = tuned_.held_out_after;
-  }
-
-  void show_progress() const {
-    const double by_count = options_.evaluations > 0 ? static_cast<double>(tried_) / options_.evaluations : 0;
-    std::string words =
-        std::to_string(tried_) + " tried, " + text_of("%.0f s", seconds().count()) + " of " + options_.budget;
-    if (knows_start()) {
-      words += ", " + goal_word(task_.goal) + " " + percent(mean_loss(losses_of(tuned_.after))) + " (was " +
-               percent(mean_loss(losses_of(tuned_.before))) + ")";
-    }
-    progress_.bar(std::max(seconds() / budget_, by_count), words);
-  }
-
-  const Task& task_;
-  const TuneOptions& options_;
-  Seconds budget_;
-  Clock::time_point start_time_ = Clock::now();
-  Progress progress_;
-  MeasureOptions how_;
-  std::vector<MatchedOnce> matched_;
-  Measures latest_;
-  int tried_ = 0;
-  Tuned tuned_;
-};
-
-Tuned tune(const Task& task, const TuneOptions& options, Seconds budget) {
-  Tuned tuned = TuningRun(task, options, budget).to_its_end();
+Tuning tune_task(const Task& task, const TuneOptions& options, Seconds budget) {
+  const TuneConfig config{options.patterns, budget.count(), options.evaluations, options.holdout,
+                          options.seed};
+  const Progress progress(task.frames.size());
+  const Interruptible interruptible;
+  Tuning tuned =
+      tune(task.frames, config, make_exec(options.exec),
+           {[] { return interrupted != 0; },
+            [&](const TuneProgress& now) { progress.bar(now.share, words(now, options.budget)); }});
   if (tuned.before.empty())
     throw std::runtime_error("stopped before the first evaluation was done; nothing is written");
-  tuned.kept_because = reason_to_keep(tuned);
   return tuned;
 }
 
@@ -390,11 +222,11 @@ std::string text_of(const Figure& figure) {
   return figure.is_share ? percent(figure.value) : cli::text_of("%.2f", figure.value);
 }
 
-std::string figure_table(const Tuned& tuned, TuningGoal goal) {
-  const auto before = figures_of(tuned.before, goal);
-  const auto after = figures_of(tuned.after, goal);
-  const auto held_out_before = figures_of(tuned.held_out_before, goal);
-  const auto held_out_after = figures_of(tuned.held_out_after, goal);
+std::string figure_table(const Tuning& tuned) {
+  const auto before = figures_of(tuned.before, tuned.goal);
+  const auto after = figures_of(tuned.after, tuned.goal);
+  const auto held_out_before = figures_of(tuned.held_out_before, tuned.goal);
+  const auto held_out_after = figures_of(tuned.held_out_after, tuned.goal);
   Table table({"", "before", "after", "held out: before", "after"});
   for (std::size_t i = 0; i < before.size(); ++i) {
     const bool known = i < held_out_before.size();
@@ -419,40 +251,46 @@ std::string plural(std::size_t count, const std::string& word) {
   return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
 }
 
-std::string end_words(const Tuned& tuned) {
-  if (tuned.was_interrupted) return "interrupted";
-  switch (tuned.search.end) {
-    case SearchEnd::converged:
+std::string end_words(TuneEnd end) {
+  switch (end) {
+    case TuneEnd::converged:
       return "nothing near the best is better";
-    case SearchEnd::evaluations:
+    case TuneEnd::evaluations:
       return "as many as asked for";
-    case SearchEnd::stopped:
+    case TuneEnd::time:
       return "the time was up";
+    case TuneEnd::interrupted:
+      return "interrupted";
   }
   return {};
 }
 
-std::string summary(const Task& task, const Tuned& tuned) {
-  const int held = Task::count(task.held_out);
-  std::string all = plural(task.frames.size(), "frame") + (task.sequence ? ", a sequence" : "");
+int held_out_frames(const Tuning& tuned) {
+  return static_cast<int>(std::count(tuned.held_out.begin(), tuned.held_out.end(), true));
+}
+
+std::string summary(const Task& task, const Tuning& tuned) {
+  const int held = held_out_frames(tuned);
+  std::string all = plural(task.frames.size(), "frame") + (tuned.sequence ? ", a sequence" : "");
   if (held > 0)
-    all += ": tuned on " + std::to_string(Task::count(task.tuned)) + ", held out " + std::to_string(held);
-  all += "; " + plural(task.tunables.size(), "option") + ", " +
+    all += ": tuned on " + std::to_string(tuned.before.size()) + ", held out " + std::to_string(held);
+  all += "; " + plural(tuned.tunables.size(), "option") + ", " +
          plural(static_cast<std::size_t>(tuned.search.evaluations), "evaluation") + " in " +
-         cli::text_of("%.1f s", tuned.seconds) + ": " + end_words(tuned) + "\n";
-  if (!task.not_judged.empty()) {
-    all += "not tuned, since nothing here judges objects: " + plural(task.not_judged.size(), "option") + "\n";
+         cli::text_of("%.1f s", tuned.seconds) + ": " + end_words(tuned.end) + "\n";
+  if (!tuned.not_judged.empty()) {
+    all +=
+        "not tuned, since nothing here judges objects: " + plural(tuned.not_judged.size(), "option") + "\n";
   }
   return all;
 }
 
-Config tuned_config(const Task& task, const Tuned& tuned) {
+Config tuned_config(const Task& task, const Tuning& tuned) {
   return with_settings(task.base.config, tuned.settings());
 }
 
-std::string config_file(const Task& task, const Tuned& tuned) {
+std::string config_file(const Task& task, const Tuning& tuned) {
   const auto figure = [](const Measures& measures) { return percent(mean_loss(losses_of(measures))); };
-  std::string head = "# Written by cairn tune: " + goal_word(task.goal) + " " + figure(tuned.before);
+  std::string head = "# Written by cairn tune: " + goal_word(tuned.goal) + " " + figure(tuned.before);
   head += tuned.kept_because.empty() ? " before, " + figure(tuned.after) + " after" : ", kept as it was";
   head += ", on " + plural(tuned.before.size(), "frame") + ".\n";
   std::vector<std::string> also;
@@ -473,26 +311,26 @@ Json json_of(const std::vector<Figure>& before, const std::vector<Figure>& after
   return j;
 }
 
-std::string tuning_json(const Task& task, const Tuned& tuned, const TuneOptions& options) {
+std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions& options) {
   constexpr std::array kGoals{"objects", "disparities", "consistency"};
-  constexpr std::array kEnds{"converged", "evaluations", "time"};
+  constexpr std::array kEnds{"converged", "evaluations", "time", "interrupted"};
   Json j;
   j["cairn"] = CAIRN_VERSION;
-  j["goal"] = kGoals[static_cast<std::size_t>(task.goal)];
+  j["goal"] = kGoals[static_cast<std::size_t>(tuned.goal)];
   j["frames"] = task.frames.size();
-  j["sequence"] = task.sequence;
+  j["sequence"] = tuned.sequence;
   j["seed"] = options.seed;
-  j["options"] = task.tunables.size();
+  j["options"] = tuned.tunables.size();
   j["evaluations"] = tuned.search.evaluations;
   j["seconds"] = tuned.seconds;
-  j["end"] = tuned.was_interrupted ? "interrupted" : kEnds[static_cast<std::size_t>(tuned.search.end)];
-  j["tuned_on"] = json_of(figures_of(tuned.before, task.goal), figures_of(tuned.after, task.goal),
-                          Task::count(task.tuned));
-  j["held_out"] = json_of(figures_of(tuned.held_out_before, task.goal),
-                          figures_of(tuned.held_out_after, task.goal), Task::count(task.held_out));
+  j["end"] = kEnds[static_cast<std::size_t>(tuned.end)];
+  j["tuned_on"] = json_of(figures_of(tuned.before, tuned.goal), figures_of(tuned.after, tuned.goal),
+                          static_cast<int>(tuned.before.size()));
+  j["held_out"] = json_of(figures_of(tuned.held_out_before, tuned.goal),
+                          figures_of(tuned.held_out_after, tuned.goal), held_out_frames(tuned));
   j["held_out_frames"] = Json::array();
   for (std::size_t i = 0; i < task.frames.size(); ++i) {
-    if (task.held_out[i]) j["held_out_frames"].push_back(task.frames[i].name);
+    if (tuned.held_out[i]) j["held_out_frames"].push_back(task.frames[i].name);
   }
   j["kept_because"] = tuned.kept_because.empty() ? Json(nullptr) : Json(tuned.kept_because);
   j["found"] = Json::object();
@@ -512,10 +350,10 @@ int tune_folder(const TuneOptions& options) {
   require_writable(options.output);
   if (!options.json.empty()) require_writable(options.json);
   const Task task = read_task(options);
-  const Tuned tuned = tune(task, options, budget);
+  const Tuning tuned = tune_task(task, options, budget);
   io::write_file(options.output, config_file(task, tuned));
   if (!options.json.empty()) io::write_file(options.json, tuning_json(task, tuned, options));
-  std::cout << summary(task, tuned) << "\n" << figure_table(tuned, task.goal) << "\n";
+  std::cout << summary(task, tuned) << "\n" << figure_table(tuned) << "\n";
   const std::string changes = change_table(tuned.search);
   if (!changes.empty()) std::cout << changes << "\n";
   if (!tuned.kept_because.empty())

@@ -16,7 +16,7 @@ endfunction()
 
 # The rest are the library's own business: they may change or go with any version.
 set(private_headers
-  core/highway_targets core/nearest core/observed core/of_target
+  core/each_index core/highway_targets core/nearest core/observed core/of_target
   disparity/floor_search disparity/homography disparity/plane_fit disparity/row_kernels
   matching/byte_lanes_plain matching/kernels matching/lanes_plain matching/pixel_math matching/prefilter matching/scratch
   matching/semi_global_kernels

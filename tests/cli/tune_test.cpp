@@ -187,7 +187,7 @@ TEST_F(Tune, RefusesWhatDoesNotGoTogether) {
   refuses({"tune", frames, "--options", "match.windw_size"}, {"match.window_size"});
   refuses({"tune", frames, "--options", "figure.*"}, {"figure.*", "true objects"});
   refuses({"tune", frames, "--set", "match.num_disparities=16", "--holdout", "0.5"},
-          {"--holdout", "one frame"});
+          {"holdout", "one frame"});
   refuses({"tune", frames, "--holdout", "1.5"}, {"--holdout"});
   refuses({"tune", frames, "--evaluations", "-1"}, {"--evaluations"});
   refuses({"tune", frames, "-o", path("no/such/tuned.yaml")}, {"no/such/tuned.yaml"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "each_index.hpp"
+#include <cairn/core/each_index.hpp>
 
 #include <atomic>
 #include <exception>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace cairn::report {
+namespace cairn {
 
 void for_each_index(std::size_t count, int threads,
                     const std::function<void(std::size_t index, const Exec& exec)>& body, Target target) {
@@ -37,4 +37,4 @@ void for_each_index(std::size_t count, int threads,
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace cairn::report
+}  // namespace cairn

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace cairn::report {
+namespace cairn {
 
 /// Calls body(i, exec) for 0 … count−1 on `threads` threads; each has one Exec of its own with a pool. The
 /// first exception is thrown on.
@@ -14,4 +14,4 @@ void for_each_index(std::size_t count, int threads,
                     const std::function<void(std::size_t index, const Exec& exec)>& body,
                     Target target = Target::best);
 
-}  // namespace cairn::report
+}  // namespace cairn
