@@ -5,7 +5,7 @@ if(NOT CAIRN_PYTHON)
 endif()
 # A Python from elsewhere that comes first in PATH has no numpy and not the system's headers, so the system's is asked for
 # by name; -DPython_EXECUTABLE=… asks for another.
-if(NOT DEFINED Python_EXECUTABLE AND NOT DEFINED SKBUILD AND EXISTS /usr/bin/python3)
+if(NOT DEFINED Python_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that the module is for")
 endif()
 

@@ -40,6 +40,7 @@ CAIRN_PYTHON_ARGUMENT(LabelsArgument)     // (H, W) integers
 CAIRN_PYTHON_ARGUMENT(NumbersArgument)    // (H, W) of the types that the words of the function name
 CAIRN_PYTHON_ARGUMENT(RigArgument)        // a Rig, a Calibration, or None
 CAIRN_PYTHON_ARGUMENT(PairsArgument)      // of images (left, right)
+CAIRN_PYTHON_ARGUMENT(FramesArgument)     // of TuningFrame, or (left, right)
 #undef CAIRN_PYTHON_ARGUMENT
 
 /// An array of T, as the signatures show it.
@@ -241,6 +242,7 @@ CAIRN_PYTHON_NAME(LabelsArgument, "LabelsLike")
 CAIRN_PYTHON_NAME(NumbersArgument, "NumbersLike")
 CAIRN_PYTHON_NAME(RigArgument, "RigLike")
 CAIRN_PYTHON_NAME(PairsArgument, "PairsLike")
+CAIRN_PYTHON_NAME(FramesArgument, "FramesLike")
 #undef CAIRN_PYTHON_NAME
 
 template <class T>

@@ -17,6 +17,7 @@ void bind_objects(pybind11::module_& m);     // separate_figure … measure
 void bind_frame(pybind11::module_& m);       // segment, estimate_disparity, Segmenter
 void bind_evaluation(pybind11::module_& m);  // comparison with truth
 void bind_diagnosis(pybind11::module_& m);   // what is wrong with a rig
+void bind_tuning(pybind11::module_& m);      // options that do best on frames
 void bind_io(pybind11::module_& m);          // files and pictures
 
 }  // namespace cairn::python

@@ -52,6 +52,7 @@ PYBIND11_MODULE(_cairn, m) {
   cairn::python::bind_frame(m);
   cairn::python::bind_evaluation(m);
   cairn::python::bind_diagnosis(m);
+  cairn::python::bind_tuning(m);
   cairn::python::bind_io(m);
 
   cairn::python::refuse_plainly(m);

@@ -146,15 +146,6 @@ std::string config_repr(const PyConfig& self) {
   return text + ")";
 }
 
-py::object option_of(const PyConfig& self, const std::string& name) {
-  for (const OptionInfo& option : options(self.config)) {
-    if (option.name == name) return option_value(option);
-  }
-  Config copy;
-  set(copy, name, "");  // throws, with the nearest name
-  return py::none();
-}
-
 std::string option_repr(const OptionInfo& o) {
   return "<cairn.Option " + o.name + " = " + o.value + (o.unit.empty() ? "" : " " + o.unit) + " (" +
          o.domain + "): " + o.help + ">";
@@ -185,6 +176,15 @@ std::vector<std::string> names_of(const std::vector<Target>& targets) {
 }
 
 }  // namespace
+
+py::object option_of(const PyConfig& self, const std::string& name) {
+  for (const OptionInfo& option : options(self.config)) {
+    if (option.name == name) return option_value(option);
+  }
+  Config copy;
+  set(copy, name, "");  // throws, with the nearest name
+  return py::none();
+}
 
 Config PyConfig::with_range(std::optional<int> num_disparities) const {
   Config wanted = config;

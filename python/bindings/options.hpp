@@ -34,6 +34,9 @@ PyConfig make_config(const std::string& preset, const std::optional<std::string>
 /// What segment() and its like take for `config`: None, a Config (then `preset` is its own), or a file.
 PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups);
 
+/// The value of an option by its full name. Throws Error, with the nearest name, where there is none.
+pybind11::object option_of(const PyConfig& self, const std::string& name);
+
 /// The options of one or more groups as keywords without the group's name.
 using Groups = std::vector<std::string>;
 void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords);

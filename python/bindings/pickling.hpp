@@ -11,6 +11,7 @@
 #include <cairn/evaluation/object_error.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <cairn/tuning/search.hpp>
 #include <filesystem>
 #include <io/results.hpp>
 #include <optional>
@@ -26,6 +27,25 @@
 
 /// What pickle and copy.deepcopy keep of a value: tuples, numbers, text and arrays; and the value of them.
 namespace cairn::python {
+
+/// What tune() found, without the single frames.
+struct PyTuning {
+  std::string goal;
+  std::string end;
+  std::string kept_because;
+  int evaluations = 0;
+  double seconds = 0;
+  double before = 0;
+  double after = 0;
+  std::optional<double> held_out_before;
+  std::optional<double> held_out_after;
+  std::vector<int> held_out;
+  std::vector<std::string> options;
+  std::vector<std::string> not_judged;
+  std::vector<Setting> start;
+  std::vector<Setting> best;
+  PyConfig config;
+};
 
 // ---- what the library's structs are made of ----
 
@@ -89,6 +109,9 @@ CAIRN_PARTS(Sharpness, edges, edge)
 CAIRN_PARTS(PairMeasures, size, textured_points, rows, disparities, brightness, left_exposure, right_exposure,
             left_sharpness, right_sharpness)
 CAIRN_PARTS(Synchrony, frames, motion, agreement, left_repeats, right_repeats)
+CAIRN_PARTS(Setting, option, value_text)
+CAIRN_PARTS(PyTuning, goal, end, kept_because, evaluations, seconds, before, after, held_out_before,
+            held_out_after, held_out, options, not_judged, start, best, config)
 CAIRN_PARTS(Finding, kind, severity, measured, says, frames)
 #undef CAIRN_PARTS
 

@@ -5,7 +5,7 @@
 
 import enum
 import os
-from typing import Any, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
 
 import numpy
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)
 NumbersLike = NDArray[Any]  # (H, W)
 RigLike = Union["Rig", "Calibration", None]
 PairsLike = Iterable[Tuple[ImageLike, ImageLike]]  # (left, right)
+FramesLike = Iterable[Union["TuningFrame", Tuple[ImageLike, ImageLike]]]
 PathLike = Union[str, "os.PathLike[str]"]
 Points = Sequence[Tuple[float, float, float, float]]  # x_left, y_left, x_right, y_right; px
 
@@ -900,6 +901,89 @@ class TrueObjectScore:
     def error(self) -> float:
         """the paper's E, Eq. 5: 1 / IoU - 1; inf where nothing overlaps"""
 
+class Tuning:
+    """What tune() found."""
+    @property
+    def config(self) -> Config:
+        """the Config to use: the tuned one, or the start where that is kept"""
+    @property
+    def goal(self) -> str:
+        """what was made small: 'objects' (the paper's E), 'disparities' (off by more than 1 px; a hole counts
+        half) or 'consistency' (contradictions, where no truth is known)
+        """
+    @property
+    def before(self) -> float:
+        """mean loss of the start on the frames tuned on, from 0; 0 is best"""
+    @property
+    def after(self) -> float:
+        """the same of the best that was found"""
+    @property
+    def held_out_before(self) -> Optional[float]:
+        """mean loss of the start on the frames held out; None where none are"""
+    @property
+    def held_out_after(self) -> Optional[float]:
+        """the same of the best that was found"""
+    @property
+    def held_out(self) -> List[int]:
+        """indices of the frames held out"""
+    @property
+    def changes(self) -> Dict[str, Tuple[Any, Any]]:
+        """what the best changes: by option, (value before, value after); also where the start is kept"""
+    @property
+    def kept_because(self) -> Optional[str]:
+        """why `config` is the start; None where it is the best that was found"""
+    @property
+    def options(self) -> List[str]:
+        """the names of the options that were searched"""
+    @property
+    def not_judged(self) -> List[str]:
+        """names that were asked for but change nothing that can be judged"""
+    @property
+    def evaluations(self) -> int:
+        """settings that were measured, the start among them"""
+    @property
+    def seconds(self) -> float:
+        """that it took"""
+    @property
+    def end(self) -> str:
+        """'converged' (nothing near the best is better), 'evaluations', 'time' or 'interrupted'"""
+
+class TuningFrame:
+    """A pair to tune on, with what is known to be true of it. Borrows its arrays, as segment() does."""
+    def __init__(
+        self,
+        left: ImageLike,
+        right: ImageLike,
+        rig: RigLike = None,
+        *,
+        objects: LabelsLike = None,
+        truth_px: FloatsLike = None,
+        hidden: MaskLike = None,
+        partial: bool = False,
+        name: str = '',
+        bgr: bool = False,
+    ) -> None:
+        """left, right, rig, bgr: as for segment(). objects: (H, W) integers, the true objects' ids, 0 = none,
+        -1 = don't care; truth_px: (H, W) float32, true disparities in px, NaN = not known; hidden: (H, W)
+        uint8, not 0 = not seen by the right camera; each may be None. partial: not every object is
+        labelled. name: frames of one name show the same scene.
+        """
+    @property
+    def name(self) -> str:
+        """as errors call it; frames of one name show the same scene"""
+    @property
+    def objects(self) -> object:
+        """(H, W) int32, the true ids, a copy; None where not known"""
+    @property
+    def truth_px(self) -> object:
+        """(H, W) float32, px, a copy; None where not known"""
+    @property
+    def hidden(self) -> object:
+        """(H, W) uint8, a copy; None where not known"""
+    @property
+    def partial(self) -> bool:
+        """whether objects may be missing in the truth"""
+
 def apply_merges(
     labels: LabelsLike,
     graph: RegionGraph,
@@ -1288,6 +1372,12 @@ def load_picture(path: PathLike) -> NDArray[numpy.uint8]:
     colour. Of deeper pictures the low bits are dropped.
     """
 
+def load_tuning_frames(folder: PathLike, truth: bool = False) -> List[TuningFrame]:
+    """Every frame of a folder, as `cairn tune` reads them: a folder with left.png and right.png is one,
+    else each of its sub-folders with those; a calib.txt belongs to it. truth: with objects.png,
+    disp_left.png and occlusion.png, of which one of the first two must be there.
+    """
+
 def match(
     left: ImageLike,
     right: ImageLike,
@@ -1608,6 +1698,57 @@ def summarise(frames: List[ObjectErrors]) -> ObjectSummary:
 
 def supported_targets() -> List[str]:
     """Those of them that this processor has, slowest first."""
+
+def tunables(patterns: List[str] = ['*']) -> List[str]:
+    """The names of the options that tune() can search: those that the patterns ('match.window_size',
+    'match.*', '*') name, in the order of options().
+    """
+
+def tune(
+    frames: FramesLike,
+    *,
+    options: List[str] = [],
+    budget_s: float = 60.0,
+    evaluations: int = 0,
+    holdout: float = 0.0,
+    seed: int = 1,
+    progress: Optional[Callable[[Dict[str, Any]], object]] = None,
+    preset: str = 'default',
+    config: Union[Config, PathLike, None] = None,
+    exec: Optional[Exec] = None,
+    epipolar_correction: EpipolarCorrectionOptions = ...,
+    match: MatchOptions = ...,
+    semi_global: SemiGlobalOptions = ...,
+    subpixel: SubpixelOptions = ...,
+    left_right: LeftRightOptions = ...,
+    uniqueness: UniquenessOptions = ...,
+    flatness: FlatnessOptions = ...,
+    texture: TextureOptions = ...,
+    ground: GroundOptions = ...,
+    speckle: SpeckleOptions = ...,
+    confidence: ConfidenceOptions = ...,
+    evidence: EvidenceOptions = ...,
+    background: BackgroundOptions = ...,
+    intensity: IntensityOptions = ...,
+    disparity: DisparityOptions = ...,
+    fusion: FusionOptions = ...,
+    facets: FacetsOptions = ...,
+    figure: FigureOptions = ...,
+    group: GroupOptions = ...,
+    objects: ObjectsOptions = ...,
+) -> Tuning:
+    """Searches the options that do best on frames of yours, as `cairn tune` does (docs/tune.md). Returns a
+    Tuning.
+    frames: a TuningFrame or (left, right) each; all are held at once. options: patterns as tunables()
+    takes them, none = a sensible choice. budget_s: seconds, more than 0; the start is measured all the
+    same. evaluations: end after so many as well, for a result that does not depend on the machine's
+    speed; 0 = no limit. holdout: 0 to 0.9, the share of the frames that only judge the result. seed:
+    which frames these are, and in which order options are tried. progress: called before each
+    evaluation with a dict: goal, evaluations, seconds, share (0 to 1), before and best (mean losses;
+    None until the start is measured). Ctrl-C (KeyboardInterrupt) ends the search and keeps the best so
+    far. The search starts from preset, config and the options, as in segment(). Other Python threads
+    run meanwhile. Raises cairn.Error for what cannot be used.
+    """
 
 def watershed(
     gradient: NumbersLike,

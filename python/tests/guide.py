@@ -59,6 +59,16 @@ def stages(left, right, rig):
     return frame
 
 
+def tuned(folder, left, right, rig):
+    # [tune]
+    frames = cairn.load_tuning_frames(folder, truth=True)  # each with left.png, right.png, calib.txt, objects.png
+    tuning = cairn.tune(frames, options=["figure.margin", "group.*"], evaluations=5, holdout=0.25)
+    print(tuning)  # the losses before and after, on the frames held out, too
+    better = cairn.segment(left, right, rig, config=tuning.config)
+    # [/tune]
+    return tuning, better
+
+
 def doctor(left, right, rig, pairs):
     # [doctor]
     for finding in cairn.diagnose(cairn.measure_pair(left, right), rig):

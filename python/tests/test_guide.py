@@ -17,7 +17,7 @@ def test_the_example_prints_what_the_first_one_in_cpp_prints(source, sample):
     assert done.stdout.splitlines()[:-1] == printed_in_readme != []
 
 
-def test_the_guide_runs(sample, capsys):
+def test_the_guide_runs(sample, source, capsys):
     rig = guide.rigs(sample.folder)
     assert isinstance(rig, cairn.Calibration)
     frame, pixels, trusted, hidden = guide.frame_of(sample.left, sample.right, rig)
@@ -29,3 +29,5 @@ def test_the_guide_runs(sample, capsys):
     assert guide.stages(sample.left, sample.right, rig).objects
     assert guide.doctor(sample.right, sample.left, rig, [(sample.left, sample.right)] * 2) == 0
     assert capsys.readouterr().out.startswith("broken, cameras swapped: ")
+    tuning, better = guide.tuned(source / "samples", sample.left, sample.right, rig)
+    assert capsys.readouterr().out == f"{tuning}\n" and better.config["group.step"] == tuning.config["group.step"]

@@ -98,6 +98,8 @@ def one_of_each(sample):
         cairn.Exec(2, "scalar"),
         cairn.Segmenter(sample.calibration, preset="paper"),
         cairn.Reject.flat | cairn.Reject.border,
+        cairn.TuningFrame(left, right, sample.calibration, truth_px=sample.frame.disparity, name="four"),
+        cairn.tune([(left, right)], evaluations=1, match={"num_disparities": 32}),
     ]
 
 

@@ -24,7 +24,7 @@ HEAD = '''\
 
 import enum
 import os
-from typing import Any, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, TypedDict, Union, overload
 
 import numpy
 from numpy.typing import NDArray
@@ -37,6 +37,7 @@ LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)
 NumbersLike = NDArray[Any]  # (H, W)
 RigLike = Union["Rig", "Calibration", None]
 PairsLike = Iterable[Tuple[ImageLike, ImageLike]]  # (left, right)
+FramesLike = Iterable[Union["TuningFrame", Tuple[ImageLike, ImageLike]]]
 PathLike = Union[str, "os.PathLike[str]"]
 Points = Sequence[Tuple[float, float, float, float]]  # x_left, y_left, x_right, y_right; px
 
@@ -56,6 +57,7 @@ ARGUMENTS = {
     "config": "Union[Config, PathLike, None]",
     "exec": "Optional[Exec]",
     "file": "Optional[PathLike]",
+    "progress": "Optional[Callable[[Dict[str, Any]], object]]",
 }
 RETURNS = {"__iter__": {"Objects": "Iterator[Object]", "GroundPlane": "Iterator[float]"}}
 # pybind11 knows only that it is a dict.
@@ -67,6 +69,7 @@ PROPERTIES = {
     "histogram": "Dict[int, int]",
     "motion": "Dict[int, float]",
     "agreement": "Dict[int, float]",
+    "changes": "Dict[str, Tuple[Any, Any]]",
 }
 
 

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""Options searched on frames, as the command searches them."""
+
+import json
+import os
+import pickle
+import re
+import signal
+import subprocess
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import cairn
+from conftest import SOURCE, same
+
+SPOILT = {"figure": {"margin": 20}}
+
+
+@pytest.fixture(scope="module")
+def frames():
+    return cairn.load_tuning_frames(SOURCE / "samples", truth=True)
+
+
+def quick(frames, **more):
+    """Twelve evaluations of two options, one of them spoilt."""
+    arguments = {"options": ["figure.margin", "group.step"], "evaluations": 12, "budget_s": 600, **SPOILT, **more}
+    return cairn.tune(frames, **arguments)
+
+
+def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
+    tuning = quick(frames, holdout=0.25, seed=3)
+    subprocess.run(
+        [command, "tune", SOURCE / "samples", "--truth", "--options", "figure.margin,group.step", "--evaluations", "12",
+         "--budget", "10m", "--holdout", "0.25", "--seed", "3", "--set", "figure.margin=20", "-o", tmp_path / "tuned.yaml",
+         "--json", tmp_path / "found.json"], check=True, capture_output=True,
+    )
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert tuning.config == cairn.Config(file=tmp_path / "tuned.yaml")
+    assert {name: (str(before), str(after)) for name, (before, after) in tuning.changes.items()} == {
+        name: (f"{float(change['before'])}", f"{float(change['after'])}") for name, change in found["found"].items()
+    }
+    assert (tuning.goal, tuning.end, tuning.evaluations) == (found["goal"], found["end"], found["evaluations"])
+    loss = found["tuned_on"]["loss"]
+    assert (tuning.before, tuning.after) == pytest.approx((loss["before"], loss["after"]), abs=1e-12)
+    assert len(tuning.held_out) == found["held_out"]["frames"] == 1
+    assert tuning.held_out_after == pytest.approx(found["held_out"]["loss"]["after"], abs=1e-12)
+    assert tuning.kept_because == found["kept_because"]
+
+
+def test_a_spoilt_option_is_mended(frames):
+    tuning = quick(frames)
+    assert tuning.after < tuning.before and tuning.kept_because is None
+    assert tuning.config["figure.margin"] < 15
+    assert tuning.changes["figure.margin"] == (20.0, tuning.config["figure.margin"])
+    assert tuning.options == ["figure.margin", "group.step"] and tuning.held_out_before is None
+    assert re.fullmatch(r"<cairn.Tuning objects: loss .*% -> .*%, \d+ evaluations, (converged|evaluations)>", repr(tuning))
+    back = pickle.loads(pickle.dumps(tuning))
+    assert back.config == tuning.config and repr(back) == repr(tuning) and back.changes == tuning.changes
+
+
+def test_frames_from_files_are_frames_from_arrays(frames, sample):
+    by_hand = cairn.TuningFrame(
+        sample.left, sample.right, sample.calibration, name=sample.folder.name,
+        objects=cairn.load_labels(sample.folder / "objects.png"), truth_px=cairn.load_disparity(sample.folder / "disp_left.png"),
+    )
+    read = next(frame for frame in frames if frame.name == sample.folder.name)
+    assert same(by_hand.objects, read.objects) and same(by_hand.truth_px, read.truth_px)
+    one, other = (quick([frame], evaluations=3) for frame in (by_hand, pickle.loads(pickle.dumps(read))))
+    assert (one.before, one.after, one.config) == (other.before, other.after, other.config)
+
+
+def test_without_truth_disparities_are_judged_by_their_contradictions(sample):
+    pair = (sample.left, sample.right)
+    tuning = cairn.tune([pair, pair], evaluations=3, budget_s=600, match={"num_disparities": 32})
+    assert tuning.goal == "consistency" and 0 < tuning.before < 1
+    assert not any(name.startswith("objects.") for name in tuning.options)
+    assert tuning.config["match.num_disparities"] == 32
+
+
+def test_progress_is_told_before_each_evaluation(frames):
+    told = []
+    tuning = quick(frames, evaluations=4, progress=lambda now: told.append(now))
+    assert [now["evaluations"] for now in told][:4] == [0, 1, 2, 3]
+    assert told[0]["best"] is None and told[-1]["before"] == tuning.before
+    assert all(0 <= now["share"] <= 1 and now["goal"] == "objects" for now in told)
+
+    def fails(now):
+        raise ZeroDivisionError("in the middle")
+
+    with pytest.raises(ZeroDivisionError, match="in the middle"):
+        quick(frames, progress=fails)
+
+
+def test_ctrl_c_keeps_the_best_so_far(frames):
+    def interrupt(now):
+        if now["evaluations"] == 5:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    tuning = quick(frames, options=["*"], evaluations=0, progress=interrupt)
+    assert tuning.end == "interrupted" and 5 <= tuning.evaluations <= 6
+    assert tuning.after <= tuning.before
+
+    def raises(now):
+        if now["evaluations"] == 2:
+            raise KeyboardInterrupt
+
+    assert quick(frames, progress=raises).end == "interrupted"
+
+    def at_once(now):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):  # there is no best yet
+        quick(frames, progress=at_once)
+
+
+def test_ctrl_c_from_outside_is_heard_while_frames_are_measured(frames):
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    start = time.monotonic()
+    tuning = cairn.tune(frames * 3, options=["*"], budget_s=600)
+    assert tuning.end == "interrupted" and time.monotonic() - start < 60
+
+
+def test_other_threads_run_meanwhile(frames):
+    ticks, done = [0], threading.Event()
+
+    def tick():
+        while not done.wait(0.001):
+            ticks[0] += 1
+
+    ticker = threading.Thread(target=tick)
+    ticker.start()
+    quick(frames, evaluations=2, exec=cairn.Exec(1))
+    done.set()
+    ticker.join()
+    assert ticks[0] >= 5
+
+
+def test_names_that_can_be_searched():
+    names = [option.name for option in cairn.options()]
+    assert set(cairn.tunables()) < set(names) and "ground.points" not in cairn.tunables()
+    assert cairn.tunables(["group.*"]) == [name for name in names if name.startswith("group.")]
+
+
+def test_what_cannot_be_tuned_is_refused(frames, sample):
+    left, right = sample.left, sample.right
+    calls = {
+        "frames: found none, expected one or more": lambda: cairn.tune([]),
+        "frames: found 3, expected cairn.TuningFrame": lambda: cairn.tune(3),
+        "frames: found 'a' as number 1, expected": lambda: cairn.tune([(left, right), "a"]),
+        "left: found": lambda: cairn.tune([(None, right)]),
+        "budget_s: found": lambda: cairn.tune(frames, budget_s=0),
+        "holdout: found 1.5": lambda: cairn.tune(frames, holdout=1.5),
+        "holdout: there is one frame": lambda: cairn.tune(frames[:1], holdout=0.5),
+        "evaluations: found -1": lambda: cairn.tune(frames, evaluations=-1),
+        "evaluations: found 2.5, expected a whole number": lambda: cairn.tune(frames, evaluations=2.5),
+        "options: found 'group.step', expected a list, each entry a str": lambda: cairn.tune(frames, options="group.step"),
+        "match.window_size": lambda: cairn.tune(frames, options=["match.windw_size"]),
+        "changes no disparity": lambda: cairn.tune([(left, right)], options=["group.step"]),
+        "progress: found 3, expected a function or None": lambda: cairn.tune(frames, progress=3),
+        "objects: is 319x240, expected 320x240 as left is": lambda: cairn.TuningFrame(left, right, objects=np.zeros((240, 319), int)),
+        "objects: found -2 at x 0, y 0": lambda: cairn.TuningFrame(left, right, objects=np.full((240, 320), -2)),
+        "nowhere: is not there, expected a folder": lambda: cairn.load_tuning_frames("nowhere"),
+        "nothing that can be scored": lambda: cairn.tune([cairn.TuningFrame(left, right, objects=np.zeros((240, 320), int))]),
+        "frame 0: option match.num_disparities": lambda: cairn.tune([(left, right)], match={"num_disparities": 999}),
+    }
+    for words, call in calls.items():
+        with pytest.raises(cairn.Error, match=words):
+            call()
