@@ -16,7 +16,8 @@ PACKAGE = pathlib.Path(cairn.__file__).parent
 
 def last_line_of_importing(folder, *arguments):
     done = subprocess.run(
-        [sys.executable, *arguments, "-c", "import cairn"], capture_output=True, text=True, env={"PYTHONPATH": str(folder)}
+        [sys.executable, *arguments, "-c", "import cairn"], capture_output=True, text=True, cwd=folder,
+        env={"PYTHONPATH": str(folder)},
     )
     assert done.returncode == 1
     return done.stderr.strip().splitlines()[-1]
