@@ -24,6 +24,9 @@ if(Python_VERSION_MINOR OR Python3_VERSION_MINOR)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-numpy")
 endif()
 
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/python/postinst
+  ${PROJECT_SOURCE_DIR}/packaging/python/prerm)
+
 set(CPACK_COMPONENTS_ALL)
 get_cmake_property(components COMPONENTS)
 foreach(component library dev tools python)

@@ -82,7 +82,16 @@ inside bash -c 'g++ -std=c++20 /cairn/consumer/core.cpp -o /cairn/core $(pkg-con
 if compgen -G "$packages/python3-cairn_*.deb" >/dev/null; then
   say "Python"
   install_inside "$(packages_named python3-cairn)"
-  inside python3 -c 'import cairn; print("import", cairn.__name__)'
+  inside python3 - /usr/share/doc/cairn/examples/four_in_a_row /tmp/demo/four_in_a_row <<'PYTHON'
+import json, pathlib, pickle, sys
+import cairn
+folder, result = map(pathlib.Path, sys.argv[1:])
+frame = cairn.segment(*cairn.load_pair(folder / "left.png", folder / "right.png"), cairn.load_calibration(folder / "calib.txt"))
+by_command = json.loads((result / "objects.json").read_text())["objects"]
+assert [o.pixel_count for o in frame.objects] == [o["area"] for o in by_command], frame
+assert repr(pickle.loads(pickle.dumps(frame))) == repr(frame)
+print("import cairn:", len(frame.objects), "objects, those of the command")
+PYTHON
 fi
 
 say "and away again"
