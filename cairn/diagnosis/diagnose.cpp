@@ -5,6 +5,7 @@
 #include <cairn/diagnosis/robust_fit.hpp>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 namespace cairn {
 namespace {
@@ -28,8 +29,9 @@ struct Case {
   const DiagnosisConfig& config;
   std::vector<Finding> findings{};
 
-  void add(FindingKind kind, Severity severity, double value, std::string says) {
-    findings.push_back({kind, severity, value, std::move(says)});
+  void add(FindingKind kind, Severity severity, double value, std::string says,
+           Camera camera = Camera::pair) {
+    findings.push_back({kind, severity, value, std::move(says), {}, camera});
   }
   /// A warning from one limit on, broken from the other.
   static std::optional<Severity> severity(double value, float warn, float broken) {
@@ -63,6 +65,27 @@ bool check_points(Case& c) {
               " of these agree on one geometry");
     return false;
   }
+  return true;
+}
+
+/// True where both pictures are one: a pixel for a pixel, or as far as its points tell.
+bool check_same(Case& c) {
+  const PairMeasures& measures = c.measures;
+  constexpr double kNoDisparity = 0.25;  // px
+  const double zeros = c.share_below(kNoDisparity) - c.share_below(-kNoDisparity);
+  const bool is_plain = measures.left_exposure.contrast == 0;  // a black picture equals any other
+  if (measures.identical && !is_plain) {
+    c.add(FindingKind::same_picture, Severity::broken, 100, "every pixel is the same in both");
+    return true;
+  }
+  if (static_cast<int>(measures.disparities_px.size()) < c.config.least_points ||
+      100 * zeros < static_cast<double>(c.config.break_same)) {
+    return false;
+  }
+  c.add(FindingKind::same_picture, Severity::broken, 100 * zeros,
+        percent_text(zeros) + " of " + std::to_string(measures.disparities_px.size()) +
+            " points have a disparity of 0, within " + text_of("%g px", kNoDisparity) +
+            " (or all that is seen is infinitely far away)");
   return true;
 }
 
@@ -157,20 +180,43 @@ void check_infinity(Case& c) {
             ", the furthest " + text_of("%.1f px", c.measures.disparity_px(0.02)) + ")");
 }
 
-void check_one_exposure(Case& c, const char* camera, const Exposure& exposure) {
-  const auto white = static_cast<double>(exposure.white);
-  const auto black = static_cast<double>(exposure.black);
-  const double worse = std::max(white, black);
-  if (const auto severity = Case::severity(100 * worse, c.config.warn_clipped, c.config.break_clipped)) {
-    c.add(FindingKind::exposure, *severity, 100 * worse,
-          "in the " + std::string(camera) + " picture " + percent_text(worse) + " of the pixels are " +
-              (white >= black ? "white (254, 255)" : "black (0, 1)"));
+Camera camera_of(bool left, bool right) {
+  if (left == right) return Camera::pair;
+  return left ? Camera::left : Camera::right;
+}
+
+void check_clipping(Case& c) {
+  const Exposure& left = c.measures.left_exposure;
+  const Exposure& right = c.measures.right_exposure;
+  const auto clipped = [](const Exposure& e) { return static_cast<double>(std::max(e.white, e.black)); };
+  const auto limit = static_cast<double>(c.config.warn_clipped);
+  const double worse = std::max(clipped(left), clipped(right));
+  const auto severity = Case::severity(100 * worse, c.config.warn_clipped, c.config.break_clipped);
+  if (!severity) return;
+  std::string says;
+  for (const auto& [exposure, first, second] :
+       {std::tuple{&left, "in the left picture ", ""},
+        std::tuple{&right, "in the right picture ", ", in the right one "}}) {
+    if (100 * clipped(*exposure) < limit) continue;
+    says += (says.empty() ? first : second) + percent_text(clipped(*exposure)) + " of the pixels are " +
+            (exposure->white >= exposure->black ? "white (254, 255)" : "black (0, 1)");
   }
-  if (exposure.contrast < c.config.least_contrast) {
-    c.add(FindingKind::dark, Severity::warning, static_cast<double>(exposure.contrast),
-          "the " + std::string(camera) + " picture's levels span " +
-              text_of("%.0f of 255", static_cast<double>(exposure.contrast)));
-  }
+  c.add(FindingKind::exposure, *severity, 100 * worse, says,
+        camera_of(100 * clipped(left) >= limit, 100 * clipped(right) >= limit));
+}
+
+void check_contrast(Case& c) {
+  const float left = c.measures.left_exposure.contrast;
+  const float right = c.measures.right_exposure.contrast;
+  const bool is_left = left < c.config.least_contrast;
+  const bool is_right = right < c.config.least_contrast;
+  if (!is_left && !is_right) return;
+  const auto levels = [](float contrast) { return text_of("%.0f of 255", static_cast<double>(contrast)); };
+  std::string says = "the left picture's levels span " + levels(left);
+  if (is_left && is_right) says += ", the right one's " + levels(right);
+  if (!is_left) says = "the right picture's levels span " + levels(right);
+  c.add(FindingKind::dark, Severity::warning, static_cast<double>(std::min(left, right)), says,
+        camera_of(is_left, is_right));
 }
 
 void check_brightness(Case& c) {
@@ -192,10 +238,15 @@ void check_sharpness(Case& c) {
   const std::string numbers = text_of("left %.1f px", left) + text_of(", right %.1f px", right);
   if (std::min(left, right) >= limit) {
     c.add(FindingKind::blur, Severity::warning, worse, "edges are wide in both pictures: " + numbers);
-  } else if (worse >= limit || worse >= ratio * std::min(left, right)) {
-    c.add(FindingKind::blur, Severity::warning, worse,
-          "edges are wide in the " + std::string(left > right ? "left" : "right") + " picture: " + numbers);
+    return;
   }
+  // Noise makes edges narrow, so the other camera's alone blame nobody.
+  const bool is_unequal =
+      worse >= static_cast<double>(c.config.least_unequal_edge) && worse >= ratio * std::min(left, right);
+  if (worse < limit && !is_unequal) return;
+  c.add(FindingKind::blur, Severity::warning, worse,
+        "edges are wide in the " + std::string(left > right ? "left" : "right") + " picture: " + numbers,
+        camera_of(left > right, right > left));
 }
 
 /// What can be said of a calibration by the size of the pictures alone.
@@ -233,12 +284,22 @@ void check_distances(Case& c) {
   const double furthest = scale / std::max(0.5, c.measures.disparity_px(0.05) + doffs);
   constexpr double kNearestBeyond = 200;
   constexpr double kFurthestWithin = 0.04;
-  if (nearest <= kNearestBeyond && furthest >= kFurthestWithin) return;
-  const bool far = nearest > kNearestBeyond;
-  c.add(FindingKind::calibration, Severity::broken, static_cast<double>(c.rig->baseline_m),
-        "with a baseline of " + text_of("%g m", static_cast<double>(c.rig->baseline_m)) +
-            (far ? " the nearest points would be " : " the furthest points would be ") +
-            text_of("%g m away", far ? nearest : furthest) + ": a wrong unit of length?");
+  const auto baseline = static_cast<double>(c.rig->baseline_m);
+  const std::string words = "with a baseline of " + text_of("%g m", baseline);
+  if (nearest > kNearestBeyond || furthest < kFurthestWithin) {
+    const bool far = nearest > kNearestBeyond;
+    c.add(FindingKind::calibration, Severity::broken, baseline,
+          words + (far ? " the nearest points would be " : " the furthest points would be ") +
+              text_of("%.3g m away", far ? nearest : furthest) + ": a wrong unit of length?");
+    return;
+  }
+  // Centimetres taken for metres: 1 m and more between the cameras is rare, and looks far away where it is.
+  constexpr double kLongBaseline = 1;
+  const bool is_far = baseline >= kLongBaseline && nearest >= static_cast<double>(c.config.warn_nearest);
+  if (baseline <= static_cast<double>(c.config.warn_baseline) && !is_far) return;
+  c.add(FindingKind::calibration, Severity::warning, baseline,
+        words + " the nearest points are " + text_of("%.3g m away; ", nearest) +
+            text_of("%.3g m if that is in centimetres: metres are expected", nearest / 100));
 }
 
 /// Disparities that one of a point's nearest points has as well, roughly: a false match is alone with its
@@ -268,6 +329,13 @@ std::vector<float> supported_disparities(const std::vector<Correspondence>& poin
   return supported;
 }
 
+bool are_equal(View<const Gray> left, View<const Gray> right) {
+  for (int y = 0; y < left.height(); ++y) {
+    if (!std::equal(left.row(y), left.row(y) + left.width(), right.row(y))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 double PairMeasures::disparity_px(double share) const {
@@ -281,6 +349,7 @@ PairMeasures measure_pair(const StereoPair& pair, const Exec& exec) {
   const Correspondences agreeing = agreeing_ones(found);
   PairMeasures measures;
   measures.size = pair.size();
+  measures.identical = are_equal(pair.left(), pair.right());
   measures.textured_points = found.points;
   measures.rows = measure_row_alignment(found);
   measures.disparities_px = supported_disparities(agreeing.list);
@@ -296,7 +365,7 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
                               const MatchConfig& range, const DiagnosisConfig& config) {
   Case c{measures, rig, range, config};
   check_camera(c);
-  if (check_points(c)) {
+  if (!check_same(c) && check_points(c)) {
     if (check_order(c)) {
       check_distances(c);
       check_range(c);
@@ -305,8 +374,8 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
     check_rows(c);
     check_brightness(c);
   }
-  check_one_exposure(c, "left", measures.left_exposure);
-  check_one_exposure(c, "right", measures.right_exposure);
+  check_clipping(c);
+  check_contrast(c);
   check_sharpness(c);
   return united({c.findings});
 }
@@ -316,16 +385,23 @@ std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs) {
   for (const FindingInfo& kind : kFindings) {
     std::optional<Finding> worst;
     std::vector<std::size_t> frames;
+    bool is_one_camera = true;
     for (std::size_t i = 0; i < of_pairs.size(); ++i) {
       for (const Finding& one : of_pairs[i]) {
         if (one.kind != kind.kind) continue;
         if (frames.empty() || frames.back() != i) frames.push_back(i);
+        is_one_camera = is_one_camera && (!worst || one.camera == worst->camera);
         if (!worst || one.severity > worst->severity) worst = one;
       }
     }
     if (!worst) continue;
     if (kind.kind == FindingKind::range_too_large && frames.size() < of_pairs.size()) continue;
     worst->frames = std::move(frames);
+    if (!is_one_camera && worst->camera != Camera::pair) {
+      worst->says += std::string("; the ") + (worst->camera == Camera::left ? "right" : "left") +
+                     " one's in other pairs";
+      worst->camera = Camera::pair;
+    }
     all.push_back(std::move(*worst));
   }
   return all;

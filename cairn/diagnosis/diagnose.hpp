@@ -25,6 +25,7 @@ struct DiagnosisConfig {
   float warn_behind = 10;
   float break_behind = 60;
   float break_swapped = 60;
+  float break_same = 95;
   float warn_beyond = 4;
   float break_beyond = 50;
   float least_range_use = 20;
@@ -34,6 +35,9 @@ struct DiagnosisConfig {
   float warn_brightness = 12;
   float warn_edge = 4.5F;
   float warn_edge_ratio = 1.6F;
+  float least_unequal_edge = 3.5F;
+  float warn_baseline = 3;
+  float warn_nearest = 30;
 };
 template <class V>
 void fields(DiagnosisConfig& c, V&& v) {
@@ -55,6 +59,8 @@ void fields(DiagnosisConfig& c, V&& v) {
   v("break_behind", c.break_behind, "%", "the same, broken", range(0.0F, 100.0F));
   v("break_swapped", c.break_swapped, "%", "points with a negative disparity that mean swapped cameras",
     range(0.0F, 100.0F));
+  v("break_same", c.break_same, "%", "points with a disparity of 0 that mean one picture given twice",
+    range(0.0F, 100.0F));
   v("warn_beyond", c.warn_beyond, "%", "points outside the disparity range, from which on it is a warning",
     range(0.0F, 100.0F));
   v("break_beyond", c.break_beyond, "%", "the same, broken", range(0.0F, 100.0F));
@@ -70,11 +76,18 @@ void fields(DiagnosisConfig& c, V&& v) {
     range(1.0F, 100.0F));
   v("warn_edge_ratio", c.warn_edge_ratio, "", "of one camera's edges to the other's that is a warning",
     range(1.0F, 100.0F));
+  v("least_unequal_edge", c.least_unequal_edge, "px", "narrower edges are none, whatever the other camera's",
+    range(1.0F, 100.0F));
+  v("warn_baseline", c.warn_baseline, "m", "a longer baseline is a warning: in centimetres?",
+    range(0.0F, 1e6F));
+  v("warn_nearest", c.warn_nearest, "m", "points no nearer, with a baseline of 1 m or more, are the same",
+    range(0.0F, 1e6F));
 }
 
 /// All that is measured of one pair.
 struct PairMeasures {
   Size size;
+  bool identical = false;   // the right image is the left one, pixel for pixel
   int textured_points = 0;  // of the left image
   RowAlignment rows;
   std::vector<float> disparities_px;  // of the points that agree and are not alone with it, ascending

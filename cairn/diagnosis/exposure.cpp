@@ -56,8 +56,7 @@ Exposure measure_exposure(View<const Gray> image) {
 
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing) {
   constexpr double kMiddle = 128;
-  constexpr double kScale = 4;  // grey levels, of what windows usually differ by
-  constexpr std::size_t kLeast = 50;
+  constexpr double kScale = 4;         // grey levels, of what windows usually differ by
   constexpr double kLeastSpread = 20;  // grey levels between the darker and the brighter windows
   std::vector<Equation<2>> equations;
   std::vector<double> differences;
@@ -72,7 +71,7 @@ BrightnessDifference measure_brightness_difference(const StereoPair& pair, const
   }
   BrightnessDifference result;
   result.points = static_cast<int>(equations.size());
-  if (equations.size() < kLeast) return result;
+  if (!result.is_measured()) return result;
   result.median = static_cast<float>(quantile(differences, 0.5));
   if (quantile(levels, 0.9) - quantile(levels, 0.1) < kLeastSpread) {
     std::vector<double> signed_differences;

@@ -22,12 +22,15 @@ enum class FindingKind : std::uint8_t {
   sizes,
   impossible_calibration,
   calibration,
+  raw_calibration,
   few_points,
   nothing_in_common,
+  same_picture,
   swapped,
+  synchrony,
+  unknown_synchrony,
   rectification,
   rows,
-  synchrony,
   range_too_small,
   range_too_large,
   behind_infinity,
@@ -58,6 +61,10 @@ inline constexpr std::array kFindings{
         "see the sentence",
         "Give the calibration that was made for these pictures, at their size, with lengths in metres "
         "and pixels."},
+    FindingInfo{FindingKind::raw_calibration, "calibration of raw cameras", "rows that the pictures are off",
+                "rows",
+                "Rectify the pictures with it (cairn rectify), and use the calib.txt that is written beside "
+                "them."},
     FindingInfo{FindingKind::few_points, "too little to see", "textured points found in both pictures",
                 "points",
                 "Point the cameras at something with texture, in good light, and run the doctor again: it "
@@ -66,21 +73,32 @@ inline constexpr std::array kFindings{
                 "%",
                 "See whether both pictures show the same scene at the same moment, neither upside down nor "
                 "mirrored; then whether the pair was rectified at all (cairn rectify)."},
+    FindingInfo{FindingKind::same_picture, "the two pictures are the same", "points with a disparity of 0",
+                "%",
+                "Give each camera's own picture: see whether both names lead to one file, and whether both "
+                "drivers open one camera."},
     FindingInfo{FindingKind::swapped, "cameras swapped", "points with a negative disparity", "%",
                 "Exchange the two pictures, or the cameras' cables or names, and calibrate anew if the "
-                "calibration was made like this."},
+                "calibration was made like this. Both pictures upside down, or both mirrored, look the same: "
+                "see that they stand upright."},
+    FindingInfo{FindingKind::synchrony, "not synchronised", "frames that the right camera lags behind",
+                "frames",
+                "Trigger both cameras by one signal, and pair pictures by their time stamps, not by their "
+                "order of arrival."},
+    FindingInfo{FindingKind::unknown_synchrony, "synchrony not seen",
+                "correlation of the changes in both pictures as they are", "%",
+                "Nothing to mend: to have it checked, give a sequence in which something moves fast and not "
+                "evenly (wave a hand before both cameras)."},
     FindingInfo{FindingKind::rectification, "not rectified",
                 "rows that 1 in 10 points is still off once shift and roll are taken back", "rows",
                 "Rectify the pair with its calibration (cairn rectify); if it is rectified, calibrate anew "
                 "(cairn calibrate): a lens or a mount has moved."},
     FindingInfo{
         FindingKind::rows, "rows misaligned", "rows that the right picture is off, at the worse side", "rows",
-        "Calibrate anew and tighten the mounts. Up to epipolar_correction.max_rows the preset default "
-        "takes shift and roll back by itself, for some time per frame."},
-    FindingInfo{FindingKind::synchrony, "not synchronised", "frames that the right camera lags behind",
-                "frames",
-                "Trigger both cameras by one signal, and pair pictures by their time stamps, not by their "
-                "order of arrival."},
+        "Rectify the pair with its calibration (cairn rectify); if it is rectified, calibrate anew (cairn "
+        "calibrate) and tighten the mounts. Up to epipolar_correction.max_rows the preset default takes "
+        "shift "
+        "and roll back by itself, for some time per frame."},
     FindingInfo{FindingKind::range_too_small, "disparity range too small", "points outside the range", "%",
                 "Widen the range: set match.min_disparity and match.num_disparities (or ndisp in the "
                 "calibration) as the sentence says."},
@@ -107,6 +125,9 @@ constexpr const FindingInfo& info(FindingKind kind) {
   return kFindings[static_cast<std::size_t>(kind)];
 }
 
+/// Whose picture shows it; both or neither: it is said of the pair.
+enum class Camera : std::uint8_t { pair, left, right };
+
 /// One thing that is wrong.
 struct Finding {
   FindingKind kind = FindingKind::sizes;
@@ -114,11 +135,13 @@ struct Finding {
   double value = 0;                   // see FindingInfo::number and unit
   std::string says;                   // one sentence with the numbers, without a full stop
   std::vector<std::size_t> frames{};  // indices of the pairs that show it
+  Camera camera = Camera::pair;
 };
 
 /// The findings of many pairs by kind, in the order of kFindings, each with the severity, number and sentence
-/// of the pair where it is worst, and all pairs that show it. A range is too large only where it is so for
-/// every pair that could tell.
+/// of the pair where it is worst, and all pairs that show it; where it is one camera there and the other one
+/// in other pairs, the sentence says so. A range is too large only where it is so for every pair that could
+/// tell.
 std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs);
 
 }  // namespace cairn

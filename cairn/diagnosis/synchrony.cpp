@@ -16,8 +16,12 @@ constexpr int kLeastFrames = 8;
 constexpr int kBands = 16;
 constexpr std::size_t kMostTried = 6;  // frames whose points are looked for in neighbours
 constexpr double kLeastCorrelation = 0.6;
-constexpr double kClearCorrelation = 0.2;  // above that of no lag
-constexpr double kClearAgreement = 1.25;   // times that of no lag
+constexpr double kClearCorrelation = 0.2;    // above that of no lag
+constexpr double kClearAgreement = 1.25;     // times that of no lag
+constexpr double kTellingCorrelation = 0.1;  // above that of any other lag: the lags can be told apart
+constexpr double kTellingAgreement = 1.1;    // times that of any other lag
+constexpr double kUnexplained = 0.5;         // of what one lag lacks of a correlation of 1, that two may lack
+constexpr std::size_t kLeastPart = 6;        // changes, of a part with a lag of its own
 
 /// Mean change of each band of rows from one picture to the next, grey levels.
 using Change = std::array<double, kBands>;
@@ -45,31 +49,87 @@ bool is_still(const Change& change) {
 }
 
 /// Each band less its mean over time: what stays the same says nothing about when.
-void remove_means(std::vector<Change>& changes) {
+std::vector<Change> without_means(std::span<const Change> changes) {
+  std::vector<Change> rest(changes.begin(), changes.end());
   for (std::size_t band = 0; band < kBands; ++band) {
     double mean = 0;
     for (const Change& one : changes) mean += one[band] / static_cast<double>(changes.size());
-    for (Change& one : changes) one[band] -= mean;
+    for (Change& one : rest) one[band] -= mean;
   }
+  return rest;
 }
 
-/// Of left[i] with right[i + lag].
-double correlation(const std::vector<Change>& left, const std::vector<Change>& right, int lag) {
+/// What a correlation is made of.
+struct Sums {
   double products = 0;
   double of_left = 0;
   double of_right = 0;
+
+  [[nodiscard]] double correlation() const {
+    const double scale = std::sqrt(of_left * of_right);
+    return scale > 0 ? products / scale : 0.0;
+  }
+  Sums operator+(const Sums& other) const {
+    return {products + other.products, of_left + other.of_left, of_right + other.of_right};
+  }
+};
+using SumsByLag = std::array<Sums, Synchrony::kLags>;
+
+std::size_t index(int lag) {
+  return static_cast<std::size_t>(lag + Synchrony::kMostLag);
+}
+
+/// Of left[i] with right[i + lag].
+Sums sums_of(std::span<const Change> left, std::span<const Change> right, int lag) {
+  Sums sums;
   const int count = static_cast<int>(left.size());
   for (int i = std::max(0, -lag); i < std::min(count, count - lag); ++i) {
     const Change& a = left[static_cast<std::size_t>(i)];
     const Change& b = right[static_cast<std::size_t>(i + lag)];
     for (std::size_t band = 0; band < kBands; ++band) {
-      products += a[band] * b[band];
-      of_left += a[band] * a[band];
-      of_right += b[band] * b[band];
+      sums.products += a[band] * b[band];
+      sums.of_left += a[band] * a[band];
+      sums.of_right += b[band] * b[band];
     }
   }
-  const double scale = std::sqrt(of_left * of_right);
-  return scale > 0 ? products / scale : 0.0;
+  return sums;
+}
+
+SumsByLag sums_by_lag(std::span<const Change> left, std::span<const Change> right) {
+  SumsByLag sums;
+  const std::vector<Change> of_left = without_means(left);
+  const std::vector<Change> of_right = without_means(right);
+  for (int lag = -Synchrony::kMostLag; lag <= Synchrony::kMostLag; ++lag)
+    sums[index(lag)] = sums_of(of_left, of_right, lag);
+  return sums;
+}
+
+/// The lag that explains a part by far better than the other part's.
+bool is_clear(const SumsByLag& part, int lag, int other) {
+  const double correlation = part[index(lag)].correlation();
+  return correlation >= kLeastCorrelation &&
+         correlation >= part[index(other)].correlation() + kClearCorrelation;
+}
+
+/// The best of all places and pairs of lags; nullopt where none is clearly better than `by_one`, the best
+/// correlation of one lag for all.
+std::optional<LagChange> find_change(std::span<const Change> left, std::span<const Change> right,
+                                     double by_one) {
+  std::optional<LagChange> best;
+  // Change i leads from frame i to frame i + 1: that across the place belongs to no part.
+  for (std::size_t from = kLeastPart + 1; from + kLeastPart <= left.size(); ++from) {
+    const SumsByLag first = sums_by_lag(left.first(from - 1), right.first(from - 1));
+    const SumsByLag second = sums_by_lag(left.subspan(from), right.subspan(from));
+    for (int before = -Synchrony::kMostLag; before <= Synchrony::kMostLag; ++before) {
+      for (int after = -Synchrony::kMostLag; after <= Synchrony::kMostLag; ++after) {
+        if (!is_clear(first, before, after) || !is_clear(second, after, before)) continue;
+        const double both = (first[index(before)] + second[index(after)]).correlation();
+        if (both < (best ? best->motion : 1 - kUnexplained * (1 - by_one))) continue;
+        best = LagChange{static_cast<int>(from), before, after, both};
+      }
+    }
+  }
+  return best;
 }
 
 double agreement(const StereoPair& pair, const Exec& exec) {
@@ -77,8 +137,16 @@ double agreement(const StereoPair& pair, const Exec& exec) {
   return found.points == 0 ? 0.0 : static_cast<double>(agreeing_ones(found).list.size()) / found.points;
 }
 
-std::size_t index(int lag) {
-  return static_cast<std::size_t>(lag + Synchrony::kMostLag);
+/// The lag with the greatest value.
+int best_of(const std::array<double, Synchrony::kLags>& values) {
+  return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin()) -
+         Synchrony::kMostLag;
+}
+
+/// The greatest value of another lag.
+double second_of(std::array<double, Synchrony::kLags> values) {
+  values[index(best_of(values))] = -1;
+  return *std::max_element(values.begin(), values.end());
 }
 
 }  // namespace
@@ -97,10 +165,9 @@ Synchrony measure_synchrony(std::span<const StereoPair> sequence, const Exec& ex
     result.right_repeats += right_still && !left_still ? 1 : 0;
   }
   if (result.frames < kLeastFrames) return result;
-  remove_means(left);
-  remove_means(right);
-  for (int lag = -Synchrony::kMostLag; lag <= Synchrony::kMostLag; ++lag)
-    result.motion[index(lag)] = correlation(left, right, lag);
+  const SumsByLag sums = sums_by_lag(left, right);
+  for (std::size_t lag = 0; lag < sums.size(); ++lag) result.motion[lag] = sums[lag].correlation();
+  result.change = find_change(left, right, result.motion[index(best_of(result.motion))]);
 
   const std::size_t inner = sequence.size() - 2 * Synchrony::kMostLag;
   const std::size_t tried = std::min(kMostTried, inner);
@@ -116,9 +183,6 @@ Synchrony measure_synchrony(std::span<const StereoPair> sequence, const Exec& ex
 }
 
 int Synchrony::lag() const {
-  const auto best_of = [](const std::array<double, kLags>& values) {
-    return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin()) - kMostLag;
-  };
   const int by_motion = best_of(motion);
   if (motion[index(by_motion)] >= kLeastCorrelation &&
       motion[index(by_motion)] >= motion[index(0)] + kClearCorrelation) {
@@ -129,25 +193,74 @@ int Synchrony::lag() const {
   return 0;
 }
 
-std::optional<Finding> diagnose(const Synchrony& synchrony) {
-  const int lag = synchrony.lag();
-  const int repeats = std::max(synchrony.left_repeats, synchrony.right_repeats);
-  if (lag == 0 && repeats == 0) return std::nullopt;
-  const auto share = [](double value) { return std::to_string(std::lround(100 * value)) + " %"; };
-  Finding finding{FindingKind::synchrony, Severity::broken, static_cast<double>(lag), {}};
-  if (lag != 0) {
-    finding.says = std::string("the right camera's pictures come ") + std::to_string(std::abs(lag)) +
-                   (std::abs(lag) == 1 ? " frame " : " frames ") + (lag > 0 ? "late" : "early") +
-                   ": the changes in both correlate to " + share(synchrony.motion[index(lag)]) +
-                   " then, and to " + share(synchrony.motion[index(0)]) + " as they are";
-    return finding;
-  }
-  finding.severity = Severity::warning;
-  finding.says = std::string("the ") +
-                 (synchrony.right_repeats >= synchrony.left_repeats ? "right" : "left") +
-                 " camera repeats its picture in " + std::to_string(repeats) + " of " +
-                 std::to_string(synchrony.frames) + " frames while the other one's changes";
+bool Synchrony::tells() const {
+  const double correlation = motion[index(best_of(motion))];
+  if (change || (correlation >= kLeastCorrelation && correlation >= second_of(motion) + kTellingCorrelation))
+    return true;
+  return agreement[index(best_of(agreement))] > kTellingAgreement * second_of(agreement);
+}
+
+namespace {
+
+std::string share_text(double value) {
+  return std::to_string(std::lround(100 * value)) + " %";
+}
+
+std::string frames_text(int count) {
+  return std::to_string(count) + (count == 1 ? " frame" : " frames");
+}
+
+/// "come 2 frames late"
+std::string lag_text(int lag) {
+  return lag == 0 ? "come in step" : "come " + frames_text(std::abs(lag)) + (lag > 0 ? " late" : " early");
+}
+
+Finding out_of_step(int lag, std::string says, int first, int last) {
+  Finding finding{FindingKind::synchrony, Severity::broken, static_cast<double>(lag), std::move(says)};
+  for (int i = first; i < last; ++i) finding.frames.push_back(static_cast<std::size_t>(i));
   return finding;
+}
+
+Finding changed(const LagChange& change, int frames, std::span<const std::string> names) {
+  const auto at = static_cast<std::size_t>(change.from);
+  const std::string says = "from frame " + (at < names.size() ? names[at] : std::to_string(change.from)) +
+                           " on the right camera's pictures " + lag_text(change.after) +
+                           ", before that they " + lag_text(change.before) +
+                           ": the changes in both correlate to " + share_text(change.motion) + " then";
+  if (change.after == 0) return out_of_step(change.before, says, 0, change.from);
+  return out_of_step(change.after, says, change.before == 0 ? change.from : 0, frames);
+}
+
+}  // namespace
+
+std::optional<Finding> diagnose(const Synchrony& synchrony, std::span<const std::string> names) {
+  if (synchrony.change) return changed(*synchrony.change, synchrony.frames, names);
+  const double as_they_are = synchrony.motion[index(0)];
+  if (const int lag = synchrony.lag(); lag != 0) {
+    return out_of_step(lag,
+                       "the right camera's pictures " + lag_text(lag) +
+                           ": the changes in both correlate to " + share_text(synchrony.motion[index(lag)]) +
+                           " then, and to " + share_text(as_they_are) + " as they are",
+                       0, synchrony.frames);
+  }
+  if (const int repeats = std::max(synchrony.left_repeats, synchrony.right_repeats); repeats > 0) {
+    const bool is_right = synchrony.right_repeats >= synchrony.left_repeats;
+    return Finding{FindingKind::synchrony,
+                   Severity::warning,
+                   0,
+                   std::string("the ") + (is_right ? "right" : "left") + " camera repeats its picture in " +
+                       std::to_string(repeats) + " of " + frames_text(synchrony.frames) +
+                       " while the other one's changes",
+                   {},
+                   is_right ? Camera::right : Camera::left};
+  }
+  if (synchrony.frames < kLeastFrames || synchrony.tells()) return std::nullopt;
+  return Finding{FindingKind::unknown_synchrony, Severity::note, 100 * as_they_are,
+                 "too little moves, or too evenly, to tell whether a camera is late: the changes in both "
+                 "pictures correlate to " +
+                     share_text(as_they_are) + " as they are, and to " +
+                     share_text(std::max(synchrony.motion[index(-1)], synchrony.motion[index(1)])) +
+                     " one frame apart"};
 }
 
 }  // namespace cairn

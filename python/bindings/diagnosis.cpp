@@ -211,6 +211,10 @@ std::string exposure_repr(const Exposure& self) {
 }
 
 std::string brightness_repr(const BrightnessDifference& self) {
+  if (!self.is_measured()) {
+    return "<cairn.BrightnessDifference not measured: " + std::to_string(self.points) +
+           " windows, it takes " + std::to_string(BrightnessDifference::kLeastPoints) + ">";
+  }
   return "<cairn.BrightnessDifference right = " + text_of("{:.2f} * left ", static_cast<double>(self.gain)) +
          text_of("{:+.1f}, ", static_cast<double>(self.offset)) +
          text_of("{:.1f} grey levels apart, from ", static_cast<double>(self.median)) +
@@ -220,6 +224,11 @@ std::string brightness_repr(const BrightnessDifference& self) {
 std::string sharpness_repr(const Sharpness& self) {
   return "<cairn.Sharpness " + text_of("{:.1f} px, from ", static_cast<double>(self.edge_px)) +
          std::to_string(self.edges) + " edges>";
+}
+
+std::optional<std::tuple<int, int, int>> change_of(const Synchrony& self) {
+  if (!self.change) return std::nullopt;
+  return std::tuple{self.change->from, self.change->before, self.change->after};
 }
 
 std::string synchrony_repr(const Synchrony& self) {
@@ -261,6 +270,8 @@ void bind_parts(py::module_& m) {
       "What the right camera makes of the left one's brightness: right = gain * left + offset.")
       .def_readonly("points", &BrightnessDifference::points,
                     "windows compared; with fewer than 50 no difference is measured")
+      .def_property_readonly("is_measured", &BrightnessDifference::is_measured,
+                             "otherwise gain, offset and median are those of equal cameras")
       .def_readonly("gain", &BrightnessDifference::gain,
                     "factor on the left one's grey levels; 1 where both agree, or too little varies")
       .def_readonly("offset", &BrightnessDifference::offset, "grey levels")
@@ -284,6 +295,8 @@ void bind_measures(py::module_& m) {
             return std::pair{self.size.width, self.size.height};
           },
           "(width, height), px")
+      .def_readonly("identical", &PairMeasures::identical,
+                    "the right picture is the left one, pixel for pixel")
       .def_readonly("textured_points", &PairMeasures::textured_points,
                     "of the left picture, that were looked for in the right one")
       .def_readonly("rows", &PairMeasures::rows, "a RowAlignment")
@@ -315,6 +328,12 @@ void bind_measures(py::module_& m) {
       .def_readonly("left_repeats", &Synchrony::left_repeats,
                     "frames in which only the left picture is the one before once more")
       .def_readonly("right_repeats", &Synchrony::right_repeats, "the same of the right one")
+      .def_property_readonly(
+          "change", &change_of,
+          "None, or (frame, lag before, lag after): from that frame on, give or take one, the "
+          "right camera is late by another number of frames")
+      .def_property_readonly("tells", &Synchrony::tells,
+                             "whether the numbers tell one lag from another: False where too little moves")
       .def("__repr__", &synchrony_repr)
       .def(pickled<Synchrony>());
   py::class_<Finding>(m, "Finding", "One thing that is wrong with a rig.")
@@ -357,8 +376,10 @@ void bind_diagnosis(py::module_& m) {
       limits_text();
   m.def("diagnose", &diagnose_pair, "measures"_a, "rig"_a = py::none(), py::kw_only(),
         "limits"_a = py::none(), "config"_a = py::none(), "exec"_a = py::none(), doc.c_str());
-  m.def("diagnose", py::overload_cast<const Synchrony&>(&diagnose), "synchrony"_a,
-        "The same of a sequence: None where the cameras run together, or where nothing tells.");
+  m.def(
+      "diagnose", [](const Synchrony& synchrony) { return diagnose(synchrony); }, "synchrony"_a,
+      "The same of a sequence: None where the cameras run together, a note where the sequence does not "
+      "tell.");
   note_groups(m, "diagnose", {"match"}, false);
 }
 

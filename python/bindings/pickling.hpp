@@ -108,7 +108,8 @@ CAIRN_PARTS(BrightnessDifference, points, gain, offset, median)
 CAIRN_PARTS(Sharpness, edges, edge)
 CAIRN_PARTS(PairMeasures, size, textured_points, rows, disparities, brightness, left_exposure, right_exposure,
             left_sharpness, right_sharpness)
-CAIRN_PARTS(Synchrony, frames, motion, agreement, left_repeats, right_repeats)
+CAIRN_PARTS(LagChange, from, before, after, motion)
+CAIRN_PARTS(Synchrony, frames, motion, agreement, left_repeats, right_repeats, change)
 CAIRN_PARTS(Setting, option, value_text)
 CAIRN_PARTS(PyTuning, goal, end, kept_because, evaluations, seconds, before, after, held_out_before,
             held_out_after, held_out, options, not_judged, start, best, config)

@@ -167,6 +167,9 @@ class BrightnessDifference:
     def points(self) -> int:
         """windows compared; with fewer than 50 no difference is measured"""
     @property
+    def is_measured(self) -> bool:
+        """otherwise gain, offset and median are those of equal cameras"""
+    @property
     def gain(self) -> float:
         """factor on the left one's grey levels; 1 where both agree, or too little varies"""
     @property
@@ -639,6 +642,9 @@ class PairMeasures:
     def size(self) -> Tuple[int, int]:
         """(width, height), px"""
     @property
+    def identical(self) -> bool:
+        """the right picture is the left one, pixel for pixel"""
+    @property
     def textured_points(self) -> int:
         """of the left picture, that were looked for in the right one"""
     @property
@@ -873,6 +879,14 @@ class Synchrony:
     @property
     def right_repeats(self) -> int:
         """the same of the right one"""
+    @property
+    def change(self) -> Optional[Tuple[int, int, int]]:
+        """None, or (frame, lag before, lag after): from that frame on, give or take one, the right camera is
+        late by another number of frames
+        """
+    @property
+    def tells(self) -> bool:
+        """whether the numbers tell one lag from another: False where too little moves"""
 
 class TrueObjectScore:
     """How well one true object was found."""

@@ -76,7 +76,27 @@ def test_cameras_that_run_together_are_no_finding():
     together = cairn.measure_synchrony(sequence(14))
     assert together.frames == 14 and together.lag == 0 and cairn.diagnose(together) is None
     assert list(together.motion) == [-2, -1, 0, 1, 2] == list(together.agreement)
+    assert together.tells and together.change is None
     assert cairn.diagnose(cairn.measure_synchrony([])) is None
+
+
+def test_a_camera_that_becomes_late_is_told():
+    together, late = sequence(34), sequence(34, 1)
+    measured = cairn.measure_synchrony(together[:17] + late[17:])
+    frame, before, after = measured.change
+    assert abs(frame - 17) <= 1 and (before, after) == (0, 1)
+    assert f"from frame {frame} on" in cairn.diagnose(measured).says
+
+
+def test_a_still_sequence_tells_nothing():
+    measured = cairn.measure_synchrony(sequence(1) * 9)
+    assert not measured.tells and cairn.diagnose(measured).severity == "note"
+
+
+def test_one_picture_given_twice_is_told(sample):
+    measured = cairn.measure_pair(sample.left, sample.left)
+    assert measured.identical and [f.kind for f in cairn.diagnose(measured)] == ["the two pictures are the same"]
+    assert "not measured" in repr(cairn.measure_pair(sample.left[:20, :20], sample.left[:20, :20]).brightness)
 
 
 @pytest.mark.parametrize("late", [-1, 2])

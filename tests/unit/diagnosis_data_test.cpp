@@ -76,7 +76,39 @@ TEST_P(GoodSequences, RunTogetherAndAreFoundOutWhereTheyAreMadeNotTo) {
           StereoPair::from(pictures[i + static_cast<std::size_t>(late)].left.gray, pictures[i].right.gray));
     const Synchrony measured = measure_synchrony(pairs, Exec::with_threads(2));
     EXPECT_EQ(measured.lag(), late);
+    EXPECT_FALSE(measured.change);
+    EXPECT_TRUE(measured.tells());
   }
+}
+
+TEST_P(GoodSequences, AreFoundOutWhereTheyAreMadeNotToRunTogetherFromTheMiddleOn) {
+  if (!fs::exists(data() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
+  const auto frames = io::find_frames(data() / GetParam());
+  std::vector<io::PicturePair> pictures;
+  for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
+  std::vector<StereoPair> pairs;  // the left camera loses a picture
+  for (std::size_t i = 0; i + 1 < pictures.size(); ++i) {
+    const std::size_t late = i < pictures.size() / 2 ? 0 : 1;
+    pairs.push_back(StereoPair::from(pictures[i + late].left.gray, pictures[i].right.gray));
+  }
+  const Synchrony measured = measure_synchrony(pairs, Exec::with_threads(2));
+  ASSERT_TRUE(measured.change);
+  EXPECT_EQ(measured.change->from, static_cast<int>(pictures.size() / 2));
+  EXPECT_EQ(measured.change->before, 0);
+  EXPECT_EQ(measured.change->after, 1);
+}
+
+TEST(SlowSequence, IsNotSaidToRunTogether) {
+  const fs::path folder = data() / "real/sequences/conveyor_box";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
+  std::vector<io::PicturePair> pictures;
+  for (const auto& frame : io::find_frames(folder))
+    pictures.push_back(io::load_pair(frame.left, *frame.right));
+  std::vector<StereoPair> pairs;
+  for (const auto& pair : pictures) pairs.push_back(StereoPair::from(pair.left.gray, pair.right.gray));
+  const auto finding = diagnose(measure_synchrony(pairs, Exec::with_threads(2)));
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::note)) << finding->says;
 }
 
 INSTANTIATE_TEST_SUITE_P(Collections, GoodSequences,

@@ -56,6 +56,11 @@ Image<Gray> toned(View<const Gray> image, double gain, double offset) {
   return made_of(image, same_place, [=](double level) { return gain * level + offset; });
 }
 
+Image<Gray> noisy(View<const Gray> image, double sigma) {
+  return support::picture(image.size(), sigma, 5,
+                          [&](int x, int y) { return static_cast<double>(image(x, y)); });
+}
+
 /// The mean of 2 · radius + 1 pixels each way.
 Image<Gray> blurred(View<const Gray> image, int radius) {
   Image<Gray> result(image.size());
@@ -126,6 +131,21 @@ TEST_F(Diagnosis, SeesSwappedCameras) {
   const auto found = findings(right(), left());
   finds(found, FindingKind::swapped, Severity::broken);
   EXPECT_GT(value(found), 90);
+}
+
+TEST_F(Diagnosis, SeesThatOnePictureWasGivenTwice) {
+  finds(findings(left(), left()), FindingKind::same_picture, Severity::broken);
+  // Through a lossy file the pixels differ, but nothing has moved.
+  const auto almost = noisy(left(), 2);
+  const auto found = findings(left(), almost);
+  finds(found, FindingKind::same_picture, Severity::broken);
+  EXPECT_GT(value(found), 95);
+}
+
+TEST_F(Diagnosis, SaysOfCamerasInTheDarkThatTheyAreInTheDark) {
+  const auto black = toned(left(), 0, 0);
+  const auto found = findings(black, black);
+  EXPECT_EQ(names(found), "too little to see, clipped exposure, little contrast");
 }
 
 TEST_F(Diagnosis, SeesSwappedCamerasWhereDoffsAllowsNegativeDisparities) {
@@ -272,6 +292,51 @@ TEST_F(Diagnosis, SeesWhichCameraIsBlurred) {
   EXPECT_NE(says(found).find("in both pictures"), std::string::npos) << says(found);
 }
 
+TEST_F(Diagnosis, DoesNotBlameASharpCameraForTheOthersNoise) {
+  const auto between = [](int x, int y) { return Place{x + 0.5, y + 0.5}; };
+  const auto soft_left = made_of(left(), between, same_tone);  // as most lenses are
+  const auto soft_right = made_of(right(), between, same_tone);
+  int tempting = 0;
+  for (const double sigma : {4.0, 8.0, 16.0}) {
+    const auto noisy_right = noisy(soft_right, sigma);
+    const PairMeasures measured = measure_pair(StereoPair::from(soft_left, noisy_right), {});
+    tempting += measured.left_sharpness.edge_px > 1.6F * measured.right_sharpness.edge_px ? 1 : 0;
+    EXPECT_EQ(names(findings(soft_left, noisy_right)).find("blurred"), std::string::npos) << sigma;
+    const auto noisy_left = noisy(soft_left, sigma);
+    EXPECT_EQ(names(findings(noisy_left, soft_right)).find("blurred"), std::string::npos) << sigma;
+  }
+  EXPECT_GT(tempting, 0);
+}
+
+TEST_F(Diagnosis, DoesNotJudgeBrightnessByAFewPoints) {
+  const BrightnessDifference measured = measure_pair(StereoPair::from(left(), right()), {}).brightness;
+  EXPECT_TRUE(measured.is_measured());
+  const auto plain = support::picture(left().size(), 1, 1, [](int x, int) { return 60 + 0.3 * x; });
+  EXPECT_FALSE(measure_pair(StereoPair::from(plain, plain), {}).brightness.is_measured());
+}
+
+TEST_F(Diagnosis, NamesBothCamerasWhereBothAreAtFault) {
+  const auto bright = toned(left(), 1.9, 25);
+  const auto dark = toned(right(), 2, -180);
+  const auto clipped = findings(bright, dark);
+  const auto of = [](const std::vector<Finding>& found, FindingKind kind) {
+    for (const Finding& finding : found) {
+      if (finding.kind == kind) return finding.says;
+    }
+    return std::string();
+  };
+  EXPECT_NE(of(clipped, FindingKind::exposure).find("in the left picture"), std::string::npos);
+  EXPECT_NE(of(clipped, FindingKind::exposure).find("white (254, 255), in the right one"), std::string::npos)
+      << of(clipped, FindingKind::exposure);
+  EXPECT_NE(of(clipped, FindingKind::exposure).find("black (0, 1)"), std::string::npos);
+  const auto dim = [](View<const Gray> image) { return toned(image, 0.15, 3); };
+  const std::string levels = of(findings_of_both(dim), FindingKind::dark);
+  EXPECT_NE(levels.find("the left picture's levels"), std::string::npos) << levels;
+  EXPECT_NE(levels.find("the right one's"), std::string::npos) << levels;
+  const Image<Gray> dim_right = dim(right());
+  EXPECT_EQ(of(findings(left(), dim_right), FindingKind::dark).find("the right picture's levels"), 0U);
+}
+
 TEST_F(Diagnosis, SeesClippedExposure) {
   const auto bright = [](View<const Gray> image) { return toned(image, 1.9, 25); };
   auto found = findings_of_both(bright);
@@ -298,6 +363,18 @@ TEST_F(Diagnosis, SeesACalibrationInTheWrongUnits) {
   rig_ = good;
   rig_->focal_px = 4;  // millimetres
   EXPECT_EQ(names(findings(left(), right())).find("calibration contradicts"), 0U);
+}
+
+TEST_F(Diagnosis, SuspectsABaselineInCentimetres) {
+  const float good = rig_->baseline_m;
+  rig_->baseline_m = 100 * good;
+  auto found = findings(left(), right());
+  finds(found, FindingKind::calibration, Severity::warning);
+  EXPECT_NE(says(found).find("centimetres"), std::string::npos) << says(found);
+  rig_->baseline_m = 2;  // of a short one; then the distances tell
+  rig_->focal_px *= 2;
+  found = findings(left(), right());
+  finds(found, FindingKind::calibration, Severity::warning);
 }
 
 TEST_F(Diagnosis, SeesACalibrationOfPicturesOfAnotherSize) {
@@ -341,6 +418,13 @@ TEST(United, KeepsTheWorstOfAKindAndAllFramesThatShowIt) {
   ASSERT_EQ(all.size(), 1U);  // the second pair needs the whole range
   EXPECT_EQ(all[0].says, "heavy");
   EXPECT_EQ(all[0].frames, (std::vector<std::size_t>{0, 2}));
+}
+
+TEST(United, NamesTheOtherCameraOfOtherPairs) {
+  const Finding left{FindingKind::blur, Severity::warning, 5, "left", {}, Camera::left};
+  const Finding right{FindingKind::blur, Severity::warning, 6, "right", {}, Camera::right};
+  EXPECT_EQ(united({{left}, {left}})[0].says, "left");
+  EXPECT_EQ(united({{left}, {right}})[0].says, "left; the right one's in other pairs");
 }
 
 // ---- sequences ----
@@ -394,12 +478,60 @@ class Sequence {
 };
 
 TEST(SynchronyOfASequence, IsSilentWhereBothCamerasRunTogether) {
-  for (const bool moves : {true, false}) {
-    const Sequence sequence(14, moves);
-    const Synchrony measured = measure_synchrony(sequence.pairs(0), {});
-    EXPECT_EQ(measured.lag(), 0);
-    EXPECT_FALSE(diagnose(measured));
+  const Sequence sequence(14);
+  const Synchrony measured = measure_synchrony(sequence.pairs(0), {});
+  EXPECT_EQ(measured.lag(), 0);
+  EXPECT_FALSE(measured.change);
+  EXPECT_FALSE(diagnose(measured));
+}
+
+TEST(SynchronyOfASequence, IsANoteWhereNothingTells) {
+  const Sequence still(14, false);
+  for (const int late : {0, 1}) {
+    const Synchrony measured = measure_synchrony(still.pairs(late), {});
+    EXPECT_FALSE(measured.tells());
+    const auto finding = diagnose(measured);
+    ASSERT_TRUE(finding);
+    EXPECT_EQ(info(finding->kind).name, "synchrony not seen");
+    EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::note));
   }
+  EXPECT_FALSE(diagnose(measure_synchrony(Sequence(7, false).pairs(0), {})));  // no sequence
+}
+
+TEST(SynchronyOfASequence, MayBeLostFromAFrameOn) {
+  const Sequence sequence(34);
+  for (const int late : {-2, -1, 1}) {
+    for (const int from : {12, 20}) {
+      // The first part in step, then the right camera's pictures `late` frames late.
+      std::vector<StereoPair> pairs = sequence.pairs(0);
+      const std::vector<StereoPair> out_of_step = sequence.pairs(late);
+      const auto shift = static_cast<std::size_t>(std::max(0, late));
+      pairs.resize(out_of_step.size() + shift, pairs.front());
+      for (std::size_t i = static_cast<std::size_t>(from); i < pairs.size(); ++i)
+        pairs[i] = out_of_step[i - shift];
+      const Synchrony measured = measure_synchrony(pairs, {});
+      ASSERT_TRUE(measured.change) << late << " from " << from;
+      const int named = measured.change->from;
+      EXPECT_LE(std::abs(named - from), 1) << late;
+      EXPECT_EQ(measured.change->before, 0);
+      EXPECT_EQ(measured.change->after, late);
+      const auto finding = diagnose(measured);
+      ASSERT_TRUE(finding);
+      EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::broken));
+      EXPECT_EQ(finding->value, late);
+      EXPECT_EQ(finding->frames.front(), static_cast<std::size_t>(named));
+      EXPECT_EQ(finding->frames.back(), pairs.size() - 1);
+      EXPECT_NE(finding->says.find("from frame " + std::to_string(named) + " on"), std::string::npos);
+    }
+  }
+}
+
+TEST(SynchronyOfASequence, NamesTheFrameWhereItIsLost) {
+  Synchrony measured;
+  measured.frames = 3;
+  measured.change = LagChange{1, 0, 1, 0.9};
+  const std::array<std::string, 3> names{"a", "b", "c"};
+  EXPECT_NE(diagnose(measured, names)->says.find("from frame b on"), std::string::npos);
 }
 
 TEST(SynchronyOfASequence, IsLostByAsManyFramesAsItSays) {
