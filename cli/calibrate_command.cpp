@@ -92,10 +92,32 @@ std::string named(const std::vector<std::string>& names) {
   return all;
 }
 
+std::string too_few(const Sightings& sightings, const CalibrateOptions& options) {
+  return "--board " + options.board + ": all of its inner corners are seen in " +
+         std::to_string(sightings.list.size()) + " of " + std::to_string(sightings.pairs()) +
+         " pairs, expected at least " + std::to_string(io::kLeastSightings) +
+         ", better fifteen; a board of 10x7 squares has 9x6 inner corners";
+}
+
+/// Words against a side that is most likely in other units; "" for a good one.
+std::string judge_side(const std::string& text) {
+  constexpr double kShortest = 1e-4;
+  constexpr double kLongest = 1;
+  double side = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+  if (error == std::errc{} && end == text.data() + text.size() && side >= kShortest && side <= kLongest)
+    return {};
+  std::string words = "found " + text + ", expected metres in 0.0001 ... 1";
+  if (side > kLongest && side <= 1000 * kLongest)
+    words += "; " + text_of("%g mm are ", side) + text_of("%g", side / 1000);
+  return words;
+}
+
 int calibrate(const CalibrateOptions& options) {
   const io::Board board = board_of(options);
   std::vector<std::string> of_other_size;
   const Sightings sightings = look_at(io::find_pairs(options.folder), board, of_other_size);
+  if (sightings.list.size() < io::kLeastSightings) throw Error(too_few(sightings, options));
   const io::StereoCalibration found = io::calibrate_stereo(sightings.list, board, sightings.size);
   const StereoRig rig = io::Rectifier(found.raw).rig();
   const std::string error = text_of("%.3f px", found.error_px);
@@ -138,7 +160,7 @@ Work declare_calibrate(CLI::App& app) {
       ->type_name("CxR");
   app.add_option("--square", options->square_m, "side of a square in metres")
       ->required()
-      ->check(CLI::Range(1e-4, 10.0).name(""))
+      ->check(CLI::Validator(judge_side, ""))
       ->type_name("METRES");
   app.add_option("-o,--output", options->output,
                  "OpenCV YAML with both cameras (M1 D1 M2 D2 R T) and what rectifies them (R1 R2 P1 P2)")

@@ -14,6 +14,7 @@
 #include <io/calibration_files.hpp>
 #include <io/config_files.hpp>
 #include <io/disparity_files.hpp>
+#include <iostream>
 
 namespace cairn::cli {
 namespace fs = std::filesystem;
@@ -199,10 +200,18 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     io::check_search_range(calibration, *calib);
   }
   frame.rig = calibration.rig;
+  if (calibration.of_raw_cameras) frame.raw_calibration = calib;
   ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);
   frame.config = std::move(resolved.config);
   frame.preset = std::move(resolved.preset);
   return frame;
+}
+
+std::string remark_on_calibration(const LoadedFrame& loaded) {
+  if (!loaded.raw_calibration) return {};
+  return "cairn: " + loaded.raw_calibration->string() +
+         ": describes raw cameras and their distortion; nothing is rectified here, so the pictures must be "
+         "(cairn rectify makes them, with a calib.txt of theirs)\n";
 }
 
 Stopwatch::Stopwatch(Exec& exec) : exec_(exec) {
@@ -286,6 +295,20 @@ std::string Table::text() const {
     all += line + '\n';
   }
   return all;
+}
+
+void LeftOut::add(const std::string& frame, const std::string& why) {
+  std::string line = "cairn: frame " + frame + " is left out: " + why;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::cerr << line << "\n";
+  frames_.push_back(frame);
+}
+
+int LeftOut::exit_code(std::size_t frames_in_all) const {
+  if (frames_.empty()) return 0;
+  std::cout.flush();
+  std::cerr << "cairn: " << frames_.size() << " of " << frames_in_all << " frames left out\n";
+  return 2;
 }
 
 Progress::Progress(std::size_t count) : count_(count), shown_(isatty(STDERR_FILENO) == 1) {}

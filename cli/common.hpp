@@ -70,9 +70,13 @@ struct LoadedFrame {
   std::optional<StereoRig> rig;
   Config config;
   std::string preset;
+  std::optional<std::filesystem::path> raw_calibration;  // its file, where that describes raw cameras
 };
 /// Reads and checks everything before any work is done. Throws Error.
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec);
+
+/// A line for stderr where the calibration is right only of pictures that were rectified with it; else "".
+std::string remark_on_calibration(const LoadedFrame& loaded);
 
 /// Collects the time of every stage while it lives.
 class Stopwatch {
@@ -112,6 +116,19 @@ class Table {
 
  private:
   std::vector<std::vector<std::string>> rows_;
+};
+
+/// The frames of a folder run whose own files cannot be used. The others are worked on nevertheless.
+class LeftOut {
+ public:
+  /// With a line on stderr.
+  void add(const std::string& frame, const std::string& why);
+  [[nodiscard]] const std::vector<std::string>& frames() const { return frames_; }
+  /// 0; where frames were left out 2, with a line on stderr that counts them.
+  [[nodiscard]] int exit_code(std::size_t frames_in_all) const;
+
+ private:
+  std::vector<std::string> frames_;
 };
 
 /// How far a folder run has come, on stderr where that is a terminal; nothing elsewhere.

@@ -95,6 +95,7 @@ int estimate(const DisparityOptions& options) {
   (void)resolve(options.input.config);
   Exec exec = make_exec(options.exec);
   const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
+  std::cerr << remark_on_calibration(loaded);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
   if (!options.confidence.empty()) check_confidence(options.confidence, loaded.config);
   if (!options.ply.empty()) check_ply(options.ply, loaded);

@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr double kDegrees = 57.29577951308232;
-constexpr std::size_t kLongestSequence = 60;  // pictures in memory at a time
+constexpr std::size_t kLongestSequence = 60;  // pairs in memory at a time
+constexpr std::size_t kMostSequences = 4;     // of a longer folder: its start, its end and between
 
 struct DoctorOptions {
   InputOptions input;
@@ -83,6 +84,29 @@ io::Calibration calibration_or_find(const io::FrameFiles& files, const std::stri
   return calibration;
 }
 
+/// Whether the pictures were rectified with a calibration that describes raw cameras: their rows tell.
+void examine_rectification(Examined& examined) {
+  const auto is = [](FindingKind kind) {
+    return [kind](const Finding& finding) { return finding.kind == kind; };
+  };
+  const auto& found = examined.findings;
+  const auto rows = std::find_if(found.begin(), found.end(), [](const Finding& finding) {
+    return finding.kind == FindingKind::rectification || finding.kind == FindingKind::rows ||
+           finding.kind == FindingKind::nothing_in_common;
+  });
+  const bool is_unknown = std::any_of(found.begin(), found.end(), is(FindingKind::few_points));
+  if (rows == found.end() && !is_unknown) return;
+  const RowAlignment& measured = examined.measures->rows;
+  examined.findings.push_back(
+      {FindingKind::raw_calibration, is_unknown ? Severity::note : Severity::warning,
+       static_cast<double>(std::abs(measured.offset_rows)),
+       is_unknown
+           ? "the file describes the cameras' distortion, and whether the pictures were rectified with it "
+             "cannot be seen"
+           : "the file describes the cameras' distortion, and the pictures do not seem to be rectified "
+             "with it"});
+}
+
 Examined examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
   Examined examined{files.name, {}, {}, {}};
   const std::optional<io::PicturePair> pictures = load_or_find(files, examined, exec);
@@ -92,23 +116,34 @@ Examined examine(const io::FrameFiles& files, const DoctorOptions& options, cons
   examined.measures = measure_pair(StereoPair::from(pictures->left.gray, pictures->right.gray), exec);
   for (Finding& finding : diagnose(*examined.measures, calibration.rig, config.match, DiagnosisConfig{}))
     examined.findings.push_back(std::move(finding));
+  if (calibration.of_raw_cameras) examine_rectification(examined);
   return examined;
 }
 
 // ---- a folder ----
 
-/// At most `most` of them, from the first to the last.
-std::vector<io::FrameFiles> spread(const std::vector<io::FrameFiles>& frames, std::size_t most) {
-  if (frames.size() <= most) return frames;
-  std::vector<io::FrameFiles> some;
-  for (std::size_t i = 0; i < most; ++i) some.push_back(frames[i * frames.size() / most]);
+/// At most `most` of 0 … count − 1, spread evenly.
+std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> some(std::min(count, most));
+  for (std::size_t i = 0; i < some.size(); ++i) some[i] = i * count / some.size();
   return some;
 }
+
+/// Consecutive pairs of a folder.
+struct Sequence {
+  std::size_t first = 0;  // of the folder's pairs
+  std::vector<std::string> names;
+  Synchrony synchrony;
+  std::optional<Finding> finding;  // its frames count from the folder's first pair
+
+  [[nodiscard]] Severity severity() const { return finding ? finding->severity : Severity::note; }
+};
 
 struct Diagnosis {
   std::size_t pairs_in_all = 0;
   std::vector<Examined> pairs;
-  std::optional<Synchrony> synchrony;
+  std::vector<std::size_t> indices;  // of these pairs in the folder
+  std::optional<Sequence> sequence;
   std::vector<Finding> findings;
 };
 
@@ -127,33 +162,86 @@ std::optional<Finding> find_sizes(const std::vector<Examined>& pairs) {
   return finding;
 }
 
-/// Consecutive pairs from the folder's start, as long as they are of one size.
-Synchrony synchrony_of(const std::vector<io::FrameFiles>& frames, const Exec& exec) {
+/// Consecutive pairs from `first` on, as long as they are of one size.
+Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& frames, const Exec& exec) {
   std::vector<io::PicturePair> pictures;
   std::vector<StereoPair> pairs;
-  for (std::size_t i = 0; i < std::min(frames.size(), kLongestSequence); ++i) {
-    io::PicturePair one = io::load_pair(frames[i].left, *frames[i].right, exec.pool);
+  Sequence sequence;
+  sequence.first = first;
+  for (std::size_t i = first; i < std::min(frames.size(), first + kLongestSequence); ++i) {
+    io::PicturePair one = io::load_pair(frames[i].left, right_of(frames[i]), exec.pool);
     if (!pictures.empty() && one.left.gray.size() != pictures.front().left.gray.size()) break;
     pictures.push_back(std::move(one));
+    sequence.names.push_back(frames[i].name);
   }
   pairs.reserve(pictures.size());
   for (const io::PicturePair& one : pictures)
     pairs.push_back(StereoPair::from(one.left.gray, one.right.gray));
-  return measure_synchrony(pairs, exec);
+  sequence.synchrony = measure_synchrony(pairs, exec);
+  sequence.finding = diagnose(sequence.synchrony, sequence.names);
+  if (!sequence.finding) return sequence;
+  for (std::size_t& frame : sequence.finding->frames) frame += first;
+  if (frames.size() > sequence.names.size() && !sequence.synchrony.change)
+    sequence.finding->says += ", in " + sequence.names.front() + " to " + sequence.names.back();
+  return sequence;
+}
+
+/// What a folder of many pairs says best: that the cameras are out of step, that they are not, or nothing.
+Sequence telling_sequence(const std::vector<io::FrameFiles>& frames, const Exec& exec) {
+  const std::size_t rest = frames.size() - std::min(frames.size(), kLongestSequence);
+  const std::size_t count =
+      std::min(kMostSequences, (frames.size() + kLongestSequence - 1) / kLongestSequence);
+  Sequence best = sequence_from(0, frames, exec);
+  for (std::size_t k = 1; k < count && best.severity() < Severity::broken; ++k) {
+    Sequence next = sequence_from(k * rest / (count - 1), frames, exec);
+    const bool tells_first = best.finding && !next.finding && best.severity() == Severity::note;
+    if (next.severity() > best.severity() || tells_first) best = std::move(next);
+  }
+  return best;
+}
+
+/// Pairs out of step seem to have lost their rows where the rig moves: a note then.
+void explain_rows(Diagnosis& diagnosis) {
+  const Finding& lost = *diagnosis.sequence->finding;
+  if (lost.severity != Severity::broken) return;
+  const bool to_the_end =
+      lost.frames.back() + 1 == diagnosis.sequence->first + diagnosis.sequence->names.size();
+  const auto is_out_of_step = [&](std::size_t pair) {
+    const std::size_t at = diagnosis.indices[pair];
+    return at >= lost.frames.front() && (to_the_end || at <= lost.frames.back());
+  };
+  for (Finding& finding : diagnosis.findings) {
+    if (finding.kind != FindingKind::rectification && finding.kind != FindingKind::rows) continue;
+    if (!std::all_of(finding.frames.begin(), finding.frames.end(), is_out_of_step)) continue;
+    finding.severity = Severity::note;
+    finding.says += "; these pairs are out of step, which alone can do that";
+  }
+}
+
+/// The same finding with its frames among the pairs that were measured.
+Finding of_measured_pairs(Finding finding, const Diagnosis& diagnosis) {
+  std::vector<std::size_t> measured;
+  for (std::size_t i = 0; i < diagnosis.indices.size(); ++i) {
+    if (std::find(finding.frames.begin(), finding.frames.end(), diagnosis.indices[i]) != finding.frames.end())
+      measured.push_back(i);
+  }
+  finding.frames = std::move(measured);
+  return finding;
 }
 
 Diagnosis examine_all(const DoctorOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // a bad option is one before any work
   const Exec exec = make_exec(options.exec);
-  const std::vector<io::FrameFiles> some = spread(frames, static_cast<std::size_t>(options.frames));
-  Diagnosis diagnosis{frames.size(), {}, {}, {}};
+  Diagnosis diagnosis{
+      frames.size(), {}, spread(frames.size(), static_cast<std::size_t>(options.frames)), {}, {}};
   std::vector<std::vector<Finding>> findings;
   {
-    const Progress progress(some.size());
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      progress.at(i, some[i].name);
-      diagnosis.pairs.push_back(examine(some[i], options, exec));
+    const Progress progress(diagnosis.indices.size());
+    for (std::size_t i = 0; i < diagnosis.indices.size(); ++i) {
+      const io::FrameFiles& frame = frames[diagnosis.indices[i]];
+      progress.at(i, frame.name);
+      diagnosis.pairs.push_back(examine(frame, options, exec));
       findings.push_back(diagnosis.pairs.back().findings);
     }
   }
@@ -168,14 +256,25 @@ Diagnosis examine_all(const DoctorOptions& options) {
   const bool measured = std::all_of(diagnosis.pairs.begin(), diagnosis.pairs.end(),
                                     [](const Examined& one) { return one.measures.has_value(); });
   if (frames.size() > 1 && measured) {
-    diagnosis.synchrony = synchrony_of(frames, exec);
-    add(diagnose(*diagnosis.synchrony));
+    diagnosis.sequence = telling_sequence(frames, exec);
+    if (diagnosis.sequence->finding) {
+      explain_rows(diagnosis);
+      add(of_measured_pairs(*diagnosis.sequence->finding, diagnosis));
+    }
   }
   add(find_sizes(diagnosis.pairs));
   return diagnosis;
 }
 
 // ---- numbers ----
+
+/// NaN where it was not measured, as with all numbers.
+double of_brightness(const PairMeasures& measures, float number) {
+  return measures.brightness.is_measured() ? static_cast<double>(number) : std::nan("");
+}
+double width_of(const Sharpness& sharpness) {
+  return sharpness.edge_px > 0 ? static_cast<double>(sharpness.edge_px) : std::nan("");
+}
 
 /// One number of a pair: its key in JSON, its name and format on the terminal.
 struct Number {
@@ -205,11 +304,11 @@ constexpr std::array kNumbers{
     Number{"nearest_px", "disparity, 1 % above, px", "%.1f",
            [](const PairMeasures& m) { return m.disparity_px(0.99); }},
     Number{"gain", "gain, right to left", "%.3f",
-           [](const PairMeasures& m) { return double(m.brightness.gain); }},
+           [](const PairMeasures& m) { return of_brightness(m, m.brightness.gain); }},
     Number{"offset", "offset, grey levels", "%+.1f",
-           [](const PairMeasures& m) { return double(m.brightness.offset); }},
+           [](const PairMeasures& m) { return of_brightness(m, m.brightness.offset); }},
     Number{"brightness_difference", "brightness apart, grey levels", "%.1f",
-           [](const PairMeasures& m) { return double(m.brightness.median); }},
+           [](const PairMeasures& m) { return of_brightness(m, m.brightness.median); }},
     Number{"left_contrast", "contrast left, grey levels", "%.0f",
            [](const PairMeasures& m) { return double(m.left_exposure.contrast); }},
     Number{"right_contrast", "contrast right, grey levels", "%.0f",
@@ -223,12 +322,15 @@ constexpr std::array kNumbers{
     Number{"right_black_percent", "black right, %", "%.1f",
            [](const PairMeasures& m) { return 100 * double(m.right_exposure.black); }},
     Number{"left_edge_px", "edges left, px", "%.2f",
-           [](const PairMeasures& m) { return double(m.left_sharpness.edge_px); }},
+           [](const PairMeasures& m) { return width_of(m.left_sharpness); }},
     Number{"right_edge_px", "edges right, px", "%.2f",
-           [](const PairMeasures& m) { return double(m.right_sharpness.edge_px); }}};
+           [](const PairMeasures& m) { return width_of(m.right_sharpness); }}};
 
 std::string numbers_text(const std::vector<Examined>& pairs) {
   const bool several = pairs.size() > 1;
+  if (std::none_of(pairs.begin(), pairs.end(),
+                   [](const Examined& pair) { return pair.measures.has_value(); }))
+    return {};
   Table table(several ? std::vector<std::string>{"measured", "least", "median", "most"}
                       : std::vector<std::string>{"measured", ""});
   for (const Number& number : kNumbers) {
@@ -238,7 +340,12 @@ std::string numbers_text(const std::vector<Examined>& pairs) {
     }
     std::erase_if(values, [](double value) { return std::isnan(value); });
     std::sort(values.begin(), values.end());
-    if (values.empty()) continue;
+    if (values.empty()) {
+      const std::string none = "not measured";
+      table.add(several ? std::vector<std::string>{number.name, "", none, ""}
+                        : std::vector<std::string>{number.name, none});
+      continue;
+    }
     const std::string median = text_of(number.format, values[values.size() / 2]);
     if (several) {
       table.add({number.name, text_of(number.format, values.front()), median,
@@ -349,12 +456,21 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
     j["pairs"].push_back(std::move(one));
   }
   j["synchrony"] = nullptr;
-  if (diagnosis.synchrony) {
-    const Synchrony& s = *diagnosis.synchrony;
-    j["synchrony"] = {{"frames", s.frames},
+  if (diagnosis.sequence) {
+    const Synchrony& s = diagnosis.sequence->synchrony;
+    Json change = nullptr;
+    if (s.change) {
+      change = {{"from", diagnosis.sequence->names[static_cast<std::size_t>(s.change->from)]},
+                {"before", s.change->before},
+                {"after", s.change->after},
+                {"motion", s.change->motion}};
+    }
+    j["synchrony"] = {{"first", diagnosis.sequence->names.front()},
+                      {"frames", s.frames},
                       {"lag", s.lag()},
                       {"motion", s.motion},
                       {"agreement", s.agreement},
+                      {"change", change},
                       {"left_repeats", s.left_repeats},
                       {"right_repeats", s.right_repeats}};
   }
@@ -367,9 +483,11 @@ int examine_and_tell(const DoctorOptions& options) {
       std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
                   [](const Finding& finding) { return finding.severity == Severity::broken; });
   if (options.json) io::write_file(*options.json, diagnosis_json(diagnosis, is_broken));
-  std::cout << findings_text(diagnosis) << "\n" << numbers_text(diagnosis.pairs);
-  if (const std::string rows = histogram_text(histogram_of(diagnosis.pairs)); !rows.empty())
-    std::cout << "\n" << rows;
+  std::cout << findings_text(diagnosis);
+  for (const std::string& part :
+       {numbers_text(diagnosis.pairs), histogram_text(histogram_of(diagnosis.pairs))}) {
+    if (!part.empty()) std::cout << "\n" << part;
+  }
   return is_broken ? 1 : 0;
 }
 

@@ -66,6 +66,7 @@ struct FrameScore {
   bool knows_occlusion = false;
   std::optional<ConfidentPixels> confident;  // nullopt where there is no confidence.png
   std::vector<io::StageTime> times;  // empty where there is no objects.json, and without --json or --html
+  io::EncodedFrame page;             // empty without --html
 };
 
 /// What objects.json says of the time of each stage.
@@ -143,6 +144,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
                 " holds");
   }
   if ((options.json || options.html) && result.json) score.times = load_times(*result.json);
+  if (options.html) score.page = encode_frame(result, truth);
   return score;
 }
 
@@ -151,6 +153,8 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
 struct Scores {
   std::vector<FrameScore> frames;
   std::vector<std::string> without_result;  // frames with a truth, which are not in the results
+  LeftOut left_out;                         // frames whose files cannot be used
+  std::size_t results = 0;
 };
 
 bool has_truth(const fs::path& folder) {
@@ -174,6 +178,7 @@ Scores score_all(const EvaluateOptions& options) {
   const fs::path whole = fs::absolute(options.result).lexically_normal();
   if (auto single = result_in(whole.has_filename() ? whole : whole.parent_path())) {
     scores.frames.push_back(score_frame(*single, io::find_truth(options.truth), options));
+    scores.results = 1;
     return scores;
   }
   std::set<std::string> seen;
@@ -188,13 +193,22 @@ Scores score_all(const EvaluateOptions& options) {
                 "disparity.pfm");
   }
   std::sort(results.begin(), results.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  const auto truth_of = [&](const ResultFiles& result) { return fs::path(options.truth) / result.name; };
   for (const ResultFiles& result : results) {
-    const fs::path truth = fs::path(options.truth) / result.name;
-    if (!fs::is_directory(truth, ignored))
-      throw Error(truth.string() + ": no such folder, but there is a result " + result.name);
-    scores.frames.push_back(score_frame(result, io::find_truth(truth), options));
+    if (!fs::is_directory(truth_of(result), ignored))
+      throw Error(truth_of(result).string() + ": no such folder, but there is a result " + result.name);
     seen.insert(result.name);
   }
+  scores.results = results.size();
+  for (const ResultFiles& result : results) {
+    try {
+      scores.frames.push_back(score_frame(result, io::find_truth(truth_of(result)), options));
+    } catch (const Error& error) {
+      if (results.size() == 1) throw;
+      scores.left_out.add(result.name, error.what());
+    }
+  }
+  if (scores.frames.empty()) throw Error(options.result + ": not one of its results can be scored");
   for (const auto& entry : fs::directory_iterator(options.truth)) {
     const std::string name = entry.path().filename().string();
     if (!seen.contains(name) && name != "gt" && has_truth(entry.path()))
@@ -563,6 +577,7 @@ std::string evaluation_json(const Scores& scores, const EvaluateOptions& options
                   {"disparity", summary_disparity_json(scores.frames)},
                   {"timings_ms", summary_times_json(scores.frames)}};
   j["without_result"] = scores.without_result;
+  j["left_out"] = scores.left_out.frames();
   j["frames"] = Json::array();
   for (const FrameScore& frame : scores.frames) j["frames"].push_back(frame_json(frame));
   // A folder's name may be no UTF-8, which is no reason to fail.
@@ -571,10 +586,10 @@ std::string evaluation_json(const Scores& scores, const EvaluateOptions& options
 
 constexpr const char* kPageName = "evaluation.html";
 
-void write_page(const Scores& scores, const EvaluateOptions& options, const std::string& as_json) {
+void write_page(Scores& scores, const EvaluateOptions& options, const std::string& as_json) {
   std::vector<io::EncodedFrame> frames;
   frames.reserve(scores.frames.size());
-  for (const FrameScore& frame : scores.frames) frames.push_back(encode_frame(frame.result, frame.truth));
+  for (FrameScore& frame : scores.frames) frames.push_back(std::move(frame.page));
   const io::PageHead head{"evaluate", name_of(options.result) + " against " + name_of(options.truth),
                           as_json};
   const std::string page = io::html_page(head, frames);
@@ -583,7 +598,7 @@ void write_page(const Scores& scores, const EvaluateOptions& options, const std:
 }
 
 int evaluate(const EvaluateOptions& options) {
-  const Scores scores = score_all(options);
+  Scores scores = score_all(options);
   if (options.json || options.html) {
     const std::string as_json = evaluation_json(scores, options);
     if (options.json) io::write_file(*options.json, as_json);
@@ -597,7 +612,7 @@ int evaluate(const EvaluateOptions& options) {
     for (const std::string& name : scores.without_result) std::cout << " " << name;
     std::cout << "\n";
   }
-  return 0;
+  return scores.left_out.exit_code(scores.results);
 }
 
 }  // namespace

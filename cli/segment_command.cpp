@@ -5,8 +5,11 @@
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
 #include <io/atomic_file.hpp>
+#include <io/calibration_files.hpp>
 #include <io/html_page.hpp>
 #include <iostream>
+#include <optional>
+#include <set>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -74,6 +77,7 @@ std::string summary(const Frame& frame, double milliseconds) {
 struct Report {
   std::string out;         // for stdout
   std::string note;        // for stderr; mostly empty
+  std::string remark;      // the same, but once for all frames that have it
   io::EncodedFrame frame;  // for the page; empty without --html
 };
 
@@ -106,16 +110,21 @@ void remove_older_page(const fs::path& folder) {
   fs::remove(folder / kPageName, ignored);
 }
 
-/// One frame from files to results.
-Report work_on(const io::FrameFiles& files, const SegmentOptions& options, const fs::path& folder,
-               bool one_of_many, Exec& exec) {
+LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, const Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
   if (options.ply && !loaded.rig) throw Error(no_metres(files));
+  return loaded;
+}
+
+/// One frame from its pictures to results.
+Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOptions& options,
+               const fs::path& folder, bool one_of_many, Exec& exec) {
+  Report report;
+  report.remark = remark_on_calibration(loaded);
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
   const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
                                   loaded.given.has_value()};
-  Report report;
   if (!folder.empty()) {
     remove_older_page(options.output);
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
@@ -157,19 +166,32 @@ void require_output(const SegmentOptions& options) {
 int segment_all(const SegmentOptions& options) {
   require_output(options);
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
-  (void)resolve(options.input.config);  // a bad option is one whatever the frames hold
+  (void)resolve(options.input.config);  // what is bad for all frames is so before any of them
+  if (!options.input.calib.empty()) (void)io::load_calibration(options.input.calib);
   Exec exec = make_exec(options.exec);
   const bool many = is_folder_of_frames(options.input.left, frames);
   const Progress progress(frames.size());
   std::vector<io::EncodedFrame> encoded;
+  std::set<std::string> remarks;
+  LeftOut left_out;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
     fs::path folder = options.output;
     if (many && !options.output.empty()) folder /= frames[i].name;
+    std::optional<LoadedFrame> loaded;
     try {
-      Report report = work_on(frames[i], options, folder, many, exec);
+      loaded = load(frames[i], options, exec);
+    } catch (const Error& error) {
+      if (frames.size() == 1) throw;
+      progress.clear();
+      left_out.add(frames[i].name, error.what());
+      continue;
+    }
+    try {
+      Report report = work_on(std::move(*loaded), frames[i], options, folder, many, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
       progress.clear();
+      if (remarks.insert(report.remark).second) std::cerr << report.remark;
       std::cerr << report.note;
       std::cout << report.out << std::flush;
     } catch (const Error& error) {
@@ -177,11 +199,11 @@ int segment_all(const SegmentOptions& options) {
       throw Error("frame " + frames[i].name + ": " + error.what());
     }
   }
-  if (options.html) {
+  if (options.html && !encoded.empty()) {
     const io::PageHead head{"segment", name_of(options.input.left), {}};
     io::write_file(fs::path(options.output) / kPageName, io::html_page(head, encoded));
   }
-  return 0;
+  return left_out.exit_code(frames.size());
 }
 
 }  // namespace
@@ -206,7 +228,7 @@ Work declare_segment(CLI::App& app) {
   app.footer(
       "LEFT may also be a folder of such folders: each is a frame, and its result goes to a folder of its "
       "name in DIR.\n"
-      "The run ends at the first bad frame; results before it stay.");
+      "A frame whose files cannot be used is left out with a line on stderr; the exit code is 2 then.");
   return [options] { return segment_all(*options); };
 }
 

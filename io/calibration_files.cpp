@@ -171,6 +171,7 @@ Calibration judged(const Statement& says) {
                                   counted(*says.height, "height", kMostPixelsPerSide)};
   }
   if (says.ndisp) calibration.num_disparities = counted(*says.ndisp, "ndisp", kMostPixelsPerSide);
+  calibration.of_raw_cameras = says.has_distortion;
   return calibration;
 }
 

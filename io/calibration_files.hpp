@@ -15,6 +15,9 @@ struct Calibration {
   std::optional<StereoRig> rig;  // nothing where the file has no focal length or no baseline: no metres then
   std::optional<Size> image_size;      // of the pictures that it was made for
   std::optional<int> num_disparities;  // `ndisp`: the default of match.num_disparities
+  /// The file describes the lenses of the raw cameras as well: `rig` fits pictures that were rectified with
+  /// it.
+  bool of_raw_cameras = false;
 };
 
 /// A calibration that can be read but cannot be true: a focal length or baseline that is not positive.

@@ -20,6 +20,7 @@ struct Statement {
   std::optional<double> baseline_m;
   std::optional<double> doffs;  // px
   std::optional<double> width, height, ndisp;
+  bool has_distortion = false;  // of the lenses, besides
 };
 
 /// The whole of `text` as one finite number; `key` is for the words of the Error.

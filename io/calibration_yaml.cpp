@@ -141,6 +141,24 @@ Statement from_reprojection(const Matrix& matrix) {
   return {q[11], q[11], -q[3], -q[7], 1 / q[14], q[15] / q[14], {}, {}, {}};
 }
 
+bool is_distorted(const std::vector<double>& coefficients) {
+  return std::any_of(coefficients.begin(), coefficients.end(), [](double value) { return value != 0; });
+}
+
+constexpr std::initializer_list<const char*> kLeftDistortion = {"D1", "distCoeffs1", "dist_coeffs_1"};
+constexpr std::initializer_list<const char*> kRightDistortion = {"D2", "distCoeffs2", "dist_coeffs_2"};
+
+template <class Document>
+bool has_distortion(const Document& document) {
+  for (const auto& names : {kLeftDistortion, kRightDistortion}) {
+    for (const char* name : names) {
+      const std::optional<Matrix> matrix = matrix_at(document, name);
+      if (matrix && is_distorted(matrix->data)) return true;
+    }
+  }
+  return false;
+}
+
 template <class Document>
 void read_size(const Document& document, Statement& says) {
   for (const auto& [width, height] :
@@ -182,6 +200,7 @@ std::optional<Statement> read_opencv(const Document& document) {
   }
   read_size(document, says);
   if (!says.ndisp) says.ndisp = number_at(document, "ndisp");
+  says.has_distortion = has_distortion(document);
   return says;
 }
 
@@ -199,6 +218,15 @@ std::optional<Projection> ros_projection(const YAML::Node& camera) {
   return std::nullopt;
 }
 
+/// Of one camera: `distortion_coefficients` of camera_calibration's file, `D` or `d` of a printed message.
+bool ros_distortion(const YAML::Node& camera) {
+  if (const auto matrix = matrix_at(camera, "distortion_coefficients")) return is_distorted(matrix->data);
+  for (const char* key : {"D", "d"}) {
+    if (camera[key] && camera[key].IsSequence()) return is_distorted(numbers_of(camera[key], key));
+  }
+  return false;
+}
+
 /// The camera whose fourth column is greater is the left one: P[0][3] = −fx·B for the right.
 Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
   const std::optional<Projection> first = ros_projection(one);
@@ -207,6 +235,7 @@ Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
   const bool in_order = (*first)[3] >= (*second)[3];
   Statement says = in_order ? from_projections(*first, *second) : from_projections(*second, *first);
   read_size(one, says);
+  says.has_distortion = ros_distortion(one) || ros_distortion(other);
   return says;
 }
 
@@ -289,8 +318,8 @@ RawCalibration read_raw_opencv(const Document& document) {
   raw.image_size = raw_size(says);
   raw.left.matrix = needed<9>(document, {"M1", "K1", "cameraMatrix1", "camera_matrix_1"});
   raw.right.matrix = needed<9>(document, {"M2", "K2", "cameraMatrix2", "camera_matrix_2"});
-  raw.left.distortion = matrix_named(document, {"D1", "distCoeffs1", "dist_coeffs_1"}).value_or(Numbers{});
-  raw.right.distortion = matrix_named(document, {"D2", "distCoeffs2", "dist_coeffs_2"}).value_or(Numbers{});
+  raw.left.distortion = matrix_named(document, kLeftDistortion).value_or(Numbers{});
+  raw.right.distortion = matrix_named(document, kRightDistortion).value_or(Numbers{});
   raw.left.rotation = fixed_named<9>(document, {"R1"});
   raw.right.rotation = fixed_named<9>(document, {"R2"});
   raw.left.projection = fixed_named<12>(document, {"P1"});

@@ -47,6 +47,16 @@ void check(const RawCalibration& calibration) {
     throw Error("has neither R and T nor R1, R2, P1 and P2, expected how the cameras stand to each other");
 }
 
+/// For a better word than that its matrices are missing.
+bool is_of_rectified_pair(const fs::path& path) {
+  try {
+    const Calibration calibration = load_calibration(path);
+    return calibration.rig && !calibration.of_raw_cameras;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 RawCalibration load_raw_calibration(const fs::path& path) {
@@ -56,6 +66,12 @@ RawCalibration load_raw_calibration(const fs::path& path) {
     check(calibration);
     return calibration;
   } catch (const Error& error) {
+    if (is_of_rectified_pair(path)) {
+      throw Error(
+          path.string() +
+          ": is the calibration of a rectified pair, expected that of its raw cameras (M1 D1 M2 D2 R T, "
+          "as cairn calibrate writes it)");
+    }
     throw Error(path.string() + ": " + error.what());
   }
 }

@@ -13,8 +13,6 @@
 namespace cairn::io {
 namespace {
 
-constexpr std::size_t kLeastSightings = 3;
-
 /// OpenCV's exceptions in one line.
 template <class Work>
 auto with_opencv(const char* doing, Work work) {

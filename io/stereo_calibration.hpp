@@ -40,8 +40,10 @@ struct StereoCalibration {
   std::vector<double> pair_error_px;  // the worse camera's, one per sighting
 };
 
+inline constexpr std::size_t kLeastSightings = 3;
+
 /// Both cameras and how they stand to each other, from one board in several places (Zhang 2000). Throws Error
-/// with fewer than three sightings, or where OpenCV finds no solution.
+/// with fewer than kLeastSightings, or where OpenCV finds no solution.
 StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image);
 
 /// Turns pictures of raw cameras into those of a rectified pair.

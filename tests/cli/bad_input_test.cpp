@@ -239,19 +239,44 @@ TEST_F(BadInput, EvaluationsOfNothing) {
   refuses({"evaluate", path("results"), path("truth")}, {"truth"});
 }
 
-TEST_F(BadInput, ABadFrameOfAFolderEndsTheRunAndIsNamed) {
+TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndLeftOut) {
   pair_in("many/a");
   const auto bad = pair_in("many/b");
   pair_in("many/c");
   write(bad[1], "no picture");
-  const Outcome outcome = run({"segment", path("many"), "-o", path("out")});
+  const Outcome outcome = run({"segment", path("many"), "--html", "-o", path("out")});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("frame b"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("right.png"), std::string::npos) << outcome.err;
-  EXPECT_TRUE(fs::exists(at("out/a/objects.json")));  // what was done stays
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+  EXPECT_EQ(outcome.err.find("cairn: frame b is left out: " + bad[1]), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::exists(at("out/a/objects.json")));
   EXPECT_FALSE(fs::exists(at("out/b")));
-  EXPECT_FALSE(fs::exists(at("out/c")));
+  EXPECT_TRUE(fs::exists(at("out/c/objects.json")));
+  EXPECT_TRUE(fs::exists(at("out/segment.html")));
+}
+
+TEST_F(BadInput, WhatIsBadForAllFramesEndsTheRunAtOnce) {
+  pair_in("many/a");
+  pair_in("many/b");
+  refuses({"segment", path("many"), "-o", path("out"), "--calib", path("none.txt")}, {"none.txt"});
+  refuses({"segment", path("many"), "-o", "/proc/no_such_folder/out"}, {"frame a", "/proc/no_such_folder"});
+}
+
+TEST_F(BadInput, ABadResultOfAFolderIsNamedAndLeftOut) {
+  for (const char* name : {"a", "b", "c"}) pair_in(std::string("many/") + name);
+  ASSERT_EQ(run({"segment", path("many"), "-o", path("results")}).code, 0);
+  ASSERT_EQ(run({"segment", path("many"), "-o", path("truth")}).code, 0);
+  write(at("results/b/objects.png"), "no picture");
+  const Outcome outcome = run({"evaluate", path("results"), path("truth"), "--json", path("e.json")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.find("cairn: frame b is left out: "), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("in 2 frames"), std::string::npos) << outcome.out;
+  EXPECT_NE(content(at("e.json")).find("\"left_out\": [\n  \"b\"\n ]"), std::string::npos);
+  for (const char* name : {"a", "c"}) write(at("results") / name / "objects.png", "no picture");
+  fs::remove(at("e.json"));
+  EXPECT_EQ(run({"evaluate", path("results"), path("truth"), "--json", path("e.json")}).code, 2);
+  EXPECT_FALSE(fs::exists(at("e.json")));
 }
 
 TEST_F(BadInput, AnOlderResultOutlivesAFailedRun) {

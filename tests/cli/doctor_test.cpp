@@ -61,6 +61,7 @@ TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out.find("broken   sizes: the left picture is 96x72, the right one 64x48"), 0U)
       << outcome.out;
+  EXPECT_EQ(outcome.out.find("measured"), std::string::npos) << outcome.out;
 }
 
 TEST_F(Doctor, SeesPairsOfDifferentSizesInAFolder) {
@@ -94,6 +95,78 @@ TEST_F(Doctor, NamesThePairsOfAFolderThatAreBad) {
   const Outcome outcome = run({"doctor", path("rig")});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("in 1 of 3 pairs (two)"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Doctor, SeesTheSamePictureTwice) {
+  const std::string picture = (samples::folder("overlap") / "left.png").string();
+  const Outcome outcome = run({"doctor", picture, picture});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.out.find("broken   the two pictures are the same: every pixel"), 0U) << outcome.out;
+}
+
+TEST_F(Doctor, SaysWhatWasNotMeasured) {
+  const auto pair = pair_in("pair", {24, 18});  // too small for 50 points
+  const Outcome outcome = run({"doctor", pair[0], pair[1], "--json", path("d.json")});
+  const std::size_t gain = outcome.out.find("gain, right to left ");
+  ASSERT_NE(gain, std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.substr(gain, outcome.out.find('\n', gain) - gain).find("not measured"),
+            std::string::npos)
+      << outcome.out;
+  const Json j = Json::parse(content(at("d.json")));
+  EXPECT_TRUE(j["pairs"][0]["measured"]["gain"].is_null());
+  EXPECT_TRUE(j["pairs"][0]["measured"]["brightness_difference"].is_null());
+}
+
+/// Noise that moves unevenly; from frame `lost` on the right camera is one frame late.
+void write_sequence(const fs::path& folder, int frames, int lost) {
+  std::mt19937 random(1);
+  const Size size{120, 60};
+  Image<Gray> noise({400, size.height});
+  for (int y = 0; y < noise.height(); ++y) {
+    for (int x = 0; x < noise.width(); ++x) noise(x, y) = static_cast<Gray>(random() % 256);
+  }
+  std::vector<int> places{10};
+  for (int i = 0; i < frames; ++i) places.push_back(10 + static_cast<int>(random() % 200));
+  for (int i = 0; i < frames; ++i) {
+    const auto at = static_cast<std::size_t>(i + 1);
+    const fs::path frame = folder / ("f" + std::to_string(100 + i));
+    fs::create_directories(frame);
+    // Only the upper rows move, more of them in some frames than in others.
+    const auto cut = [&](std::size_t moment, int disparity) {
+      Image<Gray> image(size);
+      const int moving = 10 + places[moment] % 40;
+      for (int y = 0; y < size.height; ++y)
+        std::copy_n(noise.row(y) + (y < moving ? places[moment] : 50) + disparity, size.width, image.row(y));
+      return image;
+    };
+    const Image<Gray> left = cut(at, 0);
+    const Image<Gray> right = cut(i < lost ? at : at - 1, 5);
+    io::save_png(frame / "left.png", left.view());
+    io::save_png(frame / "right.png", right.view());
+  }
+}
+
+TEST_F(Doctor, NamesTheFrameFromWhichOnAFolderIsOutOfStep) {
+  write_sequence(at("rig"), 26, 26);
+  Outcome outcome = run({"doctor", path("rig"), "--frames", "2"});
+  EXPECT_EQ(outcome.out.find("not synchronised"), std::string::npos) << outcome.out;
+  write_sequence(at("rig"), 26, 14);
+  outcome = run({"doctor", path("rig"), "--frames", "2", "--json", path("d.json")});
+  EXPECT_EQ(outcome.code, 1);
+  const Json j = Json::parse(content(at("d.json")));
+  const std::string from = j["synchrony"]["change"]["from"];
+  EXPECT_TRUE(from == "f113" || from == "f114" || from == "f115") << from;
+  EXPECT_EQ(j["synchrony"]["change"]["after"], 1);
+  EXPECT_NE(outcome.out.find("from frame " + from + " on"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Doctor, LooksForLostStepFarIntoALongFolder) {
+  write_sequence(at("rig"), 90, 70);
+  const Outcome outcome = run({"doctor", path("rig"), "--frames", "1", "--json", path("d.json")});
+  EXPECT_EQ(outcome.code, 1);
+  const Json j = Json::parse(content(at("d.json")));
+  const std::string from = j["synchrony"]["change"]["from"];
+  EXPECT_TRUE(from == "f169" || from == "f170" || from == "f171") << from;
 }
 
 TEST_F(Doctor, ExplainsEveryFindingWithoutAPair) {

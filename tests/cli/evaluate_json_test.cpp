@@ -245,7 +245,20 @@ TEST_F(EvaluateJson, IsWrittenForAFolderWhoseNameIsNoText) {
   EXPECT_EQ(evaluated().first.at("frames").size(), 2U);
 }
 
+TEST_F(EvaluateJson, NamesTheFramesThatAreLeftOut) {
+  for (const char* json : {"{", R"({"objects": [], "timings_ms": {"match": "soon"}})", "[]"}) {
+    write(at("result/b/objects.json"), json);
+    const Outcome outcome = run(arguments(path("new.json")));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find("objects.json"), std::string::npos) << outcome.err;
+    const Json j = Json::parse(content(at("new.json")));
+    EXPECT_EQ(j["left_out"], Json::array({"b"}));
+    EXPECT_EQ(j["frames"].size(), 1U);
+  }
+}
+
 TEST_F(EvaluateJson, IsNotWrittenForBadInput) {
+  fs::remove_all(at("result/a"));
   write(at("old.json"), "old");
   const auto refuses_both = [this](const std::vector<std::string>& words) {
     refuses(arguments(path("new.json")), words);

@@ -59,6 +59,19 @@ TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
   EXPECT_EQ(outcome.out.find("rows misaligned"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("not rectified"), std::string::npos) << outcome.out;
 
+  // With their own calibration the raw pictures are told to be raw, and those rectified with it are not.
+  for (const fs::path& from : {left, at("pair") / "left.png"}) {
+    const fs::path other = from == left ? right : at("pair") / "right.png";
+    outcome = run({"segment", from, other, "--calib", path("calib.yaml")});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("calib.yaml: describes raw cameras"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("cairn rectify"), std::string::npos) << outcome.err;
+    outcome =
+        run({"doctor", from, other, "--calib", path("calib.yaml"), "--set", "match.num_disparities=144"});
+    EXPECT_EQ(outcome.out.find("warning  calibration of raw cameras") != std::string::npos, from == left)
+        << outcome.out;
+  }
+
   // The calibration beside the pair says what that of the raw cameras says of it.
   const auto beside = io::load_calibration(at("pair") / "calib.txt");
   const auto raw = io::load_calibration(at("calib.yaml"));
@@ -69,6 +82,7 @@ TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
   EXPECT_NEAR(static_cast<double>(beside.rig->baseline_m), 0.083, 0.002);
   outcome = run({"segment", path("pair"), "-o", path("result")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
   EXPECT_TRUE(fs::exists(at("result") / "objects.json"));
 }
 
@@ -76,9 +90,11 @@ TEST_F(RawCameras, RefuseABoardThatIsNotThere) {
   pair_in("boards/a");
   pair_in("boards/b");
   refuses({"calibrate", path("boards"), "--board", "9x6", "--square", "0.025", "-o", path("c.yaml")},
-          {"the whole board is seen in 0 pairs"});
+          {"--board 9x6", "seen in 0 of 2 pairs", "10x7 squares"});
   refuses({"calibrate", kBoards.string(), "--board", "nine", "--square", "0.025"}, {"--board nine", "9x6"});
-  refuses({"calibrate", kBoards.string(), "--board", "9x6", "--square", "0"}, {"--square"});
+  refuses({"calibrate", kBoards.string(), "--board", "9x6", "--square", "0"}, {"--square", "metres"});
+  refuses({"calibrate", kBoards.string(), "--board", "9x6", "--square", "25"},
+          {"--square", "metres", "25 mm are 0.025"});
   fs::create_directories(at("empty"));
   refuses({"calibrate", path("empty"), "--board", "9x6", "--square", "1"}, {"holds no pairs"});
 }
@@ -92,6 +108,13 @@ TEST_F(RawCameras, RefuseACalibrationOfAnotherSize) {
   const auto pair = pair_in("pair");
   refuses({"rectify", "--calib", path("raw.yaml"), pair[0], pair[1], "-o", path("out")},
           {"raw.yaml", "640x480", "96x72"});
+}
+
+TEST_F(RawCameras, RefuseTheCalibrationOfARectifiedPair) {
+  const auto pair = pair_in("pair");
+  write(at("calib.txt"), "fx=60\ncx=48\ncy=36\nbaseline=0.1\n");
+  refuses({"rectify", "--calib", path("calib.txt"), pair[0], pair[1], "-o", path("out")},
+          {"calib.txt", "rectified pair", "raw cameras"});
 }
 
 TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {
