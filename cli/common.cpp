@@ -116,24 +116,13 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
   const fs::path left = options.left;
   io::FrameFiles files;
   files.name = left.stem().string();
+  // Nobody calls a frame so: it is its folder that has a name.
+  if (files.name == "left" || files.name == "right") files.name = name_of(left.parent_path());
   files.folder = left.parent_path();
   files.left = left;
   if (!options.right.empty()) files.right = options.right;
   files.calib = calibration_beside(left);
   return files;
-}
-
-/// left.png and right.png, or a folder for each such pair; else pairs named as `cairn calibrate` takes them.
-std::vector<io::FrameFiles> frames_in(const fs::path& folder) {
-  try {
-    return io::find_frames(folder);
-  } catch (const Error&) {
-    try {
-      return io::find_pairs(folder);
-    } catch (const Error&) {  // says less of what is usual
-    }
-    throw;
-  }
 }
 
 }  // namespace
@@ -142,7 +131,7 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
   if (options.right.empty() && fs::is_directory(options.left, ignored)) {
-    auto frames = frames_in(options.left);
+    auto frames = io::find_frames(options.left);
     if (!options.disparity.empty() && frames.size() > 1) {
       throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
                   " frames of " + options.left + "; give one frame");

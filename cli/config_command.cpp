@@ -12,6 +12,7 @@ namespace {
 struct ShowOptions {
   ConfigOptions config;
   bool markdown = false;
+  bool changed = false;
 };
 
 std::string escaped(std::string_view cell) {
@@ -36,10 +37,19 @@ Work declare_config(CLI::App& app) {
   add_config_options(app, show->config);
   app.add_flag("--markdown", show->markdown,
                "a table for the reference page instead of YAML that --config reads");
+  app.add_flag(
+         "--changed", show->changed,
+         "only the preset's name and the options that differ from it, so that all others keep following "
+         "the calibration and later versions")
+      ->excludes("--markdown");
   return [show] {
-    const Config config = resolve(show->config).config;
-    validate(config);
-    std::cout << (show->markdown ? markdown(config) : io::config_yaml(config));
+    const ResolvedConfig resolved = resolve(show->config);
+    validate(resolved.config);
+    if (show->changed) {
+      std::cout << io::changed_config_yaml(resolved.preset, resolved.config);
+    } else {
+      std::cout << (show->markdown ? markdown(resolved.config) : io::config_yaml(resolved.config));
+    }
     return 0;
   };
 }

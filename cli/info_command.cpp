@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <benchmarks/opencv_matchers.hpp>
 #include <cairn/core/target.hpp>
 #include <iostream>
 
@@ -28,8 +29,11 @@ int show(const ExecOptions& options) {
             << "  active     " << name(active_target(exec)) << "\n"
             << "threads      " << exec.threads() << "\n"
             << "built in\n"
-            << "  SIMD (Highway)    " << yes_or_no(CAIRN_WITH_HWY != 0) << "\n"
-            << "  threads (oneTBB)  " << yes_or_no(CAIRN_WITH_TBB != 0) << "\n";
+            << "  SIMD (Highway)                          " << yes_or_no(CAIRN_WITH_HWY != 0) << "\n"
+            << "  threads (oneTBB)                        " << yes_or_no(CAIRN_WITH_TBB != 0) << "\n"
+            << "  calibrate, rectify (OpenCV's calib3d)   " << yes_or_no(CAIRN_WITH_CALIBRATION != 0) << "\n"
+            << "  peers in bench (OpenCV's calib3d)       " << yes_or_no(!report::opencv_version().empty())
+            << "\n";
   return 0;
 }
 

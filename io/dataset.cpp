@@ -57,14 +57,18 @@ fs::path truth_beside(const fs::path& folder) {
   return clean(folder).parent_path() / "gt";
 }
 
+/// A frame's own, else that of the truth beside it.
+std::optional<fs::path> calibration_of(const fs::path& folder) {
+  std::optional<fs::path> calib = calibration(folder);
+  return calib ? calib : calibration(truth_beside(folder));
+}
+
 std::optional<FrameFiles> frame_in(const fs::path& folder) {
   const std::optional<fs::path> left = picture(folder, "left");
   if (!left) return std::nullopt;
   std::optional<fs::path> right = file(folder / ("right" + left->extension().string()));
   if (!right) right = picture(folder, "right");
-  std::optional<fs::path> calib = calibration(folder);
-  if (!calib) calib = calibration(truth_beside(folder));
-  return FrameFiles{clean(folder).filename().string(), folder, *left, right, calib};
+  return FrameFiles{clean(folder).filename().string(), folder, *left, right, calibration_of(folder)};
 }
 
 std::optional<TruthFiles> truth_in(const fs::path& folder) {
@@ -91,58 +95,68 @@ void check_folder(const fs::path& folder) {
       (fs::exists(folder, reason) ? "is no folder, expected one" : "is not there, expected a folder"));
 }
 
-}  // namespace
-
-std::vector<FrameFiles> find_frames(const fs::path& folder) {
-  check_folder(folder);
-  if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
+/// What `visit` makes of each entry, sorted by name. Throws Error where the folder cannot be listed.
+template <class Visit>
+std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
   std::vector<FrameFiles> frames;
   std::error_code reason;
   for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
-    std::error_code unknown;
-    if (!it->is_directory(unknown)) continue;
-    if (std::optional<FrameFiles> frame = frame_in(it->path())) frames.push_back(std::move(*frame));
+    if (std::optional<FrameFiles> frame = visit(it->path())) frames.push_back(std::move(*frame));
   }
   if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
-  if (frames.empty()) {
-    throw Error(folder.string() + ": holds no left.png (.jpg .pgm .ppm .tif), nor does a folder in it");
-  }
   std::sort(frames.begin(), frames.end(),
             [](const FrameFiles& a, const FrameFiles& b) { return a.name < b.name; });
   return frames;
 }
 
+std::vector<FrameFiles> frames_below(const fs::path& folder) {
+  return each_in(folder, [](const fs::path& path) -> std::optional<FrameFiles> {
+    std::error_code unknown;
+    if (!fs::is_directory(path, unknown)) return std::nullopt;
+    return frame_in(path);
+  });
+}
+
+/// The right picture of a left one whose name says that it is one.
+std::optional<fs::path> partner(const fs::path& left) {
+  const std::string name = left.filename().string();
+  const bool is_left = name.find("left") != std::string::npos && !name.starts_with("disp");
+  return is_left ? other_camera(left) : std::nullopt;
+}
+
+/// left01.jpg and right01.jpg, or left/01.jpg and right/01.jpg.
+std::vector<FrameFiles> pairs_by_name(const fs::path& folder) {
+  const bool in_folders = fs::is_directory(folder / "left") && fs::is_directory(folder / "right");
+  const std::optional<fs::path> calib = calibration_of(folder);
+  return each_in(
+      in_folders ? folder / "left" : folder, [&](const fs::path& left) -> std::optional<FrameFiles> {
+        if (!is_picture(left)) return std::nullopt;
+        const std::optional<fs::path> right = in_folders ? folder / "right" / left.filename() : partner(left);
+        if (!right || !is_file(*right)) return std::nullopt;
+        return FrameFiles{left.stem().string(), folder, left, *right, calib};
+      });
+}
+
+}  // namespace
+
+std::vector<FrameFiles> find_frames(const fs::path& folder) {
+  check_folder(folder);
+  if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
+  std::vector<FrameFiles> frames = frames_below(folder);
+  if (frames.empty()) frames = pairs_by_name(folder);
+  if (frames.empty()) {
+    throw Error(
+        folder.string() +
+        ": holds no left.png (.jpg .pgm .ppm .tif), nor does a folder in it, nor pairs such as left01.png "
+        "and right01.png, or left/01.png and right/01.png");
+  }
+  return frames;
+}
+
 std::vector<FrameFiles> find_pairs(const fs::path& folder) {
   check_folder(folder);
-  const bool in_folders = fs::is_directory(folder / "left") && fs::is_directory(folder / "right");
-  std::vector<FrameFiles> pairs;
-  std::error_code reason;
-  for (fs::directory_iterator it(in_folders ? folder / "left" : folder, reason), end; !reason && it != end;
-       it.increment(reason)) {
-    const fs::path& left = it->path();
-    if (!is_picture(left)) continue;
-    std::optional<fs::path> right = folder / "right" / left.filename();
-    if (!in_folders) {
-      const bool is_left = left.filename().string().find("left") != std::string::npos;
-      right = is_left ? other_camera(left) : std::nullopt;
-    }
-    if (right && is_file(*right)) pairs.push_back({left.stem().string(), folder, left, *right, {}});
-  }
-  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
-  if (pairs.size() < 2) {
-    try {
-      return find_frames(folder);
-    } catch (const Error&) {
-      if (pairs.empty()) {
-        throw Error(folder.string() +
-                    ": holds no pairs, expected left01.jpg and right01.jpg, left/01.jpg and right/01.jpg, or "
-                    "01/left.jpg and 01/right.jpg, and so on");
-      }
-    }
-  }
-  std::sort(pairs.begin(), pairs.end(),
-            [](const FrameFiles& a, const FrameFiles& b) { return a.name < b.name; });
-  return pairs;
+  std::vector<FrameFiles> pairs = pairs_by_name(folder);
+  return pairs.size() > 1 ? pairs : find_frames(folder);
 }
 
 TruthFiles find_truth(const fs::path& folder) {

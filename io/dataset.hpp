@@ -13,7 +13,7 @@ namespace cairn::io {
 
 /// The files of one stereo pair in its folder.
 struct FrameFiles {
-  std::string name;  // the folder's
+  std::string name;  // the folder's, or the left picture's among others in a folder
   std::filesystem::path folder;
   std::filesystem::path left;
   std::optional<std::filesystem::path> right;  // may be missing where a disparity map comes from elsewhere
@@ -21,12 +21,13 @@ struct FrameFiles {
 };
 
 /// A folder with a left picture (left.png, .jpg, .jpeg, .pgm, .ppm, .pnm, .tif, .tiff) is one frame;
-/// otherwise each of its sub-folders with one is, sorted by name. Throws Error where there is none.
+/// otherwise each of its sub-folders with one is, else each pair of files whose names differ in the words
+/// left and right alone (left01.jpg, right01.jpg) or that have one name in the sub-folders left/ and right/.
+/// Sorted by name. Throws Error where there is none.
 std::vector<FrameFiles> find_frames(const std::filesystem::path& folder);
 
-/// The pairs of pictures in a folder for a calibration, in the order of their names: files whose names differ
-/// in the words left and right alone (left01.jpg, right01.jpg), the same names in sub-folders left/ and
-/// right/, or find_frames(). Throws Error where there is none.
+/// The same for a calibration, which takes many pairs: where two or more differ in their names alone, they
+/// are all taken, though one of them be left.png. Throws Error where there is none.
 std::vector<FrameFiles> find_pairs(const std::filesystem::path& folder);
 
 /// What is known to be true of one frame; every part may be missing.

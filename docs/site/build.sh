@@ -19,6 +19,7 @@ config=build/docs/mkdocs.yml
 # Without the module its page is not in the contents.
 sed ${module[0]:+-e 's|^\( *\)- C++: .*|&\n\1- Python: api/python.md|'} -e '' docs/site/mkdocs.yml >"$config"
 mkdir -p build/docs/pages/api
+cp docs/site/wide.css build/docs/pages/
 doxygen docs/site/Doxyfile
 mkdocs build --strict --config-file "$config" >build/docs/mkdocs.log 2>&1 || {
   grep -v INFO build/docs/mkdocs.log >&2

@@ -39,6 +39,7 @@ TEST_F(Command, InfoNamesInstructionSetsAndThreads) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.out.find("active     scalar"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("compiled"), std::string::npos);
+  EXPECT_NE(outcome.out.find("calibrate, rectify"), std::string::npos) << outcome.out;
 }
 
 TEST_F(Command, ConfigPrintsWhatItReadsBack) {
@@ -49,6 +50,18 @@ TEST_F(Command, ConfigPrintsWhatItReadsBack) {
   const Outcome markdown = run({"config", "--markdown"});
   EXPECT_EQ(markdown.code, 0);
   EXPECT_NE(markdown.out.find("| `match.window_size` |"), std::string::npos) << markdown.out;
+}
+
+TEST_F(Command, ConfigPrintsWhatIsChangedAlone) {
+  const std::vector<std::string> asked{
+      "config", "--changed", "--preset", "paper", "--set", "match.window_size=11", "--set", "match.cost=sad"};
+  const std::string changed = run(asked).out;
+  EXPECT_EQ(changed.find("preset: paper\nmatch:\n  cost: sad"), 0U) << changed;
+  EXPECT_EQ(std::count(changed.begin(), changed.end(), '\n'), 4) << changed;
+  write(at("options.yaml"), changed);
+  EXPECT_EQ(run({"config", "--changed", "--config", path("options.yaml")}).out, changed);
+  EXPECT_EQ(run({"config", "--changed"}).out, "preset: default\n");
+  refuses({"config", "--changed", "--markdown"}, {"--changed", "--markdown"});
 }
 
 TEST_F(Command, SegmentPrintsATableAndWritesNothingWithoutAFolder) {
@@ -72,6 +85,13 @@ TEST_F(Command, SegmentTakesPairsThatDifferInTheirNamesAlone) {
       run({"segment", path("recording"), "--set", "match.num_disparities=16", "-o", path("out")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(fs::exists(at("out/left01/objects.json")) && fs::exists(at("out/left02/objects.json")));
+}
+
+TEST_F(Command, APairOfFilesCalledLeftAndRightHasTheNameOfItsFolder) {
+  const auto pair = pair_in("kitchen");
+  EXPECT_EQ(run(with("segment", pair)).out.find("kitchen: "), 0U);
+  fs::copy_file(pair[0], at("near.png"));
+  EXPECT_EQ(run({"segment", path("near.png"), pair[1]}).out.find("near: "), 0U);
 }
 
 TEST_F(Command, SegmentWritesAResultThatEvaluateReads) {

@@ -44,7 +44,7 @@ TEST_F(Doctor, SaysWhatIsWrongAndWhatToDoAndExitsWithOne) {
   EXPECT_EQ(j["findings"][0]["finding"], "cameras swapped");
   EXPECT_EQ(j["findings"][0]["severity"], "broken");
   EXPECT_EQ(j["findings"][0]["unit"], "%");
-  EXPECT_EQ(j["findings"][0]["pairs"], Json::array({"right"}));
+  EXPECT_EQ(j["findings"][0]["pairs"], Json::array({"overlap"}));
 }
 
 TEST_F(Doctor, WarningsAloneExitWithZero) {

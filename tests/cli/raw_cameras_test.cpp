@@ -96,7 +96,7 @@ TEST_F(RawCameras, RefuseABoardThatIsNotThere) {
   refuses({"calibrate", kBoards.string(), "--board", "9x6", "--square", "25"},
           {"--square", "metres", "25 mm are 0.025"});
   fs::create_directories(at("empty"));
-  refuses({"calibrate", path("empty"), "--board", "9x6", "--square", "1"}, {"holds no pairs"});
+  refuses({"calibrate", path("empty"), "--board", "9x6", "--square", "1"}, {"left01.png and right01.png"});
 }
 
 TEST_F(RawCameras, RefuseACalibrationOfAnotherSize) {

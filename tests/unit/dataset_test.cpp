@@ -53,6 +53,20 @@ TEST(Dataset, OtherwiseEachSubFolderWithOneIsSortedByName) {
   EXPECT_FALSE(frames[1].right);
 }
 
+TEST(Dataset, OtherwisePairsThatDifferInTheirNamesAloneAreWithTheFoldersCalibration) {
+  const TemporaryFolder folder;
+  for (const char* name : {"left01.png", "right01.png", "left02.png", "right02.png", "left03.png",
+                           "calib.txt", "disp_left.png", "disp_right.png"}) {
+    (void)folder.with(name, "");
+  }
+  const auto frames = io::find_frames(folder.path());
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].name, "left02");
+  EXPECT_EQ(frames[1].right, folder.path() / "right02.png");
+  EXPECT_EQ(frames[1].calib, folder.path() / "calib.txt");
+  EXPECT_EQ(frames[1].folder, folder.path());
+}
+
 TEST(Dataset, TheRightPictureOfTheSameKindIsPreferred) {
   const TemporaryFolder folder;
   for (const char* name : {"left.ppm", "right.png", "right.ppm"}) (void)folder.with(name, "");

@@ -128,7 +128,8 @@ TEST(Pairs, AreFoundByNamesInFoldersAndAsFrames) {
   for (const char* name :
        {"a/left02.jpg", "a/right02.jpg", "a/left01.jpg", "a/right01.jpg", "a/left03.jpg", "a/notes_left.txt",
         "a/notes_right.txt", "b/left/7.png", "b/right/7.png", "b/left/8.png", "c/one/left.png",
-        "c/one/right.png", "c/two/left.png", "c/two/right.png", "d/nothing.txt"})
+        "c/one/right.png", "c/two/left.png", "c/two/right.png", "d/nothing.txt", "e/left.jpg", "e/right.jpg",
+        "e/left01.jpg", "e/right01.jpg"})
     (void)folder.with(name, "");
   const auto by_name = io::find_pairs(folder.path() / "a");
   ASSERT_EQ(by_name.size(), 2U);
@@ -138,8 +139,14 @@ TEST(Pairs, AreFoundByNamesInFoldersAndAsFrames) {
   ASSERT_EQ(in_folders.size(), 1U);
   EXPECT_EQ(in_folders[0].right, folder.path() / "b" / "right" / "7.png");
   EXPECT_EQ(io::find_pairs(folder.path() / "c").size(), 2U);
-  EXPECT_NE(refusal([&] { (void)io::find_pairs(folder.path() / "d"); }).find("holds no pairs"),
+  EXPECT_NE(refusal([&] { (void)io::find_pairs(folder.path() / "d"); }).find("left01.png and right01.png"),
             std::string::npos);
+  // A calibration takes all that pair up, other work the one called left.
+  EXPECT_EQ(io::find_pairs(folder.path() / "e").size(), 2U);
+  EXPECT_EQ(io::find_frames(folder.path() / "e").size(), 1U);
+  for (const char* same : {"a", "b", "c"})
+    EXPECT_EQ(io::find_frames(folder.path() / same).size(), io::find_pairs(folder.path() / same).size())
+        << same;
 }
 
 }  // namespace
