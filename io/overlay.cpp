@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <io/overlay.hpp>
 #include <iterator>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
@@ -58,14 +59,53 @@ void write(const cv::Mat& canvas, const std::string& text, cv::Point at, double 
   cv::putText(canvas, text, at, kFont, scale, scalar(colour), 1, cv::LINE_AA);
 }
 
-/// Centred on `middle`, and inside the picture as far as it fits.
-void write_centred(const cv::Mat& canvas, const std::string& text, cv::Point middle, double scale) {
+/// A text that belongs to a point.
+struct Label {
+  std::string text;
+  cv::Point middle;
+  cv::Size extent;  // above the line that it is written on
   int below = 0;
-  const cv::Size extent = cv::getTextSize(text, kFont, scale, 1, &below);
-  const int x = std::clamp(middle.x - extent.width / 2, 0, std::max(0, canvas.cols - extent.width));
-  const int y =
-      std::clamp(middle.y + extent.height / 2, extent.height, std::max(extent.height, canvas.rows - below));
-  write(canvas, text, {x, y}, scale, {255, 255, 255});
+};
+
+constexpr double kLabelScale = 0.45;
+
+Label label_at(cv::Point middle, std::string text) {
+  Label label{std::move(text), middle, {}, 0};
+  label.extent = cv::getTextSize(label.text, kFont, kLabelScale, 1, &label.below);
+  return label;
+}
+
+/// What it covers where it is centred on its point.
+Rect covered(const Label& label) {
+  return {label.middle.x - label.extent.width / 2, label.middle.y - label.extent.height / 2,
+          label.extent.width, label.extent.height + label.below};
+}
+
+Rect inside(Rect label, Size picture) {
+  label.x = std::clamp(label.x, 0, std::max(0, picture.width - label.width));
+  label.y = std::clamp(label.y, 0, std::max(0, picture.height - label.height));
+  return label;
+}
+
+bool overlap(const Rect& a, const Rect& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// Texts at their points, or beside and with a line to them where others are there already.
+void write_labels(const cv::Mat& canvas, const std::vector<Label>& labels) {
+  std::vector<Rect> wanted;
+  for (const Label& label : labels) wanted.push_back(covered(label));
+  const std::vector<Rect> places = place_labels(wanted, {canvas.cols, canvas.rows});
+  const Rgb white{255, 255, 255};
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const Rect& place = places[i];
+    const cv::Point middle(place.x + place.width / 2, place.y + place.height / 2);
+    const cv::Rect box(place.x, place.y, place.width, place.height);
+    if (!box.contains(labels[i].middle))
+      cv::line(canvas, middle, labels[i].middle, scalar(white), 1, cv::LINE_AA);
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    write(canvas, labels[i].text, {places[i].x, places[i].y + labels[i].extent.height}, kLabelScale, white);
 }
 
 /// The picture enlarged, its background faded towards grey.
@@ -193,6 +233,38 @@ LabelPlace label_place(View<const std::uint8_t> mask) {
   return {best.x - 1, best.y - 1};
 }
 
+std::vector<Rect> place_labels(const std::vector<Rect>& wanted, Size picture) {
+  constexpr int kGap = 1;       // px between two
+  constexpr int kFurthest = 6;  // heights up and down, and half as many half widths to either side
+  std::vector<Rect> placed;
+  for (const Rect& label : wanted) {
+    const auto is_free = [&](const Rect& place) {
+      const Rect wide{place.x - kGap, place.y - kGap, place.width + 2 * kGap, place.height + 2 * kGap};
+      return std::none_of(placed.begin(), placed.end(),
+                          [&](const Rect& other) { return overlap(wide, other); });
+    };
+    const Rect own = inside(label, picture);
+    Rect best = own;
+    std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
+    for (int rows = -kFurthest; rows <= kFurthest; ++rows) {
+      for (int columns = -kFurthest / 2; columns <= kFurthest / 2; ++columns) {
+        Rect place = own;
+        place.x += columns * (label.width / 2 + kGap);
+        place.y += rows * (label.height + kGap) / 2;
+        place = inside(place, picture);
+        const std::int64_t x = place.x - own.x;
+        const std::int64_t y = place.y - own.y;
+        const std::int64_t distance = x * x + y * y;
+        if (distance >= nearest || !is_free(place)) continue;
+        nearest = distance;
+        best = place;
+      }
+    }
+    placed.push_back(best);
+  }
+  return placed;
+}
+
 DisparitySpan disparity_span(View<const float> disparity_px) {
   std::vector<float> values;
   for (int y = 0; y < disparity_px.height(); ++y) {
@@ -228,7 +300,7 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
   const int factor = enlargement(left.size());
   Image<Rgb> canvas = enlarged(left, left_rgb, factor);
   tint(canvas, objects, floor, factor);
-  const cv::Mat target = matrix(canvas);
+  std::vector<Label> names;
   for (const Object& object : objects.list) {
     const std::string distance = object.position_in_camera_m
                                      ? number_text("%.2f m", object.position_in_camera_m->z)
@@ -237,8 +309,9 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
     const Image<std::uint8_t> mask = mask_of(View<const ObjectId>(objects.labels), object.id, box);
     const LabelPlace place = label_place(mask);
     const cv::Point middle = cv::Point(box.x + place.x, box.y + place.y) * factor;
-    write_centred(target, std::to_string(number(object.id)) + ": " + distance, middle, 0.45);
+    names.push_back(label_at(middle, std::to_string(number(object.id)) + ": " + distance));
   }
+  write_labels(matrix(canvas), names);
   return canvas;
 }
 

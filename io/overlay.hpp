@@ -9,6 +9,7 @@
 #include <cairn/objects/measure.hpp>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 /// Pictures to look at. Small frames are drawn enlarged by a whole factor, so that labels stay legible.
 namespace cairn::io {
@@ -43,6 +44,11 @@ struct LabelPlace {
   int y = 0;
 };
 LabelPlace label_place(View<const std::uint8_t> mask);
+
+/// Where labels of these sizes go that would like to be at these places: earlier ones first, each as near as
+/// it can be to its own without covering another. All are moved into the picture as far as they fit; one that
+/// finds no free place stays at its own.
+std::vector<Rect> place_labels(const std::vector<Rect>& wanted, Size picture);
 
 /// How a hole is drawn.
 struct HoleReason {

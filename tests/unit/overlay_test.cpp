@@ -62,6 +62,37 @@ TEST(ObjectPicture, LabelsEachObject) {
   EXPECT_GT(white, 20);
 }
 
+bool overlap(const Rect& a, const Rect& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+TEST(LabelPlaces, OfObjectsSideBySideDoNotCoverEachOther) {
+  const Size picture{640, 480};
+  std::vector<Rect> wanted;
+  for (int i = 0; i < 6; ++i) wanted.push_back({300 + 12 * i, 200 + 2 * (i % 2), 60, 14});  // poles
+  for (int i = 0; i < 4; ++i) wanted.push_back({620 + i, -5 + i, 60, 14});                  // a corner
+  const std::vector<Rect> places = place_labels(wanted, picture);
+  ASSERT_EQ(places.size(), wanted.size());
+  EXPECT_EQ(places[0].x, wanted[0].x);  // the first stays
+  EXPECT_EQ(places[0].y, wanted[0].y);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_GE(places[i].x, 0);
+    EXPECT_GE(places[i].y, 0);
+    EXPECT_LE(places[i].x + places[i].width, picture.width);
+    EXPECT_LE(places[i].y + places[i].height, picture.height);
+    for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(overlap(places[i], places[k])) << i << " " << k;
+  }
+}
+
+TEST(LabelPlaces, AreTheWantedOnesWhereNothingCollidesOrNothingIsFree) {
+  const std::vector<Rect> apart{{10, 10, 50, 14}, {10, 100, 50, 14}};
+  const auto same = place_labels(apart, {640, 480});
+  for (std::size_t i = 0; i < apart.size(); ++i) EXPECT_EQ(same[i].y, apart[i].y);
+  const auto crowded = place_labels({{0, 0, 50, 14}, {0, 0, 50, 14}}, {50, 14});
+  EXPECT_EQ(crowded[1].x, 0);
+  EXPECT_EQ(crowded[1].y, 0);
+}
+
 TEST(ObjectPicture, KnowsObjectsAtTheBorderAndPicturesOfOnePixel) {
   const Image<Gray> left({1, 1}, Gray{0}, {});
   const Image<std::uint8_t> floor({1, 1}, 255, {});
