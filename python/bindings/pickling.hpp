@@ -68,7 +68,7 @@ CAIRN_PARTS(Rect, x, y, width, height)
 CAIRN_PARTS(Vec3, x, y, z)
 CAIRN_PARTS(Rgb, r, g, b)
 CAIRN_PARTS(StereoRig, focal, cx, cy, baseline, doffs)
-CAIRN_PARTS(io::Calibration, rig, image_size, num_disparities)
+CAIRN_PARTS(io::Calibration, rig, image_size, num_disparities, of_raw_cameras)
 CAIRN_PARTS(PyCalibration, calibration, path)
 CAIRN_PARTS(OptionInfo, name, type, value_text, unit, domain, help)
 CAIRN_PARTS(PyConfig, preset, config, range_given)
@@ -106,14 +106,14 @@ CAIRN_PARTS(RowAlignment, points, offset, slope, agreeing, left_over, histogram)
 CAIRN_PARTS(Exposure, black, white, contrast)
 CAIRN_PARTS(BrightnessDifference, points, gain, offset, median)
 CAIRN_PARTS(Sharpness, edges, edge)
-CAIRN_PARTS(PairMeasures, size, textured_points, rows, disparities, brightness, left_exposure, right_exposure,
-            left_sharpness, right_sharpness)
+CAIRN_PARTS(PairMeasures, size, identical, textured_points, rows, disparities, brightness, left_exposure,
+            right_exposure, left_sharpness, right_sharpness)
 CAIRN_PARTS(LagChange, from, before, after, motion)
 CAIRN_PARTS(Synchrony, frames, motion, agreement, left_repeats, right_repeats, change)
 CAIRN_PARTS(Setting, option, value_text)
 CAIRN_PARTS(PyTuning, goal, end, kept_because, evaluations, seconds, before, after, held_out_before,
             held_out_after, held_out, options, not_judged, start, best, config)
-CAIRN_PARTS(Finding, kind, severity, measured, says, frames)
+CAIRN_PARTS(Finding, kind, severity, number, says, frames, camera)
 #undef CAIRN_PARTS
 
 // ---- to Python and back ----

@@ -108,6 +108,10 @@ void bind_rig(py::module_& m) {
       .def_property_readonly(
           "num_disparities", [](const PyCalibration& self) { return self.calibration.num_disparities; },
           "the default of match.num_disparities, or None")
+      .def_property_readonly(
+          "of_raw_cameras", [](const PyCalibration& self) { return self.calibration.of_raw_cameras; },
+          "whether the file describes the lenses of the raw cameras as well: the rig fits pictures that were "
+          "rectified with it")
       .def("__repr__", &calibration_repr)
       .def(pickled<PyCalibration>());
   m.def(

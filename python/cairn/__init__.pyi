@@ -190,6 +190,11 @@ class Calibration:
     @property
     def num_disparities(self) -> Optional[int]:
         """the default of match.num_disparities, or None"""
+    @property
+    def of_raw_cameras(self) -> bool:
+        """whether the file describes the lenses of the raw cameras as well: the rig fits pictures that were
+        rectified with it
+        """
 
 class Config:
     """What is computed: every option's value. Made from a preset, then a file (as `cairn config` prints it), then keywords; later ones win:
