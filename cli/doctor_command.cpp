@@ -143,6 +143,7 @@ struct Diagnosis {
   std::size_t pairs_in_all = 0;
   std::vector<Examined> pairs;
   std::vector<std::size_t> indices;  // of these pairs in the folder
+  LeftOut left_out;                  // pairs whose files cannot be used
   std::optional<Sequence> sequence;
   std::vector<Finding> findings;
 };
@@ -162,16 +163,26 @@ std::optional<Finding> find_sizes(const std::vector<Examined>& pairs) {
   return finding;
 }
 
-/// Consecutive pairs from `first` on, as long as they are of one size.
+/// nullopt where it cannot be used: an end of what follows each other.
+std::optional<io::PicturePair> load_if_possible(const io::FrameFiles& files, const Exec& exec) {
+  try {
+    return io::load_pair(files.left, right_of(files), exec.pool);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// Consecutive pairs from `first` on, as long as they can be used and are of one size.
 Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& frames, const Exec& exec) {
   std::vector<io::PicturePair> pictures;
   std::vector<StereoPair> pairs;
   Sequence sequence;
   sequence.first = first;
   for (std::size_t i = first; i < std::min(frames.size(), first + kLongestSequence); ++i) {
-    io::PicturePair one = io::load_pair(frames[i].left, right_of(frames[i]), exec.pool);
-    if (!pictures.empty() && one.left.gray.size() != pictures.front().left.gray.size()) break;
-    pictures.push_back(std::move(one));
+    std::optional<io::PicturePair> one = load_if_possible(frames[i], exec);
+    if (!one) break;
+    if (!pictures.empty() && one->left.gray.size() != pictures.front().left.gray.size()) break;
+    pictures.push_back(std::move(*one));
     sequence.names.push_back(frames[i].name);
   }
   pairs.reserve(pictures.size());
@@ -229,22 +240,43 @@ Finding of_measured_pairs(Finding finding, const Diagnosis& diagnosis) {
   return finding;
 }
 
+/// A calibration for all pairs that cannot be read is bad input; one that cannot be true is for a finding.
+void check_calibration(const std::string& path) {
+  if (path.empty()) return;
+  try {
+    (void)io::load_calibration(path);
+  } catch (const io::ImpossibleCalibration&) {
+    return;
+  }
+}
+
 Diagnosis examine_all(const DoctorOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // a bad option is one before any work
+  check_calibration(options.input.calib);
   const Exec exec = make_exec(options.exec);
-  Diagnosis diagnosis{
-      frames.size(), {}, spread(frames.size(), static_cast<std::size_t>(options.frames)), {}, {}};
+  const std::vector<std::size_t> tried = spread(frames.size(), static_cast<std::size_t>(options.frames));
+  Diagnosis diagnosis;
+  diagnosis.pairs_in_all = frames.size();
   std::vector<std::vector<Finding>> findings;
   {
-    const Progress progress(diagnosis.indices.size());
-    for (std::size_t i = 0; i < diagnosis.indices.size(); ++i) {
-      const io::FrameFiles& frame = frames[diagnosis.indices[i]];
+    const Progress progress(tried.size());
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      const io::FrameFiles& frame = frames[tried[i]];
       progress.at(i, frame.name);
-      diagnosis.pairs.push_back(examine(frame, options, exec));
+      try {
+        diagnosis.pairs.push_back(examine(frame, options, exec));
+      } catch (const Error& error) {
+        if (frames.size() == 1) throw;
+        progress.clear();
+        diagnosis.left_out.add(frame.name, error.what());
+        continue;
+      }
+      diagnosis.indices.push_back(tried[i]);
       findings.push_back(diagnosis.pairs.back().findings);
     }
   }
+  if (diagnosis.pairs.empty()) throw Error(options.input.left + ": not one of its pairs can be used");
   diagnosis.findings = united(findings);
   const auto add = [&](const std::optional<Finding>& finding) {
     if (!finding) return;
@@ -444,6 +476,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   j["findings"] = Json::array();
   for (const Finding& finding : diagnosis.findings)
     j["findings"].push_back(finding_json(finding, diagnosis.pairs));
+  j["left_out"] = diagnosis.left_out.frames();
   j["pairs"] = Json::array();
   for (const Examined& pair : diagnosis.pairs) {
     Json one{{"name", pair.name}, {"width", pair.size->width}, {"height", pair.size->height}};
@@ -456,7 +489,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
     j["pairs"].push_back(std::move(one));
   }
   j["synchrony"] = nullptr;
-  if (diagnosis.sequence) {
+  if (diagnosis.sequence && !diagnosis.sequence->names.empty()) {
     const Synchrony& s = diagnosis.sequence->synchrony;
     Json change = nullptr;
     if (s.change) {
@@ -488,7 +521,9 @@ int examine_and_tell(const DoctorOptions& options) {
        {numbers_text(diagnosis.pairs), histogram_text(histogram_of(diagnosis.pairs))}) {
     if (!part.empty()) std::cout << "\n" << part;
   }
-  return is_broken ? 1 : 0;
+  const int left_out =
+      diagnosis.left_out.exit_code(diagnosis.pairs.size() + diagnosis.left_out.frames().size());
+  return is_broken ? 1 : left_out;
 }
 
 /// Every finding with its number and remedy, and every limit.

@@ -169,6 +169,18 @@ TEST_F(Doctor, LooksForLostStepFarIntoALongFolder) {
   EXPECT_TRUE(from == "f169" || from == "f170" || from == "f171") << from;
 }
 
+TEST_F(Doctor, NamesAPairThatCannotBeReadAndLooksAtTheOthers) {
+  for (const char* name : {"a", "b", "c"}) pair_in(std::string("rig/") + name);
+  write(at("rig/a/right.png"), "no picture");
+  const Outcome outcome = run({"doctor", path("rig"), "--json", path("d.json")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.find("cairn: frame a is left out: "), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
+  const Json j = Json::parse(content(at("d.json")));
+  EXPECT_EQ(j["left_out"], Json::array({"a"}));
+  EXPECT_EQ(j["pairs"].size(), 2U);
+}
+
 TEST_F(Doctor, ExplainsEveryFindingWithoutAPair) {
   const Outcome outcome = run({"doctor", "--explain"});
   EXPECT_EQ(outcome.code, 0);
