@@ -12,11 +12,11 @@
 namespace cairn {
 
 struct TuneConfig {
-  std::vector<std::string> options;  // patterns as tunables() takes them; none: a sensible choice
-  double budget_s = 60;              // the start is measured to its end all the same
-  int evaluations = 0;               // at most; 0 = as many as the budget allows
-  double holdout = 0;                // 0 … 0.9: share of the frames that only judge the result
-  std::uint32_t seed = 1;            // which frames these are, and in which order options are tried
+  std::vector<std::string> options{};  // patterns as tunables() takes them; none: a sensible choice
+  double budget_s = 60;                // the start is measured to its end all the same
+  int evaluations = 0;                 // at most; 0 = as many as the budget allows
+  double holdout = 0;                  // 0 … 0.9: share of the frames that only judge the result
+  std::uint32_t seed = 1;              // which frames these are, and in which order options are tried
 };
 
 /// How far a search has come.
@@ -24,17 +24,17 @@ struct TuneProgress {
   TuningGoal goal = TuningGoal::objects;
   int evaluations = 0;  // that are done
   double seconds = 0;
-  double share = 0;              // 0 … 1: of the budget, or of the evaluations
-  std::optional<double> before;  // the mean loss of the start; known after the first evaluation
-  std::optional<double> best;    // of the best so far
+  double share = 0;                // 0 … 1: of the budget, or of the evaluations
+  std::optional<double> before{};  // the mean loss of the start; known after the first evaluation
+  std::optional<double> best{};    // of the best so far
 };
 
 struct TuneHooks {
   /// Whether to end and keep the best so far; asked between frames, on any thread, the calling one among
   /// them.
-  std::function<bool()> stop;
+  std::function<bool()> stop{};
   /// Told before each evaluation, on the calling thread.
-  std::function<void(const TuneProgress&)> progress;
+  std::function<void(const TuneProgress&)> progress{};
 };
 
 enum class TuneEnd : std::uint8_t {

@@ -120,10 +120,8 @@ def argument(text, function):
         kind = ARGUMENTS.get(name, "object")
         if name == "config" and not _cairn._options_of.get(function, (False,))[0]:
             kind = "Optional[Config]"
-    elif default == "None" and not kind.endswith("Like") and not kind.startswith("Optional"):
+    elif default == "None" and kind not in ("RigLike", "MaskLike") and not kind.startswith("Optional"):
         kind = f"Optional[{kind}]"
-    if default == "None" and kind == "ImageLike":
-        kind = "Optional[ImageLike]"
     return f"{name}: {kind}" + (f" = {default}" if equals else "")
 
 
