@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/tuning/frame_loss.hpp>
 #include <cairn/tuning/search.hpp>

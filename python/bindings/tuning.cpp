@@ -131,9 +131,10 @@ std::vector<std::unique_ptr<PyTuningFrame>> read_frames(const std::filesystem::p
 class Frames {
  public:
   explicit Frames(const FramesArgument& given) {
-    if (!py::isinstance<py::iterable>(given))
+    if (!py::isinstance<py::iterable>(given)) {
       throw ArgumentError("frames: found " + shown(given) +
                           ", expected cairn.TuningFrame or (left, right) of each frame");
+    }
     for (const py::handle entry : given) add(entry);
   }
 
