@@ -55,8 +55,7 @@ HWY_INLINE V MinOfAll(D d, V v) {
   v = Min(v, CombineShiftRightBytes<8>(d, v, v));
   v = Min(v, CombineShiftRightBytes<4>(d, v, v));
   v = Min(v, CombineShiftRightBytes<2>(d, v, v));
-  if constexpr (sizeof(TFromD<D>) == 1) v = Min(v, CombineShiftRightBytes<1>(d, v, v));
-  return v;
+  return Min(v, CombineShiftRightBytes<1>(d, v, v));
 }
 
 /// Bits of 4-bit numbers.
@@ -92,24 +91,6 @@ HWY_INLINE void StoreSum(D, V a, V b, V c, std::int16_t* to) {
   const auto upper = [&](V v) HWY_ATTR { return PromoteTo(wide, UpperHalf(half, v)); };
   Store(Add(Add(lower(a), lower(b)), lower(c)), wide, to);
   Store(Add(Add(upper(a), upper(b)), upper(c)), wide, to + Lanes(wide));
-}
-
-/// sum + v, neighbouring lanes of v together.
-template <class D, class VI>
-HWY_INLINE VI AddPairs(D d, VI sum, Vec<D> v) {
-  const Repartition<std::int32_t, D> wide;
-#if HWY_ARCH_X86
-  Vec<Repartition<std::int32_t, D>> unused = Zero(wide);
-  return Add(sum, ReorderWidenMulAccumulate(wide, v, Set(d, std::int16_t{1}), Zero(wide), unused));
-#else
-  const auto pairs = BitCast(wide, v);
-  (void)d;
-  return Add(sum, Add(ShiftRight<16>(ShiftLeft<16>(pairs)), ShiftRight<16>(pairs)));
-#endif
-}
-template <class D>
-HWY_INLINE std::int32_t SumOfAll(D d, Vec<D> v) {
-  return GetLane(SumOfLanes(d, v));
 }
 
 }  // namespace cairn::kernels::HWY_NAMESPACE::bytes

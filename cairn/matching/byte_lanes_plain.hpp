@@ -36,10 +36,6 @@ T Zero(Tag<T>) {
   return 0;
 }
 template <class T>
-T Iota(Tag<T>, T first) {
-  return first;
-}
-template <class T>
 T Load(Tag<T>, const T* from) {
   return *from;
 }
@@ -71,9 +67,6 @@ T Sub(T a, T b) {
 inline std::uint8_t SaturatedAdd(std::uint8_t a, std::uint8_t b) {
   return static_cast<std::uint8_t>(std::min(255, a + b));
 }
-inline std::int16_t Abs(std::int16_t a) {
-  return static_cast<std::int16_t>(std::abs(a));
-}
 template <int kBits>
 std::uint8_t ShiftRight(std::uint8_t a) {
   return static_cast<std::uint8_t>(a >> kBits);
@@ -85,14 +78,6 @@ T Min(T a, T b) {
 template <class T>
 T Max(T a, T b) {
   return std::max(a, b);
-}
-template <class T>
-bool Lt(T a, T b) {
-  return a < b;
-}
-template <class T>
-bool Gt(T a, T b) {
-  return a > b;
 }
 template <class T>
 bool Eq(T a, T b) {
@@ -109,14 +94,6 @@ T And(T a, T b) {
 template <class T>
 T AndNot(T not_a, T b) {
   return static_cast<T>(~not_a & b);
-}
-template <class T>
-T IfThenElse(bool mask, T yes, T no) {
-  return mask ? yes : no;
-}
-template <class T>
-T IfThenElseZero(bool mask, T yes) {
-  return mask ? yes : T{0};
 }
 template <class T>
 T IfThenZeroElse(bool mask, T no) {
@@ -145,12 +122,6 @@ inline std::uint8_t CountDifferentBits(Tag<std::uint8_t>, const std::uint8_t (&a
 }
 inline void StoreSum(Tag<std::uint8_t>, std::uint8_t a, std::uint8_t b, std::uint8_t c, std::int16_t* to) {
   *to = static_cast<std::int16_t>(a + b + c);
-}
-inline std::int32_t AddPairs(Tag<std::int16_t>, std::int32_t sum, std::int16_t v) {
-  return sum + v;
-}
-inline std::int32_t SumOfAll(Tag<std::int32_t>, std::int32_t v) {
-  return v;
 }
 
 }  // namespace cairn::kernels::plain_bytes

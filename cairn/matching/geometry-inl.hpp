@@ -94,16 +94,6 @@ using I = Wide::SumTag;
 using VF = lanes::Vec<F>;
 using VI = lanes::Vec<I>;
 
-/// Asks for the memory that `count` numbers from `at` on will be written to. Inlined, and so must be what
-/// calls it and does nothing else: compilers leave out calls that change nothing.
-template <class T>
-CAIRN_LANES_INLINE void expect_writes([[maybe_unused]] const T* at, [[maybe_unused]] int count) {
-#if defined(__GNUC__)
-  constexpr int kLine = 64 / sizeof(T);
-  for (int i = 0; i < count; i += kLine) __builtin_prefetch(at + i, 1);
-#endif
-}
-
 /// The search, and where the partners of a left pixel stand in the reversed right row.
 struct Geometry {
   int width;

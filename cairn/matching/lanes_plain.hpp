@@ -95,6 +95,10 @@ inline std::int32_t Mul(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(bits(a) * bits(b));
 }
 
+template <int kBits>
+std::int16_t ShiftLeft(std::int16_t a) {
+  return static_cast<std::int16_t>(bits(a) << kBits);
+}
 template <class T>
 T Min(T a, T b) {
   return std::min(a, b);

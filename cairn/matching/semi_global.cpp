@@ -52,8 +52,9 @@ Image<std::uint8_t> inside_row(const SearchLayout& layout, const Pool& pool) {
 /// So many rows that what the path up leaves is still in the cache when the paths across want it.
 int rows_at_a_time(const SearchLayout& layout, const Exec& exec) {
   constexpr int kCandidates = 1 << 17;  // two bytes each
-  return std::max(
-      {1, kCandidates / (layout.width * layout.lanes), exec.threads() > 1 ? 4 * exec.threads() : 1});
+  const int rows =
+      std::max({1, kCandidates / (layout.width * layout.lanes), exec.threads() > 1 ? 4 * exec.threads() : 1});
+  return kernels::round_up(rows, kernels::kRowsAbreast);
 }
 
 void follow_paths(const SemiGlobalTask& task, const SemiGlobalKernels& run, const Exec& exec) {

@@ -15,15 +15,13 @@ namespace {
 constexpr std::uint8_t kNoLane = 255;
 constexpr int kOutsideCost = 12;        // of 24 bits
 constexpr std::int16_t kNoSum = 32767;  // of a candidate that does not exist
-constexpr int kBlock = 16;              // left pixels whose sums are held at a time
-constexpr int kBlockMargin = 32;        // lanes without candidate before and after a pixel's sums
+constexpr int kBlock = 32;              // left pixels whose sums are held at a time
+constexpr int kBlockMargin = 32;        // lanes without candidate before, between and after pixels' sums
 
 template <class D>
 CAIRN_LANES_INLINE int lane_count(D d) {
   return static_cast<int>(bytes::Lanes(d));
 }
-template <class D>
-using Wide = bytes::Repartition<std::int16_t, D>;
 
 // ---------------------------------------------------------------------------------------------------------------
 // Census and smoothing
@@ -114,9 +112,9 @@ inline void describe_rows(const SemiGlobalTask& task, int first, int last) {
 // ---------------------------------------------------------------------------------------------------------------
 // One step of a path
 
-/// P2 of the step between two neighbours.
-CAIRN_LANES_INLINE std::uint8_t large_penalty(const SemiGlobalTask& task, Gray a, Gray b) {
-  return task.penalties.large[static_cast<std::size_t>(std::abs(a - b))];
+/// P2 of the step between two neighbours. `large`: by the step of intensity.
+CAIRN_LANES_INLINE std::uint8_t large_penalty(const std::uint8_t* large, Gray a, Gray b) {
+  return large[std::abs(a - b)];
 }
 
 /// Goes on by one pixel: `along` holds the L of the pixel before and gets this one's. `least` is the least of
@@ -212,30 +210,38 @@ class Descent {
     return sums_.data() + std::clamp(y, 0, g_.height - 1) % 3 * (last_ - first_) * g_.lanes;
   }
 
+  // What is reached through a pointer is copied first, here and below: as far as the compiler knows, a vector
+  // of bytes that is stored may be any of it.
+
   void sum_rows(int y) {
     const D d;
-    const std::uint8_t* left = task_.left_bits.row(y);
-    const std::uint8_t* right = task_.right_bits.row(y);
-    const std::uint8_t* inside = task_.inside.row(0);
+    const std::uint8_t* const left = task_.left_bits.row(y);
+    const std::uint8_t* const right = task_.right_bits.row(y) + g_.first_lane(0);
+    const std::uint8_t* const inside = task_.inside.row(0) + g_.first_lane(0);
     const int left_plane = round_up(g_.width, 64);
     const int right_plane = g_.length();
-    for (int i = 0; i < g_.lanes; i += lane_count(d)) {
-      const auto differences = [&](int x) CAIRN_LANES_ATTR {
+    const int lanes = g_.lanes;
+    const int most_x = g_.width - 1;
+    const int first = first_;
+    const int last = last_;
+    std::uint8_t* const out = sums(y);
+    for (int i = 0; i < lanes; i += lane_count(d)) {
+      const auto differences = [=](int x) CAIRN_LANES_ATTR {
         const std::uint8_t* l = left + x;
-        const int j = g_.first_lane(x) + i;
+        const std::uint8_t* r = right - x + i;
         const bytes::Vec<D> a[3] = {bytes::Set(d, l[0]), bytes::Set(d, l[left_plane]),
                                     bytes::Set(d, l[2 * left_plane])};
-        const bytes::Vec<D> b[3] = {bytes::LoadU(d, right + j), bytes::LoadU(d, right + right_plane + j),
-                                    bytes::LoadU(d, right + 2 * right_plane + j)};
-        const auto exists = bytes::LoadU(d, inside + j);
+        const bytes::Vec<D> b[3] = {bytes::LoadU(d, r), bytes::LoadU(d, r + right_plane),
+                                    bytes::LoadU(d, r + 2 * right_plane)};
+        const auto exists = bytes::LoadU(d, inside - x + i);
         const auto half = bytes::Set(d, static_cast<std::uint8_t>(kOutsideCost));
         return bytes::Or(bytes::And(bytes::CountDifferentBits(d, a, b), exists), bytes::AndNot(exists, half));
       };
-      auto before = differences(std::max(0, first_ - 1));
-      auto here = differences(first_);
-      for (int x = first_; x < last_; ++x) {
-        const auto after = differences(std::min(x + 1, g_.width - 1));
-        bytes::Store(bytes::Add(bytes::Add(before, here), after), d, sums(y) + (x - first_) * g_.lanes + i);
+      auto before = differences(std::max(0, first - 1));
+      auto here = differences(first);
+      for (int x = first; x < last; ++x) {
+        const auto after = differences(std::min(x + 1, most_x));
+        bytes::Store(bytes::Add(bytes::Add(before, here), after), d, out + (x - first) * lanes + i);
         before = here;
         here = after;
       }
@@ -245,26 +251,42 @@ class Descent {
   void go_down(int y) {
     const D d;
     const auto small = bytes::Set(d, task_.penalties.small);
-    const Gray* smooth = task_.smooth.row(y);
-    const Gray* smooth_above = task_.smooth.row(std::max(0, y - 1));
-    for (int x = first_; x < last_; ++x) {
-      const int at = (x - first_) * g_.lanes;
-      std::uint8_t* costs = task_.costs.row(y) + x * g_.lanes;
-      average(sums(y - 1) + at, sums(y) + at, sums(y + 1) + at, costs);
-      const auto large = bytes::Set(d, large_penalty(task_, smooth[x], smooth_above[x]));
-      const auto least = go_on(d, costs, along_.data() + at, bytes::Set(d, least_[x - first_]), small, large,
-                               g_.lanes, Keep<D>{d, task_.steps.row(y) + x * g_.lanes});
-      least_[x - first_] = bytes::GetLane(least);
+    const std::uint8_t* const large = task_.penalties.large.data();
+    const int lanes = g_.lanes;
+    const int count = last_ - first_;
+    const Gray* const smooth = task_.smooth.row(y) + first_;
+    const Gray* const smooth_above = task_.smooth.row(std::max(0, y - 1)) + first_;
+    const std::uint8_t* const above = sums(y - 1);
+    const std::uint8_t* const here = sums(y);
+    const std::uint8_t* const below = sums(y + 1);
+    const std::uint8_t* const beyond = beyond_.data();
+    std::uint8_t* const costs = task_.costs.row(y) + first_ * lanes;
+    std::uint8_t* const steps = task_.steps.row(y) + first_ * lanes;
+    const int next_y = std::min(y + 1, g_.height - 1);
+    const std::uint8_t* const next_costs = task_.costs.row(next_y) + first_ * lanes;
+    const std::uint8_t* const next_steps = task_.steps.row(next_y) + first_ * lanes;
+    std::uint8_t* const along = along_.data();
+    std::uint8_t* const least = least_.data();
+    for (int x = 0; x < count; ++x) {
+      const int at = x * lanes;
+      expect_writes(next_costs + at, lanes);
+      expect_writes(next_steps + at, lanes);
+      average(above + at, here + at, below + at, beyond, lanes, costs + at);
+      const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
+      const auto now = go_on(d, costs + at, along + at, bytes::Set(d, least[x]), small, penalty, lanes,
+                             Keep<D>{d, steps + at});
+      least[x] = bytes::GetLane(now);
     }
   }
 
-  void average(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below,
-               std::uint8_t* costs) const {
+  static CAIRN_LANES_INLINE void average(const std::uint8_t* above, const std::uint8_t* here,
+                                         const std::uint8_t* below, const std::uint8_t* beyond, int lanes,
+                                         std::uint8_t* costs) {
     const D d;
-    for (int i = 0; i < g_.lanes; i += lane_count(d)) {
+    for (int i = 0; i < lanes; i += lane_count(d)) {
       const auto sum = bytes::Add(bytes::Add(bytes::Load(d, above + i), bytes::Load(d, here + i)),
                                   bytes::Add(bytes::Load(d, below + i), bytes::Set(d, std::uint8_t{2})));
-      bytes::Store(bytes::Or(bytes::ShiftRight<2>(sum), bytes::Load(d, beyond_.data() + i)), d, costs + i);
+      bytes::Store(bytes::Or(bytes::ShiftRight<2>(sum), bytes::Load(d, beyond + i)), d, costs + i);
     }
   }
 
@@ -286,15 +308,23 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
   const D d;
   const int lanes = task.layout.lanes;
   const auto small = bytes::Set(d, task.penalties.small);
-  std::uint8_t* along = task.along.row(0);
-  std::uint8_t* least = task.least.row(0);
+  const std::uint8_t* const large = task.penalties.large.data();
+  std::uint8_t* const along = task.along.row(0);
+  std::uint8_t* const least = task.least.row(0);
   for (int y = bottom - 1; y >= top; --y) {
-    const Gray* smooth = task.smooth.row(y);
-    const Gray* smooth_below = task.smooth.row(std::min(y + 1, task.layout.height - 1));
+    const Gray* const smooth = task.smooth.row(y);
+    const Gray* const smooth_below = task.smooth.row(std::min(y + 1, task.layout.height - 1));
+    const std::uint8_t* const costs = task.costs.row(y);
+    std::uint8_t* const steps = task.steps.row(y);
+    const std::uint8_t* const next_costs = task.costs.row(std::max(y - 1, 0));
+    const std::uint8_t* const next_steps = task.steps.row(std::max(y - 1, 0));
     for (int x = first; x < last; ++x) {
-      const auto large = bytes::Set(d, large_penalty(task, smooth[x], smooth_below[x]));
-      const auto now = go_on(d, task.costs.row(y) + x * lanes, along + x * lanes, bytes::Set(d, least[x]),
-                             small, large, lanes, Accumulate<D>{d, task.steps.row(y) + x * lanes});
+      const int at = x * lanes;
+      expect_reads(next_costs + at, lanes);
+      expect_writes(next_steps + at, lanes);
+      const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_below[x]));
+      const auto now = go_on(d, costs + at, along + at, bytes::Set(d, least[x]), small, penalty, lanes,
+                             Accumulate<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
@@ -303,190 +333,304 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
 // ---------------------------------------------------------------------------------------------------------------
 // The paths to the left and to the right, and the winners
 
-struct Winner {
-  std::int16_t sum = kNoSum;
-  int lane = 0;
-  std::int32_t total = 0;  // of all candidates
-};
-
-/// Rows first … last − 1.
+/// Rows first … last − 1. What a pixel adds to a path waits for what the one before it added, and a processor
+/// could do several times as much meanwhile: so the paths of up to kRowsAbreast rows are followed side by
+/// side.
 template <class D>
 class Crossing {
+  using Sums = lanes::CappedTag<std::int16_t, 32>;
+  static constexpr int kSums = static_cast<int>(lanes::MaxLanes(Sums()));
+  static constexpr int kTileBits = 6;
+  static constexpr int kTile = 1 << kTileBits;
+  static constexpr std::int16_t kMostSum = 1023;  // four times 54 + 127 are less
+
  public:
   explicit Crossing(const SemiGlobalTask& task)
       : task_(task),
         g_(task.layout),
-        stride_(g_.lanes + 2 * kBlockMargin),
-        back_(g_.width * g_.lanes),
-        along_(g_.lanes),
-        sums_(kBlock * stride_),
-        lane_numbers_(32),
-        right_sum_(task.evidence == Evidence::full ? g_.length() : 0),
-        right_lane_(task.evidence == Evidence::full ? g_.length() : 0) {
+        stride_(g_.lanes + kBlockMargin),
+        back_(kRowsAbreast * g_.width * g_.lanes),
+        along_(kRowsAbreast * g_.lanes),
+        sums_(kRowsAbreast * kBlock * stride_ + kBlockMargin),
+        candidates_(g_.width),
+        right_length_(task.evidence == Evidence::full ? g_.length() : 0),
+        right_sum_(kRowsAbreast * right_length_),
+        right_lane_(kRowsAbreast * right_length_) {
     std::fill_n(sums_.data(), sums_.size(), kNoSum);
-    std::iota(lane_numbers_.data(), lane_numbers_.data() + lane_numbers_.size(), std::int16_t{0});
+    for (int x = 0; x < g_.width; ++x) candidates_[x] = g_.end(x) - g_.begin(x);
   }
 
   void run(int first, int last) {
-    for (int y = first; y < last; ++y) {
-      go_left(y);
-      go_right(y);
-    }
+    int y = first;
+    for (; y + kRowsAbreast <= last; y += kRowsAbreast) cross<kRowsAbreast>(y);
+    for (; y < last; ++y) cross<1>(y);
   }
 
  private:
+  template <int kRows>
+  void cross(int y) {
+    go_left<kRows>(y);
+    go_right<kRows>(y);
+  }
+
+  /// Some rows' paths in one direction.
+  template <int kRows>
+  struct Paths {
+    const std::uint8_t* costs[kRows];
+    const Gray* smooth[kRows];
+    std::uint8_t* along;
+    const std::uint8_t* large;
+    int lanes;
+    bytes::Vec<D> small;
+    bytes::Vec<D> least[kRows];
+
+    /// Goes on by pixel x in each row, coming from pixel `from`. use(row) makes what is called for each
+    /// vector.
+    template <class Use>
+    CAIRN_LANES_INLINE void step(int x, int from, const Use& use) {
+      const D d;
+      CAIRN_UNROLL
+      for (int row = 0; row < kRows; ++row) {
+        const auto penalty = bytes::Set(d, large_penalty(large, smooth[row][x], smooth[row][from]));
+        least[row] = go_on(d, costs[row] + x * lanes, along + row * lanes, least[row], small, penalty, lanes,
+                           use(row));
+      }
+    }
+  };
+
+  template <int kRows>
+  CAIRN_LANES_INLINE Paths<kRows> paths_of(int y) {
+    const D d;
+    Paths<kRows> paths;
+    std::fill_n(along_.data(), along_.size(), std::uint8_t{0});
+    for (int row = 0; row < kRows; ++row) {
+      paths.costs[row] = task_.costs.row(y + row);
+      paths.smooth[row] = task_.smooth.row(y + row);
+      paths.least[row] = bytes::Zero(d);
+    }
+    paths.along = along_.data();
+    paths.large = task_.penalties.large.data();
+    paths.lanes = g_.lanes;
+    paths.small = bytes::Set(d, task_.penalties.small);
+    return paths;
+  }
+
+  template <int kRows>
   void go_left(int y) {
     const D d;
-    const auto small = bytes::Set(d, task_.penalties.small);
-    const Gray* smooth = task_.smooth.row(y);
-    std::fill_n(along_.data(), g_.lanes, std::uint8_t{0});
-    auto least = bytes::Zero(d);
-    for (int x = g_.width - 1; x >= 0; --x) {
-      const auto large =
-          bytes::Set(d, large_penalty(task_, smooth[x], smooth[std::min(x + 1, g_.width - 1)]));
-      least = go_on(d, task_.costs.row(y) + x * g_.lanes, along_.data(), least, small, large, g_.lanes,
-                    Keep<D>{d, back_.data() + x * g_.lanes});
+    const int width = g_.width;
+    const int lanes = g_.lanes;
+    std::uint8_t* const back = back_.data();
+    auto paths = paths_of<kRows>(y);
+    for (int x = width - 1; x >= 0; --x) {
+      paths.step(x, std::min(x + 1, width - 1), [=](int row) CAIRN_LANES_ATTR {
+        return Keep<D>{d, back + (row * width + x) * lanes};
+      });
     }
   }
 
+  template <int kRows>
   void go_right(int y) {
-    const D d;
-    const auto small = bytes::Set(d, task_.penalties.small);
-    const Gray* smooth = task_.smooth.row(y);
-    std::fill_n(along_.data(), g_.lanes, std::uint8_t{0});
+    const int width = g_.width;
     std::fill_n(right_sum_.data(), right_sum_.size(), kNoSum);
-    auto least = bytes::Zero(d);
-    for (int x_first = 0; x_first < g_.width; x_first += kBlock) {
-      const int pixels = std::min(kBlock, g_.width - x_first);
-      for (int x = x_first; x < x_first + pixels; ++x) {
-        const int at = x * g_.lanes;
-        const auto large = bytes::Set(d, large_penalty(task_, smooth[x], smooth[std::max(x - 1, 0)]));
-        least = go_on(d, task_.costs.row(y) + at, along_.data(), least, small, large, g_.lanes,
-                      SumUp<D>{d, task_.steps.row(y) + at, back_.data() + at, sums_of(x - x_first)});
-      }
-      settle(x_first, pixels, y);
+    auto paths = paths_of<kRows>(y);
+    for (int x_first = 0; x_first < width; x_first += kBlock) {
+      const int pixels = std::min(kBlock, width - x_first);
+      sum_up<kRows>(paths, y, x_first, pixels);
+      for (int row = 0; row < kRows; ++row) settle(row, x_first, pixels, y + row);
     }
-    if (task_.evidence == Evidence::full) settle_right(y);
+    for (int row = 0; row < kRows && task_.evidence == Evidence::full; ++row) settle_right(y, row);
   }
 
-  [[nodiscard]] std::int16_t* sums_of(int pixel) const {
-    return sums_.data() + pixel * stride_ + kBlockMargin;
+  template <int kRows>
+  CAIRN_LANES_INLINE void sum_up(Paths<kRows>& known, int y, int x_first, int pixels) const {
+    const D d;
+    const int lanes = g_.lanes;
+    const std::uint8_t* vertical[kRows];
+    const std::uint8_t* back[kRows];
+    std::int16_t* sums[kRows];
+    for (int row = 0; row < kRows; ++row) {
+      vertical[row] = task_.steps.row(y + row);
+      back[row] = back_of(row);
+      sums[row] = sums_of(row, 0);
+    }
+    const int stride = stride_;
+    Paths<kRows> paths = known;
+    for (int x = x_first; x < x_first + pixels; ++x) {
+      const int at = x * lanes;
+      paths.step(x, std::max(x - 1, 0), [&](int row) CAIRN_LANES_ATTR {
+        return SumUp<D>{d, vertical[row] + at, back[row] + at, sums[row] + (x - x_first) * stride};
+      });
+    }
+    for (int row = 0; row < kRows; ++row) known.least[row] = paths.least[row];
   }
+
+  [[nodiscard]] std::uint8_t* back_of(int row) const { return back_.data() + row * g_.width * g_.lanes; }
+  [[nodiscard]] std::int16_t* sums_of(int row, int pixel) const {
+    return sums_.data() + (row * kBlock + pixel) * stride_ + kBlockMargin;
+  }
+
+  /// Numbers of a block's pixels.
+  template <class T>
+  using OfBlock = std::array<T, kBlock>;
 
   /// Writes a block's evidence. One question after the other for all its pixels, so that no pixel waits for
-  /// its own answer.
-  void settle(int x_first, int pixels, int y) {
-    std::array<Winner, kBlock> winners;
+  /// its own answer. All of the block are asked, also where the row ends before. `row`: of those side by
+  /// side.
+  void settle(int row, int x_first, int pixels, int y) {
+    const std::int32_t* const candidates = candidates_.data() + x_first;
+    if (std::min(candidates[0], candidates[pixels - 1]) < g_.lanes) hide_missing(row, x_first, pixels);
+    alignas(64) OfBlock<std::int16_t> least;
+    alignas(64) OfBlock<std::int16_t> lane;
+    find_winners(row, least, lane);
+    std::int16_t* const best = task_.out.best.row(y) + x_first;
     for (int i = 0; i < pixels; ++i) {
-      const int begin = g_.begin(x_first + i);
-      const int end = g_.end(x_first + i);
-      winners[static_cast<std::size_t>(i)] = begin == 0 && end == g_.lanes ? find_winner<false>(i, begin, end)
-                                                                           : find_winner<true>(i, begin, end);
+      const auto index = static_cast<std::size_t>(i);
+      best[i] = least[index] < kNoSum ? static_cast<std::int16_t>(g_.first_d + lane[index]) : kNoMatch;
     }
-    for (int i = 0; i < pixels; ++i) {
-      const auto& [sum, lane, total] = winners[static_cast<std::size_t>(i)];
-      const bool found = sum < kNoSum;
-      task_.out.best(x_first + i, y) = found ? static_cast<std::int16_t>(g_.first_d + lane) : kNoMatch;
-      task_.out.cost(x_first + i, y) = cost_of(sum);
-    }
+    write_costs(least, pixels, task_.out.cost.row(y) + x_first);
     if (task_.evidence == Evidence::winner) return;
-    const bool full = task_.evidence == Evidence::full;
-    if (full) update_right(x_first, pixels);
+    if (task_.evidence == Evidence::full) {
+      write_means(row, x_first, pixels, task_.out.mean_cost.row(y) + x_first);
+      update_right(row, x_first, pixels);
+    }
+    OfBlock<std::int16_t> before;
+    OfBlock<std::int16_t> after;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      std::int16_t* const sums = sums_of(row, static_cast<int>(i)) + lane[i];
+      before[i] = sums[-1];
+      after[i] = sums[1];
+      sums[-1] = sums[0] = sums[1] = kNoSum;  // so that the runner-up is the least of what is left
+    }
+    alignas(64) OfBlock<std::int16_t> runner_up;
+    fold<Sums, lanes::Lesser>(
+        [&](int pixel) CAIRN_LANES_ATTR {
+          const std::int16_t* const sums = sums_of(row, pixel);
+          auto least_beside = lanes::Load(Sums(), sums);
+          for (int i = kSums; i < g_.lanes; i += kSums)
+            least_beside = lanes::Min(least_beside, lanes::Load(Sums(), sums + i));
+          return least_beside;
+        },
+        runner_up.data());
+    write_costs(before, pixels, task_.out.cost_before.row(y) + x_first);
+    write_costs(after, pixels, task_.out.cost_after.row(y) + x_first);
+    write_costs(runner_up, pixels, task_.out.runner_up.row(y) + x_first);
+  }
+
+  static void write_costs(const OfBlock<std::int16_t>& sums, int pixels, float* CAIRN_RESTRICT out) {
     for (int i = 0; i < pixels; ++i) {
-      const auto& [sum, lane, total] = winners[static_cast<std::size_t>(i)];
-      const int x = x_first + i;
-      const bool found = sum < kNoSum;
-      const auto candidates = static_cast<float>(std::max(1, g_.end(x) - g_.begin(x)));
-      if (full) task_.out.mean_cost(x, y) = found ? static_cast<float>(total) / candidates : kNoCost;
-      task_.out.cost_before(x, y) = found ? cost_of(sums_of(i)[lane - 1]) : kNoCost;
-      task_.out.cost_after(x, y) = found ? cost_of(sums_of(i)[lane + 1]) : kNoCost;
-      task_.out.runner_up(x, y) = cost_of(least_beside(i, lane));
+      const std::int16_t sum = sums[static_cast<std::size_t>(i)];
+      out[i] = sum < kNoSum ? static_cast<float>(sum) : kNoCost;
     }
   }
 
-  static float cost_of(std::int16_t sum) { return sum < kNoSum ? static_cast<float>(sum) : kNoCost; }
-
-  /// 0, 1, 2 … Loaded: compilers put Iota() together lane by lane.
-  [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<Wide<D>> first_lanes() const {
-    return bytes::Load(Wide<D>(), lane_numbers_.data());
-  }
-
-  /// The least sum of a pixel, and its first lane. With kBorder, also takes out the lanes without candidate.
-  template <bool kBorder>
-  Winner find_winner(int pixel, int begin, int end) {
-    const Wide<D> d;
-    const bytes::Repartition<std::int32_t, D> d_total;
-    std::int16_t* sums = sums_of(pixel);
-    const auto none = bytes::Set(d, kNoSum);
-    const auto vector = bytes::Set(d, static_cast<std::int16_t>(lane_count(d)));
-    auto least = none;
-    auto where = bytes::Zero(d);
-    auto total = bytes::Zero(d_total);
-    auto lane = first_lanes();
-    for (int i = 0; i < g_.lanes; i += lane_count(d)) {
-      auto sum = bytes::Load(d, sums + i);
-      if constexpr (kBorder) {
-        const auto outside = bytes::Or(bytes::Lt(lane, bytes::Set(d, static_cast<std::int16_t>(begin))),
-                                       bytes::Gt(lane, bytes::Set(d, static_cast<std::int16_t>(end - 1))));
-        total = bytes::AddPairs(d, total, bytes::IfThenZeroElse(outside, sum));
-        sum = bytes::IfThenElse(outside, none, sum);
-        bytes::Store(sum, d, sums + i);
-      } else {
-        total = bytes::AddPairs(d, total, sum);
+  /// Takes out the lanes without candidate.
+  void hide_missing(int row, int x_first, int pixels) const {
+    const Sums d;
+    const auto none = lanes::Set(d, kNoSum);
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+      std::int16_t* const sums = sums_of(row, pixel);
+      const auto first = lanes::Set(d, static_cast<std::int16_t>(g_.begin(x_first + pixel)));
+      const auto last = lanes::Set(d, static_cast<std::int16_t>(g_.end(x_first + pixel) - 1));
+      for (int i = 0; i < g_.lanes; i += kSums) {
+        const auto lane = lanes::CountFrom(d, static_cast<std::int16_t>(i));
+        const auto outside = lanes::Or(lanes::Lt(lane, first), lanes::Gt(lane, last));
+        lanes::Store(lanes::IfThenElse(outside, none, lanes::Load(d, sums + i)), d, sums + i);
       }
-      where = bytes::IfThenElse(bytes::Lt(sum, least), lane, where);
-      least = bytes::Min(sum, least);
-      lane = bytes::Add(lane, vector);
     }
-    const auto least_of_all = bytes::MinOfAll(d, least);
-    const auto first = bytes::MinOfAll(d, bytes::IfThenElse(bytes::Eq(least, least_of_all), where, none));
-    return {bytes::GetLane(least_of_all), bytes::GetLane(first), bytes::SumOfAll(d_total, total)};
   }
 
-  /// The least sum of a pixel but for a lane and its two neighbours.
-  [[nodiscard]] std::int16_t least_beside(int pixel, int winner) const {
-    const Wide<D> d;
-    const std::int16_t* sums = sums_of(pixel);
-    const auto none = bytes::Set(d, kNoSum);
-    const auto one = bytes::Set(d, std::int16_t{1});
-    const auto vector = bytes::Set(d, static_cast<std::int16_t>(lane_count(d)));
-    auto distance = bytes::Sub(first_lanes(), bytes::Set(d, static_cast<std::int16_t>(winner)));
-    auto least = none;
-    for (int i = 0; i < g_.lanes; i += lane_count(d)) {
-      const auto far = bytes::Gt(bytes::Abs(distance), one);
-      least = bytes::Min(least, bytes::IfThenElse(far, bytes::Load(d, sums + i), none));
-      distance = bytes::Add(distance, vector);
+  /// out[pixel] = all lanes of of(pixel) together.
+  template <class Tag, class Op, class Of, class T>
+  static CAIRN_LANES_INLINE void fold(const Of& of, T* out) {
+    constexpr int kPixels = lanes::kFolded<Tag>;
+    for (int pixel = 0; pixel < kBlock; pixel += kPixels) {
+      lanes::Vec<Tag> of_pixel[kPixels];
+      CAIRN_UNROLL
+      for (int i = 0; i < kPixels; ++i) of_pixel[i] = of(pixel + i);
+      lanes::Store(lanes::FoldEach<Op>(Tag(), of_pixel), lanes::Folded<Tag>(), out + pixel);
     }
-    return bytes::GetLane(bytes::MinOfAll(d, least));
+  }
+
+  /// Each pixel's least sum, and the first lane that has it. Sums take ten bits, and the number of one of 64
+  /// lanes the six below: the least of these numbers is both.
+  void find_winners(int row, OfBlock<std::int16_t>& least, OfBlock<std::int16_t>& lane) const {
+    least.fill(kNoSum);
+    lane.fill(0);
+    for (int first = 0; first < g_.lanes; first += kTile) {
+      alignas(64) OfBlock<std::int16_t> tagged;
+      fold<Sums, lanes::Lesser>(
+          [&](int pixel) CAIRN_LANES_ATTR { return least_of_tile(sums_of(row, pixel) + first, first); },
+          tagged.data());
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const int number = tagged[i] + 32768;
+        const bool less = number >> kTileBits < std::min<int>(least[i], kMostSum);
+        least[i] = less ? static_cast<std::int16_t>(number >> kTileBits) : least[i];
+        lane[i] = less ? static_cast<std::int16_t>(first + number % kTile) : lane[i];
+      }
+    }
+  }
+
+  [[nodiscard]] CAIRN_LANES_INLINE lanes::Vec<Sums> least_of_tile(const std::int16_t* sums, int first) const {
+    const Sums d;
+    auto least = lanes::Set(d, std::int16_t{32767});
+    for (int i = 0; i < std::min(kTile, g_.lanes - first); i += kSums) {
+      const auto capped = lanes::Min(lanes::Load(d, sums + i), lanes::Set(d, kMostSum));
+      const auto number = lanes::CountFrom(d, static_cast<std::int16_t>(i - 32768));
+      least = lanes::Min(least, lanes::Add(lanes::ShiftLeft<kTileBits>(capped), number));
+    }
+    return least;
+  }
+
+  /// Over all candidates.
+  void write_means(int row, int x_first, int pixels, float* CAIRN_RESTRICT out) const {
+    alignas(64) OfBlock<std::int32_t> totals;
+    fold<lanes::SumTag<Sums>, lanes::Sum>(
+        [&](int pixel) CAIRN_LANES_ATTR {
+          const std::int16_t* const sums = sums_of(row, pixel);
+          auto total = lanes::ZeroSum(Sums());
+          for (int i = 0; i < g_.lanes; i += kSums)
+            total = lanes::AddPairs(Sums(), total, lanes::Load(Sums(), sums + i));
+          return total;
+        },
+        totals.data());
+    const std::int32_t* const candidates = candidates_.data() + x_first;
+    for (int i = 0; i < pixels; ++i) {
+      const int total = totals[static_cast<std::size_t>(i)] - (g_.lanes - candidates[i]) * kNoSum;
+      const float mean = static_cast<float>(total) / static_cast<float>(std::max(1, candidates[i]));
+      out[i] = candidates[i] > 0 ? mean : kNoCost;
+    }
   }
 
   /// Hands a block's sums to the right pixels that they are about. A right pixel meets its left pixels from
   /// left to right, its candidates thus in ascending order: strictly less keeps the smallest disparity.
-  void update_right(int x_first, int pixels) {
-    const Wide<D> d;
-    const auto one = bytes::Set(d, std::int16_t{1});
-    const int first = g_.first_lane(x_first + pixels - 1);
-    for (int j = 0; j < g_.count + pixels - 1; j += lane_count(d)) {
-      auto least = bytes::LoadU(d, right_sum_.data() + first + j);
-      auto where = bytes::LoadU(d, right_lane_.data() + first + j);
-      auto lane = bytes::Add(first_lanes(), bytes::Set(d, static_cast<std::int16_t>(j - pixels + 1)));
-      const std::int16_t* sums = sums_of(0) + j - pixels + 1;
+  void update_right(int row, int x_first, int pixels) {
+    const Sums d;
+    const auto one = lanes::Set(d, std::int16_t{1});
+    const int first = row * right_length_ + g_.first_lane(x_first + pixels - 1);
+    std::int16_t* const right_sum = right_sum_.data() + first;
+    std::int16_t* const right_lane = right_lane_.data() + first;
+    for (int j = 0; j < g_.count + pixels - 1; j += kSums) {
+      auto least = lanes::LoadU(d, right_sum + j);
+      auto where = lanes::LoadU(d, right_lane + j);
+      auto lane = lanes::CountFrom(d, static_cast<std::int16_t>(j - pixels + 1));
+      const std::int16_t* sums = sums_of(row, 0) + j - pixels + 1;
       for (int pixel = 0; pixel < pixels; ++pixel) {
-        const auto sum = bytes::LoadU(d, sums);
-        where = bytes::IfThenElse(bytes::Lt(sum, least), lane, where);
-        least = bytes::Min(sum, least);
-        lane = bytes::Add(lane, one);
+        const auto sum = lanes::LoadU(d, sums);
+        where = lanes::IfThenElse(lanes::Lt(sum, least), lane, where);
+        least = lanes::Min(sum, least);
+        lane = lanes::Add(lane, one);
         sums += stride_ + 1;
       }
-      bytes::StoreU(least, d, right_sum_.data() + first + j);
-      bytes::StoreU(where, d, right_lane_.data() + first + j);
+      lanes::StoreU(least, d, right_sum + j);
+      lanes::StoreU(where, d, right_lane + j);
     }
   }
 
-  void settle_right(int y) {
+  void settle_right(int first_row, int row) {
     for (int x = 0; x < g_.width; ++x) {
-      const int j = g_.reversed(x);
-      task_.out.best_right(x, y) =
+      const int j = row * right_length_ + g_.reversed(x);
+      task_.out.best_right(x, first_row + row) =
           right_sum_[j] < kNoSum ? static_cast<std::int16_t>(g_.first_d + right_lane_[j]) : kNoMatch;
     }
   }
@@ -494,10 +638,11 @@ class Crossing {
   const SemiGlobalTask& task_;
   const SearchLayout& g_;
   int stride_;
-  Scratch<std::uint8_t> back_;  // L − C of the path to the left, one row
+  Scratch<std::uint8_t> back_;  // for each row abreast: L − C of the path to the left
   Scratch<std::uint8_t> along_;
-  Scratch<std::int16_t> sums_;  // S of a block of pixels
-  Scratch<std::int16_t> lane_numbers_;
+  Scratch<std::int16_t> sums_;        // S of a block of pixels
+  Scratch<std::int32_t> candidates_;  // [x]: so many
+  int right_length_;
   Scratch<std::int16_t> right_sum_;   // least S of the right pixels, reversed
   Scratch<std::int16_t> right_lane_;  // and its lane
 };

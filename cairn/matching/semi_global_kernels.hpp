@@ -18,6 +18,9 @@ inline constexpr int kGreatestCost = (9 * 24 + 2) / 4;
 /// Two paths' penalties together fit a byte.
 inline constexpr int kGreatestPenalty = 127;
 
+/// So many rows' horizontal paths are followed side by side.
+inline constexpr int kRowsAbreast = 2;
+
 struct SemiGlobalPenalties {
   std::uint8_t small = 0;
   std::array<std::uint8_t, 256> large{};  // by the step of intensity
