@@ -436,6 +436,7 @@ class Crossing {
     auto paths = paths_of<kRows>(y);
     for (int x_first = 0; x_first < width; x_first += kBlock) {
       const int pixels = std::min(kBlock, width - x_first);
+      for (int row = 0; row < kRows; ++row) expect_evidence(x_first, y + row);
       sum_up<kRows>(paths, y, x_first, pixels);
       for (int row = 0; row < kRows; ++row) settle(row, x_first, pixels, y + row);
     }
@@ -463,6 +464,17 @@ class Crossing {
       });
     }
     for (int row = 0; row < kRows; ++row) known.least[row] = paths.least[row];
+  }
+
+  /// Asks for the memory that a block's maps are written to.
+  CAIRN_LANES_INLINE void expect_evidence(int x_first, int y) const {
+    const Matches& out = task_.out;
+    expect_writes(out.best.row(y) + x_first, kBlock);
+    expect_writes(out.cost.row(y) + x_first, kBlock);
+    if (task_.evidence == Evidence::winner) return;
+    for (const Image<float>* map : {&out.cost_before, &out.cost_after, &out.runner_up})
+      expect_writes(map->row(y) + x_first, kBlock);
+    if (task_.evidence == Evidence::full) expect_writes(out.mean_cost.row(y) + x_first, kBlock);
   }
 
   [[nodiscard]] std::uint8_t* back_of(int row) const { return back_.data() + row * g_.width * g_.lanes; }
