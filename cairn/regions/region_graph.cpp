@@ -31,7 +31,9 @@ struct GreySums {
 struct DisparitySums {
   struct Packed {
     std::int64_t squares = 0;
-    std::int64_t rest = 0;  // sum · 2³² + valid pixels · 2¹⁶ + floor pixels
+    // sum · 2³² + valid pixels · 2¹⁶ + floor pixels. Up to the end of a long row it may overflow, which does
+    // no harm: the difference of two is right again.
+    std::uint64_t rest = 0;
     Packed& operator+=(Packed o) {
       squares += o.squares;
       rest += o.rest;
@@ -42,11 +44,11 @@ struct DisparitySums {
   static Packed of(std::int16_t value, bool is_floor) {
     const bool valid = value != kHole16;
     const std::int64_t v = valid ? value : 0;
-    return {v * v, v * (std::int64_t{1} << 32U) + (valid ? 1 << 16U : 0) + (is_floor ? 1 : 0)};
+    return {v * v, (static_cast<std::uint64_t>(v) << 32U) + (valid ? 1U << 16U : 0U) + (is_floor ? 1U : 0U)};
   }
   static void add(Packed sums, int, RegionGraph::Node& node) {
-    node.valid_count += (sums.rest >> 16U) & 0xFFFF;
-    node.sum += sums.rest >> 32U;
+    node.valid_count += static_cast<std::int64_t>((sums.rest >> 16U) & 0xFFFF);
+    node.sum += static_cast<std::int64_t>(sums.rest) >> 32U;
     node.sum_of_squares += sums.squares;
     node.is_floor |= (sums.rest & 0xFFFF) != 0;
   }
