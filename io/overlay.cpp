@@ -94,6 +94,7 @@ bool overlap(const Rect& a, const Rect& b) {
 /// Texts at their points, or beside and with a line to them where others are there already.
 void write_labels(const cv::Mat& canvas, const std::vector<Label>& labels) {
   std::vector<Rect> wanted;
+  wanted.reserve(labels.size());
   for (const Label& label : labels) wanted.push_back(covered(label));
   const std::vector<Rect> places = place_labels(wanted, {canvas.cols, canvas.rows});
   const Rgb white{255, 255, 255};
