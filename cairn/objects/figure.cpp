@@ -4,16 +4,15 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/evidence.hpp>
+#include <cairn/objects/colour_model.hpp>
 #include <cairn/objects/figure.hpp>
-#include <cairn/objects/look_kernels.hpp>
+#include <cairn/objects/like_facets.hpp>
 #include <cairn/regions/minimum_cut.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <map>
-#include <numeric>
 #include <utility>
 
 namespace cairn {
@@ -97,23 +96,6 @@ void vote_in_row(View<const RegionId> facets, int y, const std::vector<Seen>& se
   vote_to_border(facet, seen.back().x + 1, width, &seen.back(), scales, votes);
 }
 
-using Colour = std::array<double, 3>;
-
-/// Mean square difference of the channels.
-double difference(const Colour& p, const Colour& q) {
-  double sum = 0;
-  for (std::size_t c = 0; c < 3; ++c) sum += (p[c] - q[c]) * (p[c] - q[c]);
-  return sum / 3;
-}
-
-/// A facet as the colour models see it.
-struct Look {
-  Colour colour{};  // mean; its grey three times where there is no colour
-  Rect box;
-  double pixels = 0;
-  bool seen = false;  // to be figure
-};
-
 std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                            const Votes& votes) {
   std::vector<Look> looks(slot(facets.count));
@@ -145,233 +127,68 @@ std::vector<double> counted(const std::vector<Look>& looks, const std::vector<st
   return pixels;
 }
 
-/// What each facet counts as ground, and what as figure: one of both is 0.
-struct Counted {
-  std::vector<double> ground;
-  std::vector<double> figure;
-};
-Counted parted(const std::vector<double>& counted, const std::vector<std::int32_t>& figure) {
-  Counted parts{counted, counted};
-  for (std::size_t i = 0; i < figure.size(); ++i) (figure[i] != 0 ? parts.ground : parts.figure)[i] = 0;
-  return parts;
+/// Those of `pixels` that count on one side.
+std::vector<double> on_side(const std::vector<double>& pixels, const std::vector<std::int32_t>& figure,
+                            bool of_figure) {
+  std::vector<double> counted(pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if ((figure[i] != 0) == of_figure) counted[i] = pixels[i];
+  }
+  return counted;
 }
-
-/// How common colours are in the ground and in the figure. Colours are gathered in cells of the colour cube,
-/// each with its own mean.
-class ColourModel {
- public:
-  ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
-              const std::vector<double>& counted, const Exec& exec)
-      : run_(kernels::look_kernels(exec)) {
-    std::map<int, Cell> cells;
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      if (!(counted[i] > 0)) continue;
-      int key = 0;
-      for (const double channel : looks[i].colour) key = 16 * key + static_cast<int>(channel / 16);
-      Cell& cell = cells[key];
-      const double before = cell.pixels[0] + cell.pixels[1];
-      for (std::size_t c = 0; c < 3; ++c) {
-        cell.mean[c] += (looks[i].colour[c] - cell.mean[c]) * counted[i] / (before + counted[i]);
-      }
-      cell.pixels.at(figure[i] != 0 ? 1 : 0) += counted[i];
-      total_.at(figure[i] != 0 ? 1 : 0) += counted[i];
-    }
-    for (const auto& [key, cell] : cells) {
-      for (std::size_t c = 0; c < 3; ++c) mean_[c].push_back(cell.mean[c]);
-      for (std::size_t side = 0; side < 2; ++side) pixels_.at(side).push_back(cell.pixels.at(side));
-    }
-  }
-
-  /// Logarithm of how many times as common a colour is in the ground as in the figure, −kMost … kMost.
-  /// `work`: working memory.
-  [[nodiscard]] double ground_over_figure(const Colour& colour, std::vector<double>& work) const {
-    work.resize(mean_[0].size());
-    const kernels::NearPixels near =
-        run_.pixels_like({mean_[0].data(), mean_[1].data(), mean_[2].data(), pixels_[0].data(),
-                          pixels_[1].data(), static_cast<int>(work.size())},
-                         colour.data(), 2 * kSpread * kSpread, work.data());
-    const auto share = [&](double pixels, double total) { return pixels / std::max(total, 1.0) + kUnknown; };
-    return std::clamp(std::log(share(near.ground, total_[0]) / share(near.figure, total_[1])), -kMost, kMost);
-  }
-
- private:
-  static constexpr double kSpread = 12;       // grey levels
-  static constexpr double kUnknown = 0.0003;  // colours that nothing has are nobody's
-  static constexpr double kMost = 3;
-  struct Cell {
-    Colour mean{};
-    std::array<double, 2> pixels{};  // of ground, of figure
-  };
-  const kernels::LookKernels& run_;
-  std::array<std::vector<double>, 3> mean_;  // of the cells, one list per channel
-  std::array<std::vector<double>, 2> pixels_;
-  std::array<double, 2> total_{};
-};
 
 /// Whether ground goes on beside a facet in the facet's colour.
 class Continuation {
  public:
-  Continuation(const std::vector<Look>& looks, int width, const Exec& exec)
-      : run_(kernels::look_kernels(exec)),
-        looks_(looks),
-        across_(kAcross * width),
-        down_(kDown * width),
-        squares_across_(squares(across_)),
-        squares_down_(squares(down_)) {
-    const std::size_t length = looks.size() + kernels::kLookSlack;
-    for (auto& side : sides_) side.resize(length);
-    for (auto& channel : channels_) channel.resize(length);
-    facet_.resize(length);
-    sort_by_grey();
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      if (looks[i].box.height > most_down()) tall_.push_back(static_cast<std::int32_t>(i));
-      in_order_ = in_order_ && (i == 0 || looks[i - 1].box.y <= looks[i].box.y);
-    }
-  }
+  Continuation(const std::vector<Look>& looks, const std::vector<double>& counted,
+               const std::vector<std::int32_t>& figure, const Likeness& likeness, const Exec& exec)
+      : looks_(looks),
+        ground_(looks, on_side(counted, figure, false), likeness, exec),
+        figure_(looks, on_side(counted, figure, true), likeness, exec) {}
 
-  /// Lists of the facets that one facet resembles and is near to; working memory.
-  struct Like {
-    explicit Like(const Continuation& of)
-        : found(of.facet_.size()), others(found.size()), likeness(found.size()) {}
-    std::vector<std::int32_t> found;
-    std::vector<std::int32_t> others;
-    std::vector<double> likeness;  // at first its logarithm
-    std::size_t count = 0;
+  struct Work {
+    explicit Work(const Continuation& of) : ground(of.ground_), figure(of.figure_) {}
+    LikeFacets::Work ground;
+    LikeFacets::Work figure;
   };
 
   /// 0 … 1: how much ground of its colour lies beside facet i, more than there is seen figure of that colour,
   /// compared with its own size.
-  double operator()(std::size_t i, const Counted& counted, Like& like) const {
-    find_like(i, like);
-    double near_ground = 0;
-    double near_figure = 0;
-    for (std::size_t k = 0; k < like.count; ++k) {
-      const std::size_t other = slot(like.others[k]);
-      near_ground += like.likeness[k] * counted.ground[other];
-      near_figure += like.likeness[k] * counted.figure[other];
-    }
+  double operator()(std::size_t i, Work& work) const {
     const double pixels = looks_[i].pixels;
-    return std::max(std::min(near_ground / pixels, 1.0) - std::min(near_figure / pixels, 1.0), 0.0);
+    const double near_figure = figure_.pixels_like(i, pixels, work.figure);
+    if (near_figure >= pixels) return 0;
+    const double near_ground = ground_.pixels_like(i, pixels, work.ground);
+    return std::max(std::min(near_ground / pixels, 1.0) - near_figure / pixels, 0.0);
   }
 
  private:
-  static constexpr double kSpread = 6;     // grey levels
-  static constexpr double kAcross = 0.15;  // of the width
-  static constexpr double kDown = 0.03;    // of the width: floor and wall change fast along a column
-  static constexpr double kFarthest = 9;   // squared deviations
-
-  static constexpr int kBins = 16;
-  static constexpr int kBinWidth = 256 / kBins;  // grey levels
-
-  /// The squares of the pixels in deviations, for so many as are within kFarthest.
-  static std::vector<double> squares(double deviation) {
-    std::vector<double> result;
-    const auto square = [&](std::size_t pixels) {
-      const double in_deviations = static_cast<double>(pixels) / deviation;
-      return in_deviations * in_deviations;
-    };
-    while (square(result.size()) <= kFarthest) result.push_back(square(result.size()));
-    return result;
-  }
-  /// The most pixels that are within kFarthest.
-  [[nodiscard]] int most_across() const { return static_cast<int>(squares_across_.size()) - 1; }
-  [[nodiscard]] int most_down() const { return static_cast<int>(squares_down_.size()) - 1; }
-
-  static double grey_of(const Look& look) { return (look.colour[0] + look.colour[1] + look.colour[2]) / 3; }
-  static int bin_of(double grey) { return std::clamp(static_cast<int>(grey) / kBinWidth, 0, kBins - 1); }
-
-  /// Only facets of like grey can be of like colour: those of a bin stand together, in their order.
-  void sort_by_grey() {
-    for (const Look& look : looks_) ++bin_end_[static_cast<std::size_t>(bin_of(grey_of(look))) + 1];
-    std::partial_sum(bin_end_.begin(), bin_end_.end(), bin_end_.begin());
-    std::array<std::int32_t, kBins + 1> next = bin_end_;
-    for (std::size_t i = 0; i < looks_.size(); ++i) {
-      const std::size_t at = slot(next[static_cast<std::size_t>(bin_of(grey_of(looks_[i])))]++);
-      const Rect& box = looks_[i].box;
-      facet_[at] = static_cast<std::int32_t>(i);
-      sides_[0][at] = box.x;
-      sides_[1][at] = box.x + box.width;
-      sides_[2][at] = box.y;
-      sides_[3][at] = box.y + box.height;
-      for (std::size_t c = 0; c < 3; ++c) channels_[c][at] = static_cast<float>(looks_[i].colour[c]);
-    }
-  }
-
-  /// The facets that i resembles and is near to, and how much each does, 0 … 1. Always in the same order.
-  void find_like(std::size_t i, Like& like) const {
-    // Facets come in the order of their first row. Those that end far above are passed over, and among those
-    // that begin far above only tall ones reach down.
-    const Rect& box = looks_[i].box;
-    const int above = box.y - 2 * most_down();
-    like.count = 0;
-    for (const std::int32_t j : tall_) {
-      if (in_order_ && looks_[slot(j)].box.y < above) add_like(i, slot(j), like);
-    }
-    constexpr double kMostGrey = 1.001 * kSpread * 3;  // √kFarthest deviations
-    const double grey = grey_of(looks_[i]);
-    for (int bin = bin_of(grey - kMostGrey); bin <= bin_of(grey + kMostGrey); ++bin) {
-      const auto first = bin_end_[static_cast<std::size_t>(bin)];
-      const auto last = bin_end_[static_cast<std::size_t>(bin) + 1];
-      const int found =
-          run_.within(arrays(), window_about(looks_[i]), in_order_ ? first_from(above, first, last) : first,
-                      in_order_ ? first_from(box.y + box.height + most_down() + 1, first, last) : last,
-                      like.found.data());
-      for (int k = 0; k < found; ++k) add_like(i, slot(facet_[slot(like.found[slot(k)])]), like);
-    }
-    run_.exponentials(like.likeness.data(), static_cast<int>(like.count));
-  }
-
-  /// The first of the facets first … last − 1 of a bin that does not begin above the row.
-  [[nodiscard]] std::int32_t first_from(int row, std::int32_t first, std::int32_t last) const {
-    const auto top = sides_[2].begin();
-    return static_cast<std::int32_t>(std::lower_bound(top + first, top + last, row) - top);
-  }
-  [[nodiscard]] kernels::LookArrays arrays() const {
-    return {sides_[0].data(),    sides_[1].data(),    sides_[2].data(),   sides_[3].data(),
-            channels_[0].data(), channels_[1].data(), channels_[2].data()};
-  }
-  /// Where those that a facet may resemble are sure to be.
-  [[nodiscard]] kernels::LookWindow window_about(const Look& look) const {
-    constexpr auto kMostSquares = static_cast<float>(1.001 * 3 * kSpread * kSpread * kFarthest);
-    const auto channel = [&](std::size_t c) { return static_cast<float>(look.colour[c]); };
-    const Rect& box = look.box;
-    return {box.x - most_across(),
-            box.x + box.width + most_across(),
-            box.y - most_down(),
-            box.y + box.height + most_down(),
-            channel(0),
-            channel(1),
-            channel(2),
-            kMostSquares};
-  }
-
-  /// Appends facet j with the logarithm of its likeness, if it resembles i and is near to it.
-  void add_like(std::size_t i, std::size_t j, Like& like) const {
-    const Look& here = looks_[i];
-    const Look& there = looks_[j];
-    const Size between = gap_between(here.box, there.box);
-    if (between.height > most_down() || between.width > most_across() || i == j) return;
-    const double dc = difference(here.colour, there.colour) / (kSpread * kSpread);
-    if (dc > kFarthest) return;
-    like.others[like.count] = static_cast<std::int32_t>(j);
-    like.likeness[like.count++] =
-        -(dc + squares_across_[slot(between.width)] + squares_down_[slot(between.height)]) / 2;
-  }
-
-  const kernels::LookKernels& run_;
   const std::vector<Look>& looks_;
-  double across_;  // px
-  double down_;    // px
-  std::vector<double> squares_across_;
-  std::vector<double> squares_down_;
-  std::vector<std::int32_t> tall_;
-  bool in_order_ = true;
-  // The same facets sorted by grey, one list per quantity.
-  std::array<std::int32_t, kBins + 1> bin_end_{};
-  std::vector<std::int32_t> facet_;
-  std::array<std::vector<std::int32_t>, 4> sides_;
-  std::array<std::vector<float>, 3> channels_;
+  LikeFacets ground_;
+  LikeFacets figure_;
 };
+
+/// What a facet's colour, and ground that goes on beside it, cost.
+struct ColourCosts {
+  std::int64_t ground = 0;
+  std::int64_t figure = 0;
+  friend bool operator==(const ColourCosts&, const ColourCosts&) = default;
+};
+ColourCosts costs_of(double pixels, double ground_over_figure, double goes_on, const FigureConfig& config) {
+  const double colour = config.colour_weight * ground_over_figure;
+  const double on = config.continuation_weight * goes_on;
+  return {std::llround(kUnit * pixels * std::max(-colour, 0.0)),
+          std::llround(kUnit * pixels * (std::max(colour, 0.0) + on))};
+}
+
+/// Costs are whole numbers: nearly always rough bounds of the logarithm come to the same.
+ColourCosts colour_costs(const Look& look, const ColourModel& model, double goes_on,
+                         const FigureConfig& config, std::vector<double>& work) {
+  const ColourModel::Bounds about = model.rough_ground_over_figure(look.colour);
+  const ColourCosts low = costs_of(look.pixels, about.low, goes_on, config);
+  if (low == costs_of(look.pixels, about.high, goes_on, config)) return low;
+  return costs_of(look.pixels, model.ground_over_figure(look.colour, work), goes_on, config);
+}
 
 std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, double noise) {
   const double edge = 4 * (kEdge + kEdgeNoise * noise);  // borders measure in quarters
@@ -470,24 +287,22 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
   // Where no floor is known, what mirrors an object would pass for a part of it.
   const double largest_part =
       background.has_floor ? static_cast<double>(pixels_in(config.largest_part, gray.size())) : 0;
-  const Continuation goes_on(looks, gray.width(), exec);
+  const Likeness likeness(gray.width());
   for (int round = 1; round < kRounds; ++round) {
     std::vector<std::int64_t> with_colour_ground = ground_costs;
     std::vector<std::int64_t> with_colour_figure = figure_costs;
     const std::vector<bool> asked = around(figure, facets.borders);
     const std::vector<double> pixels = counted(looks, figure, asked, largest_part);
     const ColourModel model(looks, figure, pixels, exec);
-    const Counted pixels_of = parted(pixels, figure);
+    const Continuation goes_on(looks, pixels, figure, likeness, exec);
     parallel_for(exec, facets.count, kGrain, [&](int first, int last) {
-      Continuation::Like like(goes_on);
+      Continuation::Work near(goes_on);
       std::vector<double> work;
       for (auto i = slot(first); i < slot(last); ++i) {
         if (!asked[i] || looks[i].seen) continue;
-        const double colour = config.colour_weight * model.ground_over_figure(looks[i].colour, work);
-        const double on = config.continuation_weight * goes_on(i, pixels_of, like);
-        if (!at_foot[i])
-          with_colour_ground[i] += std::llround(kUnit * looks[i].pixels * std::max(-colour, 0.0));
-        with_colour_figure[i] += std::llround(kUnit * looks[i].pixels * (std::max(colour, 0.0) + on));
+        const ColourCosts costs = colour_costs(looks[i], model, goes_on(i, near), config, work);
+        if (!at_foot[i]) with_colour_ground[i] += costs.ground;
+        with_colour_figure[i] += costs.figure;
       }
     });
     figure = minimum_cut(with_colour_ground, with_colour_figure, ties);

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/core/exec.hpp>
+#include <cairn/objects/look_kernels.hpp>
+#include <cairn/objects/looks.hpp>
+#include <cstdint>
+#include <vector>
+
+namespace cairn {
+
+/// How common colours are in the ground and in the figure. Colours are gathered in cells of the colour cube,
+/// each with its own mean. Private to the library.
+class ColourModel {
+ public:
+  /// `counted`: the pixels that each of `looks` counts, as ground where `figure` is 0, else as figure.
+  ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+              const std::vector<double>& counted, const Exec& exec);
+
+  /// Logarithm of how many times as common a colour is in the ground as in the figure, −3 … 3. `work`:
+  /// working memory.
+  [[nodiscard]] double ground_over_figure(const Colour& colour, std::vector<double>& work) const;
+
+  struct Bounds {
+    double low = 0;
+    double high = 0;
+  };
+  /// Close bounds of the same, several times as fast.
+  [[nodiscard]] Bounds rough_ground_over_figure(const Colour& colour) const;
+
+ private:
+  [[nodiscard]] kernels::ColourCells cells() const;
+  [[nodiscard]] double logarithm(const kernels::NearPixels& near) const;
+
+  const kernels::LookKernels& run_;
+  std::array<std::vector<double>, 3> mean_;  // of the cells, one list per channel
+  std::array<std::vector<double>, 2> pixels_;
+  std::array<double, 2> total_{};
+};
+
+}  // namespace cairn
