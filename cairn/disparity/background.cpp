@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/ids.hpp>
+#include <cairn/core/pool_memory.hpp>
 #include <cairn/disparity/background.hpp>
 #include <cairn/disparity/row_kernels.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <memory_resource>
 #include <utility>
 
 namespace cairn {
@@ -18,6 +20,22 @@ constexpr double kBehindWeight = 2.0;  // a point behind a wall speaks against i
 
 struct Point3 {
   float x, y, d;
+};
+
+/// Points, one array per coordinate, so that several are judged at once; and the background's disparity
+/// there.
+struct Points {
+  std::pmr::vector<float> x, y, d, behind;
+  Points(std::size_t count, std::pmr::memory_resource* memory)
+      : x(count, memory), y(count, memory), d(count, memory), behind(count, memory) {}
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] Point3 operator[](std::size_t i) const { return {x[i], y[i], d[i]}; }
+  void shrink_to(std::size_t count) {
+    for (auto* const list : {&x, &y, &d, &behind}) list->resize(count);
+  }
+  [[nodiscard]] kernels::PointArrays arrays() const {
+    return {x.data(), y.data(), d.data(), behind.data(), static_cast<int>(size())};
+  }
 };
 
 /// Minimal standard generator: the same walls on every machine.
@@ -79,36 +97,15 @@ Condition through(const Point3& p) {
   return {{p.x, p.y, 1}, p.d};
 }
 
-/// Some of the points, one array per coordinate, so that several are judged at once.
-class Sample {
- public:
-  Sample(const std::vector<std::size_t>& chosen, const std::vector<Point3>& points,
-         const std::vector<float>& behind) {
-    for (const std::size_t i : chosen) {
-      x_.push_back(points[i].x);
-      y_.push_back(points[i].y);
-      d_.push_back(points[i].d);
-      behind_.push_back(behind[i]);
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return x_.size(); }
-  [[nodiscard]] kernels::PointArrays arrays() const {
-    return {x_.data(), y_.data(), d_.data(), behind_.data(), static_cast<int>(size())};
-  }
-
- private:
-  std::vector<float> x_, y_, d_, behind_;
-};
-
 /// Looks for walls among points; keeps what was found so far.
 class WallSearch {
  public:
   /// `rig`: given where the first of `planes` is a floor that walls stand upright on.
-  WallSearch(std::vector<Point3> points, std::vector<GroundPlane> planes, std::optional<StereoRig> rig,
-             int width, const BackgroundConfig& config, const Exec& exec)
+  WallSearch(Points points, std::vector<GroundPlane> planes, std::optional<StereoRig> rig, int width,
+             const BackgroundConfig& config, const Exec& exec, std::pmr::memory_resource* memory)
       : run_(kernels::row_kernels(exec)),
+        memory_(memory),
         points_(std::move(points)),
-        behind_(points_.size(), 0.0F),
         planes_(std::move(planes)),
         rig_(rig),
         least_distance_(0.06F * static_cast<float>(width)),
@@ -136,16 +133,22 @@ class WallSearch {
   [[nodiscard]] std::vector<GroundPlane> planes() && { return std::move(planes_); }
 
  private:
-  [[nodiscard]] std::vector<std::size_t> in_front() const {
-    std::vector<std::size_t> before;
+  /// Points, by their numbers.
+  using Chosen = std::pmr::vector<std::int32_t>;
+
+  [[nodiscard]] Chosen in_front() const {
+    Chosen before(points_.size() + 1, memory_);
+    std::size_t count = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (points_[i].d - behind_[i] > tolerance_) before.push_back(i);
+      before[count] = static_cast<std::int32_t>(i);
+      count += points_.d[i] - points_.behind[i] > tolerance_ ? 1 : 0;
     }
+    before.resize(count);
     return before;
   }
 
   bool add_best(double min_share) {
-    const std::vector<std::size_t> before = in_front();
+    const Chosen before = in_front();
     const double least = min_share * static_cast<double>(points_.size());
     if (static_cast<double>(before.size()) < least || before.size() < 8) return false;
     const std::optional<GroundPlane> guess = best_guess(before);
@@ -158,23 +161,31 @@ class WallSearch {
   }
 
   void put_behind(const GroundPlane& plane) {
-    for (std::size_t i = 0; i < points_.size(); ++i) behind_[i] = std::max(behind_[i], at(plane, points_[i]));
+    run_.put_behind(points_.arrays(), plane, points_.behind.data());
   }
 
-  [[nodiscard]] std::vector<std::size_t> sample(const std::vector<std::size_t>& of) {
-    if (of.size() <= kSample) return of;
-    std::vector<std::size_t> drawn(kSample);
-    for (std::size_t& i : drawn) i = of[draw_.below(of.size())];
+  /// Some of `count` points, which number(i) tells; all where they are few.
+  template <class Number>
+  Points sample(std::size_t count, Number number) {
+    const bool all = count <= kSample;
+    Points drawn(all ? count : kSample, memory_);
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      const std::size_t from = number(all ? i : draw_.below(count));
+      drawn.x[i] = points_.x[from];
+      drawn.y[i] = points_.y[from];
+      drawn.d[i] = points_.d[from];
+      drawn.behind[i] = points_.behind[from];
+    }
     return drawn;
   }
 
   /// Through as many points as the conditions leave free.
-  std::optional<GroundPlane> hypothesis(const std::vector<std::size_t>& before) {
+  std::optional<GroundPlane> hypothesis(const Chosen& before) {
     std::array<Condition, 3> all{};
     std::copy(conditions_.begin(), conditions_.end(), all.begin());
     std::array<float, 3> columns{};
     for (std::size_t i = conditions_.size(); i < all.size(); ++i) {
-      const Point3& point = points_[before[draw_.below(before.size())]];
+      const Point3 point = points_[slot(before[draw_.below(before.size())])];
       all.at(i) = through(point);
       columns.at(i) = point.x;
       if (i == conditions_.size() + 1 && std::abs(columns.at(i) - columns.at(i - 1)) < least_distance_) {
@@ -184,11 +195,9 @@ class WallSearch {
     return solve(all);
   }
 
-  std::optional<GroundPlane> best_guess(const std::vector<std::size_t>& before) {
-    std::vector<std::size_t> everything(points_.size());
-    std::iota(everything.begin(), everything.end(), std::size_t{0});
-    const Sample all(sample(everything), points_, behind_);
-    const Sample front(sample(before), points_, behind_);
+  std::optional<GroundPlane> best_guess(const Chosen& before) {
+    const Points all = sample(points_.size(), [](std::size_t i) { return i; });
+    const Points front = sample(before.size(), [&](std::size_t i) { return slot(before[i]); });
     const double front_share = static_cast<double>(before.size()) / static_cast<double>(points_.size());
     std::optional<GroundPlane> best;
     double best_score = 0;
@@ -209,21 +218,49 @@ class WallSearch {
     return best;
   }
 
+  /// The normal equations of the points on a plane, and how many there are.
+  struct Normal {
+    std::array<Condition, 3> equations{};
+    double weight = 0;
+  };
+  [[nodiscard]] Normal normal_of(const GroundPlane& plane, const Chosen& before) const {
+    // Gathered first: which points are on the plane, nothing tells.
+    std::pmr::vector<Point3> on(before.size() + 1, memory_);
+    std::size_t count = 0;
+    for (const std::int32_t i : before) {
+      const Point3 p = points_[slot(i)];
+      on[count] = p;
+      count += std::abs(p.d - at(plane, p)) < 0.7F * tolerance_ ? 1 : 0;
+    }
+    double xx = 0;
+    double xy = 0;
+    double yy = 0;
+    double x = 0;
+    double y = 0;
+    double xd = 0;
+    double yd = 0;
+    double d = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double px = on[i].x;
+      const double py = on[i].y;
+      const double pd = on[i].d;
+      xx += px * px;
+      xy += px * py;
+      yy += py * py;
+      x += px;
+      y += py;
+      xd += px * pd;
+      yd += py * pd;
+      d += pd;
+    }
+    const auto weight = static_cast<double>(count);
+    return {{{{{xx, xy, x}, xd}, {{xy, yy, y}, yd}, {{x, y, weight}, d}}}, weight};
+  }
+
   /// Least squares over the wall's own points; the condition of uprightness kept.
-  [[nodiscard]] GroundPlane refined(GroundPlane plane, const std::vector<std::size_t>& before) const {
+  [[nodiscard]] GroundPlane refined(GroundPlane plane, const Chosen& before) const {
     for (int round = 0; round < 3; ++round) {
-      std::array<Condition, 3> normal{};
-      double weight = 0;
-      for (const std::size_t i : before) {
-        const Point3& p = points_[i];
-        if (!(std::abs(p.d - at(plane, p)) < 0.7F * tolerance_)) continue;
-        const std::array<double, 3> row{p.x, p.y, 1};
-        for (std::size_t r = 0; r < 3; ++r) {
-          for (std::size_t c = 0; c < 3; ++c) normal[r].k[c] += row[r] * row[c];
-          normal[r].value += row[r] * p.d;
-        }
-        weight += 1;
-      }
+      auto [normal, weight] = normal_of(plane, before);
       if (weight < 3) return plane;
       for (const Condition& condition : conditions_) {  // as an observation so heavy that nothing moves it
         const double heavy = 1e6 * weight;
@@ -240,21 +277,16 @@ class WallSearch {
   }
 
   [[nodiscard]] bool good_enough(const GroundPlane& wall, double min_share) const {
-    std::size_t on = 0;
-    std::size_t beyond = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const float d = at(wall, points_[i]);
-      if (d > behind_[i] && std::abs(points_[i].d - d) < 0.7F * tolerance_) ++on;
-      if (points_[i].d - std::max(behind_[i], d) < -tolerance_) ++beyond;
-    }
-    const auto all = static_cast<double>(points_.size());
-    return static_cast<double>(on) >= min_share * all &&
-           static_cast<double>(beyond) <= max_behind_ * static_cast<double>(on);
+    const kernels::PointArrays points = points_.arrays();
+    const int on = run_.count_on_before(points, wall, 0.7F * tolerance_);
+    if (static_cast<double>(on) < min_share * static_cast<double>(points_.size())) return false;
+    return static_cast<double>(run_.count_beyond(points, wall, tolerance_)) <=
+           max_behind_ * static_cast<double>(on);
   }
 
   const kernels::RowKernels& run_;
-  std::vector<Point3> points_;
-  std::vector<float> behind_;  // the background's disparity at each point
+  std::pmr::memory_resource* memory_;
+  Points points_;
   std::vector<GroundPlane> planes_;
   std::optional<StereoRig> rig_;
   std::vector<Condition> conditions_;  // that every wall keeps
@@ -265,6 +297,33 @@ class WallSearch {
   double max_behind_;
   Draw draw_;
 };
+
+/// The pixels with evidence, in raster order; but not what a glossy floor mirrors: that lies behind every
+/// wall and would speak against each.
+Points points_of(View<const float> evidence_px, const std::optional<GroundPlane>& floor, float tolerance,
+                 std::pmr::memory_resource* memory) {
+  std::size_t most = 0;
+  for (int y = 0; y < evidence_px.height(); ++y) {
+    const float* const row = evidence_px.row(y);
+    most += static_cast<std::size_t>(
+        std::count_if(row, row + evidence_px.width(), [](float d) { return !std::isnan(d); }));
+  }
+  Points points(most + 1, memory);
+  std::size_t count = 0;
+  for (int y = 0; y < evidence_px.height(); ++y) {
+    const float* const row = evidence_px.row(y);
+    for (int x = 0; x < evidence_px.width(); ++x) {
+      const Point3 point{static_cast<float>(x), static_cast<float>(y), row[x]};
+      points.x[count] = point.x;
+      points.y[count] = point.y;
+      points.d[count] = point.d;
+      const bool mirrored = floor && point.d < at(*floor, point) - tolerance;
+      count += !std::isnan(point.d) && !mirrored ? 1 : 0;
+    }
+  }
+  points.shrink_to(count);
+  return points;
+}
 
 }  // namespace
 
@@ -277,21 +336,13 @@ float Background::disparity_px(float x, float y) const {
 Background fit_background(View<const float> evidence_px, const Ground& ground,
                           const std::optional<StereoRig>& rig, const BackgroundConfig& config,
                           const Exec& exec) {
-  const Size size = evidence_px.size();
-  const float tolerance = config.tolerance * 0.001F * static_cast<float>(size.width);
-  std::vector<Point3> points;
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const Point3 point{static_cast<float>(x), static_cast<float>(y), evidence_px(x, y)};
-      // What a glossy floor mirrors lies behind every wall and would speak against each.
-      const bool mirrored = ground.plane && point.d < at(*ground.plane, point) - tolerance;
-      if (!std::isnan(point.d) && !mirrored) points.push_back(point);
-    }
-  }
+  const int width = evidence_px.width();
+  PoolMemory memory(exec.pool);
   std::vector<GroundPlane> planes;
   if (ground.plane) planes.push_back(*ground.plane);
-  WallSearch search(std::move(points), std::move(planes), ground.plane ? rig : std::nullopt, size.width,
-                    config, exec);
+  const float tolerance = config.tolerance * 0.001F * static_cast<float>(width);
+  WallSearch search(points_of(evidence_px, ground.plane, tolerance, &memory), std::move(planes),
+                    ground.plane ? rig : std::nullopt, width, config, exec, &memory);
   for (int i = 0; i < config.max_walls && (search.find_next() || search.find_next_square()); ++i) {
   }
   return {std::move(search).planes(), ground.plane.has_value()};

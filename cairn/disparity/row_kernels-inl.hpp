@@ -277,6 +277,26 @@ inline int count_beyond(const PointArrays& points, const GroundPlane& plane, flo
   return count;
 }
 
+inline int count_on_before(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  int count = 0;
+  for (int i = 0; i < at.count; ++i) {
+    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
+    count += (d > at.behind[i]) & (std::abs(at.d[i] - d) < tolerance) ? 1 : 0;
+  }
+  return count;
+}
+
+inline void put_behind(const PointArrays& points, const GroundPlane& plane, float* CAIRN_RESTRICT behind) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  for (int i = 0; i < at.count; ++i) {
+    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
+    behind[i] = behind[i] < d ? d : behind[i];
+  }
+}
+
 inline void mark_between(const PointArrays& points, const GroundPlane& plane, float least, float most,
                          std::uint8_t* CAIRN_RESTRICT marks) {
   const GroundPlane p = plane;
@@ -443,6 +463,8 @@ inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         agreed,
                                         count_on,
                                         count_beyond,
+                                        count_on_before,
+                                        put_behind,
                                         mark_between,
                                         count_about,
                                         add_squares,

@@ -115,6 +115,10 @@ struct RowKernels {
   int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
   /// How many points lie farther than `tolerance` behind the plane and the background.
   int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// How many points lie nearer to the plane than `tolerance` where it stands before the background.
+  int (*count_on_before)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// behind[i] = the plane's disparity at point i, where that is more.
+  void (*put_behind)(const PointArrays& points, const GroundPlane& plane, float* behind);
   /// marks[i] = 1 where least ≤ the point's distance above the plane ≤ most, in px of disparity; else 0.
   void (*mark_between)(const PointArrays& points, const GroundPlane& plane, float least, float most,
                        std::uint8_t* marks);

@@ -11,8 +11,8 @@ constexpr double kSpread = 12;       // grey levels
 constexpr double kUnknown = 0.0003;  // colours that nothing has are nobody's
 constexpr double kMost = 3;
 
-constexpr int kCells = 16;                 // along a channel
-constexpr double kCellSize = 256 / kCells;  // grey levels
+constexpr int kCells = 16;                  // along a channel
+constexpr double kCellSize = 256.0 / kCells;  // grey levels
 
 struct Cell {
   Colour mean{};
@@ -27,10 +27,11 @@ std::size_t cell_of(const Colour& colour) {
 
 }  // namespace
 
-ColourModel::ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
-                         const std::vector<double>& counted, const Exec& exec)
+ColourModel::ColourModel(const std::pmr::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+                         const std::pmr::vector<double>& counted, const Exec& exec,
+                         std::pmr::memory_resource* memory)
     : run_(kernels::look_kernels(exec)) {
-  std::vector<Cell> cells(std::size_t{kCells} * kCells * kCells);
+  std::pmr::vector<Cell> cells(std::size_t{kCells} * kCells * kCells, memory);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (!(counted[i] > 0)) continue;
     Cell& cell = cells[cell_of(looks[i].colour)];

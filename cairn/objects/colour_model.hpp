@@ -7,6 +7,7 @@
 #include <cairn/objects/look_kernels.hpp>
 #include <cairn/objects/looks.hpp>
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 namespace cairn {
@@ -16,8 +17,8 @@ namespace cairn {
 class ColourModel {
  public:
   /// `counted`: the pixels that each of `looks` counts, as ground where `figure` is 0, else as figure.
-  ColourModel(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
-              const std::vector<double>& counted, const Exec& exec);
+  ColourModel(const std::pmr::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+              const std::pmr::vector<double>& counted, const Exec& exec, std::pmr::memory_resource* memory);
 
   /// Logarithm of how many times as common a colour is in the ground as in the figure, −3 … 3. `work`:
   /// working memory.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/pool_memory.hpp>
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/objects/colour_model.hpp>
 #include <cairn/objects/figure.hpp>
@@ -13,6 +14,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <memory_resource>
+#include <numeric>
 #include <utility>
 
 namespace cairn {
@@ -35,9 +38,10 @@ constexpr double kEdge = 3.0;        // grey levels …
 constexpr double kEdgeNoise = 4.5;   // … plus deviations of the image noise
 constexpr double kSeenShare = 0.25;  // of a facet's pixels: above it the facet is figure by what is seen
 
+/// What speaks for a facet's labels.
 struct Votes {
-  std::vector<std::int64_t> figure, ground, seen_figure;  // the last is part of the first
-  explicit Votes(int facets) : figure(slot(facets)), ground(figure.size()), seen_figure(figure.size()) {}
+  std::array<std::int64_t, 2> sides{};  // ground and figure
+  std::int64_t seen_figure = 0;         // part of those for figure
 };
 
 struct Scales {
@@ -51,64 +55,110 @@ struct Scales {
 struct Seen {
   int x;
   float disparity_px;
-  float before_background_px;
+  bool figure;  // more than the margin before the background
 };
 
-void vote(const RegionId* facet, int first, int last, bool figure, int weight, Votes& votes) {
-  auto& side = figure ? votes.figure : votes.ground;
-  for (int x = first; x < last; ++x) side[index(facet[x])] += weight;
-}
+/// Votes along one row.
+class RowVotes {
+ public:
+  RowVotes(View<const RegionId> facets, const Scales& scales, std::pmr::vector<Votes>& votes,
+           const Exec& exec)
+      : run_(kernels::look_kernels(exec)),
+        facets_(facets),
+        scales_(scales),
+        votes_(votes),
+        behind_px_(slot(facets.width())),
+        at_border_(slot(facets.width())),
+        seen_(slot(facets.width()) + 1) {}
 
-void vote_between(const RegionId* facet, const Seen& left, const Seen& right, const Scales& scales,
-                  Votes& votes) {
-  const bool figure =
-      left.before_background_px > scales.margin_px && right.before_background_px > scales.margin_px;
-  int weight = kConcluded;
-  if (figure && std::abs(left.disparity_px - right.disparity_px) > scales.agreement_px) weight = 0;
-  if (figure && weight > 0 && right.x - left.x > scales.longest_bridge_px) weight = kTooLong;
-  vote(facet, left.x + 1, right.x, figure, weight, votes);
-}
-
-void vote_to_border(const RegionId* facet, int first, int last, const Seen* end, const Scales& scales,
-                    Votes& votes) {
-  const bool sure = end != nullptr && !(end->before_background_px > scales.margin_px);
-  vote(facet, first, last, false, sure ? kConcluded : kCutOff, votes);
-}
-
-void vote_in_row(View<const RegionId> facets, int y, const std::vector<Seen>& seen, const Scales& scales,
-                 Votes& votes) {
-  const RegionId* const facet = facets.row(y);
-  const int width = facets.width();
-  if (seen.empty()) {
-    vote_to_border(facet, 0, width, nullptr, scales, votes);
-    return;
+  void add(int y, View<const float> evidence_px, const std::vector<GroundPlane>& background) {
+    const int width = facets_.width();
+    run_.find_behind(background.data(), static_cast<int>(background.size()), y, width, behind_px_.data());
+    run_.mark_borders(facets_.row(std::max(y - 1, 0)), facets_.row(y),
+                      facets_.row(std::min(y + 1, facets_.height() - 1)), width, at_border_.data());
+    facet_ = facets_.row(y);
+    const std::size_t count = find_seen(evidence_px.row(y));
+    if (count == 0) return vote_to_border(0, width, nullptr);
+    const Seen* const last = &seen_[count - 1];
+    vote_to_border(0, seen_.front().x, seen_.data());
+    for (const Seen* seen = seen_.data(); seen <= last; ++seen) {
+      vote_at(*seen);
+      if (seen < last && seen[1].x > seen->x + 1) vote_between(seen[0], seen[1]);
+    }
+    vote_to_border(last->x + 1, width, last);
   }
-  vote_to_border(facet, 0, seen.front().x, &seen.front(), scales, votes);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const bool figure = seen[i].before_background_px > scales.margin_px;
+
+ private:
+  std::size_t find_seen(const float* evidence_px) {
+    std::size_t count = 0;
+    for (int x = 0; x < facets_.width(); ++x) {
+      const float d = evidence_px[x];
+      seen_[count] = {x, d, d - behind_px_[slot(x)] > scales_.margin_px};
+      count += std::isnan(d) ? 0 : 1;
+    }
+    return count;
+  }
+
+  void vote(int first, int last, bool figure, int weight) {
+    for (int x = first; x < last; ++x) votes_[index(facet_[x])].sides[figure ? 1 : 0] += weight;
+  }
+
+  void vote_at(const Seen& seen) {
     // The matcher gives the nearer surface's disparity to both sides of its edge, so what is seen before the
     // background next to a border may be the neighbour's.
-    const int weight = figure && beside_border(facets, seen[i].x, y) ? scales.seen_at_border : kSeen;
-    vote(facet, seen[i].x, seen[i].x + 1, figure, weight, votes);
-    if (figure) votes.seen_figure[index(facet[seen[i].x])] += weight;
-    if (i + 1 < seen.size()) vote_between(facet, seen[i], seen[i + 1], scales, votes);
+    const int of_figure = at_border_[slot(seen.x)] != 0 ? scales_.seen_at_border : kSeen;
+    Votes& votes = votes_[index(facet_[seen.x])];
+    votes.sides[seen.figure ? 1 : 0] += seen.figure ? of_figure : kSeen;
+    votes.seen_figure += seen.figure ? of_figure : 0;
   }
-  vote_to_border(facet, seen.back().x + 1, width, &seen.back(), scales, votes);
-}
 
-std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
-                           const Votes& votes) {
-  std::vector<Look> looks(slot(facets.count));
-  for_each_run(facets.labels, [&](const Run& run) {
-    const std::array<int, 3> sum = colour_sum(gray, rgb, run);
-    Look& look = looks[index(run.label)];
-    for (std::size_t c = 0; c < 3; ++c) look.colour[c] += sum[c];
-    look.box = united(look.box, run.box());
-    look.pixels += run.length();
+  void vote_between(const Seen& left, const Seen& right) {
+    const bool figure = left.figure && right.figure;
+    int weight = kConcluded;
+    if (figure && std::abs(left.disparity_px - right.disparity_px) > scales_.agreement_px) weight = 0;
+    if (figure && weight > 0 && right.x - left.x > scales_.longest_bridge_px) weight = kTooLong;
+    vote(left.x + 1, right.x, figure, weight);
+  }
+
+  void vote_to_border(int first, int last, const Seen* end) {
+    const bool sure = end != nullptr && !end->figure;
+    vote(first, last, false, sure ? kConcluded : kCutOff);
+  }
+
+  const kernels::LookKernels& run_;
+  View<const RegionId> facets_;
+  Scales scales_;
+  std::pmr::vector<Votes>& votes_;
+  const RegionId* facet_ = nullptr;
+  std::vector<float> behind_px_;
+  std::vector<std::uint8_t> at_border_;
+  std::vector<Seen> seen_;
+};
+
+std::pmr::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
+                                const std::pmr::vector<Votes>& votes, const Exec& exec,
+                                std::pmr::memory_resource* memory) {
+  struct Sums {
+    std::array<std::int64_t, 3> colour{};
+    Extent extent;
+    int pixels = 0;
+  };
+  std::pmr::vector<Sums> sums(slot(facets.count), memory);
+  ColourSums until(gray, rgb);
+  for_each_run(facets.labels, exec, [&](const Run& run) {
+    const std::array<int, 3> colour = until.of(run);
+    Sums& sum = sums[index(run.label)];
+    for (std::size_t c = 0; c < 3; ++c) sum.colour[c] += colour[c];
+    sum.extent.add(run);
+    sum.pixels += run.length();
   });
+  std::pmr::vector<Look> looks(sums.size(), memory);
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    for (double& channel : looks[i].colour) channel /= looks[i].pixels;
-    looks[i].seen = static_cast<double>(votes.seen_figure[i]) > kSeenShare * kSeen * looks[i].pixels;
+    Look& look = looks[i];
+    look.box = sums[i].extent.box();
+    look.pixels = sums[i].pixels;
+    for (std::size_t c = 0; c < 3; ++c) look.colour[c] = static_cast<double>(sums[i].colour[c]) / look.pixels;
+    look.seen = static_cast<double>(votes[i].seen_figure) > kSeenShare * kSeen * look.pixels;
   }
   return looks;
 }
@@ -116,9 +166,10 @@ std::vector<Look> looks_of(const Facets& facets, View<const Gray> gray, View<con
 /// What each facet counts in the models of ground and of figure, in pixels. Figure counts where it is seen to
 /// be. Ground counts unless it touches figure and is no larger than a part of an object: a part that has the
 /// colour of the rest of its object, but no evidence, would speak for the ground that it was taken for.
-std::vector<double> counted(const std::vector<Look>& looks, const std::vector<std::int32_t>& figure,
-                            const std::vector<bool>& asked, double largest_part) {
-  std::vector<double> pixels(looks.size());
+std::pmr::vector<double> counted(const std::pmr::vector<Look>& looks, const std::vector<std::int32_t>& figure,
+                                 const std::vector<bool>& asked, double largest_part,
+                                 std::pmr::memory_resource* memory) {
+  std::pmr::vector<double> pixels(looks.size(), memory);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double as_ground = std::max(looks[i].pixels - (asked[i] ? largest_part : 0), 0.0);
     const double as_figure = looks[i].seen ? looks[i].pixels : 0;
@@ -128,9 +179,9 @@ std::vector<double> counted(const std::vector<Look>& looks, const std::vector<st
 }
 
 /// Those of `pixels` that count on one side.
-std::vector<double> on_side(const std::vector<double>& pixels, const std::vector<std::int32_t>& figure,
-                            bool of_figure) {
-  std::vector<double> counted(pixels.size());
+std::pmr::vector<double> on_side(const std::pmr::vector<double>& pixels,
+                                 const std::vector<std::int32_t>& figure, bool of_figure) {
+  std::pmr::vector<double> counted(pixels.size(), pixels.get_allocator());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if ((figure[i] != 0) == of_figure) counted[i] = pixels[i];
   }
@@ -140,11 +191,12 @@ std::vector<double> on_side(const std::vector<double>& pixels, const std::vector
 /// Whether ground goes on beside a facet in the facet's colour.
 class Continuation {
  public:
-  Continuation(const std::vector<Look>& looks, const std::vector<double>& counted,
-               const std::vector<std::int32_t>& figure, const Likeness& likeness, const Exec& exec)
+  Continuation(const std::pmr::vector<Look>& looks, const std::pmr::vector<double>& counted,
+               const std::vector<std::int32_t>& figure, const Likeness& likeness, const Exec& exec,
+               std::pmr::memory_resource* memory)
       : looks_(looks),
-        ground_(looks, on_side(counted, figure, false), likeness, exec),
-        figure_(looks, on_side(counted, figure, true), likeness, exec) {}
+        ground_(looks, on_side(counted, figure, false), likeness, exec, memory),
+        figure_(looks, on_side(counted, figure, true), likeness, exec, memory) {}
 
   struct Work {
     explicit Work(const Continuation& of) : ground(of.ground_), figure(of.figure_) {}
@@ -163,7 +215,7 @@ class Continuation {
   }
 
  private:
-  const std::vector<Look>& looks_;
+  const std::pmr::vector<Look>& looks_;
   LikeFacets ground_;
   LikeFacets figure_;
 };
@@ -190,9 +242,10 @@ ColourCosts colour_costs(const Look& look, const ColourModel& model, double goes
   return costs_of(look.pixels, model.ground_over_figure(look.colour, work), goes_on, config);
 }
 
-std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, double noise) {
+std::pmr::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, double noise,
+                              std::pmr::memory_resource* memory) {
   const double edge = 4 * (kEdge + kEdgeNoise * noise);  // borders measure in quarters
-  std::vector<Tie> ties(borders.size());
+  std::pmr::vector<Tie> ties(borders.size(), memory);
   std::transform(borders.begin(), borders.end(), ties.begin(), [&](const Border& border) {
     const double cost =
         smoothness * static_cast<double>(border.length) * std::exp(-border.mean_edge() / edge);
@@ -201,9 +254,37 @@ std::vector<Tie> ties_of(const std::vector<Border>& borders, double smoothness, 
   return ties;
 }
 
+/// Per column the first row where the floor is nearer than the walls, where a wall is seen above it; −1 =
+/// nowhere.
+std::vector<int> feet(Size size, const Background& background, const Exec& exec) {
+  const kernels::LookKernels& run = kernels::look_kernels(exec);
+  const auto planes = static_cast<int>(background.planes.size());
+  std::vector<float> behind_px(slot(size.width));
+  std::vector<std::uint8_t> wall_above(behind_px.size());
+  std::vector<int> foot(behind_px.size(), -1);
+  std::vector<int> columns(behind_px.size());  // where none is found yet
+  std::iota(columns.begin(), columns.end(), 0);
+  for (int y = 0; y < size.height && !columns.empty(); ++y) {
+    run.find_behind(background.planes.data(), planes, y, size.width, behind_px.data());
+    std::size_t left = 0;
+    for (const int x : columns) {
+      const float floor =
+          background.planes.front().disparity_px(static_cast<float>(x), static_cast<float>(y));
+      const bool at_floor = floor >= behind_px[slot(x)];
+      if (at_floor && wall_above[slot(x)] != 0) foot[slot(x)] = y;
+      wall_above[slot(x)] = behind_px[slot(x)] > 0 ? 1 : 0;
+      columns[left] = x;
+      left += at_floor ? 0 : 1;
+    }
+    columns.resize(left);
+  }
+  return foot;
+}
+
 /// Facets along the foot of a wall that hardly show evidence of figure.
-std::vector<bool> skirting(const Facets& facets, const Background& background, const Votes& votes,
-                           const std::vector<Look>& looks, float above_percent) {
+std::vector<bool> skirting(const Facets& facets, const Background& background,
+                           const std::pmr::vector<Votes>& votes, const std::pmr::vector<Look>& looks,
+                           float above_percent, const Exec& exec) {
   constexpr float kBelow = 0.2F;        // of what is above
   constexpr double kShare = 0.8;        // of a facet's pixels
   constexpr double kHardlySeen = 0.05;  // of its pixels
@@ -212,25 +293,17 @@ std::vector<bool> skirting(const Facets& facets, const Background& background, c
   const View<const RegionId> labels = facets.labels;
   const float above = 0.01F * above_percent * static_cast<float>(labels.width());
   std::vector<std::int64_t> within(result.size());
+  const std::vector<int> foot = feet(labels.size(), background, exec);
   for (int x = 0; x < labels.width(); ++x) {
-    int foot = 0;  // the first row where the floor is nearer than the walls
-    const auto at_floor = [&](int y) {
-      const auto u = static_cast<float>(x);
-      const auto v = static_cast<float>(y);
-      return background.planes.front().disparity_px(u, v) >= background.disparity_px(u, v);
-    };
-    while (foot < labels.height() && !at_floor(foot)) ++foot;
-    const bool below_a_wall =
-        foot > 0 && foot < labels.height() &&
-        background.disparity_px(static_cast<float>(x), static_cast<float>(foot - 1)) > 0;
-    if (!below_a_wall) continue;
-    const int first = std::max(static_cast<int>(std::ceil(static_cast<float>(foot) - above)), 0);
-    const int last = static_cast<int>(std::ceil(static_cast<float>(foot) + kBelow * above));
+    if (foot[slot(x)] < 0) continue;
+    const auto at = static_cast<float>(foot[slot(x)]);
+    const int first = std::max(static_cast<int>(std::ceil(at - above)), 0);
+    const int last = static_cast<int>(std::ceil(at + kBelow * above));
     for (int y = first; y < std::min(last, labels.height()); ++y) ++within[index(labels(x, y))];
   }
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = static_cast<double>(within[i]) > kShare * looks[i].pixels &&
-                static_cast<double>(votes.seen_figure[i]) <= kHardlySeen * kSeen * looks[i].pixels;
+                static_cast<double>(votes[i].seen_figure) <= kHardlySeen * kSeen * looks[i].pixels;
   }
   return result;
 }
@@ -246,24 +319,17 @@ std::vector<bool> around(const std::vector<std::int32_t>& figure, const std::vec
   return near;
 }
 
-Votes votes_of(const Facets& facets, View<const float> evidence_px, const Background& background,
-               const FigureConfig& config) {
+std::pmr::vector<Votes> votes_of(const Facets& facets, View<const float> evidence_px,
+                                 const Background& background, const FigureConfig& config, const Exec& exec,
+                                 std::pmr::memory_resource* memory) {
   const Size size = facets.labels.size();
   const auto per_mille = 0.001F * static_cast<float>(size.width);
   const Scales scales{config.margin * per_mille, config.agreement * per_mille,
                       static_cast<int>(0.01F * config.longest_bridge * static_cast<float>(size.width)),
                       static_cast<int>(std::lround(static_cast<float>(kSeen) * config.border_weight))};
-  Votes votes(facets.count);
-  std::vector<Seen> seen;
-  for (int y = 0; y < size.height; ++y) {
-    seen.clear();
-    for (int x = 0; x < size.width; ++x) {
-      const float d = evidence_px(x, y);
-      if (std::isnan(d)) continue;
-      seen.push_back({x, d, d - background.disparity_px(static_cast<float>(x), static_cast<float>(y))});
-    }
-    vote_in_row(facets.labels, y, seen, scales, votes);
-  }
+  std::pmr::vector<Votes> votes(slot(facets.count), memory);
+  RowVotes row(facets.labels, scales, votes, exec);
+  for (int y = 0; y < size.height; ++y) row.add(y, evidence_px, background.planes);
   return votes;
 }
 
@@ -272,29 +338,31 @@ Votes votes_of(const Facets& facets, View<const float> evidence_px, const Backgr
 std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                                           View<const float> evidence_px, const Background& background,
                                           const FigureConfig& config, const Exec& exec) {
-  const Votes votes = votes_of(facets, evidence_px, background, config);
-  const std::vector<Look> looks = looks_of(facets, gray, rgb, votes);
-  const std::vector<Tie> ties = ties_of(facets.borders, config.smoothness, noise_sigma(gray));
-  const std::vector<bool> at_foot = skirting(facets, background, votes, looks, config.skirting);
+  PoolMemory memory(exec.pool);
+  const std::pmr::vector<Votes> votes = votes_of(facets, evidence_px, background, config, exec, &memory);
+  const std::pmr::vector<Look> looks = looks_of(facets, gray, rgb, votes, exec, &memory);
+  const std::vector<bool> at_foot = skirting(facets, background, votes, looks, config.skirting, exec);
   constexpr auto kVote = static_cast<std::int64_t>(kUnit) / kSeen;
-  std::vector<std::int64_t> ground_costs(looks.size());
-  std::vector<std::int64_t> figure_costs(looks.size());
+  std::pmr::vector<std::int64_t> ground_costs(looks.size(), &memory);
+  std::pmr::vector<std::int64_t> figure_costs(looks.size(), &memory);
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    ground_costs[i] = kVote * (at_foot[i] ? votes.seen_figure[i] : votes.figure[i]);
-    figure_costs[i] = kVote * (votes.ground[i] + kInDoubt * static_cast<std::int64_t>(looks[i].pixels));
+    ground_costs[i] = kVote * (at_foot[i] ? votes[i].seen_figure : votes[i].sides[1]);
+    figure_costs[i] = kVote * (votes[i].sides[0] + kInDoubt * static_cast<std::int64_t>(looks[i].pixels));
   }
-  std::vector<std::int32_t> figure = minimum_cut(ground_costs, figure_costs, ties);
+  MinimumCuts cuts(looks.size(), ties_of(facets.borders, config.smoothness, noise_sigma(gray), &memory),
+                   exec.pool);
+  std::vector<std::int32_t> figure = cuts.cut(ground_costs, figure_costs);
   // Where no floor is known, what mirrors an object would pass for a part of it.
   const double largest_part =
       background.has_floor ? static_cast<double>(pixels_in(config.largest_part, gray.size())) : 0;
   const Likeness likeness(gray.width());
   for (int round = 1; round < kRounds; ++round) {
-    std::vector<std::int64_t> with_colour_ground = ground_costs;
-    std::vector<std::int64_t> with_colour_figure = figure_costs;
+    std::pmr::vector<std::int64_t> with_colour_ground(ground_costs, &memory);
+    std::pmr::vector<std::int64_t> with_colour_figure(figure_costs, &memory);
     const std::vector<bool> asked = around(figure, facets.borders);
-    const std::vector<double> pixels = counted(looks, figure, asked, largest_part);
-    const ColourModel model(looks, figure, pixels, exec);
-    const Continuation goes_on(looks, pixels, figure, likeness, exec);
+    const std::pmr::vector<double> pixels = counted(looks, figure, asked, largest_part, &memory);
+    const ColourModel model(looks, figure, pixels, exec, &memory);
+    const Continuation goes_on(looks, pixels, figure, likeness, exec, &memory);
     parallel_for(exec, facets.count, kGrain, [&](int first, int last) {
       Continuation::Work near(goes_on);
       std::vector<double> work;
@@ -305,7 +373,7 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
         with_colour_figure[i] += costs.figure;
       }
     });
-    figure = minimum_cut(with_colour_ground, with_colour_figure, ties);
+    figure = cuts.cut(with_colour_ground, with_colour_figure);
   }
   return figure;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/core/ids.hpp>
 #include <cairn/objects/like_facets.hpp>
 #include <numeric>
 
@@ -35,14 +34,22 @@ double Likeness::logarithm(const Look& here, const Look& there) const {
   return -(dc + squares_across_[slot(between.width)] + squares_down_[slot(between.height)]) / 2;
 }
 
-LikeFacets::LikeFacets(const std::vector<Look>& looks, const std::vector<double>& pixels,
-                       const Likeness& likeness, const Exec& exec)
-    : run_(kernels::look_kernels(exec)), looks_(looks), likeness_(likeness) {
+LikeFacets::LikeFacets(const std::pmr::vector<Look>& looks, const std::pmr::vector<double>& pixels,
+                       const Likeness& likeness, const Exec& exec, std::pmr::memory_resource* memory)
+    : run_(kernels::look_kernels(exec)),
+      looks_(looks),
+      likeness_(likeness),
+      tall_(memory),
+      entries_(memory),
+      sides_{std::pmr::vector<std::int32_t>(memory), std::pmr::vector<std::int32_t>(memory),
+             std::pmr::vector<std::int32_t>(memory), std::pmr::vector<std::int32_t>(memory)},
+      channels_{std::pmr::vector<float>(memory), std::pmr::vector<float>(memory),
+                std::pmr::vector<float>(memory)} {
   int top = 0;
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (!(pixels[i] > 0)) continue;
     const Rect& box = looks[i].box;
-    if (box.height > likeness.most_down()) tall_.push_back({i, looks[i], pixels[i]});
+    if (box.height > likeness.most_down()) tall_.push_back({static_cast<std::int32_t>(i), pixels[i]});
     in_order_ = in_order_ && box.y >= top;
     top = box.y;
   }
@@ -54,11 +61,12 @@ int LikeFacets::bin_of(double grey) {
 }
 
 /// Only facets of like grey can be of like colour: those of a bin stand together, in their order.
-void LikeFacets::sort_by_grey(const std::vector<double>& pixels) {
-  std::vector<std::int32_t> bins(looks_.size());
+void LikeFacets::sort_by_grey(const std::pmr::vector<double>& pixels) {
+  std::vector<std::uint8_t> bins(looks_.size());
   for (std::size_t i = 0; i < looks_.size(); ++i) {
-    bins[i] = bin_of(grey_of(looks_[i]));
-    if (pixels[i] > 0) ++bin_end_[slot(bins[i] + 1)];
+    if (!(pixels[i] > 0)) continue;
+    bins[i] = static_cast<std::uint8_t>(bin_of(grey_of(looks_[i])));
+    ++bin_end_[bins[i] + 1U];
   }
   std::partial_sum(bin_end_.begin(), bin_end_.end(), bin_end_.begin());
   entries_.resize(slot(bin_end_.back()));
@@ -67,9 +75,9 @@ void LikeFacets::sort_by_grey(const std::vector<double>& pixels) {
   std::array<std::int32_t, kBins + 1> next = bin_end_;
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     if (!(pixels[i] > 0)) continue;
-    const std::size_t at = slot(next[slot(bins[i])]++);
+    const std::size_t at = slot(next[bins[i]]++);
     const Rect& box = looks_[i].box;
-    entries_[at] = {i, looks_[i], pixels[i]};
+    entries_[at] = {static_cast<std::int32_t>(i), pixels[i]};
     sides_[0][at] = box.x;
     sides_[1][at] = box.x + box.width;
     sides_[2][at] = box.y;
@@ -110,8 +118,8 @@ kernels::LookWindow LikeFacets::window_about(const Look& look) const {
 }
 
 void LikeFacets::take(std::size_t i, const Entry& entry, Work& work) const {
-  const double logarithm = likeness_.logarithm(looks_[i], entry.look);
-  if (logarithm > 0 || entry.facet == i) return;
+  const double logarithm = likeness_.logarithm(looks_[i], look_of(entry));
+  if (logarithm > 0 || slot(entry.facet) == i) return;
   work.pixels.push_back(entry.pixels);
   work.likeness.push_back(logarithm);
 }
@@ -136,7 +144,7 @@ double LikeFacets::add_tall(std::size_t i, double sum, Work& work) const {
   if (!in_order_) return sum;  // then they are found like all others
   const int above = looks_[i].box.y - 2 * likeness_.most_down();
   for (const Entry& entry : tall_) {
-    if (entry.look.box.y < above) take(i, entry, work);
+    if (look_of(entry).box.y < above) take(i, entry, work);
   }
   return add_up(sum, work);
 }
@@ -145,12 +153,21 @@ double LikeFacets::add_tall(std::size_t i, double sum, Work& work) const {
 /// in another order than all are, so more than enough is asked for than rounding could ever make.
 bool LikeFacets::are_surely(double enough, std::size_t i, Work& work) const {
   constexpr std::int32_t kFew = 64;
+  constexpr int kAtOnce = 8;
   constexpr double kMoreThanRounding = 1 + 1e-9;
   if (!in_order_) return false;
   const Range of_grey = bin(bin_of(grey_of(looks_[i])));
   const std::int32_t middle = first_from(looks_[i].box.y, of_grey);
   const Range few{std::max(middle - kFew / 2, of_grey.first), std::min(middle + kFew / 2, of_grey.last)};
-  return add_found(i, few, 0, work) >= kMoreThanRounding * enough;
+  const int found = run_.within(arrays(), window_about(looks_[i]), few.first, few.last, work.found.data());
+  double sum = 0;
+  for (int k = 0; k < found && sum < kMoreThanRounding * enough; k += kAtOnce) {
+    for (int next = k; next < std::min(k + kAtOnce, found); ++next) {
+      take(i, entries_[slot(work.found[slot(next)])], work);
+    }
+    sum = add_up(sum, work);
+  }
+  return sum >= kMoreThanRounding * enough;
 }
 
 double LikeFacets::pixels_like(std::size_t i, double enough, Work& work) const {

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cairn/core/exec.hpp>
+#include <cairn/core/ids.hpp>
 #include <cairn/objects/look_kernels.hpp>
 #include <cairn/objects/looks.hpp>
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 namespace cairn {
@@ -33,9 +35,9 @@ class Likeness {
 /// Facets that count, to be asked for those that are like another one. Private to the library.
 class LikeFacets {
  public:
-  /// Those of `looks` whose `pixels` are more than 0. `looks` and `likeness` are borrowed.
-  LikeFacets(const std::vector<Look>& looks, const std::vector<double>& pixels, const Likeness& likeness,
-             const Exec& exec);
+  /// Those of `looks` whose `pixels` are more than 0. `looks`, `likeness` and `memory` are borrowed.
+  LikeFacets(const std::pmr::vector<Look>& looks, const std::pmr::vector<double>& pixels,
+             const Likeness& likeness, const Exec& exec, std::pmr::memory_resource* memory);
 
   /// Lists of the facets that one facet may be like; working memory.
   struct Work {
@@ -54,8 +56,7 @@ class LikeFacets {
   static constexpr int kBinWidth = 256 / kBins;  // grey levels
 
   struct Entry {
-    std::size_t facet = 0;
-    Look look;
+    std::int32_t facet = 0;
     double pixels = 0;  // that count
   };
   struct Range {
@@ -65,7 +66,8 @@ class LikeFacets {
 
   static double grey_of(const Look& look) { return (look.colour[0] + look.colour[1] + look.colour[2]) / 3; }
   static int bin_of(double grey);
-  void sort_by_grey(const std::vector<double>& pixels);
+  void sort_by_grey(const std::pmr::vector<double>& pixels);
+  [[nodiscard]] const Look& look_of(const Entry& entry) const { return looks_[slot(entry.facet)]; }
   [[nodiscard]] Range bin(int number) const;
   [[nodiscard]] std::int32_t first_from(int row, Range among) const;
   [[nodiscard]] kernels::LookArrays arrays() const;
@@ -77,15 +79,15 @@ class LikeFacets {
   [[nodiscard]] bool are_surely(double enough, std::size_t i, Work& work) const;
 
   const kernels::LookKernels& run_;
-  const std::vector<Look>& looks_;
+  const std::pmr::vector<Look>& looks_;
   const Likeness& likeness_;
-  std::vector<Entry> tall_;
+  std::pmr::vector<Entry> tall_;
   bool in_order_ = true;
   // Sorted by grey; what is tested first in one list per quantity.
   std::array<std::int32_t, kBins + 1> bin_end_{};
-  std::vector<Entry> entries_;
-  std::array<std::vector<std::int32_t>, 4> sides_;
-  std::array<std::vector<float>, 3> channels_;
+  std::pmr::vector<Entry> entries_;
+  std::array<std::pmr::vector<std::int32_t>, 4> sides_;
+  std::array<std::pmr::vector<float>, 3> channels_;
 };
 
 }  // namespace cairn

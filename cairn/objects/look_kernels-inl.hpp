@@ -165,7 +165,53 @@ inline NearPixels pixels_roughly_like(const ColourCells& cells, const double* co
   return near;
 }
 
-inline constexpr LookKernels kLookKernels{within, exponentials, pixels_like, pixels_roughly_like};
+inline void find_behind(const GroundPlane* planes, int count, int y, int width, float* CAIRN_RESTRICT out) {
+  for (int x = 0; x < width; ++x) out[x] = 0;
+  const auto v = static_cast<float>(y);
+  for (int i = 0; i < count; ++i) {
+    const GroundPlane plane = planes[i];
+    for (int x = 0; x < width; ++x) {
+      const float d = plane.a * static_cast<float>(x) + plane.b * v + plane.c;
+      out[x] = out[x] < d ? d : out[x];
+    }
+  }
+}
+
+inline void mark_borders(const RegionId* above, const RegionId* row, const RegionId* below, int width,
+                         std::uint8_t* CAIRN_RESTRICT out) {
+  const auto differs = [=](int x, int left, int right) {
+    const auto here = static_cast<std::int32_t>(row[x]);
+    std::int32_t other = 0;
+    for (const RegionId* const beside : {above, row, below}) {
+      other |= static_cast<std::int32_t>(beside[left]) ^ here;
+      other |= static_cast<std::int32_t>(beside[x]) ^ here;
+      other |= static_cast<std::int32_t>(beside[right]) ^ here;
+    }
+    return static_cast<std::uint8_t>(other != 0);
+  };
+  const int last = width - 1;
+  out[0] = differs(0, 0, last < 1 ? 0 : 1);
+  for (int x = 1; x < last; ++x) out[x] = differs(x, x - 1, x + 1);
+  if (last > 0) out[last] = differs(last, last - 1, last);
+}
+
+inline void judge(const ShownRow& row, int width, float least, float margin, Taken* CAIRN_RESTRICT taken,
+                  std::uint8_t* CAIRN_RESTRICT before) {
+  const ShownRow at = row;
+  auto* const kinds = reinterpret_cast<std::uint8_t*>(taken);
+  for (int x = 0; x < width; ++x) {
+    const float evidence = at.evidence_px[x];
+    const float behind = at.behind_px[x];
+    const bool known = (at.reject[x] == Reject::none) & (at.disparity_px[x] - behind > least);
+    const int inner = static_cast<int>(Taken::inner) - 2 * at.at_border[x];
+    const int kind = inner + static_cast<int>(evidence == evidence);  // NaN is not itself
+    kinds[x] = static_cast<std::uint8_t>(known ? kind : 0);
+    before[x] = static_cast<std::uint8_t>(evidence - behind > margin);
+  }
+}
+
+inline constexpr LookKernels kLookKernels{within,      exponentials, pixels_like, pixels_roughly_like,
+                                          find_behind, mark_borders, judge};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

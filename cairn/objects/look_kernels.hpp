@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
+#include <cairn/core/ids.hpp>
+#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/disparity/reject.hpp>
 #include <cstdint>
 
 /// The seam to the instruction sets: how separate_figure() compares facets with each other and with the
-/// colours of the picture. Private to the library.
+/// colours of the picture, and what it and group_facets() do for each pixel of a row. Private to the library.
 namespace cairn::kernels {
 
 /// How many more elements than facets the arrays have, and lists of them: whole blocks are tested.
@@ -50,6 +53,18 @@ struct NearPixels {
   double figure = 0;
 };
 
+/// What a row shows.
+struct ShownRow {
+  const Reject* reject;
+  const float* disparity_px;
+  const float* evidence_px;  // NaN = none
+  const float* behind_px;    // the background's disparity
+  const std::uint8_t* at_border;
+};
+
+/// What group_facets() takes of a pixel.
+enum class Taken : std::uint8_t { nothing, border, border_evidence, inner, inner_evidence };
+
 /// Of its value: how far off pixels_roughly_like() is at most.
 constexpr double kRoughness = 1e-8;
 
@@ -66,6 +81,15 @@ struct LookKernels {
   NearPixels (*pixels_like)(const ColourCells& cells, const double* colour, double spread, double* work);
   /// The same, off by less than kRoughness of it, and several times as fast. Not the same bits everywhere.
   NearPixels (*pixels_roughly_like)(const ColourCells& cells, const double* colour, double spread);
+  /// Background::disparity_px() of `count` planes in row y.
+  void (*find_behind)(const GroundPlane* planes, int count, int y, int width, float* out);
+  /// 1 where beside_border(), else 0. `above` and `below` of the first and the last row: the row itself.
+  void (*mark_borders)(const RegionId* above, const RegionId* row, const RegionId* below, int width,
+                       std::uint8_t* out);
+  /// What is taken of each pixel: those with a disparity more than `least` before the background. before[x] =
+  /// 1 where evidence is more than `margin` before it, else 0.
+  void (*judge)(const ShownRow& row, int width, float least, float margin, Taken* taken,
+                std::uint8_t* before);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/pool_memory.hpp>
 #include <cairn/disparity/evidence.hpp>
 #include <cairn/regions/facets.hpp>
 #include <cairn/regions/gradient.hpp>
@@ -10,6 +12,7 @@
 #include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace cairn {
@@ -40,6 +43,7 @@ class Sets {
     b = root(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
+  [[nodiscard]] bool is_root(std::int32_t i) const { return parent_[i] == i; }
   /// Numbers the sets in the order of their roots: each element's set.
   [[nodiscard]] Scratch<std::int32_t> numbers() {
     Scratch<std::int32_t> number(parent_.size(), pool_);
@@ -62,7 +66,7 @@ class Sets {
 struct Part {
   std::int32_t next = 0;  // in the list; −1 = the last
   std::int32_t a = 0;
-  Border border;
+  const Border* border = nullptr;
 };
 
 /// The same for a short piece, small: sums share words.
@@ -74,11 +78,15 @@ struct Piece {
   std::uint64_t x2_and_y2 = 0;
 };
 
+void add_to(Border& sum, const Border& part) {
+  sum.length += part.length;
+  sum.edge_sum += part.edge_sum;
+  sum.x2_sum += part.x2_sum;
+  sum.y2_sum += part.y2_sum;
+}
+
 void add_to(Border& sum, const Part& part) {
-  sum.length += part.border.length;
-  sum.edge_sum += part.border.edge_sum;
-  sum.x2_sum += part.border.x2_sum;
-  sum.y2_sum += part.border.y2_sum;
+  add_to(sum, *part.border);
 }
 
 void add_to(Border& sum, const Piece& piece) {
@@ -89,15 +97,13 @@ void add_to(Border& sum, const Piece& piece) {
   sum.y2_sum += static_cast<std::int64_t>(piece.x2_and_y2 & kLow);
 }
 
-/// Sums parts to borders, sorted by (a, b). `first`: where the list of each region b begins, −1 = nowhere.
-/// Nothing is compared: the lists come in the order of b, one array finds the sum for each a of a list, and
-/// then counting sorts by a.
+/// Sums parts to borders, in the order of b. `first`: where the list of each region b begins, −1 = nowhere.
+/// Nothing is compared: the lists come in the order of b, and one array finds the sum for each a of a list.
 template <class Addend>
-void sum_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& parts,
-            ScratchList<Border>& borders, const Exec& exec) {
+ScratchList<Border> summed_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& parts,
+                              const Exec& exec) {
   const std::size_t count = first.size();
-  Scratch<std::int32_t> place(count, -1, exec.pool);     // in `sums`, of the border with a
-  Scratch<std::int32_t> start(count + 1, 0, exec.pool);  // in `borders`, of those with a
+  Scratch<std::int32_t> place(count, -1, exec.pool);  // in `sums`, of the border with a
   ScratchList<Border> sums(parts.size() + 1, exec.pool);
   const Addend* const part = parts.begin();
   for (std::size_t b = 0; b < count; ++b) {
@@ -107,16 +113,27 @@ void sum_up(const Scratch<std::int32_t>& first, const ScratchList<Addend>& parts
       if (place[a] < begin) {
         place[a] = static_cast<std::int32_t>(sums.size());
         sums.push_back({a, static_cast<std::int32_t>(b), 0, 0, 0, 0});
-        ++start[a + 1];
       }
       add_to(sums.data()[place[a]], part[i]);
     }
   }
+  return sums;
+}
+
+/// Sorts by (a, b) what is in the order of b: counting sorts by a. `count`: of the regions.
+ScratchList<Border> sorted(const ScratchList<Border>& by_b, std::size_t count, const Exec& exec) {
+  Scratch<std::int32_t> start(count + 1, 0, exec.pool);  // of those with a
+  for (const Border& border : by_b) ++start[border.a + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
-  borders.clear();
-  Border* const sorted = borders.room_for(sums.size());
-  for (const Border& sum : sums) sorted[start[sum.a]++] = sum;
-  borders.grown(sums.size());
+  ScratchList<Border> borders(by_b.size() + 1, exec.pool);
+  Border* const place = borders.room_for(by_b.size());
+  for (const Border& border : by_b) place[start[border.a]++] = border;
+  borders.grown(by_b.size());
+  return borders;
+}
+
+bool comes_before(const Border& p, const Border& q) {
+  return p.a < q.a || (p.a == q.a && p.b < q.b);
 }
 
 /// The places where neighbouring pixels belong to different regions, `count` of them at most. What follows
@@ -136,8 +153,9 @@ class Contacts {
       if (y + 1 < labels.height()) meet(run, y, y + 1, 0, labels.width(), found);
     }
   }
-  void sum_up(ScratchList<Border>& borders, const Exec& exec) const {
-    cairn::sum_up(first_, pieces_, borders, exec);
+  /// In the order of b.
+  [[nodiscard]] ScratchList<Border> borders(const Exec& exec) const {
+    return summed_up(first_, pieces_, exec);
   }
 
  private:
@@ -201,9 +219,11 @@ class Contacts {
 class Fusing {
  public:
   Fusing(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
-      : exec_(exec), count_(slot(basins.count)), facets_(count_, exec.pool), borders_(0, exec.pool) {
+      : exec_(exec),
+        count_(slot(basins.count)),
+        facets_(count_, exec.pool),
+        borders_(Contacts(basins.labels, edges, count_, exec).borders(exec)) {
     std::iota(facets_.begin(), facets_.end(), 0);
-    Contacts(basins.labels, edges, count_, exec).sum_up(borders_, exec);
   }
 
   /// Each region fuses across its border of least mean edge, where that is below `limit` (ties: the first in
@@ -224,20 +244,28 @@ class Fusing {
   [[nodiscard]] int count() const { return static_cast<int>(count_); }
   /// The facet of each basin.
   [[nodiscard]] const Scratch<std::int32_t>& facets() const { return facets_; }
-  [[nodiscard]] std::vector<Border> borders() const { return {borders_.begin(), borders_.end()}; }
+  [[nodiscard]] std::vector<Border> borders() && {
+    if (!in_order_) borders_ = sorted(borders_, count_, exec_);
+    return {borders_.begin(), borders_.end()};
+  }
 
  private:
   /// Per region its weakest border; −1 = that is not weak, or there is none.
   [[nodiscard]] Scratch<std::int32_t> weak_borders(double limit) const {
+    const double surely_strong = (1 + 1e-9) * limit;  // however the quotient rounds
     Scratch<double> least(count_, limit, exec_.pool);
     Scratch<std::int32_t> weakest(count_, -1, exec_.pool);
+    const Border* const borders = borders_.begin();
     for (std::size_t i = 0; i < borders_.size(); ++i) {
-      const Border& border = borders_.begin()[i];
+      const Border& border = borders[i];
+      if (static_cast<double>(border.edge_sum) > surely_strong * static_cast<double>(border.length)) continue;
       const double edge = border.mean_edge();
       for (const std::int32_t end : {border.a, border.b}) {
-        const bool weaker = edge < least[end];
-        least[end] = weaker ? edge : least[end];
-        weakest[end] = weaker ? static_cast<std::int32_t>(i) : weakest[end];
+        const bool first_of_ties =
+            edge == least[end] && weakest[end] >= 0 && comes_before(border, borders[weakest[end]]);
+        if (!(edge < least[end]) && !first_of_ties) continue;
+        least[end] = edge;
+        weakest[end] = static_cast<std::int32_t>(i);
       }
     }
     return weakest;
@@ -245,37 +273,107 @@ class Fusing {
 
   void renumber(Sets& sets) {
     const Scratch<std::int32_t> numbers = sets.numbers();
-    Scratch<std::int32_t> first(slot(sets.count()), -1, exec_.pool);
+    const auto count = slot(sets.count());
+    Scratch<std::uint8_t> fused(count, 0, exec_.pool);
+    for (std::ptrdiff_t i = 1; i < signed_slot(count_); ++i)
+      if (!sets.is_root(static_cast<std::int32_t>(i))) fused[numbers[i]] = 1;
+    const auto touched = [&](const Border& border) {
+      return (fused[numbers[border.a]] | fused[numbers[border.b]]) != 0;
+    };
+    const auto changes = std::count_if(borders_.begin(), borders_.end(), touched);
+    constexpr std::ptrdiff_t kFew = 8;  // of as many as this one: then the others stay where they are
+    if (in_order_ && changes < signed_slot(borders_.size()) / kFew) {
+      move_few(numbers, touched);
+    } else {
+      borders_ = sorted(moved(numbers, count), count, exec_);
+      in_order_ = true;
+    }
+    count_ = count;
+    for (std::int32_t& facet : facets_) facet = numbers[facet];
+  }
+
+  /// All borders between regions that are now different, in the order of b.
+  [[nodiscard]] ScratchList<Border> moved(const Scratch<std::int32_t>& numbers, std::size_t count) const {
+    Scratch<std::int32_t> first(count, -1, exec_.pool);
     ScratchList<Part> parts(borders_.size(), exec_.pool);
     for (const Border& border : borders_) {
       const auto [a, b] = std::minmax({numbers[border.a], numbers[border.b]});
       if (a == b) continue;
       const auto i = static_cast<std::int32_t>(parts.size());
-      parts.push_back({first[b], a, border});
+      parts.push_back({first[b], a, &border});
       first[b] = i;
     }
-    sum_up(first, parts, borders_, exec_);
-    count_ = first.size();
-    for (std::int32_t& facet : facets_) facet = numbers[facet];
+    return summed_up(first, parts, exec_);
+  }
+
+  /// The borders of regions that have fused are taken out, summed and put back in their order. All others
+  /// keep theirs, since the regions do.
+  template <class Touched>
+  void move_few(const Scratch<std::int32_t>& numbers, Touched touched) {
+    std::vector<Border> changed;
+    Border* const borders = borders_.data();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < borders_.size(); ++i) {
+      Border border = borders[i];
+      const bool change = touched(border);
+      std::tie(border.a, border.b) = std::minmax({numbers[border.a], numbers[border.b]});
+      if (!change) {
+        borders[kept++] = border;
+      } else if (border.a != border.b) {
+        changed.push_back(border);
+      }
+    }
+    std::sort(changed.begin(), changed.end(), comes_before);
+    std::size_t sums = 0;
+    for (std::size_t i = 0; i < changed.size(); ++i) {
+      const bool goes_on = sums > 0 && !comes_before(changed[sums - 1], changed[i]);
+      if (goes_on) {
+        add_to(changed[sums - 1], changed[i]);
+      } else {
+        changed[sums++] = changed[i];
+      }
+    }
+    // Merged from behind; there is room, as what was taken out was no fewer.
+    std::size_t end = kept + sums;
+    borders_.shrink_to(end);
+    while (sums > 0) {
+      const bool from_changed = kept == 0 || comes_before(borders[kept - 1], changed[sums - 1]);
+      borders[--end] = from_changed ? changed[--sums] : borders[--kept];
+    }
   }
 
   const Exec& exec_;
   std::size_t count_;
   Scratch<std::int32_t> facets_;
   ScratchList<Border> borders_;
+  bool in_order_ = false;  // or in the order of b alone
 };
 
 /// What only one edge pixel in fifty is stronger than, in 1/4 grey level.
 int clear_edge(View<const std::uint16_t> edges) {
-  std::vector<std::int64_t> histogram(std::size_t{1} << 16U);
+  std::uint16_t strongest = 0;
   for (int y = 0; y < edges.height(); ++y) {
     const std::uint16_t* const row = edges.row(y);
-    for (int x = 0; x < edges.width(); ++x) ++histogram[row[x]];
+    for (int x = 0; x < edges.width(); ++x) strongest = std::max(strongest, row[x]);
   }
+  // Two counters for each strength: neighbours are often alike, and one would wait for the other.
+  std::vector<std::array<std::int64_t, 2>> histogram(std::size_t{strongest} + 1);
+  for (int y = 0; y < edges.height(); ++y) {
+    const std::uint16_t* const row = edges.row(y);
+    int x = 0;
+    for (; x + 2 <= edges.width(); x += 2) {
+      ++histogram[row[x]][0];
+      ++histogram[row[x + 1]][1];
+    }
+    if (x < edges.width()) ++histogram[row[x]][0];
+  }
+  const auto count = [&](int strength) {
+    return histogram[slot(strength)][0] + histogram[slot(strength)][1];
+  };
   std::int64_t stronger = 0;
   int strength = static_cast<int>(histogram.size()) - 1;
-  while (strength > 0 && 50 * (stronger + histogram[slot(strength)]) <= edges.size().area())
-    stronger += histogram[slot(strength--)];
+  while (strength > 0 && 50 * (stronger + count(strength)) <= edges.size().area())
+    stronger += count(strength--);
   return strength;
 }
 
@@ -287,8 +385,8 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
     for (int x = 0; x < labels.width(); ++x) last = std::max(last, number(labels(x, y)));
   }
   const Exec exec;
-  ScratchList<Border> borders(0, exec.pool);
-  Contacts(labels, edges, slot(last + 1), exec).sum_up(borders, exec);
+  const auto count = slot(last + 1);
+  const ScratchList<Border> borders = sorted(Contacts(labels, edges, count, exec).borders(exec), count, exec);
   return {borders.begin(), borders.end()};
 }
 
@@ -308,7 +406,8 @@ Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsCo
       for (int x = 0; x < gray.width(); ++x) row[x] = RegionId{facets[number(row[x])]};
     }
   });
-  return {std::move(basins.labels), fusing.count(), fusing.borders()};
+  const int count = fusing.count();
+  return {std::move(basins.labels), count, std::move(fusing).borders()};
 }
 
 Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const Exec& exec) {
@@ -316,41 +415,60 @@ Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const 
     std::int64_t sum = 0;
     std::int64_t squares = 0;
   };
-  std::vector<Sums> sums(slot(facets.count));
-  Segmentation result{facets.labels.clone(exec.pool), std::vector<Region>(sums.size())};
-  for_each_run(facets.labels, [&](const Run& run) {
-    const Gray* const grey = gray.row(run.y);
-    Sums here;
-    for (int x = run.first; x < run.last; ++x) {
-      here.sum += grey[x];
-      here.squares += grey[x] * grey[x];
+  struct Whole {
+    Sums sums;
+    Extent extent;
+    int pixels = 0;
+  };
+  PoolMemory memory(exec.pool);
+  std::pmr::vector<Whole> wholes(slot(facets.count), &memory);
+  std::vector<Sums> until(slot(gray.width()) + 1);  // of the row's first pixels
+  int row = -1;
+  for_each_run(facets.labels, exec, [&](const Run& run) {
+    if (run.y != row) {
+      row = run.y;
+      for (int x = 0; x < gray.width(); ++x) {
+        const int grey = gray(x, row);
+        until[slot(x) + 1] = {until[slot(x)].sum + grey, until[slot(x)].squares + grey * grey};
+      }
     }
-    Sums& whole = sums[index(run.label)];
-    whole.sum += here.sum;
-    whole.squares += here.squares;
-    Region& region = result.regions[index(run.label)];
-    region.pixel_count += run.length();
-    region.box = united(region.box, run.box());
+    Whole& whole = wholes[index(run.label)];
+    whole.sums.sum += until[slot(run.last)].sum - until[slot(run.first)].sum;
+    whole.sums.squares += until[slot(run.last)].squares - until[slot(run.first)].squares;
+    whole.extent.add(run);
+    whole.pixels += run.length();
   });
-  for (std::size_t i = 0; i < sums.size(); ++i) {
+  Segmentation result{facets.labels.clone(exec.pool), std::vector<Region>(wholes.size())};
+  for (std::size_t i = 0; i < wholes.size(); ++i) {
     Region& region = result.regions[i];
+    region.pixel_count = wholes[i].pixels;
     region.valid_count = region.pixel_count;
-    region.mean = static_cast<double>(sums[i].sum) / region.pixel_count;
-    region.variance =
-        std::max(0.0, static_cast<double>(sums[i].squares) / region.pixel_count - region.mean * region.mean);
+    region.box = wholes[i].extent.box();
+    region.mean = static_cast<double>(wholes[i].sums.sum) / region.pixel_count;
+    region.variance = std::max(
+        0.0, static_cast<double>(wholes[i].sums.squares) / region.pixel_count - region.mean * region.mean);
   }
   return result;
 }
 
 std::vector<std::int32_t> flooded(std::vector<std::int32_t> labels, const std::vector<Border>& borders,
                                   std::int32_t otherwise) {
-  std::vector<std::int32_t> order(borders.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t p, std::int32_t q) {
-    return borders[slot(p)].mean_edge() < borders[slot(q)].mean_edge();
+  // Between two that are decided nothing flows.
+  struct Channel {
+    double edge;
+    std::int32_t border;
+  };
+  std::vector<Channel> order;
+  for (std::size_t i = 0; i < borders.size(); ++i) {
+    if (labels[slot(borders[i].a)] < 0 || labels[slot(borders[i].b)] < 0) {
+      order.push_back({borders[i].mean_edge(), static_cast<std::int32_t>(i)});
+    }
+  }
+  std::sort(order.begin(), order.end(), [](const Channel& p, const Channel& q) {
+    return std::tie(p.edge, p.border) < std::tie(q.edge, q.border);
   });
   Sets sets(labels.size());
-  for (const std::int32_t i : order) {
+  for (const auto& [edge, i] : order) {
     const std::int32_t p = sets.root(borders[slot(i)].a);
     const std::int32_t q = sets.root(borders[slot(i)].b);
     if (p == q || (labels[slot(p)] >= 0 && labels[slot(q)] >= 0)) continue;

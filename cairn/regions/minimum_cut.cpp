@@ -6,127 +6,162 @@
 #include <numeric>
 
 namespace cairn {
-namespace {
 
-/// The nodes and their residual capacities. What a node could take from the source or give to the sink is
-/// kept beside it, so that source and sink are no nodes.
-class Network {
- public:
-  Network(const std::vector<std::int64_t>& cost_0, const std::vector<std::int64_t>& cost_1,
-          const std::vector<Tie>& ties)
-      : first_(cost_0.size() + 1), excess_(cost_0.size()), level_(cost_0.size()), next_(cost_0.size()) {
-    for (std::size_t i = 0; i < excess_.size(); ++i) excess_[i] = cost_0[i] - cost_1[i];
-    for (const Tie& tie : ties) {
-      ++first_[slot(tie.a) + 1];
-      ++first_[slot(tie.b) + 1];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    arcs_.resize(slot(first_.back()));
-    std::vector<std::int32_t> place(first_.begin(), first_.end() - 1);
-    for (const Tie& tie : ties) {
-      const std::int32_t there = place[slot(tie.a)]++;
-      const std::int32_t back = place[slot(tie.b)]++;
-      arcs_[slot(there)] = {tie.b, back, tie.cost};
-      arcs_[slot(back)] = {tie.a, there, tie.cost};
-    }
+MinimumCuts::MinimumCuts(std::size_t nodes, std::span<const Tie> ties, const Pool& pool)
+    : memory_(pool),
+      first_(nodes + 1, &memory_),
+      arcs_(&memory_),
+      costs_(nodes, &memory_),
+      excess_(nodes, &memory_),
+      level_(nodes, &memory_),
+      next_(nodes, &memory_),
+      queue_(&memory_) {
+  for (const Tie& tie : ties) {
+    ++first_[slot(tie.a) + 1];
+    ++first_[slot(tie.b) + 1];
   }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  arcs_.resize(slot(first_.back()));
+  std::pmr::vector<std::int32_t> place(first_.begin(), first_.end() - 1, &memory_);
+  for (const Tie& tie : ties) {
+    const std::int32_t there = place[slot(tie.a)]++;
+    const std::int32_t back = place[slot(tie.b)]++;
+    arcs_[slot(there)] = {tie.b, back, tie.cost};
+    arcs_[slot(back)] = {tie.a, there, tie.cost};
+  }
+}
 
-  void saturate() {
-    while (find_levels()) {
-      std::copy(first_.begin(), first_.end() - 1, next_.begin());
-      for (std::size_t i = 0; i < excess_.size(); ++i) {
-        while (excess_[i] > 0 && push_from(static_cast<std::int32_t>(i))) {
-        }
+std::vector<std::int32_t> MinimumCuts::cut(std::span<const std::int64_t> cost_0,
+                                           std::span<const std::int64_t> cost_1) {
+  take_over(cost_0, cost_1);
+  saturate();
+  return labels();
+}
+
+/// What a node's costs grow by is added to what is left of them: the flow so far stays one.
+void MinimumCuts::take_over(std::span<const std::int64_t> cost_0, std::span<const std::int64_t> cost_1) {
+  std::ptrdiff_t givers = 0;
+  std::ptrdiff_t takers = 0;
+  for (std::size_t i = 0; i < costs_.size(); ++i) {
+    const std::int64_t cost = cost_0[i] - cost_1[i];
+    excess_[i] += swapped_ ? costs_[i] - cost : cost - costs_[i];
+    costs_[i] = cost;
+    givers += cost > 0 ? 1 : 0;
+    takers += cost < 0 ? 1 : 0;
+  }
+  if (is_new_ && takers < givers) {  // ties are the same in both directions as long as nothing flows
+    swapped_ = true;
+    for (std::int64_t& excess : excess_) excess = -excess;
+  }
+  is_new_ = false;
+}
+
+void MinimumCuts::saturate() {
+  while (find_levels()) {
+    for (std::size_t head = 0; head < queue_.size() && level_[slot(queue_[head])] == 0; ++head) {
+      while (excess_[slot(queue_[head])] > 0 && push_from(queue_[head])) {
       }
     }
   }
+}
 
-  /// The nodes that the source still reaches.
-  [[nodiscard]] std::vector<std::int32_t> source_side() const {
-    std::vector<std::int32_t> side(excess_.size());
-    std::transform(level_.begin(), level_.end(), side.begin(),
-                   [](std::int32_t level) { return level >= 0 ? 1 : 0; });
-    return side;
+/// Breadth first from all nodes with something left to give; true where one with something to take is
+/// reached. There paths end.
+bool MinimumCuts::find_levels() {
+  std::fill(level_.begin(), level_.end(), -1);
+  queue_.clear();
+  for (std::size_t i = 0; i < excess_.size(); ++i) {
+    if (excess_[i] <= 0) continue;
+    level_[i] = 0;
+    queue_.push_back(static_cast<std::int32_t>(i));
   }
+  bool reached = false;
+  for (std::size_t head = 0; head < queue_.size(); ++head) {
+    const std::int32_t node = queue_[head];
+    next_[slot(node)] = first_[slot(node)];
+    if (excess_[slot(node)] < 0) {
+      reached = true;
+      continue;
+    }
+    for (std::int32_t i = first_[slot(node)]; i < first_[slot(node) + 1]; ++i) {
+      const Arc& arc = arcs_[slot(i)];
+      if (arc.capacity <= 0 || level_[slot(arc.to)] >= 0) continue;
+      level_[slot(arc.to)] = level_[slot(node)] + 1;
+      queue_.push_back(arc.to);
+    }
+  }
+  return reached;
+}
 
- private:
-  struct Arc {
-    std::int32_t to = 0;
-    std::int32_t back = 0;  // the arc the other way
-    std::int64_t capacity = 0;
+/// One augmenting path, depth first along rising levels; false where there is none from `start` any more.
+bool MinimumCuts::push_from(std::int32_t start) {
+  path_.clear();
+  std::int32_t node = start;
+  while (excess_[slot(node)] >= 0) {
+    std::int32_t& i = next_[slot(node)];
+    for (; i < first_[slot(node) + 1]; ++i) {
+      const Arc& arc = arcs_[slot(i)];
+      if (arc.capacity > 0 && level_[slot(arc.to)] == level_[slot(node)] + 1) break;
+    }
+    if (i < first_[slot(node) + 1]) {
+      path_.push_back(i);
+      node = arcs_[slot(i)].to;
+      continue;
+    }
+    if (path_.empty()) return false;
+    node = arcs_[slot(arcs_[slot(path_.back())].back)].to;
+    path_.pop_back();
+    ++next_[slot(node)];
+  }
+  std::int64_t amount = std::min(excess_[slot(start)], -excess_[slot(node)]);
+  for (const std::int32_t i : path_) amount = std::min(amount, arcs_[slot(i)].capacity);
+  for (const std::int32_t i : path_) {
+    arcs_[slot(i)].capacity -= amount;
+    arcs_[slot(arcs_[slot(i)].back)].capacity += amount;
+  }
+  excess_[slot(start)] -= amount;
+  excess_[slot(node)] += amount;
+  return true;
+}
+
+/// 1 is what the givers still reach. Swapped, that is what still reaches the takers.
+std::vector<std::int32_t> MinimumCuts::labels() const {
+  std::vector<std::int32_t> label(excess_.size());
+  for (std::size_t i = 0; i < label.size(); ++i) {
+    label[i] = (swapped_ ? excess_[i] < 0 : level_[i] >= 0) ? 1 : 0;
+  }
+  if (swapped_) spread_ones(label);
+  return label;
+}
+
+/// To those that still reach one of them.
+void MinimumCuts::spread_ones(std::vector<std::int32_t>& label) const {
+  std::vector<std::int32_t> to_do;
+  const auto reach = [&](std::size_t node) {
+    label[node] = 1;
+    to_do.push_back(static_cast<std::int32_t>(node));
   };
-
-  /// Breadth first from all nodes with something left to give; true where one with something to take is
-  /// reached.
-  bool find_levels() {
-    std::fill(level_.begin(), level_.end(), -1);
-    queue_.clear();
-    for (std::size_t i = 0; i < excess_.size(); ++i) {
-      if (excess_[i] <= 0) continue;
-      level_[i] = 0;
-      queue_.push_back(static_cast<std::int32_t>(i));
+  // What the givers reach reaches no taker, or there would be a path left.
+  const auto undecided = [&](std::size_t node) { return level_[node] < 0 && label[node] == 0; };
+  for (std::size_t node = 0; node < label.size(); ++node) {
+    if (!undecided(node)) continue;
+    for (std::int32_t i = first_[node]; i < first_[node + 1] && label[node] == 0; ++i) {
+      if (arcs_[slot(i)].capacity > 0 && label[slot(arcs_[slot(i)].to)] != 0) reach(node);
     }
-    bool reached = false;
-    for (std::size_t head = 0; head < queue_.size(); ++head) {
-      const std::int32_t node = queue_[head];
-      reached = reached || excess_[slot(node)] < 0;
-      for (std::int32_t i = first_[slot(node)]; i < first_[slot(node) + 1]; ++i) {
-        const Arc& arc = arcs_[slot(i)];
-        if (arc.capacity <= 0 || level_[slot(arc.to)] >= 0) continue;
-        level_[slot(arc.to)] = level_[slot(node)] + 1;
-        queue_.push_back(arc.to);
-      }
-    }
-    return reached;
   }
-
-  /// One augmenting path, depth first along rising levels; false where there is none from `start` any more.
-  bool push_from(std::int32_t start) {
-    path_.clear();
-    std::int32_t node = start;
-    while (excess_[slot(node)] >= 0) {
-      std::int32_t& i = next_[slot(node)];
-      for (; i < first_[slot(node) + 1]; ++i) {
-        const Arc& arc = arcs_[slot(i)];
-        if (arc.capacity > 0 && level_[slot(arc.to)] == level_[slot(node)] + 1) break;
-      }
-      if (i < first_[slot(node) + 1]) {
-        path_.push_back(i);
-        node = arcs_[slot(i)].to;
-        continue;
-      }
-      if (path_.empty()) return false;
-      node = arcs_[slot(arcs_[slot(path_.back())].back)].to;
-      path_.pop_back();
-      ++next_[slot(node)];
+  while (!to_do.empty()) {
+    const std::size_t node = slot(to_do.back());
+    to_do.pop_back();
+    for (std::int32_t i = first_[node]; i < first_[node + 1]; ++i) {
+      const Arc& arc = arcs_[slot(i)];
+      if (undecided(slot(arc.to)) && arcs_[slot(arc.back)].capacity > 0) reach(slot(arc.to));
     }
-    std::int64_t amount = std::min(excess_[slot(start)], -excess_[slot(node)]);
-    for (const std::int32_t i : path_) amount = std::min(amount, arcs_[slot(i)].capacity);
-    for (const std::int32_t i : path_) {
-      arcs_[slot(i)].capacity -= amount;
-      arcs_[slot(arcs_[slot(i)].back)].capacity += amount;
-    }
-    excess_[slot(start)] -= amount;
-    excess_[slot(node)] += amount;
-    return true;
   }
-
-  std::vector<std::int32_t> first_;
-  std::vector<Arc> arcs_;
-  std::vector<std::int64_t> excess_;  // positive: to give, negative: to take
-  std::vector<std::int32_t> level_;
-  std::vector<std::int32_t> next_;
-  std::vector<std::int32_t> queue_;
-  std::vector<std::int32_t> path_;
-};
-
-}  // namespace
+}
 
 std::vector<std::int32_t> minimum_cut(const std::vector<std::int64_t>& cost_0,
                                       const std::vector<std::int64_t>& cost_1, const std::vector<Tie>& ties) {
-  Network network(cost_0, cost_1, ties);
-  network.saturate();
-  return network.source_side();
+  return MinimumCuts(cost_0.size(), ties).cut(cost_0, cost_1);
 }
 
 }  // namespace cairn

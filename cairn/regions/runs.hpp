@@ -2,9 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
+#include <cairn/regions/label_kernels.hpp>
+#include <limits>
+#include <vector>
 
 namespace cairn {
 
@@ -19,35 +24,67 @@ struct Run {
   [[nodiscard]] Rect box() const { return {first, y, length(), 1}; }
 };
 
+/// The box of a region whose runs are added in raster order.
+struct Extent {
+  int left = std::numeric_limits<int>::max();
+  int right = 0;
+  int top = -1;
+  int bottom = 0;
+  void add(const Run& run) {
+    left = std::min(left, run.first);
+    right = std::max(right, run.last);
+    top = top < 0 ? run.y : top;
+    bottom = run.y + 1;
+  }
+  [[nodiscard]] Rect box() const { return top < 0 ? Rect{} : Rect{left, top, right - left, bottom - top}; }
+};
+
 /// Calls found(run) for each run, in raster order.
 template <class Found>
-void for_each_run(View<const RegionId> labels, Found found) {
+void for_each_run(View<const RegionId> labels, const Exec& exec, Found found) {
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
+  std::vector<std::int32_t> ends(slot(labels.width()) + kernels::kListSlack);
   for (int y = 0; y < labels.height(); ++y) {
     const RegionId* const label = labels.row(y);
-    for (int x = 0; x < labels.width();) {
-      const int first = x;
-      while (x < labels.width() && label[x] == label[first]) ++x;
-      found(Run{label[first], y, first, x});
+    const int count = run.find_runs(label, label, labels.width(), ends.data());
+    int first = 0;
+    for (int i = 0; i < count; ++i) {
+      const int last = ends[slot(i)];
+      found(Run{label[first], y, first, last});
+      first = last;
     }
   }
 }
 
-/// The run's colours, summed; its grey three times where there is no colour (`rgb` empty).
-inline std::array<int, 3> colour_sum(View<const Gray> gray, View<const Rgb> rgb, const Run& run) {
-  if (rgb.empty()) {
-    const Gray* const row = gray.row(run.y);
-    int sum = 0;
-    for (int x = run.first; x < run.last; ++x) sum += row[x];
-    return {sum, sum, sum};
+/// Colours of runs, summed; the grey three times where there is no colour (`rgb` empty). For runs in raster
+/// order: what stands left of each pixel is summed once for a row.
+class ColourSums {
+ public:
+  ColourSums(View<const Gray> gray, View<const Rgb> rgb)
+      : gray_(gray), rgb_(rgb), until_(slot(gray.width()) + 1) {}
+
+  std::array<int, 3> of(const Run& run) {
+    if (run.y != y_) sum_up(run.y);
+    const std::array<int, 3>& before = until_[slot(run.first)];
+    const std::array<int, 3>& all = until_[slot(run.last)];
+    return {all[0] - before[0], all[1] - before[1], all[2] - before[2]};
   }
-  const Rgb* const row = rgb.row(run.y);
-  std::array<int, 3> sum{};
-  for (int x = run.first; x < run.last; ++x) {
-    sum[0] += row[x].r;
-    sum[1] += row[x].g;
-    sum[2] += row[x].b;
+
+ private:
+  void sum_up(int y) {
+    y_ = y;
+    std::array<int, 3> sum{};
+    for (int x = 0; x < gray_.width(); ++x) {
+      const Rgb colour = rgb_.empty() ? Rgb{gray_(x, y), gray_(x, y), gray_(x, y)} : rgb_(x, y);
+      sum = {sum[0] + colour.r, sum[1] + colour.g, sum[2] + colour.b};
+      until_[slot(x) + 1] = sum;
+    }
   }
-  return sum;
-}
+
+  View<const Gray> gray_;
+  View<const Rgb> rgb_;
+  int y_ = -1;
+  std::vector<std::array<int, 3>> until_;
+};
 
 }  // namespace cairn

@@ -69,6 +69,7 @@ class ScratchList {
     return end();
   }
   void grown(std::size_t count) { size_ += count; }
+  void shrink_to(std::size_t size) { size_ = size; }
   void push_back(const T& value) {
     *room_for(1) = value;
     ++size_;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <random>
 
+#include "reference/group.hpp"
 #include "support/grids.hpp"
 
 namespace cairn {
@@ -297,6 +298,28 @@ TEST(MinimumCut, IsThatOfItsDefinitionAlongLongPaths) {
   }
 }
 
+TEST(MinimumCuts, OfCostsThatChangeAreThoseOfTheNewCosts) {
+  for (const int highest : {1, 3, 1000}) {
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      const int nodes = 2 + static_cast<int>(seed);
+      const std::vector<Tie> ties = random_network(nodes, nodes * 3, highest, seed).ties;
+      MinimumCuts cuts(static_cast<std::size_t>(nodes), ties);
+      std::mt19937 random(seed);
+      Network net = random_network(nodes, 0, highest, seed);
+      // At first one label is the cheaper one for most, and later often the other one.
+      if (seed % 3 == 1) net.cost_0.assign(net.cost_0.size(), 0);
+      if (seed % 3 == 2) net.cost_1.assign(net.cost_1.size(), 0);
+      for (int round = 0; round < 5; ++round) {
+        EXPECT_EQ(cuts.cut(net.cost_0, net.cost_1), reference::minimum_cut(net.cost_0, net.cost_1, ties))
+            << highest << ' ' << seed << ' ' << round;
+        for (std::int64_t& cost : round % 2 == 0 ? net.cost_0 : net.cost_1) {
+          if (random() % 3 == 0) cost = static_cast<std::int64_t>(random() % 2000) * highest / 1000;
+        }
+      }
+    }
+  }
+}
+
 TEST(SeparateFigure, IsThatOfItsDefinition) {
   int figures = 0;
   int by_colour = 0;
@@ -355,6 +378,67 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
   EXPECT_GT(by_skirting, 3);
   EXPECT_GT(by_border, 5);
   EXPECT_GT(by_part, 5);
+}
+
+void expect_same_bits(const Segmentation& segmentation, const Segmentation& expected) {
+  EXPECT_EQ(numbers(segmentation.labels), numbers(expected.labels));
+  ASSERT_EQ(segmentation.regions.size(), expected.regions.size());
+  for (std::size_t i = 0; i < expected.regions.size(); ++i) {
+    const Region& p = segmentation.regions[i];
+    const Region& q = expected.regions[i];
+    EXPECT_EQ(p.pixel_count, q.pixel_count) << i;
+    EXPECT_EQ(p.valid_count, q.valid_count) << i;
+    EXPECT_EQ(p.box, q.box) << i;
+    EXPECT_EQ(p.is_floor, q.is_floor) << i;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(p.mean), std::bit_cast<std::uint64_t>(q.mean)) << i;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(p.variance), std::bit_cast<std::uint64_t>(q.variance)) << i;
+  }
+}
+
+TEST(GroupFacets, IsThatOfItsDefinition) {
+  std::size_t groups = 0;
+  int united = 0;
+  std::vector<Size> all_sizes = sizes();
+  all_sizes.push_back({160, 90});
+  for (const Size size : all_sizes) {
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+      const Facets facets = seed % 3 == 0   ? random_facets(size, 40, seed)
+                            : seed % 3 == 1 ? random_blocks(size, std::nullopt, seed)
+                                            : backwards(random_blocks(size, 12, seed), seed);
+      const DisparityMap map = random_map(size, seed, static_cast<int>(seed % 4) * 2);
+      const Image<Gray> picture = random_picture(size, seed);
+      const Image<float> evidence = find_evidence(picture, map, {0.3F, 0.5F, 40.0F}, {});
+      std::mt19937 random(seed);
+      std::vector<std::int32_t> figure(static_cast<std::size_t>(facets.count));
+      for (std::int32_t& f : figure) f = random() % 5 == 0 ? 0 : 1;
+      const Background background{{{0.01F, 0.02F, 1}, {-0.02F, 0, 2}}, true};
+      std::optional<StereoRig> rig;
+      if (seed % 2 == 0)
+        rig = StereoRig{.focal_px = 300, .cx_px = 80, .cy_px = 45, .baseline_m = 0.1F, .doffs_px = 3};
+      GroupConfig config;
+      config.step = 10.0F * static_cast<float>(seed % 4);
+      config.deviation = 15.0F * static_cast<float>(seed % 5);
+      if (seed > 6) config.min_area = 0.05F;
+      if (seed > 9) config.occluded_gap = 80;
+      const Segmentation expected =
+          reference::group_facets(facets, figure, map, evidence, background, rig, {}, config);
+      groups += expected.regions.size() - 1;
+      GroupConfig apart = config;
+      apart.occluded_gap = 0;
+      for (const int count : {1, 2}) {
+        const Exec exec = threads(count);
+        expect_same_bits(group_facets(facets, figure, map, evidence, background, rig, {}, config, exec),
+                         expected);
+        united +=
+            group_facets(facets, figure, map, evidence, background, rig, {}, apart, exec).regions.size() !=
+                    expected.regions.size()
+                ? 1
+                : 0;
+      }
+    }
+  }
+  EXPECT_GT(groups, 300U);
+  EXPECT_GT(united, 5);
 }
 
 TEST(SegmentFacets, GivesTheSameOnAnyNumberOfThreads) {

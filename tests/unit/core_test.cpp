@@ -7,11 +7,13 @@
 #include <cairn/core/nearest.hpp>
 #include <cairn/core/observed.hpp>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/pool_memory.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory_resource>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -77,6 +79,27 @@ TEST(Pool, OutlivesItsHandleAsLongAsAnImageDoes) {
     survivor = Image<int>(Size{8, 8}, 3, pool);
   }
   EXPECT_EQ(survivor(7, 7), 3);
+}
+
+TEST(PoolMemory, GivesAVectorTheBufferOfADeadOne) {
+  const Pool pool = Pool::make();
+  PoolMemory memory(pool);
+  const void* first = nullptr;
+  {
+    const std::pmr::vector<double> numbers(10000, 3.0, &memory);
+    first = numbers.data();
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(first) % 64, 0U);
+  }
+  const std::pmr::vector<int> others(20000, 7, &memory);  // no larger
+  EXPECT_EQ(others.data(), first);
+  EXPECT_EQ(pool.heap_allocations(), 1);
+}
+
+TEST(PoolMemory, LeavesSmallVectorsToTheHeap) {
+  const Pool pool = Pool::make();
+  PoolMemory memory(pool);
+  const std::pmr::vector<int> few(100, 7, &memory);
+  EXPECT_EQ(pool.heap_allocations(), 0);
 }
 
 TEST(Pool, DoesNotWasteALargeBufferOnASmallImage) {

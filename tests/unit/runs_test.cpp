@@ -14,12 +14,22 @@ TEST(Runs, EndWithTheLabelAndWithTheRow) {
   labels(0, 0) = RegionId{0};
   std::vector<Rect> boxes;
   std::vector<int> numbers;
-  for_each_run(labels, [&](const cairn::Run& run) {
+  for_each_run(labels, {}, [&](const cairn::Run& run) {
     boxes.push_back(run.box());
     numbers.push_back(number(run.label));
   });
   EXPECT_EQ(boxes, (std::vector<Rect>{{0, 0, 1, 1}, {1, 0, 3, 1}, {0, 1, 4, 1}}));
   EXPECT_EQ(numbers, (std::vector<int>{0, 1, 1}));
+}
+
+TEST(Runs, HaveTheExtentOfAllOfThem) {
+  Extent extent;
+  EXPECT_EQ(extent.box(), Rect{});
+  extent.add({RegionId{3}, 2, 5, 9});
+  EXPECT_EQ(extent.box(), (Rect{5, 2, 4, 1}));
+  extent.add({RegionId{3}, 2, 20, 21});
+  extent.add({RegionId{3}, 4, 3, 4});
+  EXPECT_EQ(extent.box(), (Rect{3, 2, 18, 3}));
 }
 
 TEST(Runs, SumTheirOwnPixelsColours) {
@@ -28,8 +38,8 @@ TEST(Runs, SumTheirOwnPixelsColours) {
   gray(2, 1) = 100;
   rgb(2, 1) = {1, 2, 3};
   const cairn::Run run{RegionId{0}, 1, 1, 3};
-  EXPECT_EQ(colour_sum(gray, rgb, run), (std::array{101, 152, 253}));
-  EXPECT_EQ(colour_sum(gray, {}, run), (std::array{300, 300, 300}));
+  EXPECT_EQ(ColourSums(gray, rgb).of(run), (std::array{101, 152, 253}));
+  EXPECT_EQ(ColourSums(gray, {}).of(run), (std::array{300, 300, 300}));
 }
 
 }  // namespace
