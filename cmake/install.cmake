@@ -16,11 +16,11 @@ endfunction()
 
 # The rest are the library's own business: they may change or go with any version.
 set(private_headers
-  core/each_index core/highway_targets core/nearest core/observed core/of_target
+  core/each_index core/highway_targets core/nearest core/observed core/of_target core/pool_memory
   disparity/floor_search disparity/homography disparity/plane_fit disparity/row_kernels
   matching/byte_lanes_plain matching/kernels matching/lanes_plain matching/pixel_math matching/prefilter matching/scratch
   matching/semi_global_kernels
-  objects/look_kernels objects/look_kernels_plain objects/ranks
+  objects/colour_model objects/like_facets objects/look_kernels objects/look_kernels_plain objects/looks objects/ranks
   regions/growing_regions regions/label_kernels regions/label_kernels_plain regions/minimum_cut regions/percent regions/runs
   regions/scratch regions/split_floor
   io/calibration_forms io/html_template io/raster io/read_file)

@@ -11,7 +11,7 @@ constexpr double kSpread = 12;       // grey levels
 constexpr double kUnknown = 0.0003;  // colours that nothing has are nobody's
 constexpr double kMost = 3;
 
-constexpr int kCells = 16;                  // along a channel
+constexpr int kCells = 16;                    // along a channel
 constexpr double kCellSize = 256.0 / kCells;  // grey levels
 
 struct Cell {
@@ -47,12 +47,15 @@ ColourModel::ColourModel(const std::pmr::vector<Look>& looks, const std::vector<
     if (!(cell.pixels[0] + cell.pixels[1] > 0)) continue;
     for (std::size_t c = 0; c < 3; ++c) mean_[c].push_back(cell.mean[c]);
     for (std::size_t side = 0; side < 2; ++side) pixels_.at(side).push_back(cell.pixels.at(side));
+    ++count_;
   }
+  for (auto& channel : mean_) channel.resize(count_ + kernels::kCellSlack);
+  for (auto& side : pixels_) side.resize(count_ + kernels::kCellSlack);
 }
 
 kernels::ColourCells ColourModel::cells() const {
   return {mean_[0].data(),   mean_[1].data(),   mean_[2].data(),
-          pixels_[0].data(), pixels_[1].data(), static_cast<int>(mean_[0].size())};
+          pixels_[0].data(), pixels_[1].data(), static_cast<int>(count_)};
 }
 
 double ColourModel::logarithm(const kernels::NearPixels& near) const {
@@ -61,7 +64,7 @@ double ColourModel::logarithm(const kernels::NearPixels& near) const {
 }
 
 double ColourModel::ground_over_figure(const Colour& colour, std::vector<double>& work) const {
-  work.resize(mean_[0].size());
+  work.resize(count_);
   return std::clamp(logarithm(run_.pixels_like(cells(), colour.data(), 2 * kSpread * kSpread, work.data())),
                     -kMost, kMost);
 }

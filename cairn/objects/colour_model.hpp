@@ -36,7 +36,8 @@ class ColourModel {
   [[nodiscard]] double logarithm(const kernels::NearPixels& near) const;
 
   const kernels::LookKernels& run_;
-  std::array<std::vector<double>, 3> mean_;  // of the cells, one list per channel
+  std::size_t count_ = 0;                    // of the cells
+  std::array<std::vector<double>, 3> mean_;  // one list per channel, each with its slack
   std::array<std::vector<double>, 2> pixels_;
   std::array<double, 2> total_{};
 };

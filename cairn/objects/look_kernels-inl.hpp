@@ -135,30 +135,24 @@ inline NearPixels pixels_roughly_like(const ColourCells& cells, const double* co
   const double green = colour[1];
   const double blue = colour[2];
   const double scale = -1 / (3 * spread);
-  const auto likeness = [=](int i) {
-    const double dr = red - at.red[i];
-    const double dg = green - at.green[i];
-    const double db = blue - at.blue[i];
-    return rough_exponential((dr * dr + dg * dg + db * db) * scale);
-  };
-  constexpr int kSome = 16;
-  std::array<double, kSome> ground{};
-  std::array<double, kSome> figure{};
-  int first = 0;
-  for (; first + kSome <= at.count; first += kSome) {
-    for (int k = 0; k < kSome; ++k) {
-      const double alike = likeness(first + k);
-      ground[static_cast<std::size_t>(k)] += alike * at.ground[first + k];
-      figure[static_cast<std::size_t>(k)] += alike * at.figure[first + k];
+  std::array<double, kCellSlack> ground{};
+  std::array<double, kCellSlack> figure{};
+  for (int first = 0; first < at.count; first += kCellSlack) {
+    std::array<double, kCellSlack> alike;
+    for (int k = 0; k < kCellSlack; ++k) {
+      const double dr = red - at.red[first + k];
+      const double dg = green - at.green[first + k];
+      const double db = blue - at.blue[first + k];
+      alike[static_cast<std::size_t>(k)] = rough_exponential((dr * dr + dg * dg + db * db) * scale);
+    }
+    for (int k = 0; k < kCellSlack; ++k) {
+      const auto lane = static_cast<std::size_t>(k);
+      ground[lane] += alike[lane] * at.ground[first + k];
+      figure[lane] += alike[lane] * at.figure[first + k];
     }
   }
   NearPixels near;
-  for (; first < at.count; ++first) {
-    const double alike = likeness(first);
-    near.ground += alike * at.ground[first];
-    near.figure += alike * at.figure[first];
-  }
-  for (std::size_t k = 0; k < kSome; ++k) {
+  for (std::size_t k = 0; k < kCellSlack; ++k) {
     near.ground += ground[k];
     near.figure += figure[k];
   }

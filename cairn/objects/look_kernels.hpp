@@ -15,6 +15,10 @@ namespace cairn::kernels {
 /// How many more elements than facets the arrays have, and lists of them: whole blocks are tested.
 constexpr int kLookSlack = 64;
 
+/// How many more elements than cells their arrays have, of no pixels: pixels_roughly_like() sums so many at
+/// once.
+constexpr int kCellSlack = 32;
+
 /// Facets, one array per quantity: their boxes, ends excluded, and mean colours.
 struct LookArrays {
   const std::int32_t* left;

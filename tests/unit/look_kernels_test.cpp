@@ -128,11 +128,12 @@ TEST(LookKernels, WeighPixelsByTheLikenessOfTheirColourTheSameOnAllTargets) {
 
 TEST(LookKernels, WeighPixelsRoughlyWithinTheirRoughness) {
   std::mt19937 random(8);
-  for (const int count : {0, 1, 15, 16, 17, 100}) {
+  for (const int count : {0, 1, 31, 32, 33, 100}) {
     std::array<std::vector<double>, 5> lists;
     for (auto& list : lists) {
       while (list.size() < static_cast<std::size_t>(count))
         list.push_back(static_cast<double>(random() % 25500) / 100);
+      list.resize(list.size() + kernels::kCellSlack);
     }
     const kernels::ColourCells cells{lists[0].data(), lists[1].data(), lists[2].data(),
                                      lists[3].data(), lists[4].data(), count};
