@@ -6,6 +6,7 @@
 #include <cairn/matching/pixel_math.hpp>
 #include <cairn/matching/prefilter.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace cairn {
@@ -48,6 +49,19 @@ class ColumnSums {
   bool started_ = false;
 };
 
+/// ⌊numerator / count⌋ by a multiplication: exact for numerators below 2^22 and counts below 2^10, as in
+/// numerator·(factor − 2^32 / count) < 2^32 / count.
+class Quotient {
+ public:
+  explicit Quotient(int count) : factor_((std::uint64_t{1} << 32) / static_cast<std::uint64_t>(count) + 1) {}
+  [[nodiscard]] int of(int numerator) const {
+    return static_cast<int>(static_cast<std::uint64_t>(numerator) * factor_ >> 32);
+  }
+
+ private:
+  std::uint64_t factor_;
+};
+
 }  // namespace
 
 Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec) {
@@ -78,13 +92,26 @@ Image<std::int16_t> remove_mean(View<const Gray> image, int window_size, const E
       std::int16_t* out = flat.row(y);
       int sum = 0;
       for (int x = 0; x < std::min(half, width); ++x) sum += sums[static_cast<std::size_t>(x)];
-      for (int x = 0; x < width; ++x) {
+      const auto write = [&](int x, int count, const Quotient& quotient) {
+        const int mean = quotient.of(pixel_math::kMeanSteps * sum + count / 2);
+        out[x] = static_cast<std::int16_t>(pixel_math::kMeanSteps * in[x] - mean);
+      };
+      const auto slide_at_border = [&](int x) {
         if (x + half < width) sum += sums[static_cast<std::size_t>(x + half)];
         if (x > half) sum -= sums[static_cast<std::size_t>(x - half - 1)];
         const int count = rows * (std::min(x + half, width - 1) - std::max(x - half, 0) + 1);
-        const int mean = (pixel_math::kMeanSteps * sum + count / 2) / count;
-        out[x] = static_cast<std::int16_t>(pixel_math::kMeanSteps * in[x] - mean);
+        write(x, count, Quotient(count));
+      };
+      const int x_inside = std::min(half + 1, width);
+      const int x_border = std::max(x_inside, width - half);
+      for (int x = 0; x < x_inside; ++x) slide_at_border(x);
+      const int count = rows * (2 * half + 1);
+      const Quotient quotient(count);
+      for (int x = x_inside; x < x_border; ++x) {
+        sum += sums[static_cast<std::size_t>(x + half)] - sums[static_cast<std::size_t>(x - half - 1)];
+        write(x, count, quotient);
       }
+      for (int x = x_border; x < width; ++x) slide_at_border(x);
     }
   });
   return flat;
