@@ -94,16 +94,37 @@ using I = Wide::SumTag;
 using VF = lanes::Vec<F>;
 using VI = lanes::Vec<I>;
 
+/// Where N·ΣLR − ΣL·ΣR is asked for, left pixels are taken times the N of whole windows, as far as 16 bits
+/// hold that: no box sum has to be multiplied with it then.
+constexpr bool takes_covariance(Cost cost) {
+  return cost == Cost::zncc || cost == Cost::zssd;
+}
+constexpr int left_scale(const MatchConfig& config) {
+  const int n = config.window_size * config.window_size;
+  return takes_covariance(config.cost) && n * 255 <= std::numeric_limits<std::int16_t>::max() ? n : 1;
+}
+/// 1/odd in integers of 32 bits, where what overflows wraps around. Each step doubles the bits that are
+/// right.
+constexpr std::int32_t inverse_of_odd(int odd) {
+  const auto number = static_cast<std::uint32_t>(odd);
+  std::uint32_t inverse = number;
+  for (int i = 0; i < 4; ++i) inverse *= 2 - number * inverse;
+  return static_cast<std::int32_t>(inverse);
+}
+static_assert(static_cast<std::uint32_t>(inverse_of_odd(81)) * 81U == 1);
+
 /// The search, and where the partners of a left pixel stand in the reversed right row.
 struct Geometry {
   int width;
   int height;
-  int half;     // of the window, rounded down
-  int first_d;  // px
-  int count;    // candidates
-  int lanes;    // as many as candidates, rounded up to halves of tiles
-  int pad;      // entries before the reversed row
-  int length;   // of a reversed row with all its margins
+  int half;              // of the window, rounded down
+  int first_d;           // px
+  int count;             // candidates
+  int lanes;             // as many as candidates, rounded up to halves of tiles
+  int pad;               // entries before the reversed row
+  int length;            // of a reversed row with all its margins
+  int scale;             // of left pixels in pairs, and so of sums of products
+  std::int32_t unscale;  // 1/scale
 
   explicit Geometry(const MatchTask& task)
       : width(task.out.best.width()),
@@ -113,7 +134,9 @@ struct Geometry {
         count(task.config.num_disparities),
         lanes(round_up(count, kTile / 2)),
         pad(std::max(0, -first_d)),
-        length(round_up(pad + width + std::max(0, first_d) + lanes + 64, 16)) {}
+        length(round_up(pad + width + std::max(0, first_d) + lanes + 64, 16)),
+        scale(left_scale(task.config)),
+        unscale(inverse_of_odd(scale)) {}
 
   [[nodiscard]] int reversed(int x_right) const { return pad + width - 1 - x_right; }
   [[nodiscard]] int first_lane(int x) const { return reversed(x - first_d); }

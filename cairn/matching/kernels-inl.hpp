@@ -81,6 +81,8 @@ class Band {
     if constexpr (correlates(kCost)) {
       move_down<-1>(strip.left, strip.left_pairs.data());
       move_down<1>(strip.right, strip.right_pairs.data());
+      // The moments are those of the pixels as they are.
+      if (g_.scale > 1) scale_pairs(strip.left_pairs.data() + g_.pad, g_.width, g_.scale);
     }
   }
 
@@ -126,6 +128,7 @@ class Band {
       if constexpr (correlates(kCost)) {
         sum_windows<kCost, kDouble>(strip.left, strip.rows);
         sum_windows<kCost, kDouble>(strip.right, strip.rows);
+        sum_cut_windows<kCost, kDouble>(strip.left, strip.rows, strip.cut);
       }
       begin_row(strip, std::min(g_.half, g_.width));
     }
@@ -178,10 +181,27 @@ class Band {
       const int x_inside = ragged ? x_end : std::clamp(g_.half + std::max(0, most_d), x_first, x_end);
       const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
       const auto slide_over = [&]<Place kPlace>(int begin, int end) {
-        if (begin < end)
+        if (begin >= end) return;
+        if constexpr (kPlace == Place::inside && std::is_same_v<Width, Wide>) {
+          if constexpr (takes_covariance(kCost) && !kDouble) {
+            if (g_.scale == rows->rows * (2 * g_.half + 1))
+              return slide_inside<kCost, kDouble, kLanes, true>(*rows, first, begin, end, begin - x_first,
+                                                                block_);
+          }
+          slide_inside<kCost, kDouble, kLanes, false>(*rows, first, begin, end, begin - x_first, block_);
+        } else {
           slide<kCost, Width, kDouble, kLanes, kPlace>(*rows, first, begin, end, begin - x_first, block_);
+        }
       };
-      slide_over.template operator()<Place::border>(x_first, x_inside);
+      int x_second_half = x_first;
+      if constexpr (std::is_same_v<Width, Wide> && kLanes == kTile) {
+        // Before, not even a column of the tile's second half has a partner.
+        constexpr int kHalf = kTile / 2;
+        if (!keeps_costs_) x_second_half = std::clamp(least_d + kHalf - g_.half, x_first, x_inside);
+        if (x_second_half > x_first)
+          slide<kCost, Wide, kDouble, kHalf, Place::border>(*rows, first, x_first, x_second_half, 0, block_);
+      }
+      slide_over.template operator()<Place::border>(x_second_half, x_inside);
       slide_over.template operator()<Place::inside>(x_inside, x_border);
       slide_over.template operator()<Place::border>(x_border, x_end);
       slide_over.template operator()<Place::right_end>(x_end, x_last);

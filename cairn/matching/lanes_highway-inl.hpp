@@ -101,38 +101,43 @@ HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
   return static_cast<std::int16_t>(LeastEighth(d, v) ^ 0x8000);
 }
 
-/// The least of all vectors' lanes and the first lane that has it, the vectors' lanes counted on.
+/// The first lane that holds no more than `most` does, the vectors' lanes counted on. There is one.
 template <class D, int kCount>
-HWY_INLINE int FirstLeast(D d, const Vec<D> (&v)[kCount], TFromD<D>& least) {
+HWY_INLINE int FirstUpTo([[maybe_unused]] D d, const Vec<D> (&v)[kCount], Vec<D> most) {
   constexpr int kLanes = static_cast<int>(MaxLanes(D()));
-  Vec<D> all = v[0];
-  HWY_UNROLL(16)
-  for (int k = 1; k < kCount; ++k) all = Min(all, v[k]);
-  least = LeastLane(d, all);
-  const Vec<D> wanted = Set(d, least);
 #if HWY_TARGET == HWY_AVX3
-  std::uint64_t bits = 0;
+  std::uint64_t more = 0;
   HWY_UNROLL(16)
-  for (int k = 0; k < kCount; ++k) bits |= static_cast<std::uint64_t>(Eq(v[k], wanted).raw) << (k * kLanes);
-  return std::countr_zero(bits);
+  for (int k = 0; k < kCount; ++k) more |= static_cast<std::uint64_t>(Gt(v[k], most).raw) << (k * kLanes);
+  return std::countr_one(more);
 #else
   using T = TFromD<D>;
   Vec<D> first = Set(d, T{kLanes * kCount});
   HWY_UNROLL(16)
   for (int k = kCount - 1; k >= 0; --k)
-    first = IfThenElse(Eq(v[k], wanted), CountFrom(d, static_cast<T>(k * kLanes)), first);
+    first = IfThenElse(Gt(v[k], most), first, CountFrom(d, static_cast<T>(k * kLanes)));
   return static_cast<int>(LeastLane(d, first));
 #endif
+}
+
+/// Of all vectors one, lane by lane the least.
+template <class V, int kCount>
+HWY_INLINE V LeastOf(const V (&v)[kCount]) {
+  V least = v[0];
+  HWY_UNROLL(16)
+  for (int k = 1; k < kCount; ++k) least = Min(least, v[k]);
+  return least;
 }
 
 /// The same of all vectors, one below the other.
 template <class D, int kCount>
 HWY_INLINE std::int32_t LeastOfEights(D d, const Vec<D> (&v)[kCount]) {
-  Vec<D> all = v[0];
-  HWY_UNROLL(16)
-  for (int k = 1; k < kCount; ++k) all = Min(all, v[k]);
-  return LeastEighth(d, all);
+  return LeastEighth(d, LeastOf(v));
 }
+
+/// Registers hold the costs of several pixels at a time.
+constexpr bool kManyCosts = HWY_TARGET == HWY_AVX3;
+
 /// So many vectors are brought down to one lane each at a time: as many as stand side by side in 128 bits.
 template <class D>
 constexpr int kFolded = 16 / static_cast<int>(sizeof(TFromD<D>));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -151,6 +152,15 @@ template <class T>
 T IfThenZeroElse(bool mask, T no) {
   return mask ? T{0} : no;
 }
+inline float GetLane(float v) {
+  return v;
+}
+inline std::int32_t BitCast(Tag<std::int32_t>, float value) {
+  return std::bit_cast<std::int32_t>(value);
+}
+inline float BitCast(Tag<float>, std::int32_t value) {
+  return std::bit_cast<float>(value);
+}
 inline float ConvertTo(Tag<float>, std::int32_t value) {
   return static_cast<float>(value);
 }
@@ -184,12 +194,19 @@ std::int16_t AbsChange(Tag<std::int16_t>, std::int16_t a, std::int16_t b) {
   const int change = std::abs(low_byte(a) - low_byte(b)) - std::abs(high_byte(a) - high_byte(b));
   return static_cast<std::int16_t>(change * (1 << kShift));
 }
-/// The least of all vectors' lanes and the first lane that has it.
+template <class T>
+T LeastLane(Tag<T>, T v) {
+  return v;
+}
+/// The first lane that holds no more than `most` does, the vectors' lanes counted on. There is one.
 template <class T, int kCount>
-int FirstLeast(Tag<T>, const T (&v)[kCount], T& least) {
-  const T* const found = std::min_element(v, v + kCount);
-  least = *found;
-  return static_cast<int>(found - v);
+int FirstUpTo(Tag<T>, const T (&v)[kCount], T most) {
+  return static_cast<int>(std::find_if(v, v + kCount, [=](T lane) { return lane <= most; }) - v);
+}
+/// Of all vectors one, lane by lane the least.
+template <class T, int kCount>
+T LeastOf(const T (&v)[kCount]) {
+  return *std::min_element(v, v + kCount);
 }
 /// The lanes are seen as rows of eight. The least of all (less −32768), and above its 16 bits the first
 /// column that it stands in.
@@ -216,6 +233,7 @@ inline std::int32_t AddPairs(Tag<std::int16_t>, std::int32_t sum, std::int16_t v
 }
 template <class D>
 using SumTag = Tag<std::int32_t>;
+constexpr bool kManyCosts = false;
 template <class D>
 constexpr int kFolded = 1;
 template <class D>

@@ -12,35 +12,68 @@ namespace {
 /// pixels of the row in the order of its pairs, with margins before and after.
 struct Moments {
   int half;
+  int lead;                             // entries before the first, so many that vectors stay aligned
   int first;                            // entry of a pixel
   int width;                            // so many are
-  Scratch<std::int32_t> column_sum;     // [entry + half]
+  Scratch<std::int32_t> column_sum;     // [lead + entry]
   Scratch<std::int32_t> column_energy;  // likewise, of squares
   Scratch<std::int32_t>
-      sum_before;  // [entry + half]: over the columns before the entry; may wrap, differences do not
+      sum_before;  // [lead + entry]: over the columns before the entry; may wrap, differences do not
   Scratch<std::int32_t> energy_before;
   Scratch<std::int32_t> columns;  // [entry]: of the window, those inside the image
   Scratch<std::int32_t> sum;
   Scratch<std::int32_t> energy;
-  Scratch<float> inverse;  // root, as the operator asks for it
+  Scratch<std::int32_t> variance;  // n·energy − sum², modulo 2^32
+  Scratch<float> inverse;          // root, as the operator asks for it
 
   /// Operators that compare nothing but differences need none.
   Moments(const Geometry& g, bool wanted)
       : half(g.half),
+        lead(wanted ? round_up(half, 16) : 0),
         first(g.pad),
         width(wanted ? g.width : 0),
-        column_sum(wanted ? round_up(g.length + 2 * half + 16, 16) : 0),
+        column_sum(wanted ? round_up(lead + g.length + half + 16, 16) : 0),
         column_energy(column_sum.size()),
         sum_before(column_sum.size() + 1),
         energy_before(column_sum.size() + 1),
         columns(wanted ? g.length + 16 : 0),
         sum(columns.size()),
         energy(columns.size()),
+        variance(columns.size()),
         inverse(columns.size()) {
     for (int x = 0; x < width; ++x) {
       columns[first + x] = std::min(x + half, width - 1) - std::max(x - half, 0) + 1;
     }
   }
+};
+
+/// Left windows, whole in their own image, that the right image's left border cuts: only their columns from d
+/// on have a partner. Of each left pixel x there are those for d = x − half + 1 … x; entries of no pixel may
+/// hold anything.
+struct CutWindows {
+  int half;
+  int first_x;
+  int count;   // of pixels
+  int stride;  // from pixel to pixel
+  Scratch<std::int32_t> columns;
+  Scratch<std::int32_t> sum;
+  Scratch<std::int32_t> energy;
+  Scratch<float> inverse;
+
+  CutWindows(const Geometry& g, bool wanted)
+      : half(g.half),
+        first_x(std::max(g.half, g.first_d)),
+        count(wanted ? std::max(0, std::min(g.width - g.half, g.first_d + g.lanes + g.half) - first_x) : 0),
+        stride(round_up(half, 4)),
+        columns(count > 0 ? round_up(count * stride, 16) + 2 * kMargin : 0),
+        sum(columns.size()),
+        energy(columns.size()),
+        inverse(columns.size()) {
+    for (int x = first_x; x < first_x + count; ++x) {
+      for (int d = x - half + 1; d <= x; ++d) columns[at(x, d)] = x + half + 1 - d;
+    }
+  }
+  [[nodiscard]] int at(int x, int d) const { return kMargin + (x - first_x) * stride + d - (x - half + 1); }
 };
 
 /// What one row of the right image (the left row's own, or one of its band) is correlated with.
@@ -55,6 +88,7 @@ struct Strip {
   Scratch<Sum> right_pairs;  // reversed
   Moments left;
   Moments right;
+  CutWindows cut;
 
   Strip(int strip_row, const Geometry& g, bool with_moments)
       : row(strip_row),
@@ -63,7 +97,8 @@ struct Strip {
         left_pairs(g.length + 16),
         right_pairs(g.length + 16),
         left(g, with_moments),
-        right(g, with_moments) {}
+        right(g, with_moments),
+        cut(g, with_moments) {}
 };
 
 /// Whole vectors of Wide::pair_of().
@@ -87,6 +122,7 @@ void pair_up(const Pixel* in, const Pixel* out, int width, typename Width::Sum* 
   }
   for (; x < width; ++x) pairs[x] = Width::pair_of(in[x], kSign * out[x]);
 }
+
 /// The same, the last pixel first.
 template <class Width, class Pixel>
 void pair_up_reversed(const Pixel* in, const Pixel* out, int width, typename Width::Sum* pairs) {
@@ -100,6 +136,14 @@ void pair_up_reversed(const Pixel* in, const Pixel* out, int width, typename Wid
   const Pixel* const last_in = in + width - 1;
   const Pixel* const last_out = out + width - 1;
   for (int i = 0; i < width - x; ++i) pairs[i] = Width::pair_of(last_in[-i], last_out[-i]);
+}
+
+/// Pairs of small numbers times one that keeps them small.
+inline void scale_pairs(std::int32_t* pairs, int count, int scale) {
+  const I i32;
+  for (int x = 0; x < count; x += lane_count<Wide>()) {
+    lanes::StoreU(lanes::Mul(lanes::LoadU(i32, pairs + x), lanes::Set(i32, scale)), i32, pairs + x);
+  }
 }
 
 /// Which candidates there are at all: all bits set, or none.
@@ -129,14 +173,21 @@ struct Rows {
   const Sum* within;  // [lane]
   const std::int32_t* l;
   const std::int32_t* ll;
+  const std::int32_t* variance_l;
   const float* inverse_l;
   const std::int32_t* r;
   const std::int32_t* rr;
+  const std::int32_t* variance_r;
   const float* inverse_r;
-  const std::int32_t* l_before;  // [entry + half]
+  const std::int32_t* l_before;  // [entry]
   const std::int32_t* ll_before;
   const std::int32_t* r_before;
   const std::int32_t* rr_before;
+  int cut_first_x;
+  int cut_stride;
+  const std::int32_t* cut_l;
+  const std::int32_t* cut_ll;
+  const float* cut_inverse_l;
 
   Rows(const Strip<Width>& strip, const Geometry& geometry, const Existence<Width>& exists)
       : g(geometry),
@@ -149,14 +200,21 @@ struct Rows {
         within(exists.within.data()),
         l(strip.left.sum.data()),
         ll(strip.left.energy.data()),
+        variance_l(strip.left.variance.data()),
         inverse_l(strip.left.inverse.data()),
         r(strip.right.sum.data()),
         rr(strip.right.energy.data()),
+        variance_r(strip.right.variance.data()),
         inverse_r(strip.right.inverse.data()),
-        l_before(strip.left.sum_before.data()),
-        ll_before(strip.left.energy_before.data()),
-        r_before(strip.right.sum_before.data()),
-        rr_before(strip.right.energy_before.data()) {}
+        l_before(strip.left.sum_before.data() + strip.left.lead),
+        ll_before(strip.left.energy_before.data() + strip.left.lead),
+        r_before(strip.right.sum_before.data() + strip.right.lead),
+        rr_before(strip.right.energy_before.data() + strip.right.lead),
+        cut_first_x(strip.cut.first_x),
+        cut_stride(strip.cut.stride),
+        cut_l(strip.cut.sum.data()),
+        cut_ll(strip.cut.energy.data()),
+        cut_inverse_l(strip.cut.inverse.data()) {}
 };
 
 // ----------------------------------------------------------------------------------------------------
@@ -184,7 +242,9 @@ CAIRN_LANES_INLINE VF inverse_root(VI n, VI energy, VI sum) {
 /// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp: of the left window, and of
 /// the right ones.
 struct LeftSums {
-  VI n, l, ll;
+  VI n;
+  VI n_of_box;  // n over the scale of box sums
+  VI l, ll;
   VF inverse_n, inverse_l;
 };
 struct RightSums {
@@ -203,9 +263,9 @@ template <Cost kCost, bool kDouble>
 CAIRN_LANES_INLINE VF cost_of(VI box, const LeftSums& left, const RightSums& right) {
   const F f;
   if constexpr (kCost == Cost::zncc) {
-    const VF correlation = lanes::Mul(difference<kDouble>(left.n, box, left.l, right.r),
+    const VF correlation = lanes::Mul(difference<kDouble>(left.n_of_box, box, left.l, right.r),
                                       lanes::Mul(left.inverse_l, right.inverse_r));
-    return lanes::Max(lanes::Zero(f), lanes::Sub(lanes::Set(f, 1.0F), correlation));
+    return lanes::Sub(lanes::Set(f, 1.0F), correlation);
   } else {
     // Σ(L−R)² = ΣL² + ΣR² − 2ΣLR
     const VI ssd = lanes::Sub(lanes::Add(left.ll, right.rr), lanes::Add(box, box));
@@ -218,8 +278,29 @@ CAIRN_LANES_INLINE VF cost_of(VI box, const LeftSums& left, const RightSums& rig
                                lanes::Set(f, pixel_math::kNoEnergyCost));
     } else {
       const VI l_minus_r = lanes::Sub(left.l, right.r);
-      return lanes::Mul(difference<kDouble>(left.n, ssd, l_minus_r, l_minus_r), left.inverse_n);
+      if constexpr (kDouble)
+        return lanes::Mul(difference<kDouble>(left.n, ssd, l_minus_r, l_minus_r), left.inverse_n);
+      const VI n_ssd = lanes::Sub(lanes::Mul(left.n, lanes::Add(left.ll, right.rr)),
+                                  lanes::Mul(left.n_of_box, lanes::Add(box, box)));
+      const VI zssd = lanes::Sub(n_ssd, lanes::Mul(l_minus_r, l_minus_r));
+      return lanes::Mul(lanes::ConvertTo(f, zssd), left.inverse_n);
     }
+  }
+}
+
+/// The same where left.n_of_box is 1. For zssd the moments of `left` and `right` are N·ΣL² − (ΣL)² and
+/// N·ΣR² − (ΣR)² in place of ΣL² and ΣR².
+template <Cost kCost>
+CAIRN_LANES_INLINE VF cost_of_whole(VI box, const LeftSums& left, const RightSums& right) {
+  const F f;
+  const VI covariance = lanes::Sub(box, lanes::Mul(left.l, right.r));
+  if constexpr (kCost == Cost::zncc) {
+    const VF correlation =
+        lanes::Mul(lanes::ConvertTo(f, covariance), lanes::Mul(left.inverse_l, right.inverse_r));
+    return lanes::Sub(lanes::Set(f, 1.0F), correlation);
+  } else {
+    const VI zssd = lanes::Sub(lanes::Add(left.ll, right.rr), lanes::Add(covariance, covariance));
+    return lanes::Mul(lanes::ConvertTo(f, zssd), left.inverse_n);
   }
 }
 
@@ -232,8 +313,8 @@ void move_down(Moments& m, const std::int32_t* pairs) {
   const I i32;
   const VI difference_signs = lanes::Set(i32, Wide::pair_of(1, -kSign));
   const VI sum_signs = lanes::Set(i32, Wide::pair_of(1, kSign));
-  std::int32_t* const sums = m.column_sum.data() + m.half;
-  std::int32_t* const energies = m.column_energy.data() + m.half;
+  std::int32_t* const sums = m.column_sum.data() + m.lead;
+  std::int32_t* const energies = m.column_energy.data() + m.lead;
   for (int e = m.first, end = m.first + m.width; e < end; e += lane_count<Wide>()) {
     const VI pair = lanes::LoadU(i32, pairs + e);
     const VI change = lanes::DotPairs(i32, pair, difference_signs);
@@ -264,12 +345,13 @@ template <Cost kCost, bool kDouble>
 void sum_windows(Moments& m, int rows) {
   const I i32;
   sum_up_columns(m);
-  const std::int32_t* const sum_before = m.sum_before.data();
-  const std::int32_t* const energy_before = m.energy_before.data();
+  const std::int32_t* const sum_before = m.sum_before.data() + m.lead - m.half;
+  const std::int32_t* const energy_before = m.energy_before.data() + m.lead - m.half;
   const std::int32_t* const columns = m.columns.data();
   std::int32_t* const sums = m.sum.data();
   std::int32_t* const energies = m.energy.data();
-  float* const inverses = m.inverse.data();
+  [[maybe_unused]] std::int32_t* const variances = m.variance.data();
+  [[maybe_unused]] float* const inverses = m.inverse.data();
   const int window = 2 * m.half + 1;
   for (int e = m.first, end = m.first + m.width; e < end; e += lane_count<Wide>()) {
     const VI sum = lanes::Sub(lanes::LoadU(i32, sum_before + e + window), lanes::LoadU(i32, sum_before + e));
@@ -278,7 +360,41 @@ void sum_windows(Moments& m, int rows) {
     const VI n = lanes::Mul(lanes::Set(i32, rows), lanes::LoadU(i32, columns + e));
     lanes::StoreU(sum, i32, sums + e);
     lanes::StoreU(energy, i32, energies + e);
-    lanes::StoreU(inverse_root<kCost, kDouble>(n, energy, sum), F(), inverses + e);
+    if constexpr (kCost == Cost::zssd) {
+      const VI variance = lanes::Sub(lanes::Mul(n, energy), lanes::Mul(sum, sum));
+      lanes::StoreU(variance, i32, variances + e);
+    }
+    if constexpr (kCost == Cost::nssd || kCost == Cost::zncc)
+      lanes::StoreU(inverse_root<kCost, kDouble>(n, energy, sum), F(), inverses + e);
+  }
+}
+
+/// The same for those that the right image cuts.
+template <Cost kCost, bool kDouble>
+void sum_cut_windows(const Moments& left, int rows, CutWindows& cut) {
+  const lanes::CappedTag<std::int32_t, 4> few;
+  const int half = cut.half;
+  const std::int32_t* const sum_before = left.sum_before.data() + left.lead + left.first;  // [x]
+  const std::int32_t* const energy_before = left.energy_before.data() + left.lead + left.first;
+  std::int32_t* sums = cut.sum.data() + kMargin;
+  std::int32_t* energies = cut.energy.data() + kMargin;
+  for (int x = cut.first_x, end = x + cut.count, stride = cut.stride; x < end; ++x) {
+    const auto sum_up_to = lanes::Set(few, sum_before[x + half + 1]);
+    const auto energy_up_to = lanes::Set(few, energy_before[x + half + 1]);
+    for (int i = 0; i < half; i += static_cast<int>(lanes::Lanes(few))) {
+      const int d = x - half + 1 + i;
+      lanes::StoreU(lanes::Sub(sum_up_to, lanes::LoadU(few, sum_before + d)), few, sums + i);
+      lanes::StoreU(lanes::Sub(energy_up_to, lanes::LoadU(few, energy_before + d)), few, energies + i);
+    }
+    sums += stride;
+    energies += stride;
+  }
+  const I i32;
+  for (int e = kMargin, end = kMargin + cut.count * cut.stride; e < end; e += lane_count<Wide>()) {
+    const VI n = lanes::Mul(lanes::Set(i32, rows), lanes::Load(i32, cut.columns.data() + e));
+    const VI energy = lanes::Load(i32, cut.energy.data() + e);
+    const VI sum = lanes::Load(i32, cut.sum.data() + e);
+    lanes::Store(inverse_root<kCost, kDouble>(n, energy, sum), F(), cut.inverse.data() + e);
   }
 }
 
@@ -288,8 +404,12 @@ CAIRN_LANES_INLINE LeftSums own_left_sums(const Rows<Wide>& in, int x) {
   const F f;
   const int e = in.g.pad + x;
   const int n = in.rows * (2 * in.g.half + 1);
-  return {lanes::Set(i32, n), lanes::Set(i32, in.l[e]), lanes::Set(i32, in.ll[e]),
-          lanes::Set(f, 1.0F / static_cast<float>(n)), lanes::Set(f, in.inverse_l[e])};
+  return {lanes::Set(i32, n),
+          lanes::Mul(lanes::Set(i32, n), lanes::Set(i32, in.g.unscale)),
+          lanes::Set(i32, in.l[e]),
+          lanes::Set(i32, in.ll[e]),
+          lanes::Set(f, 1.0F / static_cast<float>(n)),
+          lanes::Set(f, in.inverse_l[e])};
 }
 CAIRN_LANES_INLINE RightSums own_right_sums(const Rows<Wide>& in, int j) {
   return {lanes::LoadU(I(), in.r + j), lanes::LoadU(I(), in.rr + j), lanes::LoadU(F(), in.inverse_r + j)};
@@ -300,7 +420,7 @@ CAIRN_LANES_INLINE VI clipped_left_sum(const std::int32_t* before, const Geometr
                                        int i) {
   const I i32;
   const VI d = lanes::CountFrom(i32, g.first_d + i);
-  const std::int32_t* const at = before + g.half + g.pad;  // [x]
+  const std::int32_t* const at = before + g.pad;  // [x]
   const VI low = lanes::IfThenElse(lanes::Gt(d, lanes::Set(i32, begin)),
                                    lanes::LoadU(i32, at + g.first_d + i), lanes::Set(i32, at[begin]));
   const VI high =
@@ -314,7 +434,7 @@ CAIRN_LANES_INLINE VI clipped_left_sum(const std::int32_t* before, const Geometr
 CAIRN_LANES_INLINE VI clipped_right_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
                                         int i) {
   const I i32;
-  const std::int32_t* const at = before + g.half + i;  // [first lane]
+  const std::int32_t* const at = before + i;  // [first lane]
   return lanes::Sub(lanes::LoadU(i32, at + g.first_lane(begin) + 1),
                     lanes::LoadU(i32, at + g.first_lane(end - 1)));
 }
@@ -333,10 +453,21 @@ CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
                                 lanes::Max(lanes::Set(i32, begin), d));
   LeftSums left;
   left.n = lanes::Mul(lanes::Set(i32, in.rows), columns);
-  left.l = clipped_left_sum(in.l_before, g, begin, end, i);
-  left.ll = clipped_left_sum(in.ll_before, g, begin, end, i);
+  left.n_of_box = lanes::Mul(left.n, lanes::Set(i32, g.unscale));
   left.inverse_n = lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, left.n));
-  left.inverse_l = inverse_root<kCost, kDouble>(left.n, left.ll, left.l);
+  const int least_d = g.first_d + i;
+  const int most_d = least_d + lane_count<Wide>() - 1;
+  if (begin >= most_d && end <= g.width + least_d) {
+    // Nothing but the left image's own border clips its window.
+    const int e = g.pad + x;
+    left.l = lanes::Set(i32, in.l[e]);
+    left.ll = lanes::Set(i32, in.ll[e]);
+    left.inverse_l = lanes::Set(f, in.inverse_l[e]);
+  } else {
+    left.l = clipped_left_sum(in.l_before, g, begin, end, i);
+    left.ll = clipped_left_sum(in.ll_before, g, begin, end, i);
+    left.inverse_l = inverse_root<kCost, kDouble>(left.n, left.ll, left.l);
+  }
   RightSums right = own_right_sums(in, g.first_lane(x) + i);
   // The right windows are clipped by their own image already, unless the left one cuts off more.
   if (end - begin < 2 * g.half + 1) {
@@ -347,24 +478,53 @@ CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
   return cost_of<kCost, kDouble>(box, left, right);
 }
 
+/// The same where nothing but the right image's left border cuts windows, at least one of them.
+template <Cost kCost, bool kDouble>
+CAIRN_LANES_INLINE VF cut_cost(const Rows<Wide>& in, VI box, int x, int i) {
+  const I i32;
+  const F f;
+  const Geometry& g = in.g;
+  const VI d = lanes::CountFrom(i32, g.first_d + i);
+  const auto cut = lanes::Gt(d, lanes::Set(i32, x - g.half));
+  const auto cut_f = lanes::RebindMask(f, cut);
+  const int at = kMargin + (x - in.cut_first_x) * in.cut_stride + g.first_d + i - (x - g.half + 1);
+  const int e = g.pad + x;
+  const VI columns =
+      lanes::Min(lanes::Set(i32, 2 * g.half + 1), lanes::Sub(lanes::Set(i32, x + g.half + 1), d));
+  LeftSums left;
+  left.n = lanes::Mul(lanes::Set(i32, in.rows), columns);
+  left.n_of_box = lanes::Mul(left.n, lanes::Set(i32, g.unscale));
+  left.l = lanes::IfThenElse(cut, lanes::LoadU(i32, in.cut_l + at), lanes::Set(i32, in.l[e]));
+  left.ll = lanes::IfThenElse(cut, lanes::LoadU(i32, in.cut_ll + at), lanes::Set(i32, in.ll[e]));
+  left.inverse_n = lanes::Div(lanes::Set(f, 1.0F), lanes::ConvertTo(f, left.n));
+  left.inverse_l =
+      lanes::IfThenElse(cut_f, lanes::LoadU(f, in.cut_inverse_l + at), lanes::Set(f, in.inverse_l[e]));
+  return cost_of<kCost, kDouble>(box, left, own_right_sums(in, g.first_lane(x) + i));
+}
+
 // ----------------------------------------------------------------------------------------------------
 // Running sums
 
-/// By how much the columns of a left pixel change with this row. `left`: its pair in every lane; `j`: where
-/// its partners stand.
+/// By how much columns change with this row: the pairs of a left pixel and of its partners.
+template <Cost kCost, class Width>
+CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(lanes::Vec<typename Width::SumTag> left,
+                                                                lanes::Vec<typename Width::SumTag> right) {
+  const typename Width::SumTag d;
+  if constexpr (correlates(kCost)) {
+    return lanes::DotPairs(d, left, right);
+  } else {
+    return lanes::AbsChange<Width::kShift>(d, left, right);
+  }
+}
+/// The same near the border. `left`: a pixel's pair in every lane; `j`: where its partners stand.
 template <Cost kCost, class Width, bool kBorder>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(const Rows<Width>& in,
                                                                 lanes::Vec<typename Width::SumTag> left,
                                                                 int j) {
   const typename Width::SumTag d;
-  const auto right = lanes::LoadU(d, in.right_pairs + j);
-  if constexpr (correlates(kCost)) {
-    return lanes::DotPairs(d, left, right);
-  } else {
-    const auto change = lanes::AbsChange<Width::kShift>(d, left, right);
-    // Partners outside the image count for nothing; of correlations they are 0 anyway.
-    return kBorder ? lanes::And(change, lanes::LoadU(d, in.inside + j)) : change;
-  }
+  const auto change = change_of<kCost, Width>(left, lanes::LoadU(d, in.right_pairs + j));
+  // Partners outside the image count for nothing; of correlations they are 0 anyway.
+  return kBorder && !correlates(kCost) ? lanes::And(change, lanes::LoadU(d, in.inside + j)) : change;
 }
 
 /// The columns of left pixel x with this row, and the box with them.
@@ -412,6 +572,7 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>
   const Geometry& g = in.g;
   const int j = g.first_lane(x) + i;
   lanes::Vec<typename Width::CostTag> cost;
+  bool some_missing = kBorder;
   if constexpr (std::is_base_of_v<Narrow, Width>) {
     cost = box;
   } else if constexpr (!correlates(kCost)) {
@@ -420,16 +581,37 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>
     const int least_d = g.first_d + i;
     const int most_d = least_d + lane_count<Width>() - 1;
     if (kBorder && (least_d > x || most_d < x - g.width + 1)) return lanes::Set(d, kNoCost);
-    const bool clips = x < g.half + std::max(0, most_d) || x >= g.width - g.half + std::min(0, least_d);
-    cost = kBorder && clips ? clipped_cost<kCost, kDouble>(in, box, x, i)
-                            : cost_of<kCost, kDouble>(box, left, own_right_sums(in, j));
+    const bool clips = x < g.half || x >= g.width - g.half + std::min(0, least_d);
+    if (kBorder && clips) {
+      cost = clipped_cost<kCost, kDouble>(in, box, x, i);
+    } else if (kBorder && x < g.half + most_d) {
+      cost = cut_cost<kCost, kDouble>(in, box, x, i);
+    } else {
+      cost = cost_of<kCost, kDouble>(box, left, own_right_sums(in, j));
+      some_missing = i + lane_count<Width>() > g.count;
+    }
   }
-  if constexpr (kBorder) {
+  if (some_missing) {
     const auto exists = lanes::And(lanes::LoadU(d_sum, in.inside + j), lanes::Load(d_sum, in.within + i));
     const auto outside = lanes::RebindMask(d, lanes::Eq(exists, lanes::Zero(d_sum)));
     cost = lanes::IfThenElse(outside, lanes::Set(d, kNone<typename Width::Cost>), cost);
   }
   return cost;
+}
+
+/// Writes a pixel's costs into its block.
+template <Cost kCost, class Width, int kLanes>
+CAIRN_LANES_INLINE void keep_costs(lanes::Vec<typename Width::SumTag> (&keys)[kVectors<Width, kLanes>],
+                                   bool equal_tags, typename Width::Cost* costs) {
+  constexpr int kCount = kVectors<Width, kLanes>;
+  const typename Width::CostTag d;
+  if (equal_tags) {
+    CAIRN_UNROLL
+    for (int v = 0; v < kCount; ++v) keys[v] = with_equal_tag<Width>(keys[v]);
+  }
+  CAIRN_UNROLL
+  for (int v = 0; v < kCount; ++v)
+    lanes::Store(cost_of_key<kCost, Width>(keys[v]), d, costs + v * lane_count<Width>());
 }
 
 /// The winners of left pixels x_begin … x_end − 1 among the lanes of a tile, and where the block keeps them
@@ -443,7 +625,6 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
   constexpr int kCount = kVectors<Width, kLanes>;
   constexpr bool kBorder = kPlace != Place::inside;
   const typename Width::SumTag d;
-  const typename Width::CostTag d_cost;
   const Rows<Width> in(rows);
   const int half = in.g.half;
   const auto winners = block.winners[static_cast<std::size_t>(first / kTile)].places();
@@ -452,33 +633,173 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
   const std::ptrdiff_t stride = block.costs.stride;
   typename Width::Cost* costs = keeps_costs ? block.costs.of(pixel) + first : nullptr;
   lanes::Vec<typename Width::SumTag> box[kCount];
-  lanes::Vec<typename Width::CostTag> cost[kCount];
   CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) box[v] = lanes::Load(d, in.box + first + v * lane_count<Width>());
+
   for (int x = x_begin; x < x_end; ++x) {
     if constexpr (kPlace != Place::right_end) enter<kCost, Width, kLanes, kBorder>(in, first, x + half, box);
     const typename Width::Sum* const leaves = in.column_sums + in.g.column(x - half - 1, first);
     LeftSums left;
     if constexpr (correlates(kCost)) left = own_left_sums(in, x);
+    lanes::Vec<typename Width::SumTag> keys[1][kCount];
     CAIRN_UNROLL
     for (int v = 0; v < kCount; ++v) {
       const int at = v * lane_count<Width>();
       box[v] = lanes::Sub(box[v], lanes::Load(d, leaves + at));
-      cost[v] = cost_at<kCost, Width, kDouble, kBorder>(in, x, first + at, box[v], left);
+      keys[0][v] = as_key<Width>(cost_at<kCost, Width, kDouble, kBorder>(in, x, first + at, box[v], left));
     }
-    winners.find(pixel, cost);
+    winners.find(pixel, keys);
     ++pixel;
     if (!keeps_costs) continue;
-    if (equal_tags) {
-      CAIRN_UNROLL
-      for (int v = 0; v < kCount; ++v) cost[v] = with_equal_tag<Width>(cost[v]);
-    }
-    CAIRN_UNROLL
-    for (int v = 0; v < kCount; ++v) lanes::Store(cost[v], d_cost, costs + v * lane_count<Width>());
+    keep_costs<kCost, Width, kLanes>(keys[0], equal_tags, costs);
     costs += stride;
   }
   CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
+}
+
+/// What a walk along a row reads and writes for one left pixel and a tile's lanes: pointers that move on
+/// together.
+struct Cursor {
+  const std::int32_t* left_pair;    // of the pixel whose column joins the window
+  const std::int32_t* right_pairs;  // of that pixel's partners
+  std::int32_t* joins;
+  const std::int32_t* leaves;
+
+  Cursor(const Rows<Wide>& in, int first, int x)
+      : left_pair(in.left_pairs + in.g.pad + x + in.g.half),
+        right_pairs(in.right_pairs + in.g.first_lane(x + in.g.half) + first),
+        joins(in.column_sums + in.g.column(x + in.g.half, first)),
+        leaves(in.column_sums + in.g.column(x - in.g.half - 1, first)) {}
+
+  /// So many pixels further right. `lanes_used`: of the tile.
+  CAIRN_LANES_INLINE void move(int pixels, int lanes_used) {
+    left_pair += pixels;
+    right_pairs -= pixels;
+    joins += pixels * lanes_used;
+    leaves += pixels * lanes_used;
+  }
+};
+/// The same for the windows' own sums, where a cost asks for them.
+struct MomentsCursor {
+  const std::int32_t* l = nullptr;
+  const std::int32_t* ll = nullptr;
+  const float* inverse_l = nullptr;
+  const std::int32_t* r = nullptr;
+  const std::int32_t* rr = nullptr;
+  const float* inverse_r = nullptr;
+
+  MomentsCursor() = default;
+  /// With the variances in place of the energies, or not.
+  MomentsCursor(const Rows<Wide>& in, int first, int x, bool variances)
+      : l(in.l + in.g.pad + x),
+        ll((variances ? in.variance_l : in.ll) + in.g.pad + x),
+        inverse_l(in.inverse_l + in.g.pad + x),
+        r(in.r + in.g.first_lane(x) + first),
+        rr((variances ? in.variance_r : in.rr) + in.g.first_lane(x) + first),
+        inverse_r(in.inverse_r + in.g.first_lane(x) + first) {}
+
+  CAIRN_LANES_INLINE void move(int pixels) {
+    l += pixels;
+    ll += pixels;
+    inverse_l += pixels;
+    r -= pixels;
+    rr -= pixels;
+    inverse_r -= pixels;
+  }
+};
+
+/// The box moves on to the left pixel number `i` from the cursor on. Each step for all vectors, then the next
+/// one: no instruction waits for the one before it.
+template <Cost kCost, bool kDouble, int kLanes, bool kWhole>
+CAIRN_LANES_INLINE void move_inside(const Cursor& at, const MomentsCursor& moments, int i,
+                                    const LeftSums& window, VI (&box)[kVectors<Wide, kLanes>],
+                                    VI (&keys)[kVectors<Wide, kLanes>]) {
+  constexpr int kCount = kVectors<Wide, kLanes>;
+  constexpr int kStep = kLanes / kCount;
+  const I d;
+  const F f;
+  const VI left_pair = lanes::Set(d, at.left_pair[i]);
+  VI column[kCount];
+  CAIRN_UNROLL
+  for (int v = 0; v < kCount; ++v)
+    column[v] = change_of<kCost, Wide>(left_pair, lanes::LoadU(d, at.right_pairs - i + v * kStep));
+  CAIRN_UNROLL
+  for (int v = 0; v < kCount; ++v) {
+    std::int32_t* const joins = at.joins + i * kLanes + v * kStep;
+    column[v] = lanes::Add(lanes::Load(d, joins), column[v]);
+    lanes::Store(column[v], d, joins);
+  }
+  CAIRN_UNROLL
+  for (int v = 0; v < kCount; ++v) {
+    const VI leaves = lanes::Load(d, at.leaves + i * kLanes + v * kStep);
+    box[v] = lanes::Sub(lanes::Add(box[v], column[v]), leaves);
+  }
+  if constexpr (correlates(kCost)) {
+    LeftSums left = window;
+    left.l = lanes::Set(d, moments.l[i]);
+    left.ll = lanes::Set(d, moments.ll[i]);
+    left.inverse_l = lanes::Set(f, moments.inverse_l[i]);
+    CAIRN_UNROLL
+    for (int v = 0; v < kCount; ++v) {
+      const int lane = v * kStep - i;
+      const RightSums right{lanes::LoadU(d, moments.r + lane), lanes::LoadU(d, moments.rr + lane),
+                            lanes::LoadU(f, moments.inverse_r + lane)};
+      if constexpr (kWhole) {
+        keys[v] = as_key<Wide>(cost_of_whole<kCost>(box[v], left, right));
+      } else {
+        keys[v] = as_key<Wide>(cost_of<kCost, kDouble>(box[v], left, right));
+      }
+    }
+  } else {
+    CAIRN_UNROLL
+    for (int v = 0; v < kCount; ++v) keys[v] = as_key<Wide>(cost_of<kCost>(box[v]));
+  }
+}
+
+/// slide() for Place::inside. kWhole: the window's rows are all there, and box sums are scaled for that.
+template <Cost kCost, bool kDouble, int kLanes, bool kWhole>
+CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, int x_end, int pixel,
+                                 const Block<Wide>& block) {
+  constexpr int kCount = kVectors<Wide, kLanes>;
+  const I d;
+  const auto winners = block.winners[static_cast<std::size_t>(first / kTile)].places();
+  const bool keeps_costs = !block.costs.empty();
+  const std::ptrdiff_t stride = block.costs.stride;
+  float* costs = keeps_costs ? block.costs.of(pixel) + first : nullptr;
+  LeftSums window{};
+  MomentsCursor moments;
+  if constexpr (correlates(kCost)) {
+    window = own_left_sums(in, x_begin);  // n is the same for all
+    moments = MomentsCursor(in, first, x_begin, kWhole && kCost == Cost::zssd);
+  }
+  std::int32_t* const kept_box = in.box + first;
+  VI box[kCount];
+  CAIRN_UNROLL
+  for (int v = 0; v < kCount; ++v) box[v] = lanes::Load(d, kept_box + v * lane_count<Wide>());
+  Cursor at(in, first, x_begin);
+  const int last_pixel = pixel + x_end - x_begin;
+  const auto move_on = [&]<int kPixels>() {
+    VI keys[kPixels][kCount];
+    CAIRN_UNROLL
+    for (int i = 0; i < kPixels; ++i)
+      move_inside<kCost, kDouble, kLanes, kWhole>(at, moments, i, window, box, keys[i]);
+    at.move(kPixels, kLanes);
+    if constexpr (correlates(kCost)) moments.move(kPixels);
+    winners.find(pixel, keys);
+    pixel += kPixels;
+    if (!keeps_costs) return;
+    CAIRN_UNROLL
+    for (int i = 0; i < kPixels; ++i) keep_costs<kCost, Wide, kLanes>(keys[i], false, costs + i * stride);
+    costs += kPixels * stride;
+  };
+  if constexpr (lanes::kManyCosts) {
+    constexpr int kPixels = lanes::kFolded<I>;
+    while (!keeps_costs && pixel + kPixels <= last_pixel) move_on.template operator()<kPixels>();
+  }
+  while (pixel < last_pixel) move_on.template operator()<1>();
+  CAIRN_UNROLL
+  for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, kept_box + v * lane_count<Wide>());
 }
 
 }  // namespace

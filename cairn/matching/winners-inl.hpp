@@ -21,6 +21,17 @@ CAIRN_LANES_INLINE float as_cost(typename Width::Cost lane) {
   }
 }
 
+/// What is less where the cost is less, in integers, which compare faster than floats. A cost that its
+/// roundings have carried below 0 counts as 0; its key is below 0.
+template <class Width>
+CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> as_key(lanes::Vec<typename Width::CostTag> cost) {
+  if constexpr (std::is_same_v<Width, Wide>) {
+    return lanes::BitCast(I(), cost);
+  } else {
+    return cost;
+  }
+}
+
 /// The least costs of left pixels among a tile's lanes, and the first lanes that have them.
 template <class Width>
 struct TileWinners {
@@ -32,18 +43,62 @@ struct TileWinners {
   struct Places {
     float* costs;
     std::int32_t* first_lanes;
+    /// Of so many pixels from `pixel` on.
     template <int kCount>
-    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<typename Width::CostTag> (&cost)[kCount]) const {
-      typename Width::Cost least;
-      first_lanes[pixel] = lanes::FirstLeast(typename Width::CostTag(), cost, least);
+    CAIRN_LANES_INLINE void find(int pixel,
+                                 const lanes::Vec<typename Width::SumTag> (&keys)[1][kCount]) const {
+      const typename Width::SumTag d;
+      const auto least = lanes::LeastLane(d, lanes::LeastOf(keys[0]));
+      first_lanes[pixel] = lanes::FirstUpTo(d, keys[0], lanes::Set(d, least));
       costs[pixel] = as_cost<Width>(least);
+    }
+    [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const { return lanes::Load(F(), costs + pixel); }
+    [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
+      return lanes::Load(I(), first_lanes + pixel);
     }
   };
   [[nodiscard]] Places places() const { return {costs.data(), first_lanes.data()}; }
-  [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const { return lanes::Load(F(), costs.data() + pixel); }
-  [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
-    return lanes::Load(I(), first_lanes.data() + pixel);
-  }
+};
+template <>
+struct TileWinners<Wide> {
+  Scratch<float> costs;
+  Scratch<std::int32_t> first_lanes;
+  explicit TileWinners(int pixels) : costs(pixels), first_lanes(pixels) {}
+
+  struct Places {
+    float* costs;
+    std::int32_t* first_lanes;
+    template <int kPixels, int kCount>
+    CAIRN_LANES_INLINE void find(int pixel, const VI (&keys)[kPixels][kCount]) const {
+      const I d;
+      if constexpr (kPixels == 1) {
+        // Through a float's register, which is the same as a vector's.
+        const F f;
+        const float least_lane = lanes::LeastLane(f, lanes::BitCast(f, lanes::LeastOf(keys[0])));
+        const VF least = lanes::Max(lanes::Set(f, least_lane), lanes::Zero(f));
+        first_lanes[pixel] = lanes::FirstUpTo(d, keys[0], lanes::BitCast(d, least));
+        costs[pixel] = lanes::GetLane(least);
+      } else {
+        const lanes::Folded<I> folded;
+        VI least[kPixels];
+        CAIRN_UNROLL
+        for (int i = 0; i < kPixels; ++i) least[i] = lanes::LeastOf(keys[i]);
+        const auto all = lanes::Max(lanes::FoldEach<lanes::Lesser>(d, least), lanes::Zero(folded));
+        const lanes::Folded<F> costs_of_all;
+        lanes::StoreU(lanes::BitCast(costs_of_all, all), costs_of_all, costs + pixel);
+        CAIRN_UNROLL
+        for (int i = 0; i < kPixels; ++i) {
+          const VI most = lanes::BitCast(d, lanes::Set(F(), costs[pixel + i]));
+          first_lanes[pixel + i] = lanes::FirstUpTo(d, keys[i], most);
+        }
+      }
+    }
+    [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const { return lanes::Load(F(), costs + pixel); }
+    [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
+      return lanes::Load(I(), first_lanes + pixel);
+    }
+  };
+  [[nodiscard]] Places places() const { return {costs.data(), first_lanes.data()}; }
 };
 template <>
 struct TileWinners<Tagged> {
@@ -54,32 +109,42 @@ struct TileWinners<Tagged> {
   struct Places {
     std::int32_t* tagged;
     template <int kCount>
-    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<Tagged::CostTag> (&cost)[kCount]) const {
-      tagged[pixel] = lanes::LeastOfEights(Tagged::CostTag(), cost);
+    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<Tagged::SumTag> (&keys)[1][kCount]) const {
+      tagged[pixel] = lanes::LeastOfEights(Tagged::SumTag(), keys[0]);
+    }
+    [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const {
+      const VI sum = lanes::And(lanes::Load(I(), tagged + pixel), lanes::Set(I(), 65535));
+      const auto none = lanes::RebindMask(F(), lanes::Eq(sum, lanes::Set(I(), 65535)));
+      return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
+                               lanes::ConvertTo(F(), lanes::ShiftRight<Tagged::kShift>(sum)));
+    }
+    [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
+      const VI both = lanes::Load(I(), tagged + pixel);
+      const VI tag = lanes::And(both, lanes::Set(I(), 7));
+      return lanes::Add(lanes::ShiftLeft<3>(tag), lanes::ShiftRight<16>(both));
     }
   };
   [[nodiscard]] Places places() const { return {tagged.data()}; }
-  [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const {
-    const VI sum = lanes::And(lanes::Load(I(), tagged.data() + pixel), lanes::Set(I(), 65535));
-    const auto none = lanes::RebindMask(F(), lanes::Eq(sum, lanes::Set(I(), 65535)));
-    return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
-                             lanes::ConvertTo(F(), lanes::ShiftRight<Tagged::kShift>(sum)));
-  }
-  [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
-    const VI both = lanes::Load(I(), tagged.data() + pixel);
-    const VI tag = lanes::And(both, lanes::Set(I(), 7));
-    return lanes::Add(lanes::ShiftLeft<3>(tag), lanes::ShiftRight<16>(both));
-  }
 };
 
 /// Tags are made equal, so that of equal costs none is less for its lane.
 template <class Width>
-CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> with_equal_tag(
-    lanes::Vec<typename Width::CostTag> cost) {
+CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> with_equal_tag(lanes::Vec<typename Width::SumTag> key) {
   if constexpr (std::is_same_v<Width, Tagged>) {
-    return lanes::Or(cost, lanes::Set(typename Width::CostTag(), std::int16_t{7}));
+    return lanes::Or(key, lanes::Set(typename Width::SumTag(), std::int16_t{7}));
   } else {
-    return cost;
+    return key;
+  }
+}
+/// The cost that a key was made of, but ≥ 0.
+template <Cost kCost, class Width>
+CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_of_key(lanes::Vec<typename Width::SumTag> key) {
+  if constexpr (kCost == Cost::zncc) {
+    return lanes::BitCast(F(), lanes::Max(key, lanes::Zero(I())));
+  } else if constexpr (std::is_same_v<Width, Wide>) {
+    return lanes::BitCast(F(), key);
+  } else {
+    return key;
   }
 }
 
@@ -385,9 +450,12 @@ struct RowWinners {
   /// to end − 1.
   template <class Width>
   void start(const TileWinners<Width>& tile, int begin, int end) const {
+    const auto found = tile.places();
+    float* const costs = cost.data();
+    std::int32_t* const first_lanes = lane.data();
     for (int x = begin; x < end; x += lane_count<Wide>()) {
-      lanes::Store(tile.cost(x - begin), F(), &cost[x]);
-      lanes::Store(tile.lane(x - begin), I(), &lane[x]);
+      lanes::Store(found.cost(x - begin), F(), costs + x);
+      lanes::Store(found.lane(x - begin), I(), first_lanes + x);
     }
     std::fill(&row[begin], row.data() + end, std::int8_t{0});
   }
@@ -397,9 +465,10 @@ struct RowWinners {
   void keep(const TileWinners<Width>& tile, int first, int of_row, int begin, int end) const {
     const F f;
     const I i32;
+    const auto found = tile.places();
     for (int x = begin; x < end; x += lane_count<Wide>()) {
-      const VF its_cost = tile.cost(x - begin);
-      const VI its_lane = lanes::Add(tile.lane(x - begin), lanes::Set(i32, first));
+      const VF its_cost = found.cost(x - begin);
+      const VI its_lane = lanes::Add(found.lane(x - begin), lanes::Set(i32, first));
       const VF known_cost = lanes::Load(f, &cost[x]);
       const VI known_lane = lanes::Load(i32, &lane[x]);
       const auto before = lanes::RebindMask(f, lanes::Lt(its_lane, known_lane));

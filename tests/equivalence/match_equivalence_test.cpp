@@ -188,6 +188,28 @@ TEST_P(MatchEquivalence, HoldsForTheLargestSumsThatAWindowCanHave) {
   }
 }
 
+TEST_P(MatchEquivalence, HoldsWhereSeveralCandidatesMatchPerfectly) {
+  // A pattern that comes again and again, in the right image now as it is and now twice as bright: what zncc
+  // makes of such windows is 0 but for its roundings, to either side.
+  constexpr int kPeriod = 16;
+  const Size size{170, 17};
+  Image<Gray> pattern(size);
+  Image<Gray> alternating(size);
+  std::mt19937 random(3);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      pattern(x, y) = x < kPeriod ? static_cast<Gray>(random() % 128) : pattern(x - kPeriod, y);
+      alternating(x, y) = static_cast<Gray>(pattern(x, y) * (1 + x / kPeriod % 2));
+    }
+  }
+  for (const int window : {3, 9, 13}) {
+    auto repeating = config(window, -20, 100);
+    expect_equal_to_reference(StereoPair::from(pattern, alternating), repeating);
+    repeating.evidence = Evidence::winner;
+    expect_equal_to_reference(StereoPair::from(pattern, alternating), repeating);
+  }
+}
+
 TEST_P(MatchEquivalence, HoldsForTheLargestSumsOfPrefilteredImages) {
   // Slopes to the utmost everywhere, up where the other image goes down.
   const Size size{44, 30};
