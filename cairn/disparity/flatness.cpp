@@ -18,7 +18,7 @@ Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config, 
       Reject* const out = verdict.row(y);
       for (int x = 0; x < size.width; ++x) {
         const bool shallow = !(mean[x] > 0) | ((mean[x] - cost[x]) / mean[x] < config.threshold);
-        out[x] = shallow & (cost[x] < kNoCost) ? Reject::flat : Reject::none;
+        out[x] = (shallow & (cost[x] < kNoCost)) ? Reject::flat : Reject::none;
       }
     }
   });

@@ -12,7 +12,7 @@ inline void find_partners(const std::int16_t* best, int width, int none,
   for (int x = 0; x < width; ++x) {
     const int partner = x - best[x];
     const bool inside = static_cast<std::uint32_t>(partner) < count;
-    partners[x] = inside & (best[x] != kNoMatch) ? partner : none;
+    partners[x] = (inside & (best[x] != kNoMatch)) ? partner : none;
   }
 }
 

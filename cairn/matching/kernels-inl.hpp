@@ -181,17 +181,9 @@ class Band {
       const int x_inside = ragged ? x_end : std::clamp(g_.half + std::max(0, most_d), x_first, x_end);
       const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
       const auto slide_over = [&]<Place kPlace>(int begin, int end) {
-        if (begin >= end) return;
-        if constexpr (kPlace == Place::inside && std::is_same_v<Width, Wide>) {
-          if constexpr (takes_covariance(kCost) && !kDouble) {
-            if (g_.scale == rows->rows * (2 * g_.half + 1))
-              return slide_inside<kCost, kDouble, kLanes, true>(*rows, first, begin, end, begin - x_first,
-                                                                block_);
-          }
-          slide_inside<kCost, kDouble, kLanes, false>(*rows, first, begin, end, begin - x_first, block_);
-        } else {
-          slide<kCost, Width, kDouble, kLanes, kPlace>(*rows, first, begin, end, begin - x_first, block_);
-        }
+        if (begin < end)
+          slide_along<kCost, Width, kDouble, kLanes, kPlace>(*rows, first, begin, end, begin - x_first,
+                                                             block_);
       };
       int x_second_half = x_first;
       if constexpr (std::is_same_v<Width, Wide> && kLanes == kTile) {
@@ -199,7 +191,7 @@ class Band {
         constexpr int kHalf = kTile / 2;
         if (!keeps_costs_) x_second_half = std::clamp(least_d + kHalf - g_.half, x_first, x_inside);
         if (x_second_half > x_first)
-          slide<kCost, Wide, kDouble, kHalf, Place::border>(*rows, first, x_first, x_second_half, 0, block_);
+          slide<kCost, Width, kDouble, kHalf, Place::border>(*rows, first, x_first, x_second_half, 0, block_);
       }
       slide_over.template operator()<Place::border>(x_second_half, x_inside);
       slide_over.template operator()<Place::inside>(x_inside, x_border);

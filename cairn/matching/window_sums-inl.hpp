@@ -601,8 +601,9 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>
 
 /// Writes a pixel's costs into its block.
 template <Cost kCost, class Width, int kLanes>
-CAIRN_LANES_INLINE void keep_costs(lanes::Vec<typename Width::SumTag> (&keys)[kVectors<Width, kLanes>],
-                                   bool equal_tags, typename Width::Cost* costs) {
+CAIRN_LANES_INLINE void keep_costs(bool equal_tags,
+                                   lanes::Vec<typename Width::SumTag> (&keys)[kVectors<Width, kLanes>],
+                                   typename Width::Cost* costs) {
   constexpr int kCount = kVectors<Width, kLanes>;
   const typename Width::CostTag d;
   if (equal_tags) {
@@ -651,7 +652,7 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
     winners.find(pixel, keys);
     ++pixel;
     if (!keeps_costs) continue;
-    keep_costs<kCost, Width, kLanes>(keys[0], equal_tags, costs);
+    keep_costs<kCost, Width, kLanes>(equal_tags, keys[0], costs);
     costs += stride;
   }
   CAIRN_UNROLL
@@ -790,7 +791,7 @@ CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, i
     pixel += kPixels;
     if (!keeps_costs) return;
     CAIRN_UNROLL
-    for (int i = 0; i < kPixels; ++i) keep_costs<kCost, Wide, kLanes>(keys[i], false, costs + i * stride);
+    for (int i = 0; i < kPixels; ++i) keep_costs<kCost, Wide, kLanes>(false, keys[i], costs + i * stride);
     costs += kPixels * stride;
   };
   if constexpr (lanes::kManyCosts) {
@@ -800,6 +801,23 @@ CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, i
   while (pixel < last_pixel) move_on.template operator()<1>();
   CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, kept_box + v * lane_count<Wide>());
+}
+
+/// slide(), or what does the same faster.
+template <Cost kCost, class Width, bool kDouble, int kLanes, Place kPlace>
+void slide_along(const Rows<Width>& in, int first, int x_begin, int x_end, int pixel,
+                 const Block<Width>& block) {
+  if constexpr (kPlace != Place::inside || !std::is_same_v<Width, Wide>) {
+    slide<kCost, Width, kDouble, kLanes, kPlace>(in, first, x_begin, x_end, pixel, block);
+  } else {
+    if constexpr (takes_covariance(kCost) && !kDouble) {
+      if (in.g.scale == in.rows * (2 * in.g.half + 1)) {
+        slide_inside<kCost, kDouble, kLanes, true>(in, first, x_begin, x_end, pixel, block);
+        return;
+      }
+    }
+    slide_inside<kCost, kDouble, kLanes, false>(in, first, x_begin, x_end, pixel, block);
+  }
 }
 
 }  // namespace
