@@ -181,9 +181,10 @@ class Band {
       const int x_inside = ragged ? x_end : std::clamp(g_.half + std::max(0, most_d), x_first, x_end);
       const int x_border = std::clamp(g_.width - g_.half + std::min(0, least_d), x_inside, x_end);
       const auto slide_over = [&]<Place kPlace>(int begin, int end) {
-        if (begin < end)
+        if (begin < end) {
           slide_along<kCost, Width, kDouble, kLanes, kPlace>(*rows, first, begin, end, begin - x_first,
                                                              block_);
+        }
       };
       int x_second_half = x_first;
       if constexpr (std::is_same_v<Width, Wide> && kLanes == kTile) {

@@ -788,7 +788,6 @@ CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, i
     at.move(kPixels, kLanes);
     if constexpr (correlates(kCost)) moments.move(kPixels);
     winners.find(pixel, keys);
-    pixel += kPixels;
     if (!keeps_costs) return;
     CAIRN_UNROLL
     for (int i = 0; i < kPixels; ++i) keep_costs<kCost, Wide, kLanes>(false, keys[i], costs + i * stride);
@@ -796,9 +795,10 @@ CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, i
   };
   if constexpr (lanes::kManyCosts) {
     constexpr int kPixels = lanes::kFolded<I>;
-    while (!keeps_costs && pixel + kPixels <= last_pixel) move_on.template operator()<kPixels>();
+    for (; !keeps_costs && pixel + kPixels <= last_pixel; pixel += kPixels)
+      move_on.template operator()<kPixels>();
   }
-  while (pixel < last_pixel) move_on.template operator()<1>();
+  for (; pixel < last_pixel; ++pixel) move_on.template operator()<1>();
   CAIRN_UNROLL
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, kept_box + v * lane_count<Wide>());
 }
