@@ -283,7 +283,7 @@ inline int count_on_before(const PointArrays& points, const GroundPlane& plane, 
   int count = 0;
   for (int i = 0; i < at.count; ++i) {
     const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
-    count += (d > at.behind[i]) & (std::abs(at.d[i] - d) < tolerance) ? 1 : 0;
+    count += ((d > at.behind[i]) & (std::abs(at.d[i] - d) < tolerance)) ? 1 : 0;
   }
   return count;
 }

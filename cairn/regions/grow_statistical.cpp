@@ -169,7 +169,7 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
   std::size_t count = 0;
   for (std::int32_t i = 0; i < regions.count(); ++i) {
     order[count] = placed(regions, i);
-    count += static_cast<std::size_t>(regions.is_alive(i) & (stale[i] != 0));
+    count += static_cast<std::size_t>(regions.is_alive(i)) & static_cast<std::size_t>(stale[i] != 0);
   }
   order.resize(count);
   // Basins are numbered in this order; but a region that absorbed an earlier one goes by that one's place.
