@@ -84,7 +84,7 @@ bool MinimumCuts::find_levels() {
       continue;
     }
     for (std::int32_t i = first_[slot(node)]; i < first_[slot(node) + 1]; ++i) {
-      const Arc& arc = arcs_[slot(i)];
+      const FlowArc& arc = arcs_[slot(i)];
       if (arc.capacity <= 0 || level_[slot(arc.to)] >= 0) continue;
       level_[slot(arc.to)] = level_[slot(node)] + 1;
       queue_.push_back(arc.to);
@@ -100,7 +100,7 @@ bool MinimumCuts::push_from(std::int32_t start) {
   while (excess_[slot(node)] >= 0) {
     std::int32_t& i = next_[slot(node)];
     for (; i < first_[slot(node) + 1]; ++i) {
-      const Arc& arc = arcs_[slot(i)];
+      const FlowArc& arc = arcs_[slot(i)];
       if (arc.capacity > 0 && level_[slot(arc.to)] == level_[slot(node)] + 1) break;
     }
     if (i < first_[slot(node) + 1]) {
@@ -153,7 +153,7 @@ void MinimumCuts::spread_ones(std::vector<std::int32_t>& label) const {
     const std::size_t node = slot(to_do.back());
     to_do.pop_back();
     for (std::int32_t i = first_[node]; i < first_[node + 1]; ++i) {
-      const Arc& arc = arcs_[slot(i)];
+      const FlowArc& arc = arcs_[slot(i)];
       if (undecided(slot(arc.to)) && arcs_[slot(arc.back)].capacity > 0) reach(slot(arc.to));
     }
   }

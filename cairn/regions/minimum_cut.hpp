@@ -17,6 +17,13 @@ struct Tie {
   std::int64_t cost = 0;
 };
 
+/// What still may flow along a tie, from one of its nodes to the other.
+struct FlowArc {
+  std::int32_t to = 0;
+  std::int32_t back = 0;  // number of the arc the other way
+  std::int64_t capacity = 0;
+};
+
 /// Labels every node 0 or 1 so that the sum of cost_0 of the nodes labelled 0, cost_1 of those labelled 1,
 /// and the costs of ties between differently labelled nodes is least; of several such labellings the one with
 /// the fewest 1s. Exact: a minimum s-t cut (Greig, Porteous & Seheult 1989), found with Dinic's augmenting
@@ -35,12 +42,6 @@ class MinimumCuts {
   std::vector<std::int32_t> cut(std::span<const std::int64_t> cost_0, std::span<const std::int64_t> cost_1);
 
  private:
-  struct Arc {
-    std::int32_t to = 0;
-    std::int32_t back = 0;  // the arc the other way
-    std::int64_t capacity = 0;
-  };
-
   void take_over(std::span<const std::int64_t> cost_0, std::span<const std::int64_t> cost_1);
   void saturate();
   bool find_levels();
@@ -52,7 +53,7 @@ class MinimumCuts {
   // no nodes.
   PoolMemory memory_;
   std::pmr::vector<std::int32_t> first_;
-  std::pmr::vector<Arc> arcs_;
+  std::pmr::vector<FlowArc> arcs_;
   std::pmr::vector<std::int64_t> costs_;   // of label 0 above those of label 1
   std::pmr::vector<std::int64_t> excess_;  // positive: to give, negative: to take
   // Paths are looked for from the side that has fewer nodes. Where those are the nodes that would be 0,
