@@ -254,38 +254,33 @@ inline void agreed(const float* const* rows, int width, float agreement, float* 
   }
 }
 
-inline int count_on(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+/// Of how many points judge(points, i, the plane's disparity there) holds.
+template <class Judge>
+inline int count_where(const PointArrays& points, const GroundPlane& plane, Judge judge) {
   const GroundPlane p = plane;
   const PointArrays at = points;
   int count = 0;
-  for (int i = 0; i < at.count; ++i) {
-    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
-    count += std::abs(at.d[i] - d) < tolerance ? 1 : 0;
-  }
+  for (int i = 0; i < at.count; ++i) count += judge(at, i, p.a * at.x[i] + p.b * at.y[i] + p.c) ? 1 : 0;
   return count;
+}
+
+inline int count_on(const PointArrays& points, const GroundPlane& plane, float tolerance) {
+  return count_where(points, plane, [tolerance](const PointArrays& at, int i, float d) {
+    return std::abs(at.d[i] - d) < tolerance;
+  });
 }
 
 inline int count_beyond(const PointArrays& points, const GroundPlane& plane, float tolerance) {
-  const GroundPlane p = plane;
-  const PointArrays at = points;
-  int count = 0;
-  for (int i = 0; i < at.count; ++i) {
-    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
+  return count_where(points, plane, [tolerance](const PointArrays& at, int i, float d) {
     const float back = at.behind[i] < d ? d : at.behind[i];
-    count += at.d[i] - back < -tolerance ? 1 : 0;
-  }
-  return count;
+    return at.d[i] - back < -tolerance;
+  });
 }
 
 inline int count_on_before(const PointArrays& points, const GroundPlane& plane, float tolerance) {
-  const GroundPlane p = plane;
-  const PointArrays at = points;
-  int count = 0;
-  for (int i = 0; i < at.count; ++i) {
-    const float d = p.a * at.x[i] + p.b * at.y[i] + p.c;
-    count += ((d > at.behind[i]) & (std::abs(at.d[i] - d) < tolerance)) ? 1 : 0;
-  }
-  return count;
+  return count_where(points, plane, [tolerance](const PointArrays& at, int i, float d) {
+    return (d > at.behind[i]) & (std::abs(at.d[i] - d) < tolerance);
+  });
 }
 
 inline void put_behind(const PointArrays& points, const GroundPlane& plane, float* CAIRN_RESTRICT behind) {
