@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <bit>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/growing_regions.hpp>
 #include <numeric>
@@ -80,9 +79,7 @@ class UntriedArcs {
 
 /// Ascending with falling means; means that differ little may share a key.
 std::uint32_t key_of(double mean) {
-  const auto bits = std::bit_cast<std::uint64_t>(mean);
-  const std::uint64_t ascending = bits >> 63U != 0 ? ~bits : bits | (std::uint64_t{1} << 63U);
-  return static_cast<std::uint32_t>(~ascending >> 32U);
+  return static_cast<std::uint32_t>(~ascending_bits(mean) >> 32U);
 }
 
 /// Nodes sorted by their keys, else in the order given: three rounds of counting.
@@ -108,8 +105,8 @@ void sort_by_keys(ScratchList<Arc>& arcs, const Exec& exec) {
 ScratchList<Arc> near_to_far(const GrowingRegions& regions, const Exec& exec) {
   ScratchList<Arc> order(slot(regions.count()) + 1, exec.pool);
   for (std::int32_t i = 0; i < regions.count(); ++i) {
-    const GrowingRegions::Brief& brief = regions.brief(i);
-    if (brief.mean == brief.mean) order.push_back({brief.mean, brief.place, i});
+    const double mean = regions.mean(i);
+    if (mean == mean) order.push_back({mean, regions.place(i), i});
   }
   sort_by_keys(order, exec);
   for (Arc* from = order.begin(); from != order.end();) {
@@ -142,8 +139,8 @@ void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& 
   const auto add_from = [&](std::size_t first) {
     for (std::size_t i = first; i < visit.neighbours.size(); ++i) {
       const std::int32_t neighbour = visit.neighbours.begin()[i];
-      const GrowingRegions::Brief& brief = regions.brief(neighbour);
-      if (brief.mean == brief.mean) visit.untried.add({brief.mean, brief.place, neighbour});
+      const double mean = regions.mean(neighbour);
+      if (mean == mean) visit.untried.add({mean, regions.place(neighbour), neighbour});
     }
   };
   add_from(0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cairn/regions/grow_statistical.hpp>
 #include <cairn/regions/growing_regions.hpp>
@@ -13,8 +14,7 @@ namespace {
 /// A region with its place in raster order before it, so that sorting needs no look at the regions.
 using Placed = std::uint64_t;
 Placed placed(const GrowingRegions& regions, std::int32_t region) {
-  return (static_cast<std::uint64_t>(regions.brief(region).place) << 32U) |
-         static_cast<std::uint32_t>(region);
+  return (static_cast<std::uint64_t>(regions.place(region)) << 32U) | static_cast<std::uint32_t>(region);
 }
 std::int32_t region_of(Placed entry) {
   return static_cast<std::int32_t>(entry & 0xFFFFFFFFU);
@@ -88,7 +88,7 @@ void look_at(const GrowingRegions& regions, const ScratchList<std::int32_t>& fou
   neighbours.resize(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::int32_t region = found.begin()[i];
-    neighbours[i] = {placed(regions, region), regions.brief(region).mean};
+    neighbours[i] = {placed(regions, region), regions.mean(region)};
   }
 }
 
@@ -150,12 +150,11 @@ bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& crit
   regions.start_visit(region);
   regions.append_new_neighbours(region, visit.found);
   look_at(regions, visit.found, visit.neighbours);
-  // The order matters only where one fuses.
-  if (first_admitted(absorption, regions, visit.neighbours, 0) == visit.neighbours.size()) return false;
   sort(visit.neighbours);
-  for (;;) {
+  bool fused = false;
+  for (;; fused = true) {
     const std::size_t next = first_admitted(absorption, regions, visit.neighbours, 0);
-    if (next == visit.neighbours.size()) return true;
+    if (next == visit.neighbours.size()) return fused;
     try_each(regions, region, absorption, visit, next);
   }
 }
@@ -192,32 +191,41 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
 std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
   std::int32_t best = -1;
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
-    if (neighbour == region || regions.is_floor(neighbour) || regions.brief(neighbour).valid_count > 0)
-      return;
-    if (best < 0 || regions.brief(neighbour).place < regions.brief(best).place) best = neighbour;
+    if (neighbour == region || regions.is_floor(neighbour) || regions.valid_count(neighbour) > 0) return;
+    if (best < 0 || regions.place(neighbour) < regions.place(best)) best = neighbour;
   });
   return best;
 }
 
-/// The neighbour that a small region fuses with; −1 where all are floor.
+/// Whether (a, b) stands before (c, d) in the order of the first numbers, then of the second.
+bool stands_before(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
+#ifdef __SIZEOF_INT128__
+  // One comparison, without a branch.
+  __extension__ using Both = unsigned __int128;
+  return ((Both{a} << 64U) | b) < ((Both{c} << 64U) | d);
+#else
+  return a < c || (a == c && b < d);
+#endif
+}
+
+/// The neighbour that a small region fuses with; −1 where all are floor. Hides the region's mean.
 std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
-  const bool has_mean = regions.brief(region).valid_count > 0;
-  const double mean = has_mean ? regions.brief(region).mean : 0;
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  std::int32_t best = -1;
-  std::int32_t best_place = std::numeric_limits<std::int32_t>::max();
-  double least = kNone;
+  const bool has_mean = regions.valid_count(region) > 0;
+  // So that the region, where it is named among its neighbours, is not like itself.
+  const double mean = regions.hide_mean(region);
+  const std::uint64_t none = ascending_bits(std::numeric_limits<double>::infinity());
+  std::uint64_t least = none;
+  Placed best = 0;
+  // Without a branch: which neighbour is the most similar yet cannot be foretold.
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
-    const GrowingRegions::Brief& brief = regions.brief(neighbour);
-    // NaN, where it has no mean, is less than nothing.
-    const double difference = has_mean ? std::abs(mean - brief.mean) : brief.mean;
-    const double value = neighbour == region ? kNone : difference;
-    const bool better = (value < least) | ((value == least) & (brief.place < best_place));
+    const double theirs = regions.mean(neighbour);
+    const std::uint64_t value = ascending_bits(has_mean ? std::abs(mean - theirs) : theirs);
+    const Placed entry = placed(regions, neighbour);
+    const bool better = stands_before(value, entry, least, best);
     least = better ? value : least;
-    best_place = better ? brief.place : best_place;
-    best = better ? neighbour : best;
+    best = better ? entry : best;
   });
-  return least < kNone ? best : first_unseen(regions, region);
+  return least != none ? region_of(best) : first_unseen(regions, region);
 }
 
 /// Small regions in the order in which they fuse: by size, then in raster order. A fusion always makes a
@@ -229,20 +237,33 @@ class SmallRegions {
         min_region_area_(min_region_area),
         sizes_(size_count(regions, min_region_area)),
         lists_(static_cast<std::size_t>(sizes_), {-1, -1}, exec.pool),
-        entries_(static_cast<std::size_t>(regions.count()), exec.pool) {
+        blocks_(slot(regions.count()) / 4, exec.pool) {
+    // Without a branch: which regions live cannot be foretold.
+    Scratch<std::int32_t> small(slot(regions.count()) + 1, exec.pool);
+    std::int32_t count = 0;
     for (std::int32_t i = 0; i < regions.count(); ++i) {
-      if (regions.is_alive(i)) enter(i);
+      small[count] = i;
+      count += regions.is_alive(i) & is_small(i) ? 1 : 0;
     }
+    for (std::int32_t i = 0; i < count; ++i) enter(small[i]);
   }
+  [[nodiscard]] bool is_small(std::int32_t region) const {
+    const bool has_few_pixels = regions_.pixel_count(region) < min_region_area_;
+    const bool is_unseen = regions_.valid_count(region) == 0;
+    return (has_few_pixels | is_unseen) & !regions_.is_floor(region);
+  }
+  /// `region` is_small().
   void enter(std::int32_t region) {
-    const auto pixels = regions_.pixel_count(region);
-    if (pixels >= min_region_area_ && regions_.brief(region).valid_count > 0) return;
-    if (regions_.is_floor(region)) return;
-    const auto entry = static_cast<std::int32_t>(entries_.size());
-    entries_.push_back({region, -1});
-    OfOneSize& list = lists_[pixels];
-    (list.first < 0 ? list.first : entries_.begin()[list.last].next) = entry;
-    list.last = entry;
+    const Placed entry = placed(regions_, region);
+    OfOneSize& list = lists_[regions_.pixel_count(region)];
+    if (list.last < 0 || blocks_.begin()[list.last].count == kInBlock) {
+      const auto block = static_cast<std::int32_t>(blocks_.size());
+      blocks_.push_back({.next = -1, .count = 0, .entries = {}});
+      (list.first < 0 ? list.first : blocks_.begin()[list.last].next) = block;
+      list.last = block;
+    }
+    Block& block = blocks_.begin()[list.last];
+    block.entries[static_cast<std::size_t>(block.count++)] = entry;
   }
   /// Calls fuse(region) for each; fuse() may enter larger ones.
   template <class Fuse>
@@ -251,8 +272,9 @@ class SmallRegions {
     SortStragglers sort;
     for (std::int32_t pixels = 0; pixels < sizes_; ++pixels) {
       of_one_size.clear();
-      for (std::int32_t i = lists_[pixels].first; i >= 0; i = entries_.begin()[i].next) {
-        of_one_size.push_back(placed(regions_, entries_.begin()[i].region));
+      for (std::int32_t i = lists_[pixels].first; i >= 0; i = blocks_.begin()[i].next) {
+        const Block& block = blocks_.begin()[i];
+        of_one_size.insert(of_one_size.end(), block.entries.begin(), block.entries.begin() + block.count);
       }
       sort(of_one_size);
       for (const Placed entry : of_one_size) {
@@ -264,11 +286,14 @@ class SmallRegions {
   }
 
  private:
-  struct Entry {
-    std::int32_t region;
+  static constexpr std::int32_t kInBlock = 7;
+  /// Some entries of one size. A cache line, as one entry each would be fetched for itself.
+  struct alignas(64) Block {
     std::int32_t next;  // of the same size, −1 = none
+    std::int32_t count;
+    std::array<Placed, kInBlock> entries;
   };
-  struct OfOneSize {  // entries, in the order in which they came
+  struct OfOneSize {  // blocks, in the order in which they came
     std::int32_t first;
     std::int32_t last;
   };
@@ -277,9 +302,9 @@ class SmallRegions {
     std::int64_t all_pixels = 0;
     bool has_unseen = false;
     for (std::int32_t i = 0; i < regions.count(); ++i) {
-      if (!regions.is_alive(i)) continue;
-      all_pixels += regions.pixel_count(i);
-      has_unseen |= regions.brief(i).valid_count == 0;
+      const bool lives = regions.is_alive(i);
+      all_pixels += lives ? regions.pixel_count(i) : 0;
+      has_unseen |= lives & (regions.valid_count(i) == 0);
     }
     // Regions without valid pixel count as small at any size.
     return static_cast<std::int32_t>(
@@ -290,7 +315,7 @@ class SmallRegions {
   std::int64_t min_region_area_;
   std::int32_t sizes_;
   Scratch<OfOneSize> lists_;  // per number of pixels
-  ScratchList<Entry> entries_;
+  ScratchList<Block> blocks_;
 };
 
 }  // namespace
@@ -299,9 +324,9 @@ void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, c
   SmallRegions small(regions, min_region_area, exec);
   small.for_each([&](std::int32_t region) {
     const std::int32_t target = most_similar(regions, region);
-    if (target < 0) return;
+    if (target < 0) return regions.show_mean(region);
     regions.absorb(target, region);
-    small.enter(target);
+    if (small.is_small(target)) small.enter(target);
   });
 }
 
@@ -309,7 +334,7 @@ bool has_near_neighbour(GrowingRegions& regions, std::int32_t region, const Abso
   // Without a branch: whether the next one is near cannot be foretold.
   bool has_one = false;
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
-    has_one |= absorption.is_near(regions.brief(neighbour).mean) & (neighbour != region);
+    has_one |= absorption.is_near(regions.mean(neighbour)) & (neighbour != region);
   });
   return has_one;
 }
@@ -317,8 +342,8 @@ bool has_near_neighbour(GrowingRegions& regions, std::int32_t region, const Abso
 bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,
               const GrowCriteria& criteria) {
   if (neighbour.valid_count == 0 || neighbour.is_floor) return false;
-  const Absorption absorption(GrowingRegions::Brief::of(visited, 0), visited.sum_of_squares, criteria);
-  return absorption.is_near(neighbour.mean()) && absorption.admits(GrowingRegions::Brief::of(neighbour, 1));
+  const Absorption absorption(GrowingRegions::Brief::of(visited), visited.sum_of_squares, criteria);
+  return absorption.is_near(neighbour.mean()) && absorption.admits(GrowingRegions::Brief::of(neighbour));
 }
 
 Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria, const Exec& exec) {

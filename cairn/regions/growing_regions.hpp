@@ -3,14 +3,23 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cairn/regions/grow_statistical.hpp>
 #include <cairn/regions/scratch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace cairn {
+
+/// Ascending with the number, NaN last.
+inline std::uint64_t ascending_bits(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return bits ^
+         (static_cast<std::uint64_t>(static_cast<std::int64_t>(bits) >> 63) | (std::uint64_t{1} << 63U));
+}
 
 /// A graph whose regions fuse. Private to the growing stages.
 ///
@@ -20,54 +29,58 @@ namespace cairn {
 /// when they are read.
 class GrowingRegions {
  public:
-  /// What looks at a neighbour need, together in half a cache line: at some ten thousand regions, growing
-  /// mostly waits for memory.
-  struct alignas(32) Brief {
-    double mean;  // NaN where the region may not fuse by likeness: floor, or no valid pixel
+  /// What Eq. (2) and (3) need to know of a region.
+  struct Brief {
+    double mean;
     std::int64_t sum;
-    std::int32_t place;  // its first pixel: different for any two living regions, ascending in raster order
     std::int32_t valid_count;
-    std::int32_t parent;  // itself while it lives
-    std::int32_t seen;    // the last visit that named it
-
-    static Brief of(const RegionGraph::Node& node, std::int32_t number) {
-      Brief brief{0, node.sum, node.first_pixel, static_cast<std::int32_t>(node.valid_count), number, -1};
-      brief.find_mean(node.is_floor);
-      return brief;
-    }
-    void find_mean(bool is_floor) {
-      mean = valid_count == 0 || is_floor ? std::numeric_limits<double>::quiet_NaN()
-                                          : static_cast<double>(sum) / static_cast<double>(valid_count);
+    static Brief of(const RegionGraph::Node& node) {
+      const auto valid_count = static_cast<std::int32_t>(node.valid_count);
+      return {mean_of(node.sum, valid_count, node.is_floor), node.sum, valid_count};
     }
   };
 
   GrowingRegions(const RegionGraph& graph, const Exec& exec)
       : arcs_(2 * graph.arcs.size(), exec.pool),
-        briefs_(graph.nodes.size(), exec.pool),
+        parents_(graph.nodes.size(), exec.pool),
+        means_(graph.nodes.size(), exec.pool),
+        places_(graph.nodes.size(), exec.pool),
+        seen_(graph.nodes.size(), -1, exec.pool),
         rests_(graph.nodes.size(), exec.pool) {
     std::copy(graph.arcs.begin(), graph.arcs.end(), arcs_.room_for(graph.arcs.size()));
     arcs_.grown(graph.arcs.size());
     for (std::int32_t i = 0; i < count(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const RegionGraph::Node& node = graph.nodes[at];
-      briefs_[i] = Brief::of(node, i);
+      parents_[i] = i;
+      means_[i] = mean_of(node.sum, static_cast<std::int32_t>(node.valid_count), node.is_floor);
+      places_[i] = node.first_pixel;
       rests_[i] = {graph.first_arc[at],
                    graph.first_arc[at + 1],
                    -1,
                    i,
+                   node.sum,
                    node.sum_of_squares,
+                   static_cast<std::int32_t>(node.valid_count),
                    static_cast<std::int32_t>(node.pixel_count),
                    node.is_floor};
     }
   }
 
-  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(briefs_.size()); }
-  [[nodiscard]] const Brief& brief(std::int32_t region) const { return briefs_[region]; }
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(parents_.size()); }
+  [[nodiscard]] Brief brief(std::int32_t region) const {
+    return {means_[region], rests_[region].sum, rests_[region].valid_count};
+  }
+  /// NaN where the region may not fuse by likeness: floor, or no valid pixel.
+  [[nodiscard]] double mean(std::int32_t region) const { return means_[region]; }
+  /// Its first pixel: different for any two living regions, ascending in raster order.
+  [[nodiscard]] std::int32_t place(std::int32_t region) const { return places_[region]; }
+  [[nodiscard]] std::int32_t valid_count(std::int32_t region) const { return rests_[region].valid_count; }
   /// The sum of the squares of its values.
   [[nodiscard]] std::int64_t squares(std::int32_t region) const { return rests_[region].squares; }
   [[nodiscard]] std::int32_t pixel_count(std::int32_t region) const { return rests_[region].pixel_count; }
   [[nodiscard]] bool is_floor(std::int32_t region) const { return rests_[region].is_floor; }
-  [[nodiscard]] bool is_alive(std::int32_t region) const { return briefs_[region].parent == region; }
+  [[nodiscard]] bool is_alive(std::int32_t region) const { return parents_[region] == region; }
 
   /// Calls found(neighbour) for each living neighbour of `region`, for some of them more than once, and
   /// perhaps for the region itself.
@@ -78,15 +91,24 @@ class GrowingRegions {
     }
   }
 
+  /// Until the region has fused or show_mean() is called, its mean is NaN. Returns what it was.
+  double hide_mean(std::int32_t region) {
+    return std::exchange(means_[region], std::numeric_limits<double>::quiet_NaN());
+  }
+  void show_mean(std::int32_t region) {
+    const Rest& rest = rests_[region];
+    means_[region] = mean_of(rest.sum, rest.valid_count, rest.is_floor);
+  }
+
   /// From here on append_new_neighbours() names each region once.
   void start_visit(std::int32_t region) {
     ++visit_;
-    briefs_[region].seen = visit_;
+    seen_[region] = visit_;
   }
   /// Appends the living neighbours of `region` that this visit has not named yet. Without a branch: one in
   /// two or three is known already, and nothing tells which.
   void append_new_neighbours(std::int32_t region, ScratchList<std::int32_t>& found) {
-    Brief* const briefs = briefs_.data();
+    std::int32_t* const seen = seen_.data();
     for (std::int32_t member = region; member >= 0; member = rests_[member].next_member) {
       const std::span<const std::int32_t> arcs = arcs_of(member);
       std::int32_t* const room = found.room_for(arcs.size() + 1);
@@ -94,24 +116,23 @@ class GrowingRegions {
       for (const std::int32_t arc : arcs) {
         const std::int32_t neighbour = living(arc);
         room[count] = neighbour;
-        count += briefs[neighbour].seen != visit_ ? 1 : 0;
-        briefs[neighbour].seen = visit_;
+        count += seen[neighbour] != visit_ ? 1 : 0;
+        seen[neighbour] = visit_;
       }
       found.grown(count);
     }
   }
 
   void absorb(std::int32_t survivor, std::int32_t other) {
-    Brief& brief = briefs_[survivor];
     Rest& rest = rests_[survivor];
     const Rest& absorbed = rests_[other];
-    brief.sum += briefs_[other].sum;
-    brief.place = std::min(brief.place, briefs_[other].place);
-    brief.valid_count += briefs_[other].valid_count;
-    brief.find_mean(rest.is_floor);
-    briefs_[other].parent = survivor;
+    rest.sum += absorbed.sum;
     rest.squares += absorbed.squares;
+    rest.valid_count += absorbed.valid_count;
     rest.pixel_count += absorbed.pixel_count;
+    show_mean(survivor);
+    places_[survivor] = std::min(places_[survivor], places_[other]);
+    parents_[other] = survivor;
     rests_[rest.last_member].next_member = other;
     rest.last_member = absorbed.last_member;
   }
@@ -132,18 +153,20 @@ class GrowingRegions {
   }
 
   [[nodiscard]] Merges merges() {
-    Merges merged_into(briefs_.size());
+    Merges merged_into(parents_.size());
     for (std::int32_t i = 0; i < count(); ++i) merged_into[static_cast<std::size_t>(i)] = living(i);
     return merged_into;
   }
 
  private:
-  struct alignas(32) Rest {
+  struct Rest {
     std::int32_t begin;  // of this member's neighbours in arcs_
     std::int32_t end;
     std::int32_t next_member;
     std::int32_t last_member;  // this and what follows: kept up for living regions
+    std::int64_t sum;
     std::int64_t squares;
+    std::int32_t valid_count;
     std::int32_t pixel_count;
     bool is_floor;
   };
@@ -153,15 +176,23 @@ class GrowingRegions {
   }
   std::int32_t living(std::int32_t region) {
     // Two steps at once, as most are there then: how many it takes cannot be foretold.
-    Brief* const briefs = briefs_.data();
-    std::int32_t root = briefs[briefs[region].parent].parent;
-    while (briefs[root].parent != root) root = briefs[root].parent;
-    briefs[region].parent = root;
+    std::int32_t* const parents = parents_.data();
+    std::int32_t root = parents[parents[region]];
+    while (parents[root] != root) root = parents[root];
+    parents[region] = root;
     return root;
+  }
+  static double mean_of(std::int64_t sum, std::int32_t valid_count, bool is_floor) {
+    return valid_count == 0 || is_floor ? std::numeric_limits<double>::quiet_NaN()
+                                        : static_cast<double>(sum) / static_cast<double>(valid_count);
   }
 
   ScratchList<std::int32_t> arcs_;  // the graph's, and behind them those stated anew
-  Scratch<Brief> briefs_;
+  // What a look at a neighbour needs lies in arrays of its own: short ones stay near the processor.
+  Scratch<std::int32_t> parents_;  // of a living region itself
+  Scratch<double> means_;
+  Scratch<std::int32_t> places_;
+  Scratch<std::int32_t> seen_;  // the last visit that named it
   Scratch<Rest> rests_;
   std::int32_t visit_ = 0;
 };
