@@ -54,6 +54,13 @@ struct LabelKernels {
   /// Return how many.
   int (*touches_beside)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
   int (*touches_below)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
+  /// What the first x pixels of a row sum up to, in up_to[x], for x = 0 … width: sum · 2⁴⁰ + sum of squares.
+  /// Beyond 65535 pixels sums overflow, which does no harm: the difference of two not farther apart is right.
+  void (*sum_grey)(const Gray* values, int width, std::uint64_t* up_to);
+  /// The same of disparities, kHole16 where there is none: sum · 2³² + valid pixels · 2¹⁶ + floor pixels, and
+  /// the sum of squares. `floor`: not 0 where there is floor; nullptr for nowhere.
+  void (*sum_disparities)(const std::int16_t* values, const std::uint8_t* floor, int width,
+                          std::uint64_t* up_to, std::uint64_t* squares_up_to);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -151,7 +151,84 @@ int touches_below(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRI
   return plain_labels::touches_below_in(x, width, count, above, row, width, pairs);
 }
 
-constexpr LabelKernels kLabelKernels{compare, count_up, find_runs, differing, touches_beside, touches_below};
+using Sums = hn::ScalableTag<std::int64_t>;
+using SumsVec = hn::Vec<Sums>;
+
+/// Moves the lanes `step` up, zeros come in.
+HWY_INLINE SumsVec slid_up(Sums d, SumsVec v, std::size_t step) {
+  HWY_ALIGN std::int64_t from[hn::MaxLanes(Sums())];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) from[i] = static_cast<std::int64_t>(i < step ? i : i - step);
+  return hn::IfThenZeroElse(hn::FirstN(d, step), hn::TableLookupLanes(v, hn::SetTableIndices(d, from)));
+}
+
+/// In each lane what it and those before hold, and `before`.
+HWY_INLINE SumsVec running_sums(Sums d, SumsVec v, SumsVec before) {
+  for (std::size_t step = 1; step < hn::Lanes(d); step *= 2) v = hn::Add(v, slid_up(d, v, step));
+  return hn::Add(v, before);
+}
+
+HWY_INLINE SumsVec last_lane(Sums d, SumsVec v) {
+  HWY_ALIGN std::int64_t from[hn::MaxLanes(Sums())];
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) from[i] = static_cast<std::int64_t>(hn::Lanes(d)) - 1;
+  return hn::TableLookupLanes(v, hn::SetTableIndices(d, from));
+}
+
+void sum_grey(const Gray* HWY_RESTRICT values, int width, std::uint64_t* HWY_RESTRICT up_to) {
+  const Sums d;
+  const hn::Rebind<std::int32_t, Sums> d32;
+  const hn::Rebind<std::uint8_t, Sums> d8;
+  auto* const to = reinterpret_cast<std::int64_t*>(up_to);
+  const auto step = static_cast<int>(hn::Lanes(d));
+  to[0] = 0;
+  auto before = hn::Zero(d);
+  int x = 0;
+  for (; x + step <= width; x += step) {
+    const auto v = hn::PromoteTo(d32, hn::LoadU(d8, values + x));
+    const auto sum = hn::ShiftLeft<40>(hn::PromoteTo(d, v));
+    const auto sums = running_sums(d, hn::Add(sum, hn::PromoteTo(d, hn::Mul(v, v))), before);
+    hn::StoreU(sums, d, to + x + 1);
+    before = last_lane(d, sums);
+  }
+  plain_labels::sum_grey_from(x, values, width, up_to);
+}
+
+void sum_disparities(const std::int16_t* HWY_RESTRICT values, const std::uint8_t* HWY_RESTRICT floor,
+                     int width, std::uint64_t* HWY_RESTRICT up_to,
+                     std::uint64_t* HWY_RESTRICT squares_up_to) {
+  const Sums d;
+  const hn::Rebind<std::int32_t, Sums> d32;
+  const hn::Rebind<std::int16_t, Sums> d16;
+  const hn::Rebind<std::uint8_t, Sums> d8;
+  auto* const to = reinterpret_cast<std::int64_t*>(up_to);
+  auto* const squares_to = reinterpret_cast<std::int64_t*>(squares_up_to);
+  const auto step = static_cast<int>(hn::Lanes(d));
+  to[0] = 0;
+  squares_to[0] = 0;
+  auto before = hn::Zero(d);
+  auto squares_before = hn::Zero(d);
+  int x = 0;
+  for (; x + step <= width; x += step) {
+    const auto given = hn::PromoteTo(d32, hn::LoadU(d16, values + x));
+    const auto valid = hn::Ne(given, hn::Set(d32, kHole16));
+    const auto v = hn::IfThenElseZero(valid, given);
+    auto counts = hn::IfThenElseZero(valid, hn::Set(d32, 1 << 16));
+    if (floor != nullptr) {
+      const auto on_floor = hn::Ne(hn::PromoteTo(d32, hn::LoadU(d8, floor + x)), hn::Zero(d32));
+      counts = hn::Or(counts, hn::IfThenElseZero(on_floor, hn::Set(d32, 1)));
+    }
+    const auto packed = hn::Add(hn::ShiftLeft<32>(hn::PromoteTo(d, v)), hn::PromoteTo(d, counts));
+    const auto sums = running_sums(d, packed, before);
+    const auto squares = running_sums(d, hn::PromoteTo(d, hn::Mul(v, v)), squares_before);
+    hn::StoreU(sums, d, to + x + 1);
+    hn::StoreU(squares, d, squares_to + x + 1);
+    before = last_lane(d, sums);
+    squares_before = last_lane(d, squares);
+  }
+  plain_labels::sum_disparities_from(x, values, floor, width, up_to, squares_up_to);
+}
+
+constexpr LabelKernels kLabelKernels{compare,        count_up,      find_runs, differing,
+                                     touches_beside, touches_below, sum_grey,  sum_disparities};
 
 }  // namespace
 }  // namespace cairn::kernels::HWY_NAMESPACE

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cairn/regions/gradient.hpp>
 #include <cairn/regions/label_kernels.hpp>
 
 namespace cairn::kernels::plain_labels {
@@ -135,7 +136,44 @@ inline int touches_below(const RegionId* above, const RegionId* row, int width, 
   return touches_below_in(0, width, 0, above, row, width, pairs);
 }
 
-inline constexpr LabelKernels kLabelKernels{compare,   count_up,       find_runs,
-                                            differing, touches_beside, touches_below};
+/// sum_grey() for the pixels from `x` on.
+inline void sum_grey_from(int x, const Gray* values, int width, std::uint64_t* up_to) {
+  for (std::uint64_t sums = up_to[x]; x < width; ++x) {
+    const std::uint64_t v = values[x];
+    sums += (v << 40U) + v * v;
+    up_to[x + 1] = sums;
+  }
+}
+
+inline void sum_grey(const Gray* values, int width, std::uint64_t* up_to) {
+  up_to[0] = 0;
+  sum_grey_from(0, values, width, up_to);
+}
+
+/// sum_disparities() for the pixels from `x` on.
+inline void sum_disparities_from(int x, const std::int16_t* values, const std::uint8_t* floor, int width,
+                                 std::uint64_t* up_to, std::uint64_t* squares_up_to) {
+  std::uint64_t sums = up_to[x];
+  std::uint64_t squares = squares_up_to[x];
+  for (; x < width; ++x) {
+    const bool valid = values[x] != kHole16;
+    const bool on_floor = floor != nullptr && floor[x] != 0;
+    const std::int64_t v = valid ? values[x] : 0;
+    sums += (static_cast<std::uint64_t>(v) << 32U) + (valid ? 1U << 16U : 0U) + (on_floor ? 1U : 0U);
+    squares += static_cast<std::uint64_t>(v * v);
+    up_to[x + 1] = sums;
+    squares_up_to[x + 1] = squares;
+  }
+}
+
+inline void sum_disparities(const std::int16_t* values, const std::uint8_t* floor, int width,
+                            std::uint64_t* up_to, std::uint64_t* squares_up_to) {
+  up_to[0] = 0;
+  squares_up_to[0] = 0;
+  sum_disparities_from(0, values, floor, width, up_to, squares_up_to);
+}
+
+inline constexpr LabelKernels kLabelKernels{compare,        count_up,      find_runs, differing,
+                                            touches_beside, touches_below, sum_grey,  sum_disparities};
 
 }  // namespace cairn::kernels::plain_labels

@@ -14,53 +14,61 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 
-/// What the values of some pixels beside each other sum up to. Small numbers share a word, so that sums up to
-/// every pixel of a row are made and looked up fast.
-struct GreySums {
-  using Packed = std::uint64_t;  // sum · 2⁴⁰ + sum of squares
-  static Packed of(Gray value) {
-    const Packed v = value;
-    return (v << 40U) + v * v;
-  }
-  static void add(Packed sums, int pixels, RegionGraph::Node& node) {
-    node.valid_count += pixels;
+/// What the values of some pixels beside each other sum up to: the difference of two sums up to a pixel.
+class GreySums {
+ public:
+  GreySums(View<const Gray> values, const kernels::LabelKernels& run)
+      : values_(values), run_(run), up_to_(slot(values.width()) + 1) {}
+
+  void sum_up(int y) { run_.sum_grey(values_.row(y), values_.width(), up_to_.data()); }
+  void add(int begin, int end, RegionGraph::Node& node) const {
+    const std::uint64_t sums = up_to_[slot(end)] - up_to_[slot(begin)];
+    node.valid_count += end - begin;
     node.sum += static_cast<std::int64_t>(sums >> 40U);
-    node.sum_of_squares += static_cast<std::int64_t>(sums & ((Packed{1} << 40U) - 1));
+    node.sum_of_squares += static_cast<std::int64_t>(sums & ((std::uint64_t{1} << 40U) - 1));
   }
+
+ private:
+  View<const Gray> values_;
+  const kernels::LabelKernels& run_;
+  std::vector<std::uint64_t> up_to_;
 };
-struct DisparitySums {
-  struct Packed {
-    std::int64_t squares = 0;
-    // sum · 2³² + valid pixels · 2¹⁶ + floor pixels. Up to the end of a long row it may overflow, which does
-    // no harm: the difference of two is right again.
-    std::uint64_t rest = 0;
-    Packed& operator+=(Packed o) {
-      squares += o.squares;
-      rest += o.rest;
-      return *this;
-    }
-    Packed operator-(Packed o) const { return {squares - o.squares, rest - o.rest}; }
-  };
-  static Packed of(std::int16_t value, bool is_floor) {
-    const bool valid = value != kHole16;
-    const std::int64_t v = valid ? value : 0;
-    return {v * v, (static_cast<std::uint64_t>(v) << 32U) + (valid ? 1U << 16U : 0U) + (is_floor ? 1U : 0U)};
+class DisparitySums {
+ public:
+  DisparitySums(View<const std::int16_t> values, View<const std::uint8_t> floor,
+                const kernels::LabelKernels& run)
+      : values_(values),
+        floor_(floor),
+        run_(run),
+        up_to_(slot(values.width()) + 1),
+        squares_up_to_(slot(values.width()) + 1) {}
+
+  void sum_up(int y) {
+    run_.sum_disparities(values_.row(y), floor_.empty() ? nullptr : floor_.row(y), values_.width(),
+                         up_to_.data(), squares_up_to_.data());
   }
-  static void add(Packed sums, int, RegionGraph::Node& node) {
-    node.valid_count += static_cast<std::int64_t>((sums.rest >> 16U) & 0xFFFF);
-    node.sum += static_cast<std::int64_t>(sums.rest) >> 32U;
-    node.sum_of_squares += sums.squares;
-    node.is_floor |= (sums.rest & 0xFFFF) != 0;
+  void add(int begin, int end, RegionGraph::Node& node) const {
+    const std::uint64_t sums = up_to_[slot(end)] - up_to_[slot(begin)];
+    node.valid_count += static_cast<std::int64_t>((sums >> 16U) & 0xFFFF);
+    node.sum += static_cast<std::int64_t>(sums) >> 32U;
+    node.sum_of_squares += static_cast<std::int64_t>(squares_up_to_[slot(end)] - squares_up_to_[slot(begin)]);
+    node.is_floor |= (sums & 0xFFFF) != 0;
   }
+
+ private:
+  View<const std::int16_t> values_;
+  View<const std::uint8_t> floor_;
+  const kernels::LabelKernels& run_;
+  std::vector<std::uint64_t> up_to_;
+  std::vector<std::uint64_t> squares_up_to_;
 };
 constexpr int kMostSummed = 0xFFFF;  // pixels whose sums surely fit
 
-/// A row's runs added to the nodes, from the sums up to each pixel, itself not counted. While counting, a box
-/// holds its right and lower end in place of width and height, and no upper one: that is the first pixel's
-/// row.
+/// A row's runs added to the nodes. While counting, a box holds its right and lower end in place of width and
+/// height, and no upper one: that is the first pixel's row.
 template <class Sums>
-void count_row(const RegionId* label, int y, int width, const typename Sums::Packed* up_to,
-               const std::int32_t* ends, int runs, RegionGraph::Node* nodes) {
+void count_row(const RegionId* label, int y, int width, const Sums& sums, const std::int32_t* ends, int runs,
+               RegionGraph::Node* nodes) {
   int begin = 0;
   for (int i = 0; i < runs; ++i) {
     const int end = ends[i];
@@ -70,11 +78,37 @@ void count_row(const RegionId* label, int y, int width, const typename Sums::Pac
     node.box.x = std::min(node.box.x, begin);
     node.box.width = std::max(node.box.width, end);
     node.box.height = y + 1;
-    for (; end - begin > kMostSummed; begin += kMostSummed)
-      Sums::add(up_to[begin + kMostSummed] - up_to[begin], kMostSummed, node);
-    Sums::add(up_to[end] - up_to[begin], end - begin, node);
+    for (; end - begin > kMostSummed; begin += kMostSummed) sums.add(begin, begin + kMostSummed, node);
+    sums.add(begin, end, node);
     begin = end;
   }
+}
+
+/// The regions' sizes, places and sums.
+template <class Sums>
+std::vector<RegionGraph::Node> count_nodes(View<const RegionId> labels, int count, Sums sums,
+                                           const kernels::LabelKernels& run) {
+  constexpr int kFarthest = std::numeric_limits<int>::max();
+  const int width = labels.width();
+  std::vector<RegionGraph::Node> nodes(
+      slot(count), RegionGraph::Node{.first_pixel = kFarthest, .box = {kFarthest, 0, 0, 0}});
+  std::vector<std::int32_t> ends(slot(width) + kernels::kListSlack);
+  for (int y = 0; y < labels.height(); ++y) {
+    const RegionId* const row = labels.row(y);
+    sums.sum_up(y);
+    const int runs = run.find_runs(row, row, width, ends.data());
+    count_row(row, y, width, sums, ends.data(), runs, nodes.data());
+  }
+  for (RegionGraph::Node& node : nodes) {
+    if (node.pixel_count == 0) {
+      node = {};
+      continue;
+    }
+    node.box.y = node.first_pixel / width;
+    node.box.width -= node.box.x;
+    node.box.height -= node.box.y;
+  }
+  return nodes;
 }
 
 /// Pairs of regions that touch, the smaller number in `a`.
@@ -94,31 +128,13 @@ struct Touches {
   }
 };
 
-/// One pass over the rows: counts the nodes and finds which of them touch. Some pairs are found more than
-/// once. `sums_at(x, y)`: those of one pixel.
-template <class Sums, class SumsAt>
-Touches count_and_touch(View<const RegionId> labels, std::vector<RegionGraph::Node>& nodes, const Exec& exec,
-                        SumsAt sums_at) {
-  constexpr int kFarthest = std::numeric_limits<int>::max();
-  const kernels::LabelKernels& run = kernels::label_kernels(exec);
+/// Which regions touch. Some pairs are found more than once.
+Touches find_touches(View<const RegionId> labels, const kernels::LabelKernels& run, const Exec& exec) {
   const int width = labels.width();
-  const std::size_t length = slot(width) + kernels::kListSlack;
-  std::fill(nodes.begin(), nodes.end(),
-            RegionGraph::Node{.first_pixel = kFarthest, .box = {kFarthest, 0, 0, 0}});
-  std::vector<std::int32_t> ends(length);
-  std::vector<typename Sums::Packed> up_to(slot(width) + 1);
   const std::vector<RegionId> nothing(slot(width), RegionId{-1});
   Touches touches(static_cast<std::size_t>(labels.size().area() / 4), exec);
   for (int y = 0; y < labels.height(); ++y) {
     const RegionId* const row = labels.row(y);
-    typename Sums::Packed sums{};
-    for (int x = 0; x < width; ++x) {
-      up_to[slot(x)] = sums;
-      sums += sums_at(x, y);
-    }
-    up_to[slot(width)] = sums;
-    const int runs = run.find_runs(row, row, width, ends.data());
-    count_row<Sums>(row, y, width, up_to.data(), ends.data(), runs, nodes.data());
     const RegionId* const above = y > 0 ? labels.row(y - 1) : nothing.data();
     touches.append(slot(width),
                    [&](kernels::LabelPairs room) { return run.touches_beside(above, row, width, room); });
@@ -126,86 +142,97 @@ Touches count_and_touch(View<const RegionId> labels, std::vector<RegionGraph::No
     touches.append(slot(width),
                    [&](kernels::LabelPairs room) { return run.touches_below(above, row, width, room); });
   }
-  for (RegionGraph::Node& node : nodes) {
-    if (node.pixel_count == 0) {
-      node = {};
-      continue;
-    }
-    node.box.y = node.first_pixel / width;
-    node.box.width -= node.box.x;
-    node.box.height -= node.box.y;
-  }
   return touches;
 }
 
-/// Sorts the numbers and keeps each once; returns their end. Lists are short, and mostly in order.
-std::int32_t* sort_once(std::int32_t* begin, std::int32_t* end) {
-  constexpr std::ptrdiff_t kFew = 24;
-  if (end - begin > kFew) {
-    std::sort(begin, end);
-    return std::unique(begin, end);
-  }
-  if (begin == end) return end;
-  for (std::int32_t* next = begin + 1; next < end; ++next) {
-    const std::int32_t moved = *next;
-    std::int32_t* at = next;
-    for (; at > begin && at[-1] > moved; --at) *at = at[-1];
-    *at = moved;
-  }
-  std::int32_t* last = begin;
-  for (const std::int32_t* next = begin + 1; next < end; ++next) {
-    last += *next != *last ? 1 : 0;
-    *last = *next;
-  }
-  return last + 1;
-}
+/// A pair of regions that touch.
+struct Pair {
+  std::int32_t a;
+  std::int32_t b;
+};
 
-/// Compact adjacency from touches: every pair in both directions once, neighbours ascending.
-void link(RegionGraph& graph, const Touches& touches, const Exec& exec) {
-  const auto count = static_cast<std::int32_t>(graph.nodes.size());
+/// The pairs by their smaller number, each once; in which order those of one number are is left open. Counts
+/// them for either number.
+Scratch<Pair> distinct(const Touches& touches, std::int32_t* counts_a, std::int32_t* counts_b,
+                       std::int32_t nodes, std::size_t& count, const Exec& exec) {
   const std::int32_t* const touch_a = touches.a.begin();
   const std::int32_t* const touch_b = touches.b.begin();
-  // The larger neighbours of each node, which are half of the work, as they were met.
-  Scratch<std::int32_t> end_room(graph.nodes.size() + 1, 0, exec.pool);
-  Scratch<std::int32_t> larger_room(touches.size(), exec.pool);
-  std::int32_t* const end = end_room.data();
-  std::int32_t* const larger = larger_room.data();
-  for (std::size_t i = 0; i < touches.size(); ++i) ++end[touch_a[i] + 1];
-  std::partial_sum(end, end + count + 1, end);
-  for (std::size_t i = 0; i < touches.size(); ++i) larger[end[touch_a[i]]++] = touch_b[i];
-
-  // Each list in order and without repetitions, all without gaps; end[a] becomes how many a has.
-  graph.first_arc.assign(graph.nodes.size() + 1, 0);
-  std::int32_t* const first = graph.first_arc.data();
-  std::int32_t* kept = larger;
-  std::int32_t* list = larger;
-  for (std::int32_t a = 0; a < count; ++a) {
-    std::int32_t* const list_end = larger + end[a];
-    const std::int32_t* const last = sort_once(list, list_end);
-    end[a] = static_cast<std::int32_t>(last - list);
-    first[a + 1] += end[a];
-    for (const std::int32_t* b = list; b != last; ++b) {
-      ++first[*b + 1];
-      *kept++ = *b;
-    }
-    list = list_end;
-  }
-  std::partial_sum(first, first + count + 1, first);
-
-  // A node's smaller neighbours come to it in ascending order, and before its larger ones.
-  graph.arcs.resize(slot(first[count]));
-  Scratch<std::int32_t> next_room(graph.nodes.size(), exec.pool);
+  Scratch<std::int32_t> next_room(slot(nodes) + 1, 0, exec.pool);
   std::int32_t* const next = next_room.data();
-  std::int32_t* const arcs = graph.arcs.data();
-  std::copy_n(first, count, next);
-  const std::int32_t* b = larger;
-  for (std::int32_t a = 0; a < count; ++a) {
-    std::int32_t own = next[a];
-    for (std::int32_t i = 0; i < end[a]; ++i, ++b) {
-      arcs[own++] = *b;
-      arcs[next[*b]++] = a;
-    }
+  for (std::size_t i = 0; i < touches.size(); ++i) ++next[touch_a[i] + 1];
+  std::partial_sum(next, next + nodes + 1, next);
+  Scratch<Pair> pairs(touches.size(), exec.pool);
+  Pair* const grouped = pairs.data();
+  for (std::size_t i = 0; i < touches.size(); ++i) grouped[next[touch_a[i]]++] = {touch_a[i], touch_b[i]};
+
+  Scratch<std::int32_t> last_room(slot(nodes), -1, exec.pool);
+  std::int32_t* const last_a = last_room.data();  // that each b was met with
+  count = 0;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const auto [a, b] = grouped[i];
+    const std::int32_t is_new = last_a[b] != a ? 1 : 0;
+    last_a[b] = a;
+    counts_a[a] += is_new;
+    counts_b[b] += is_new;
+    grouped[count] = {a, b};
+    count += slot(is_new);
   }
+  return pairs;
+}
+
+/// Compact adjacency from touches: every pair in both directions once, neighbours ascending. Pairs are put
+/// into their places by their smaller numbers, by their larger ones, and by the smaller ones again: after
+/// that each list is in order, and nothing was compared.
+void link(RegionGraph& graph, std::int32_t nodes, const Touches& touches, const Exec& exec) {
+  Scratch<std::int32_t> larger_room(slot(nodes), 0, exec.pool);
+  Scratch<std::int32_t> smaller_room(slot(nodes), 0, exec.pool);
+  std::int32_t* const larger = larger_room.data();    // how many neighbours a node has; then where …
+  std::int32_t* const smaller = smaller_room.data();  // … the next one belongs
+  std::size_t count = 0;
+  const Scratch<Pair> by_smaller = distinct(touches, larger, smaller, nodes, count, exec);
+
+  // In a list the smaller neighbours come before the larger ones.
+  graph.first_arc.resize(slot(nodes) + 1);
+  std::int32_t* const first = graph.first_arc.data();
+  Scratch<std::int32_t> before_room(slot(nodes), exec.pool);
+  std::int32_t* const larger_before = before_room.data();
+  std::int32_t smaller_sum = 0;
+  std::int32_t larger_sum = 0;
+  for (std::int32_t i = 0; i < nodes; ++i) {
+    const std::int32_t smaller_count = smaller[i];
+    const std::int32_t larger_count = larger[i];
+    first[i] = smaller_sum + larger_sum;
+    smaller[i] = smaller_sum;
+    larger[i] = first[i] + smaller_count;
+    larger_before[i] = larger_sum;
+    smaller_sum += smaller_count;
+    larger_sum += larger_count;
+  }
+  first[nodes] = smaller_sum + larger_sum;
+
+  Scratch<Pair> by_larger_room(count, exec.pool);
+  Pair* const by_larger = by_larger_room.data();
+  for (const Pair* pair = by_smaller.begin(); pair != by_smaller.begin() + count; ++pair)
+    by_larger[smaller[pair->b]++] = *pair;
+  graph.arcs.resize(2 * count);
+  std::int32_t* const arcs = graph.arcs.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [a, b] = by_larger[i];
+    arcs[static_cast<std::int32_t>(i) + larger_before[b]] = a;
+    arcs[larger[a]++] = b;
+  }
+}
+
+/// The nodes and the arcs know nothing of each other, and take about as long.
+template <class Sums>
+RegionGraph count_and_link(View<const RegionId> labels, int count, const Sums& sums, const Exec& exec) {
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
+  RegionGraph graph;
+  parallel_for(exec, 2, 1, [&](int first, int last) {
+    if (first == 0) graph.nodes = count_nodes(labels, count, sums, run);
+    if (last == 2) link(graph, count, find_touches(labels, run, exec), exec);
+  });
+  return graph;
 }
 
 Region region_of(const RegionGraph::Node& node, double value_scale) {
@@ -221,21 +248,11 @@ Region region_of(const RegionGraph::Node& node, double value_scale) {
 
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
                         View<const std::uint8_t> floor, const Exec& exec) {
-  RegionGraph graph;
-  graph.nodes.resize(slot(count));
-  const auto sums_at = [&](int x, int y) {
-    return DisparitySums::of(values(x, y), !floor.empty() && floor(x, y) != 0);
-  };
-  link(graph, count_and_touch<DisparitySums>(labels, graph.nodes, exec, sums_at), exec);
-  return graph;
+  return count_and_link(labels, count, DisparitySums(values, floor, kernels::label_kernels(exec)), exec);
 }
 
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const Gray> values, const Exec& exec) {
-  RegionGraph graph;
-  graph.nodes.resize(slot(count));
-  const auto sums_at = [&](int x, int y) { return GreySums::of(values(x, y)); };
-  link(graph, count_and_touch<GreySums>(labels, graph.nodes, exec, sums_at), exec);
-  return graph;
+  return count_and_link(labels, count, GreySums(values, kernels::label_kernels(exec)), exec);
 }
 
 Segmentation apply_merges(View<const RegionId> labels, const RegionGraph& graph, const Merges& merged_into,
