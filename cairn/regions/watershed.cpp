@@ -259,10 +259,14 @@ class Ways {
       const std::int32_t last = number(labels_(width - 1, y));
       std::fill(label + first, label + last + 1, RegionId{-1});
     }
+    std::vector<std::int32_t> ends(slot(width));
     for (int y = 0; y < labels_.height(); ++y) {
+      const std::int32_t first = y * width;
       const std::int32_t last = number(labels_(width - 1, y));
-      for (std::int32_t i = y * width; i <= last; ++i) {
-        const std::int32_t end = to[to[i]];
+      // All ends of a row first: which label a stretch writes is known then before the next one's is read.
+      for (std::int32_t i = first; i <= last; ++i) ends[slot(i - first)] = to[to[i]];
+      for (std::int32_t i = first; i <= last; ++i) {
+        const std::int32_t end = ends[slot(i - first)];
         // Without a branch, as in kernels: −1 where the basin has no number yet, 0 else.
         const std::int32_t is_new = number(label[end]) >> 31;
         const RegionId known{(number(label[end]) & ~is_new) | (count & is_new)};
