@@ -57,16 +57,15 @@ Image<float> textured(View<const Gray> left, const DisparityMap& disparity, floa
   return result;
 }
 
-}  // namespace
+/// How many pixels respond how strongly to the noise kernel.
+using Responses = std::array<std::int64_t, kGreatestResponse + 1>;
 
-float noise_sigma(View<const Gray> image) {
-  if (image.width() < 3 || image.height() < 3) return 0;
-  const Exec exec;
+Responses responses(View<const Gray> image, int first_row, int last_row, const Exec& exec) {
   const kernels::RowKernels& run = kernels::row_kernels(exec);
   // Two counters for each response: neighbours often respond alike, and one would wait for the other.
-  std::array<std::array<std::int64_t, kGreatestResponse + 1>, 2> counts{};
+  std::array<Responses, 2> counts{};
   std::vector<std::uint16_t> response(static_cast<std::size_t>(image.width()));
-  for (int y = 1; y + 1 < image.height(); ++y) {
+  for (int y = first_row; y < last_row; ++y) {
     run.noise(image.row(y - 1), image.row(y), image.row(y + 1), image.width(), response.data());
     const std::uint16_t* const end = response.data() + image.width() - 1;
     const std::uint16_t* r = response.data() + 1;
@@ -76,9 +75,29 @@ float noise_sigma(View<const Gray> image) {
     }
     if (r < end) ++counts[0][*r];
   }
-  auto& histogram = counts[0];
-  for (std::size_t i = 0; i < histogram.size(); ++i) histogram[i] += counts[1][i];
-  const std::int64_t total = std::int64_t{image.width() - 2} * (image.height() - 2);
+  for (std::size_t i = 0; i < counts[0].size(); ++i) counts[0][i] += counts[1][i];
+  return counts[0];
+}
+
+}  // namespace
+
+float noise_sigma(View<const Gray> image, const Exec& exec) {
+  if (image.width() < 3 || image.height() < 3) return 0;
+  const int rows = image.height() - 2;
+  std::vector<Responses> bands(static_cast<std::size_t>(std::min(exec.threads(), rows)));
+  const auto count = static_cast<std::int64_t>(bands.size());
+  parallel_for(exec, static_cast<int>(count), 1, [&](int first, int last) {
+    for (int band = first; band < last; ++band) {
+      bands[static_cast<std::size_t>(band)] =
+          responses(image, static_cast<int>(1 + rows * band / count),
+                    static_cast<int>(1 + rows * (band + 1) / count), exec);
+    }
+  });
+  Responses& histogram = bands.front();
+  for (std::size_t band = 1; band < bands.size(); ++band) {
+    for (std::size_t i = 0; i < histogram.size(); ++i) histogram[i] += bands[band][i];
+  }
+  const std::int64_t total = std::int64_t{image.width() - 2} * rows;
   std::int64_t below = 0;
   std::size_t median = 0;
   while (2 * (below + histogram[median]) < total) below += histogram[median++];
@@ -93,8 +112,8 @@ Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity,
                            const Exec& exec) {
   const Size size = left.size();
   const kernels::RowKernels& run = kernels::row_kernels(exec);
-  const Image<float> candidates =
-      textured(left, disparity, config.noise_factor * noise_sigma(left) + config.gradient_min, run, exec);
+  const Image<float> candidates = textured(
+      left, disparity, config.noise_factor * noise_sigma(left, exec) + config.gradient_min, run, exec);
   const float agreement = config.agreement * 0.001F * static_cast<float>(size.width);
   Image<float> evidence(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {

@@ -26,7 +26,7 @@ void fields(EvidenceConfig& c, V&& v) {
 /// The standard deviation of the image's noise in grey levels: the median of |response| to a kernel that
 /// answers to neither steps nor ramps (1 −2 1; −2 4 −2; 1 −2 1), over 6·0.6745. Images under 3×3 have none
 /// (0). (beyond the paper)
-float noise_sigma(View<const Gray> image);
+float noise_sigma(View<const Gray> image, const Exec& exec = {});
 
 /// The disparities that rest on the pixel's own texture, NaN elsewhere: valid ones where the horizontal
 /// gradient stands out of the noise and is no mere grazing edge (|gx| > |gy|/2), and at least three pixels of

@@ -441,6 +441,22 @@ inline void judge_confidence(const ConfidenceRow& given, int width, const Confid
   }
 }
 
+inline void points_in_camera(const StereoRig& given, int y, int first, int last, const float* disparity_px,
+                             float* CAIRN_RESTRICT x_m, float* CAIRN_RESTRICT y_m,
+                             float* CAIRN_RESTRICT z_m) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const StereoRig rig = given;
+  const float row = static_cast<float>(y) - rig.cy_px;
+  for (int x = first; x < last; ++x) {
+    const float before_infinity = disparity_px[x] + rig.doffs_px;
+    const float z = rig.focal_px * rig.baseline_m / before_infinity;
+    const bool seen = before_infinity > 0;
+    x_m[x] = seen ? (static_cast<float>(x) - rig.cx_px) * z / rig.focal_px : kNone;
+    y_m[x] = seen ? row * z / rig.focal_px : kNone;
+    z_m[x] = seen ? z : kNone;
+  }
+}
+
 inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         compare_with_right,
                                         compare_with_runner_up,
@@ -469,7 +485,8 @@ inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         add_counts,
                                         remove_counts,
                                         sum_counts,
-                                        judge_confidence};
+                                        judge_confidence,
+                                        points_in_camera};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

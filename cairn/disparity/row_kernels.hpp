@@ -10,8 +10,8 @@
 #include <cstdint>
 
 /// The seam to the instruction sets: what the checks of single pixels, find_evidence(), gradient(),
-/// edge_strength(), estimate_confidence() and fit_background() do for each pixel of a row, and for each point
-/// of a sample. Private to the library.
+/// edge_strength(), estimate_confidence(), fit_background() and measure() do for each pixel of a row, and for
+/// each point of a sample. Private to the library.
 namespace cairn::kernels {
 
 /// A left pixel's claim to the right pixel that it is matched with, as one number: of two the smaller wins,
@@ -144,6 +144,10 @@ struct RowKernels {
                      HolesAndJumps* sums);
   /// See estimate_confidence().
   void (*judge_confidence)(const ConfidenceRow& row, int width, const ConfidenceModel& model, float* out);
+  /// rig.point_in_camera_m() of the pixels first … last − 1 of row y, one array per axis, of which the same
+  /// pixels are written; NaN where there is no disparity, and at infinity and beyond.
+  void (*points_in_camera)(const StereoRig& rig, int y, int first, int last, const float* disparity_px,
+                           float* x_m, float* y_m, float* z_m);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -4,10 +4,12 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/evidence.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/ranks.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
+#include <cairn/regions/scratch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -69,6 +71,8 @@ struct Inputs {
 constexpr float kEdgeMin = 4.0F;          // grey levels …
 constexpr float kEdgeNoiseFactor = 3.0F;  // … plus deviations of the image noise
 
+constexpr int kMostSummed = 8192;  // pixels whose colours are looked up at once
+
 /// Surveys a band of rows.
 class Survey {
  public:
@@ -79,7 +83,7 @@ class Survey {
         ends_(slot(in.fusion.labels.width()) + kernels::kListSlack),
         upper_(ends_.size()),
         lower_(ends_.size()),
-        up_to_(3 * ends_.size()) {}
+        up_to_(ends_.size()) {}
 
   void add_rows(int first, int last) {
     for (int y = first; y < last; ++y) {
@@ -108,40 +112,28 @@ class Survey {
       if (outline.pixel_count == 0) outline.first_pixel = y * width + x;
       outline.pixel_count += run.length();
       outline.box = united(outline.box, run.box());
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t* const sums = up_to(in_.left_rgb.empty() ? 0 : c);
-        outline.colour_sum[c] += sums[run.last] - sums[run.first];
-      }
+      for (int first = x; first < run.last; first += kMostSummed)
+        add_colours(first, std::min(first + kMostSummed, run.last), outline.colour_sum);
       outline.rim.add_cut(at_border * run.length());
       if (x > 0) add_step(outlines_[index(label[x - 1])], outline, is_edge(x - 1, y, x, y));
       x = run.last;
     }
   }
 
-  /// The sums of a channel up to each pixel of the row, itself not counted.
-  [[nodiscard]] std::uint32_t* up_to(std::size_t channel) { return up_to_.data() + channel * ends_.size(); }
-
   void sum_colours(int y, int width) {
-    std::array<std::uint32_t, 3> sum{};
     if (in_.left_rgb.empty()) {
-      const Gray* const row = in_.left.row(y);
-      std::uint32_t* const grey = up_to(0);
-      for (int x = 0; x < width; ++x) {
-        grey[x] = sum[0];
-        sum[0] += row[x];
-      }
-      grey[width] = sum[0];
-      return;
+      run_.sum_grey(in_.left.row(y), width, up_to_.data());
+    } else {
+      run_.sum_colours(in_.left_rgb.row(y), width, up_to_.data());
     }
-    const Rgb* const row = in_.left_rgb.row(y);
-    const std::array channels{up_to(0), up_to(1), up_to(2)};
-    for (int x = 0; x < width; ++x) {
-      for (std::size_t c = 0; c < 3; ++c) channels[c][x] = sum[c];
-      sum[0] += row[x].r;
-      sum[1] += row[x].g;
-      sum[2] += row[x].b;
+  }
+  void add_colours(int first, int last, std::array<std::int64_t, 3>& sum) const {
+    constexpr unsigned kBits = 21;
+    const std::uint64_t packed = up_to_[slot(last)] - up_to_[slot(first)];
+    for (unsigned c = 0; c < 3; ++c) {
+      const std::uint64_t of_channel = in_.left_rgb.empty() ? packed >> 40U : packed >> c * kBits;
+      sum[c] += static_cast<std::int64_t>(of_channel & ((1U << kBits) - 1));
     }
-    for (std::size_t c = 0; c < 3; ++c) channels[c][width] = sum[c];
   }
 
   /// From each pixel to the one above.
@@ -174,7 +166,7 @@ class Survey {
   std::vector<std::int32_t> ends_;  // of a row's runs; then its pixels at a rim
   std::vector<std::int32_t> upper_;
   std::vector<std::int32_t> lower_;
-  std::vector<std::uint32_t> up_to_;  // one list for each channel
+  std::vector<std::uint64_t> up_to_;  // sums of a row's colours, as the kernels pack them
 };
 
 /// One band for each thread, from the top down.
@@ -215,83 +207,65 @@ bool is_object(const Outline& outline, const Region& disparity_region, Size imag
 
 /// The 2nd to the 98th percentile: the values of ranks ⌊(p·(n−1) + 50)/100⌋ in ascending order. Reorders
 /// `values`, which are not empty.
-float span_without_tails(std::vector<float>& values) {
+float span_without_tails(std::span<float> values, const Exec& exec) {
   const auto rank = [&](std::size_t percent) { return (percent * (values.size() - 1) + 50) / 100; };
-  const auto [lowest, highest] = values_at_ranks(values, rank(2), rank(98));
+  const auto [lowest, highest] = values_at_ranks(values, rank(2), rank(98), exec);
   return highest - lowest;
 }
 
 /// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.
-float median(std::vector<float>& values) {
+float median(std::span<float> values, const Exec& exec) {
   const std::size_t upper = values.size() / 2;
-  if (values.size() % 2 == 1) return values_at_ranks(values, upper, upper).first;
-  const auto [below, above] = values_at_ranks(values, upper - 1, upper);
+  if (values.size() % 2 == 1) return values_at_ranks(values, upper, upper, exec).first;
+  const auto [below, above] = values_at_ranks(values, upper - 1, upper, exec);
   return (above + below) / 2;
 }
 
-/// The disparities of an object, gathered run by run. Values are appended without a branch: holes come
-/// irregularly.
+/// Coordinates of points in the camera's frame, one list per axis.
+using PerAxis = std::array<std::vector<float>, 3>;
+
+/// The disparities of an object, and where there is a rig its points before infinity, gathered run by run.
 class Gathered {
  public:
-  Gathered(const Inputs& in, std::size_t pixels) : in_(in), disparities_(pixels + 1) {
-    if (!in.rig) return;
-    for (std::vector<float>& axis : points_) axis.resize(pixels + 1);
-    for (std::vector<float>& axis : of_run_) axis.resize(slot(in.left.width()));
+  /// How many floats an object needs.
+  static std::size_t room_for(const Inputs& in, std::size_t pixels) {
+    return (in.rig ? 4 : 1) * (pixels + kernels::kListSlack);
   }
+  Gathered(const Inputs& in, std::size_t pixels, float* room, const Exec& exec)
+      : in_(in),
+        labels_(kernels::label_kernels(exec)),
+        rows_(kernels::row_kernels(exec)),
+        room_(room),
+        length_(pixels + kernels::kListSlack) {}
 
-  void add(const Run& run) {
+  /// `of_run`: working memory, a row for each axis.
+  void add(const Run& run, PerAxis& of_run) {
     const float* const disparity = in_.disparity_px.row(run.y);
-    float* const room = disparities_.data() + valid_count_;
-    std::size_t valid = 0;
-    for (int x = run.first; x < run.last; ++x) {
-      room[valid] = disparity[x];
-      valid += disparity[x] == disparity[x] ? 1 : 0;  // a hole is NaN
-    }
-    valid_count_ += valid;
-    if (in_.rig) add_points(*in_.rig, run, disparity);
+    valid_count_ += slot(labels_.keep_known(disparity, run.first, run.last, room_ + valid_count_));
+    if (!in_.rig) return;
+    rows_.points_in_camera(*in_.rig, run.y, run.first, run.last, disparity, of_run[0].data(),
+                           of_run[1].data(), of_run[2].data());
+    int found = 0;
+    for (std::size_t i = 0; i < of_run.size(); ++i)
+      found = labels_.keep_known(of_run[i].data(), run.first, run.last, axis(i) + point_count_);
+    point_count_ += slot(found);
   }
 
-  [[nodiscard]] std::size_t valid_count() const { return valid_count_; }
-  struct Lists {
-    std::array<std::vector<float>, 3> points;  // in the camera's frame, before infinity; one list per axis
-    std::vector<float> disparities;
-  };
-  /// Of the valid pixels.
-  [[nodiscard]] Lists lists() && {
-    for (std::vector<float>& axis : points_) axis.resize(point_count_);
-    disparities_.resize(valid_count_);
-    return {std::move(points_), std::move(disparities_)};
+  [[nodiscard]] std::span<float> disparities() { return {room_, valid_count_}; }
+  [[nodiscard]] std::array<std::span<float>, 3> points() {
+    if (!in_.rig) return {};
+    return {std::span(axis(0), point_count_), std::span(axis(1), point_count_),
+            std::span(axis(2), point_count_)};
   }
 
  private:
-  /// As StereoRig::point_in_camera_m(), for a run at once.
-  void add_points(const StereoRig& rig, const Run& run, const float* disparity) {
-    float* const x = of_run_[0].data();
-    float* const y = of_run_[1].data();
-    float* const z = of_run_[2].data();
-    const float row = static_cast<float>(run.y) - rig.cy_px;
-    for (int i = 0; i < run.length(); ++i) {
-      z[i] = rig.focal_px * rig.baseline_m / (disparity[run.first + i] + rig.doffs_px);
-      x[i] = (static_cast<float>(run.first + i) - rig.cx_px) * z[i] / rig.focal_px;
-      y[i] = row * z[i] / rig.focal_px;
-    }
-    float* const xs = points_[0].data() + point_count_;
-    float* const ys = points_[1].data() + point_count_;
-    float* const zs = points_[2].data() + point_count_;
-    std::size_t count = 0;
-    for (int i = 0; i < run.length(); ++i) {
-      xs[count] = x[i];
-      ys[count] = y[i];
-      zs[count] = z[i];
-      count += disparity[run.first + i] + rig.doffs_px > 0 ? 1 : 0;
-    }
-    point_count_ += count;
-  }
+  [[nodiscard]] float* axis(std::size_t i) { return room_ + (i + 1) * length_; }
 
   const Inputs& in_;
-  std::vector<float> disparities_;  // one more than there can be, as each is written before it is judged
-  std::array<std::vector<float>, 3> points_;
-  std::array<std::vector<float>, 3> of_run_;
+  const kernels::LabelKernels& labels_;
+  const kernels::RowKernels& rows_;
+  float* room_;  // lists of length_: the disparities, then one for each axis
+  std::size_t length_;
   std::size_t valid_count_ = 0;
   std::size_t point_count_ = 0;
 };
@@ -302,8 +276,8 @@ Rgb mean_colour(const std::array<std::int64_t, 3>& sum, std::int64_t pixels) {
 }
 
 /// Position and extent from the coordinates of an object's points, one list per axis.
-void place(Object& object, std::array<std::vector<float>, 3>& points) {
-  auto& [x, y, z] = points;
+void place(Object& object, const std::array<std::span<float>, 3>& points, const Exec& exec) {
+  const auto& [x, y, z] = points;
   if (x.empty()) return;
   std::array<double, 3> sum{};
   // Three chains, of which each alone would wait for its additions.
@@ -315,7 +289,8 @@ void place(Object& object, std::array<std::vector<float>, 3>& points) {
   const auto count = static_cast<double>(x.size());
   const auto mean = [&](std::size_t axis) { return static_cast<float>(sum.at(axis) / count); };
   object.position_in_camera_m = Vec3{mean(0), mean(1), mean(2)};
-  object.extent_in_camera_m = Vec3{span_without_tails(x), span_without_tails(y), span_without_tails(z)};
+  object.extent_in_camera_m =
+      Vec3{span_without_tails(x, exec), span_without_tails(y, exec), span_without_tails(z, exec)};
 }
 
 float confidence_of(const Object& object, Size image) {
@@ -326,12 +301,13 @@ float confidence_of(const Object& object, Size image) {
 }
 
 /// nullopt where no pixel has a disparity.
-std::optional<Object> measured(const Outline& outline, Gathered gathered, Size image) {
-  if (gathered.valid_count() == 0) return std::nullopt;
+std::optional<Object> measured(const Outline& outline, Gathered& gathered, Size image, const Exec& exec) {
+  const std::span<float> disparities = gathered.disparities();
+  if (disparities.empty()) return std::nullopt;
   Object object;
   object.box_px = outline.box;
   object.pixel_count = static_cast<int>(outline.pixel_count);
-  object.valid_share = static_cast<float>(gathered.valid_count()) / static_cast<float>(outline.pixel_count);
+  object.valid_share = static_cast<float>(disparities.size()) / static_cast<float>(outline.pixel_count);
   object.mean_colour = mean_colour(outline.colour_sum, outline.pixel_count);
   const Rim& rim = outline.rim;
   const auto share = [&](std::int64_t part) {
@@ -340,36 +316,42 @@ std::optional<Object> measured(const Outline& outline, Gathered gathered, Size i
   object.edge_share = share(rim.at_edge);
   object.cut_share = share(rim.cut);
   object.confidence = confidence_of(object, image);
-  Gathered::Lists lists = std::move(gathered).lists();
-  place(object, lists.points);
-  object.disparity_px = median(lists.disparities);
+  place(object, gathered.points(), exec);
+  object.disparity_px = median(disparities, exec);
   return object;
 }
 
 /// A region that may be an object.
 struct Candidate {
   std::size_t region;
-  std::optional<Object> object;
+  std::size_t room = 0;  // where its lists begin
+  std::optional<Object> object = {};
 };
+
+std::size_t pixels_of(const Candidate& candidate, const std::vector<Outline>& outline) {
+  return static_cast<std::size_t>(outline[candidate.region].pixel_count);
+}
 
 /// Measures candidates, all together in one pass over the picture: region after region
 /// would fetch every row anew.
 void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std::vector<Outline>& outline,
-                   std::span<Candidate> range) {
+                   std::span<Candidate> range, float* room, const Exec& exec) {
   std::vector<Gathered> gathered;
   gathered.reserve(range.size());
   std::vector<Gathered*> of_region(outline.size(), nullptr);
   for (const Candidate& candidate : range) {
     of_region[candidate.region] =
-        &gathered.emplace_back(in, static_cast<std::size_t>(outline[candidate.region].pixel_count));
+        &gathered.emplace_back(in, pixels_of(candidate, outline), room + candidate.room, exec);
   }
+  PerAxis of_run;
+  for (std::vector<float>& axis : of_run) axis.resize(in.rig ? slot(in.left.width()) : 0);
   for (const Survey& band : bands) {
     for (const Run& run : band.runs()) {
-      if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
+      if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run, of_run);
     }
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
-    range[i].object = measured(outline[range[i].region], std::move(gathered[i]), in.left.size());
+    range[i].object = measured(outline[range[i].region], gathered[i], in.left.size(), exec);
   }
 }
 
@@ -395,21 +377,26 @@ std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const 
 Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
                 View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
                 const ObjectsConfig& config, const Exec& exec) {
-  const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma(left));
+  const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma(left, exec));
   const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig, edge_min};
   const Size size = fusion.labels.size();
   std::vector<Survey> bands = survey(in, exec);
   const std::vector<Outline>& outline = outlines_of(bands);
 
   std::vector<Candidate> found;
+  std::size_t room = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Region& followed = by_disparity.regions[index(fusion.disparity_region[i])];
-    if (is_object(outline[i], followed, size, config)) found.push_back({i, std::nullopt});
+    if (!is_object(outline[i], followed, size, config)) continue;
+    found.push_back({i, room});
+    room += Gathered::room_for(in, pixels_of(found.back(), outline));
   }
+  Scratch<float> lists(room, exec.pool);
   const std::vector<std::size_t> begins = shares(found, outline, exec);
   parallel_for(exec, static_cast<int>(begins.size()) - 1, 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i)
-      measure_range(in, bands, outline, std::span(found).subspan(begins[i], begins[i + 1] - begins[i]));
+      measure_range(in, bands, outline, std::span(found).subspan(begins[i], begins[i + 1] - begins[i]),
+                    lists.data(), exec);
   });
   std::erase_if(found, [&](const Candidate& candidate) {
     return !candidate.object || candidate.object->confidence < config.min_confidence;

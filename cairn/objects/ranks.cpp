@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/objects/ranks.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -16,7 +18,7 @@ std::ptrdiff_t offset(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
 }
 
-std::pair<float, float> by_parting(std::vector<float>& values, std::size_t low, std::size_t high) {
+std::pair<float, float> by_parting(std::span<float> values, std::size_t low, std::size_t high) {
   std::nth_element(values.begin(), values.begin() + offset(low), values.end());
   const float lower = values[low];
   // What is not below it keeps its ranks.
@@ -24,39 +26,18 @@ std::pair<float, float> by_parting(std::vector<float>& values, std::size_t low, 
   return {lower, values[high]};
 }
 
-std::pair<float, float> bounds(const std::vector<float>& values) {
-  // Four chains: one would wait for its own comparison.
-  std::array<float, 4> least{};
-  std::array<float, 4> most{};
-  least.fill(values.front());
-  most.fill(values.front());
-  std::size_t i = 0;
-  for (; i + 4 <= values.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      least[k] = values[i + k] < least[k] ? values[i + k] : least[k];
-      most[k] = values[i + k] > most[k] ? values[i + k] : most[k];
-    }
-  }
-  for (; i < values.size(); ++i) {
-    least[0] = std::min(least[0], values[i]);
-    most[0] = std::max(most[0], values[i]);
-  }
-  return {*std::min_element(least.begin(), least.end()), *std::max_element(most.begin(), most.end())};
-}
-
-/// Values counted in buckets of equal width. A larger value is never in a lower bucket, however it rounds, so
-/// a rank is looked for in one bucket only.
-class Buckets {
+/// Values counted in buckets: a rank is looked for in one of them only.
+class Counted {
  public:
-  Buckets(const std::vector<float>& values, float least, float scale)
-      : values_(values), least_(least), scale_(scale) {
-    // Two counters for each bucket: neighbours are often alike, and one would wait for the other.
-    std::size_t i = 0;
-    for (; i + 2 <= values.size(); i += 2) {
-      ++counts_[0][bucket(values[i])];
-      ++counts_[1][bucket(values[i + 1])];
+  Counted(std::span<const float> values, const kernels::Buckets& buckets, const kernels::LabelKernels& run)
+      : values_(values), buckets_(buckets), run_(run) {
+    std::array<std::int32_t, 256> numbers;
+    for (std::size_t i = 0; i < values.size(); i += numbers.size()) {
+      const std::size_t count = std::min(numbers.size(), values.size() - i);
+      run.number_buckets(values.data() + i, count, buckets, numbers.data());
+      // In turn: neighbours are often alike, and one would wait for the other.
+      for (std::size_t k = 0; k < count; ++k) ++counts_[k % 2][slot(numbers[k])];
     }
-    if (i < values.size()) ++counts_[0][bucket(values[i])];
   }
 
   float value_at(std::size_t rank) {
@@ -69,25 +50,17 @@ class Buckets {
   }
 
  private:
-  [[nodiscard]] std::size_t bucket(float value) const {
-    return std::min(static_cast<std::size_t>(static_cast<std::int32_t>((value - least_) * scale_)),
-                    kBuckets - 1);
-  }
   [[nodiscard]] std::size_t count(std::size_t b) const { return counts_[0][b] + counts_[1][b]; }
   void gather(std::size_t b) {
     gathered_ = b;
-    members_.resize(count(b) + 1);  // every value is written, and most are overwritten
-    std::size_t found = 0;
-    for (const float value : values_) {
-      members_[found] = value;
-      found += bucket(value) == b ? 1 : 0;
-    }
-    members_.pop_back();
+    members_.resize(count(b) + kernels::kListSlack);
+    members_.resize(run_.keep_bucket(values_.data(), values_.size(), buckets_, static_cast<std::int32_t>(b),
+                                     members_.data()));
   }
 
-  const std::vector<float>& values_;
-  float least_;
-  float scale_;
+  std::span<const float> values_;
+  kernels::Buckets buckets_;
+  const kernels::LabelKernels& run_;
   std::array<std::array<std::uint32_t, kBuckets>, 2> counts_{};
   std::size_t gathered_ = kBuckets;
   std::vector<float> members_;
@@ -95,14 +68,16 @@ class Buckets {
 
 }  // namespace
 
-std::pair<float, float> values_at_ranks(std::vector<float>& values, std::size_t low, std::size_t high) {
+std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low, std::size_t high,
+                                        const Exec& exec) {
   if (values.size() <= kFew) return by_parting(values, low, high);
-  const auto [least, most] = bounds(values);
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
+  const auto [least, most] = run.find_range(values.data(), values.size());
   const float scale = static_cast<float>(kBuckets) / (most - least);
   if (!std::isfinite(scale) || !(scale > 0)) return by_parting(values, low, high);
-  Buckets buckets(values, least, scale);
-  const float lower = buckets.value_at(low);
-  return {lower, buckets.value_at(high)};
+  Counted counted(values, {least, scale, kBuckets - 1}, run);
+  const float lower = counted.value_at(low);
+  return {lower, counted.value_at(high)};
 }
 
 }  // namespace cairn

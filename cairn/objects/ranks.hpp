@@ -2,14 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/core/exec.hpp>
 #include <cstddef>
+#include <span>
 #include <utility>
-#include <vector>
 
 namespace cairn {
 
 /// The values of the ranks `low` ≤ `high` < values.size() in ascending order, 0 being the least. No value is
 /// NaN. Leaves `values` in any order. Private to the library.
-std::pair<float, float> values_at_ranks(std::vector<float>& values, std::size_t low, std::size_t high);
+std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low, std::size_t high,
+                                        const Exec& exec);
 
 }  // namespace cairn

@@ -2,13 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
+#include <cairn/core/image.hpp>
 #include <cstddef>
 #include <cstdint>
 
-/// The seam to the instruction sets: what watershed() and build_graph() do for each pixel of a row. Private
-/// to the library.
+/// The seam to the instruction sets: what watershed(), build_graph() and measure() do for each pixel of a row
+/// or value of a list. Private to the library.
 namespace cairn::kernels {
 
 /// One bit for each of 64 pixels, the leftmost in the lowest bit.
@@ -36,6 +38,22 @@ struct LabelPairs {
 /// How much longer than their contents the lists must be that kernels write: whole vectors are stored.
 constexpr std::size_t kListSlack = 64;
 
+struct FloatRange {
+  float least;
+  float most;
+};
+
+/// Parts a range of values into buckets of equal width. A larger value is never in a lower bucket, however it
+/// rounds.
+struct Buckets {
+  float least;  // no value is below
+  float scale;  // buckets per unit
+  std::int32_t last;
+  [[nodiscard]] std::int32_t bucket(float value) const {
+    return std::min(static_cast<std::int32_t>((value - least) * scale), last);
+  }
+};
+
 struct LabelKernels {
   /// `words` words of `slopes`, from heights[−1 … 64·words] of three rows.
   void (*compare)(const std::uint16_t* above, const std::uint16_t* here, const std::uint16_t* below,
@@ -61,6 +79,18 @@ struct LabelKernels {
   /// the sum of squares. `floor`: not 0 where there is floor; nullptr for nowhere.
   void (*sum_disparities)(const std::int16_t* values, const std::uint8_t* floor, int width,
                           std::uint64_t* up_to, std::uint64_t* squares_up_to);
+  /// The same of colours: red + green · 2²¹ + blue · 2⁴². Right for 8192 pixels.
+  void (*sum_colours)(const Rgb* colours, int width, std::uint64_t* up_to);
+  /// Those of row[first] … row[last − 1] that are not NaN, in their order. Returns how many.
+  int (*keep_known)(const float* row, int first, int last, float* kept);
+  /// The least and the greatest of `count` values, at least one. No value is NaN.
+  FloatRange (*find_range)(const float* values, std::size_t count);
+  /// Those values whose bucket(value) is `wanted`, in their order. Returns how many.
+  std::size_t (*keep_bucket)(const float* values, std::size_t count, const Buckets& buckets,
+                             std::int32_t wanted, float* kept);
+  /// bucket(values[i]) for each of them.
+  void (*number_buckets)(const float* values, std::size_t count, const Buckets& buckets,
+                         std::int32_t* numbers);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -227,8 +227,103 @@ void sum_disparities(const std::int16_t* HWY_RESTRICT values, const std::uint8_t
   plain_labels::sum_disparities_from(x, values, floor, width, up_to, squares_up_to);
 }
 
-constexpr LabelKernels kLabelKernels{compare,        count_up,      find_runs, differing,
-                                     touches_beside, touches_below, sum_grey,  sum_disparities};
+void sum_colours(const Rgb* HWY_RESTRICT colours, int width, std::uint64_t* HWY_RESTRICT up_to) {
+  const Sums d;
+  const hn::Rebind<std::int32_t, Sums> d32;
+  const hn::Rebind<std::uint8_t, Sums> d8;
+  const auto wide = [&](auto channel) { return hn::PromoteTo(d, hn::PromoteTo(d32, channel)); };
+  auto* const to = reinterpret_cast<std::int64_t*>(up_to);
+  const auto step = static_cast<int>(hn::Lanes(d));
+  to[0] = 0;
+  auto before = hn::Zero(d);
+  int x = 0;
+  for (; x + step <= width; x += step) {
+    hn::Vec<decltype(d8)> r, g, b;
+    hn::LoadInterleaved3(d8, reinterpret_cast<const std::uint8_t*>(colours + x), r, g, b);
+    const auto packed = hn::Or(wide(r), hn::Or(hn::ShiftLeft<21>(wide(g)), hn::ShiftLeft<42>(wide(b))));
+    const auto sums = running_sums(d, packed, before);
+    hn::StoreU(sums, d, to + x + 1);
+    before = last_lane(d, sums);
+  }
+  plain_labels::sum_colours_from(x, colours, width, up_to);
+}
+
+using Floats = hn::ScalableTag<float>;
+
+int keep_known(const float* HWY_RESTRICT row, int first, int last, float* HWY_RESTRICT kept) {
+  const Floats d;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  if (last < step) return plain_labels::keep_known(row, first, last, kept);
+  int count = 0;
+  const auto keep = [&](auto values, auto mask) {
+    hn::StoreU(hn::Compress(values, mask), d, kept + count);
+    count += static_cast<int>(hn::CountTrue(d, mask));
+  };
+  int x = first;
+  for (; x + step <= last; x += step) {
+    const auto values = hn::LoadU(d, row + x);
+    keep(values, hn::Eq(values, values));
+  }
+  if (x == last) return count;
+  // The last ones, with what is before them.
+  const auto values = hn::LoadU(d, row + last - step);
+  const auto is_before = hn::FirstN(d, static_cast<std::size_t>(step - (last - x)));
+  keep(values, hn::AndNot(is_before, hn::Eq(values, values)));
+  return count;
+}
+
+FloatRange find_range(const float* HWY_RESTRICT values, std::size_t count) {
+  const Floats d;
+  const std::size_t step = hn::Lanes(d);
+  if (count < step) return plain_labels::find_range(values, count);
+  auto least = hn::LoadU(d, values + count - step);  // first, so that no rest is left
+  auto most = least;
+  for (std::size_t i = 0; i + step <= count; i += step) {
+    const auto v = hn::LoadU(d, values + i);
+    least = hn::Min(least, v);
+    most = hn::Max(most, v);
+  }
+  return {hn::GetLane(hn::MinOfLanes(d, least)), hn::GetLane(hn::MaxOfLanes(d, most))};
+}
+
+/// buckets.bucket() of several values.
+template <class D>
+HWY_INLINE hn::Vec<hn::RebindToSigned<D>> bucket(D d, hn::Vec<D> values, const Buckets& buckets) {
+  const hn::RebindToSigned<D> di;
+  const auto above = hn::Sub(values, hn::Set(d, buckets.least));
+  const auto number = hn::ConvertTo(di, hn::Mul(above, hn::Set(d, buckets.scale)));
+  return hn::Min(number, hn::Set(di, buckets.last));
+}
+
+std::size_t keep_bucket(const float* HWY_RESTRICT values, std::size_t count, const Buckets& given,
+                        std::int32_t wanted, float* HWY_RESTRICT kept) {
+  const Floats d;
+  const Buckets buckets = given;
+  const auto the_wanted = hn::Set(hn::RebindToSigned<Floats>(), wanted);
+  std::size_t found = 0;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    const auto v = hn::LoadU(d, values + i);
+    const auto counts = hn::RebindMask(d, hn::Eq(bucket(d, v, buckets), the_wanted));
+    hn::StoreU(hn::Compress(v, counts), d, kept + found);
+    found += hn::CountTrue(d, counts);
+  }
+  return found + plain_labels::keep_bucket(values + i, count - i, buckets, wanted, kept + found);
+}
+
+void number_buckets(const float* HWY_RESTRICT values, std::size_t count, const Buckets& given,
+                    std::int32_t* HWY_RESTRICT numbers) {
+  const Floats d;
+  const Buckets buckets = given;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
+    hn::StoreU(bucket(d, hn::LoadU(d, values + i), buckets), hn::RebindToSigned<Floats>(), numbers + i);
+  plain_labels::number_buckets(values + i, count - i, buckets, numbers + i);
+}
+
+constexpr LabelKernels kLabelKernels{compare,       count_up,    find_runs,       differing,   touches_beside,
+                                     touches_below, sum_grey,    sum_disparities, sum_colours, keep_known,
+                                     find_range,    keep_bucket, number_buckets};
 
 }  // namespace
 }  // namespace cairn::kernels::HWY_NAMESPACE

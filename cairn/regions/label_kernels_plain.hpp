@@ -173,7 +173,53 @@ inline void sum_disparities(const std::int16_t* values, const std::uint8_t* floo
   sum_disparities_from(0, values, floor, width, up_to, squares_up_to);
 }
 
-inline constexpr LabelKernels kLabelKernels{compare,        count_up,      find_runs, differing,
-                                            touches_beside, touches_below, sum_grey,  sum_disparities};
+/// sum_colours() for the pixels from `x` on.
+inline void sum_colours_from(int x, const Rgb* colours, int width, std::uint64_t* up_to) {
+  for (std::uint64_t sums = up_to[x]; x < width; ++x) {
+    sums += colours[x].r + (std::uint64_t{colours[x].g} << 21U) + (std::uint64_t{colours[x].b} << 42U);
+    up_to[x + 1] = sums;
+  }
+}
+
+inline void sum_colours(const Rgb* colours, int width, std::uint64_t* up_to) {
+  up_to[0] = 0;
+  sum_colours_from(0, colours, width, up_to);
+}
+
+/// Written is each value, and overwritten where it does not count: they come irregularly.
+template <class Size, class Counts>
+Size keep_where(const float* values, Size count, float* kept, Counts counts) {
+  Size found = 0;
+  for (Size i = 0; i < count; ++i) {
+    kept[found] = values[i];
+    found += counts(values[i]) ? 1 : 0;
+  }
+  return found;
+}
+
+inline int keep_known(const float* row, int first, int last, float* kept) {
+  return keep_where(row + first, last - first, kept, [](float v) { return v == v; });
+}
+
+inline std::size_t keep_bucket(const float* values, std::size_t count, const Buckets& buckets,
+                               std::int32_t wanted, float* kept) {
+  return keep_where(values, count, kept, [&](float v) { return buckets.bucket(v) == wanted; });
+}
+
+inline FloatRange find_range(const float* values, std::size_t count) {
+  FloatRange range{values[0], values[0]};
+  for (std::size_t i = 1; i < count; ++i)
+    range = {std::min(range.least, values[i]), std::max(range.most, values[i])};
+  return range;
+}
+
+inline void number_buckets(const float* values, std::size_t count, const Buckets& buckets,
+                           std::int32_t* numbers) {
+  for (std::size_t i = 0; i < count; ++i) numbers[i] = buckets.bucket(values[i]);
+}
+
+inline constexpr LabelKernels kLabelKernels{
+    compare,         count_up,    find_runs,  differing,  touches_beside, touches_below, sum_grey,
+    sum_disparities, sum_colours, keep_known, find_range, keep_bucket,    number_buckets};
 
 }  // namespace cairn::kernels::plain_labels

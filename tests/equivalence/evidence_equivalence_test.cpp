@@ -179,6 +179,7 @@ TEST(NoiseSigma, IsThatOfItsDefinition) {
     }
     const Image<Gray> image = random_picture(size, 5);
     EXPECT_EQ(noise_sigma(image), reference::noise_sigma(image)) << text(size);
+    EXPECT_EQ(noise_sigma(image, threads(3)), reference::noise_sigma(image)) << text(size);
   }
 }
 

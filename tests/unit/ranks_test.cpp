@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/core/target.hpp>
 #include <cairn/objects/ranks.hpp>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -18,10 +20,12 @@ void expect_sorted_order(const std::vector<float>& values) {
                                   {last / 2, (last + 1) / 2},
                                   {last / 50, last - last / 50},
                                   {last, last}}) {
-    std::vector<float> given = values;
-    const auto [lower, higher] = values_at_ranks(given, low, high);
-    EXPECT_EQ(lower, sorted[low]) << "rank " << low << " of " << values.size();
-    EXPECT_EQ(higher, sorted[high]) << "rank " << high << " of " << values.size();
+    for (const Target target : supported_targets()) {
+      std::vector<float> given = values;
+      const auto [lower, higher] = values_at_ranks(given, low, high, Exec::with_threads(1, target));
+      EXPECT_EQ(lower, sorted[low]) << "rank " << low << " of " << values.size();
+      EXPECT_EQ(higher, sorted[high]) << "rank " << high << " of " << values.size();
+    }
   }
 }
 
