@@ -45,17 +45,37 @@ HWY_INLINE V SlideDown(D d, V here, V next) {
   if constexpr (sizeof(V) == 16) return CombineShiftRightBytes<1>(d, next, here);
 }
 
+/// Of 16 bytes the least, in lane 0.
+template <class D>
+HWY_INLINE Vec<D> LeastBlock([[maybe_unused]] D d, Vec<D> v) {
+  if constexpr (MaxLanes(D()) > 16) {
+    const Half<D> half;
+    return ZeroExtendVector(d, LeastBlock(half, Min(LowerHalf(half, v), UpperHalf(half, v))));
+  } else {
+#if HWY_ARCH_X86
+    const Repartition<std::uint16_t, D> d16;
+    const Vec<D> pairs = Min(v, BitCast(d, ShiftRight<8>(BitCast(d16, v))));
+    return Vec<D>{_mm_minpos_epu16(pairs.raw)};
+#else
+    v = Min(v, CombineShiftRightBytes<8>(d, v, v));
+    v = Min(v, CombineShiftRightBytes<4>(d, v, v));
+    v = Min(v, CombineShiftRightBytes<2>(d, v, v));
+    return Min(v, CombineShiftRightBytes<1>(d, v, v));
+#endif
+  }
+}
+
 /// The least lane, in every lane.
 template <class D, class V = Vec<D>>
 HWY_INLINE V MinOfAll(D d, V v) {
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-  if constexpr (sizeof(V) == 64) v = Min(v, ReverseBlocks(d, v));
-  if constexpr (sizeof(V) >= 32) v = Min(v, SwapAdjacentBlocks(v));
+  const V least = LeastBlock(d, v);
+#if HWY_TARGET == HWY_AVX3
+  if constexpr (sizeof(V) == 64) return V{_mm512_broadcastb_epi8(_mm512_castsi512_si128(least.raw))};
 #endif
-  v = Min(v, CombineShiftRightBytes<8>(d, v, v));
-  v = Min(v, CombineShiftRightBytes<4>(d, v, v));
-  v = Min(v, CombineShiftRightBytes<2>(d, v, v));
-  return Min(v, CombineShiftRightBytes<1>(d, v, v));
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+  if constexpr (sizeof(V) == 32) return V{_mm256_broadcastb_epi8(_mm256_castsi256_si128(least.raw))};
+#endif
+  if constexpr (sizeof(V) == 16) return TableLookupBytes(least, Zero(d));
 }
 
 /// Bits of 4-bit numbers.
