@@ -117,25 +117,41 @@ CAIRN_LANES_INLINE std::uint8_t large_penalty(const std::uint8_t* large, Gray a,
   return large[std::abs(a - b)];
 }
 
+/// The L of one pixel of a path, in memory …
+template <class D>
+struct Stored {
+  D d;
+  std::uint8_t* at;
+  [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<D> get(int i) const { return bytes::Load(d, at + i); }
+  CAIRN_LANES_INLINE void set(int i, bytes::Vec<D> along) const { bytes::Store(along, d, at + i); }
+};
+/// … and, where one vector is all of it, at hand.
+template <class D>
+struct Held {
+  bytes::Vec<D>& all;
+  [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<D> get(int) const { return all; }
+  CAIRN_LANES_INLINE void set(int, bytes::Vec<D> along) const { all = along; }
+};
+
 /// Goes on by one pixel: `along` holds the L of the pixel before and gets this one's. `least` is the least of
 /// the former in every lane; the least of the latter is returned. Where a path begins, all of them are 0.
 /// use(i, C, L − C) is called for each vector.
-template <class D, class Use>
-CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, std::uint8_t* along,
+template <class D, class Along, class Use>
+CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Along& along,
                                        bytes::Vec<D> least, bytes::Vec<D> small, bytes::Vec<D> large,
                                        int lanes, const Use& use) {
   const auto none = bytes::Set(d, kNoLane);
   auto before = none;
-  auto here = bytes::Load(d, along);
+  auto here = along.get(0);
   auto least_now = none;
   for (int i = 0; i < lanes; i += lane_count(d)) {
-    const auto next = i + lane_count(d) < lanes ? bytes::Load(d, along + i + lane_count(d)) : none;
+    const auto next = i + lane_count(d) < lanes ? along.get(i + lane_count(d)) : none;
     const auto neighbour = bytes::Min(bytes::SlideUp(d, before, here), bytes::SlideDown(d, here, next));
     const auto kept = bytes::Min(here, bytes::SaturatedAdd(neighbour, small));
     const auto step = bytes::Min(bytes::Sub(kept, least), large);  // Eq. 13 less C
     const auto cost = bytes::Load(d, costs + i);
     const auto sum = bytes::SaturatedAdd(cost, step);
-    bytes::Store(sum, d, along + i);
+    along.set(i, sum);
     least_now = bytes::Min(least_now, sum);
     use(i, cost, step);
     before = here;
@@ -273,7 +289,7 @@ class Descent {
       expect_writes(next_steps + at, lanes);
       average(above + at, here + at, below + at, beyond, lanes, costs + at);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
-      const auto now = go_on(d, costs + at, along + at, bytes::Set(d, least[x]), small, penalty, lanes,
+      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty, lanes,
                              Keep<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
@@ -323,7 +339,7 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
       expect_reads(next_costs + at, lanes);
       expect_writes(next_steps + at, lanes);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_below[x]));
-      const auto now = go_on(d, costs + at, along + at, bytes::Set(d, least[x]), small, penalty, lanes,
+      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty, lanes,
                              Accumulate<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
@@ -336,7 +352,7 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
 /// Rows first … last − 1. What a pixel adds to a path waits for what the one before it added, and a processor
 /// could do several times as much meanwhile: so the paths of up to kRowsAbreast rows are followed side by
 /// side.
-template <class D>
+template <class D, bool kOneVector>
 class Crossing {
   using Sums = lanes::CappedTag<std::int16_t, 32>;
   static constexpr int kSums = static_cast<int>(lanes::MaxLanes(Sums()));
@@ -378,10 +394,11 @@ class Crossing {
   struct Paths {
     const std::uint8_t* costs[kRows];
     const Gray* smooth[kRows];
-    std::uint8_t* along;
+    std::uint8_t* along;  // unless it is at hand
     const std::uint8_t* large;
     int lanes;
     bytes::Vec<D> small;
+    bytes::Vec<D> held[kRows];
     bytes::Vec<D> least[kRows];
 
     /// Goes on by pixel x in each row, coming from pixel `from`. use(row) makes what is called for each
@@ -392,8 +409,13 @@ class Crossing {
       CAIRN_UNROLL
       for (int row = 0; row < kRows; ++row) {
         const auto penalty = bytes::Set(d, large_penalty(large, smooth[row][x], smooth[row][from]));
-        least[row] = go_on(d, costs[row] + x * lanes, along + row * lanes, least[row], small, penalty, lanes,
-                           use(row));
+        if constexpr (kOneVector) {
+          least[row] = go_on(d, costs[row] + x * lanes, Held<D>{held[row]}, least[row], small, penalty,
+                             lane_count(d), use(row));
+        } else {
+          least[row] = go_on(d, costs[row] + x * lanes, Stored<D>{d, along + row * lanes}, least[row], small,
+                             penalty, lanes, use(row));
+        }
       }
     }
   };
@@ -406,6 +428,7 @@ class Crossing {
     for (int row = 0; row < kRows; ++row) {
       paths.costs[row] = task_.costs.row(y + row);
       paths.smooth[row] = task_.smooth.row(y + row);
+      paths.held[row] = bytes::Zero(d);
       paths.least[row] = bytes::Zero(d);
     }
     paths.along = along_.data();
@@ -463,7 +486,10 @@ class Crossing {
         return SumUp<D>{d, vertical[row] + at, back[row] + at, sums[row] + (x - x_first) * stride};
       });
     }
-    for (int row = 0; row < kRows; ++row) known.least[row] = paths.least[row];
+    for (int row = 0; row < kRows; ++row) {
+      known.held[row] = paths.held[row];
+      known.least[row] = paths.least[row];
+    }
   }
 
   /// Asks for the memory that a block's maps are written to.
@@ -678,8 +704,16 @@ void match_down(const SemiGlobalTask& task, int first, int last) {
 void match_up(const SemiGlobalTask& task, int first, int last, int top, int bottom) {
   narrow(task) ? go_up<Narrow>(task, first, last, top, bottom) : go_up<Full>(task, first, last, top, bottom);
 }
+template <class D>
+void go_across(const SemiGlobalTask& task, int first, int last) {
+  if (task.layout.lanes == lane_count(D())) {
+    Crossing<D, true>(task).run(first, last);
+  } else {
+    Crossing<D, false>(task).run(first, last);
+  }
+}
 void match_across(const SemiGlobalTask& task, int first, int last) {
-  narrow(task) ? Crossing<Narrow>(task).run(first, last) : Crossing<Full>(task).run(first, last);
+  narrow(task) ? go_across<Narrow>(task, first, last) : go_across<Full>(task, first, last);
 }
 
 }  // namespace
