@@ -289,8 +289,8 @@ class Descent {
       expect_writes(next_steps + at, lanes);
       average(above + at, here + at, below + at, beyond, lanes, costs + at);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
-      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty, lanes,
-                             Keep<D>{d, steps + at});
+      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty,
+                             lanes, Keep<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
@@ -339,8 +339,8 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
       expect_reads(next_costs + at, lanes);
       expect_writes(next_steps + at, lanes);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_below[x]));
-      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty, lanes,
-                             Accumulate<D>{d, steps + at});
+      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty,
+                             lanes, Accumulate<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
