@@ -320,21 +320,22 @@ inline PlaneCounts count_about(const PointArrays& points, const GroundPlane& pla
   return counts;
 }
 
-inline void add_squares(const std::uint8_t* here, const std::uint8_t* there, int count,
-                        std::uint32_t* CAIRN_RESTRICT sums) {
-  for (int x = 0; x < count; ++x) {
-    // 16 bits hold the square of a difference of bytes, and multiply twice as many at once.
-    const auto difference = static_cast<std::int16_t>(here[x] - there[x]);
-    sums[x] += static_cast<std::uint16_t>(difference * difference);
-  }
+/// 16 bits hold the square of a difference of bytes, and multiply twice as many at once.
+inline std::uint16_t square(std::uint8_t p, std::uint8_t q, std::uint16_t most) {
+  const auto difference = static_cast<std::int16_t>(p - q);
+  return std::min(static_cast<std::uint16_t>(difference * difference), most);
 }
 
-inline void remove_squares(const std::uint8_t* here, const std::uint8_t* there, int count,
-                           std::uint32_t* CAIRN_RESTRICT sums) {
-  for (int x = 0; x < count; ++x) {
-    const auto difference = static_cast<std::int16_t>(here[x] - there[x]);
-    sums[x] -= static_cast<std::uint16_t>(difference * difference);
-  }
+template <class Sum>
+inline void add_squares(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint16_t most,
+                        Sum* CAIRN_RESTRICT sums) {
+  for (int x = 0; x < count; ++x) sums[x] = static_cast<Sum>(sums[x] + square(here[x], there[x], most));
+}
+
+template <class Sum>
+inline void remove_squares(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint16_t most,
+                           Sum* CAIRN_RESTRICT sums) {
+  for (int x = 0; x < count; ++x) sums[x] = static_cast<Sum>(sums[x] - square(here[x], there[x], most));
 }
 
 /// to[x] = from[x] + more[x]
@@ -363,13 +364,15 @@ inline void sum_along(const T* columns, int width, int window, T* blocks, T* sum
   }
 }
 
-inline void flag_low_sums(const std::uint32_t* columns, int width, int window, const std::int32_t* limits,
-                          Reject why, std::uint32_t* blocks, std::uint32_t* sums,
-                          Reject* CAIRN_RESTRICT verdict) {
+template <class Sum>
+inline void flag_low_sums(const Sum* columns, int width, int window, const Sum* limits, Reject why,
+                          Sum* blocks, Sum* sums, Reject* CAIRN_RESTRICT verdict) {
   sum_along(columns, width, window, blocks, sums);
-  for (int x = 0; x < width; ++x)
-    verdict[x] |= static_cast<std::int32_t>(sums[x]) < limits[x] ? why : Reject::none;
+  for (int x = 0; x < width; ++x) verdict[x] |= sums[x] < limits[x] ? why : Reject::none;
 }
+
+template <class Sum>
+inline constexpr SquareKernels<Sum> kSquareKernels{add_squares<Sum>, remove_squares<Sum>, flag_low_sums<Sum>};
 
 inline constexpr HolesAndJumps kHole = 1;
 inline constexpr HolesAndJumps kIsJump = 256;
@@ -478,9 +481,8 @@ inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         put_behind,
                                         mark_between,
                                         count_about,
-                                        add_squares,
-                                        remove_squares,
-                                        flag_low_sums,
+                                        kSquareKernels<std::uint16_t>,
+                                        kSquareKernels<std::uint32_t>,
                                         mark_jumps,
                                         add_counts,
                                         remove_counts,

@@ -63,6 +63,19 @@ struct ConfidenceRow {
   const float* inverse_area;    // 1 / the pixels that these were counted over
 };
 
+/// Sums of squared differences, for reject_textureless(). The narrower the sums, the more at once.
+template <class Sum>
+struct SquareKernels {
+  /// sums[x] += min((here[x] − there[x])², most) for `count` pixels; and the same taken away again.
+  void (*add)(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint16_t most, Sum* sums);
+  void (*remove)(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint16_t most,
+                 Sum* sums);
+  /// verdict[x] |= `why` where columns[x] + … + columns[x + window − 1] is below limits[x]. `blocks`:
+  /// 2 · (width + window) samples, `sums`: width, working memory. The window is odd.
+  void (*flag_low)(const Sum* columns, int width, int window, const Sum* limits, Reject why, Sum* blocks,
+                   Sum* sums, Reject* verdict);
+};
+
 /// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
 /// rounds in another order than it is written in, so that each gives the same bits.
 struct RowKernels {
@@ -125,13 +138,8 @@ struct RowKernels {
   /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
   PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
                              float tolerance);
-  /// sums[x] += (here[x] − there[x])² for `count` pixels; and the same taken away again.
-  void (*add_squares)(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint32_t* sums);
-  void (*remove_squares)(const std::uint8_t* here, const std::uint8_t* there, int count, std::uint32_t* sums);
-  /// verdict[x] |= `why` where columns[x] + … + columns[x + window − 1] is below limits[x]. `blocks`:
-  /// 2 · (width + window) samples, `sums`: width, working memory. The window is odd.
-  void (*flag_low_sums)(const std::uint32_t* columns, int width, int window, const std::int32_t* limits,
-                        Reject why, std::uint32_t* blocks, std::uint32_t* sums, Reject* verdict);
+  SquareKernels<std::uint16_t> narrow_squares;
+  SquareKernels<std::uint32_t> wide_squares;
   /// Marks each hole, and each disparity that differs by more than `jump` from the one to the right or below.
   /// The last pixel has no right neighbour.
   void (*mark_jumps)(const float* here, const float* below, int width, float jump, HolesAndJumps* marks);
