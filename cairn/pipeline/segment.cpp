@@ -76,7 +76,7 @@ Image<float> trusted(View<const Gray> left, const DisparityMap& disparity, const
 }
 
 /// What the left image tells without a disparity. It takes longer than anything else but matching, and much
-/// of it can be done by one thread only: so it is done beside the matching.
+/// of it can be done by one thread only: so it is done beside the caller's own.
 class LeftRegions {
  public:
   LeftRegions(View<const Gray> left, View<const Rgb> left_rgb, const Config& config, const Exec& exec)
@@ -181,10 +181,16 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
               const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
-  LeftRegions of_left(pair.left(), pair.left_rgb(), config, exec);
+  std::optional<LeftRegions> of_left;
+  const auto begin_beside = [&] { of_left.emplace(pair.left(), pair.left_rgb(), config, exec); };
+  // Facets are needed soon after the matching. By overlap growing by disparity takes one thread about as long
+  // as all that the left image asks for, and the matching itself takes all threads.
+  const bool by_evidence = config.fusion.method == FusionMethod::evidence;
+  if (by_evidence) begin_beside();
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
   Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
-  Frame frame = find_objects(of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity), rig, config,
+  if (!by_evidence) begin_beside();
+  Frame frame = find_objects(*of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity), rig, config,
                              exec, stage);
   frame.confidence = confidence_of(frame.disparity, matched.matches, config, exec, stage);
   frame.epipolar = aligned.offset;
