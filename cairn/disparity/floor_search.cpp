@@ -6,6 +6,7 @@
 #include <cairn/disparity/floor_search.hpp>
 #include <cairn/disparity/plane_fit.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -62,19 +63,21 @@ struct Points {
   }
 };
 
-/// The numbers of those points whose distance above the plane is least … most, in their order. Found without
-/// a branch: about a plane nothing tells the next point from the last.
+/// The kernels that the search calls.
+struct Kernels {
+  const kernels::RowKernels& rows;
+  const kernels::LabelKernels& lists;
+  explicit Kernels(const Exec& exec)
+      : rows(kernels::row_kernels(exec)), lists(kernels::label_kernels(exec)) {}
+};
+
+/// The numbers of those points whose distance above the plane is least … most, in their order.
 std::vector<std::uint32_t> between(const Points& points, const GroundPlane& plane, float least, float most,
-                                   const kernels::RowKernels& run) {
+                                   const Kernels& run) {
   std::vector<std::uint8_t> marks(points.size());
-  run.mark_between(points.arrays(), plane, least, most, marks.data());
-  std::vector<std::uint32_t> found(points.size() + 1);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    found[count] = static_cast<std::uint32_t>(i);
-    count += marks[i];
-  }
-  found.resize(count);
+  run.rows.mark_between(points.arrays(), plane, least, most, marks.data());
+  std::vector<std::uint32_t> found(points.size() + kernels::kListSlack);
+  found.resize(run.lists.find_marked(marks.data(), marks.size(), found.data()));
   return found;
 }
 
@@ -138,8 +141,8 @@ struct Tally {
   [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kLeastScore * all; }
 };
 
-Tally tally(const GroundPlane& plane, const Points& points, float infinity, const kernels::RowKernels& run) {
-  const kernels::PlaneCounts counts = run.count_about(points.arrays(), plane, infinity, kTolerance);
+Tally tally(const GroundPlane& plane, const Points& points, float infinity, const Kernels& run) {
+  const kernels::PlaneCounts counts = run.rows.count_about(points.arrays(), plane, infinity, kTolerance);
   return {counts.on, counts.near - counts.on, counts.below, 0, counts.all};
 }
 
@@ -223,7 +226,7 @@ class Places {
 /// point's distance from the plane, in units of its depth, is the difference of the disparities divided by
 /// the normal's length.
 int mirrored(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera,
-             const kernels::RowKernels& run) {
+             const Kernels& run) {
   const Vec3 normal = camera.normal(plane);
   const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
   int sum = 0;
@@ -274,7 +277,7 @@ Guess guess(const Points& points, std::uint64_t draw) {
 }
 
 /// Possible floors, best first.
-std::vector<Guess> guesses(const Points& points, const Camera& camera, const kernels::RowKernels& run) {
+std::vector<Guess> guesses(const Points& points, const Camera& camera, const Kernels& run) {
   const Points few = about(kScreening, points);
   std::vector<Guess> list;
   for (int draw = 0; draw < kDraws && list.size() < kGuesses; ++draw) {
@@ -291,7 +294,7 @@ std::vector<Guess> guesses(const Points& points, const Camera& camera, const ker
 /// Least squares over the matches within reach, again and again while the reach shrinks.
 template <std::size_t N>
 GroundPlane refined(GroundPlane plane, const Points& points, const std::array<float, N>& reaches,
-                    const kernels::RowKernels& run) {
+                    const Kernels& run) {
   float before = 0;
   bool moved = true;
   for (const float reach : reaches) {
@@ -313,7 +316,7 @@ GroundPlane refined(GroundPlane plane, const Points& points, const std::array<fl
 /// upright surfaces at different depths, an object before a wall for instance, each of which has its own
 /// disparity all the way down.
 bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points,
-           const kernels::RowKernels& run) {
+           const Kernels& run) {
   double nn = 0;  // n rows apart, d px apart
   double nd = 0;
   double dd = 0;
@@ -354,7 +357,7 @@ struct Candidates {
 };
 
 Candidates candidates(View<const float> disparity_px, const Points& points, const Places& places,
-                      const Camera& camera, const kernels::RowKernels& run) {
+                      const Camera& camera, const Kernels& run) {
   const Points some = about(kRefining, points);
   std::vector<GroundPlane> seen;
   std::vector<GroundPlane> walls;
@@ -422,7 +425,7 @@ const Candidate& choose(const std::vector<Candidate>& floors, const Points& poin
 
 /// Whether a plane that is no floor explains the picture: one that is faced squarely, at the median
 /// disparity.
-bool faces_a_wall(const Points& points, const Camera& camera, const kernels::RowKernels& run) {
+bool faces_a_wall(const Points& points, const Camera& camera, const Kernels& run) {
   std::vector<float> sorted = points.d;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
@@ -430,35 +433,19 @@ bool faces_a_wall(const Points& points, const Camera& camera, const kernels::Row
   return tally(wall, points, camera.infinity, run).convincing();
 }
 
-struct Support {
-  int on = 0;
-  int all = 0;
-};
-
-Support support_in_row(const float* d, int y, int width, GroundPlane plane, float infinity) {
-  Support row;
-  for (int x = 0; x < width; ++x) {
-    const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
-    const float distance = std::abs(d[x] - floor);  // NaN for a hole, which no comparison holds for
-    const int visible = floor + infinity > 0 ? 1 : 0;
-    row.all += distance >= 0 ? visible : 0;
-    row.on += distance <= kTolerance ? visible : 0;
-  }
-  return row;
-}
-
 /// The share of all matches under the horizon that lie on the plane.
 float support(const GroundPlane& plane, View<const float> disparity_px, float infinity, const Exec& exec) {
-  std::vector<Support> rows(static_cast<std::size_t>(disparity_px.height()));
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  std::vector<kernels::PlaneCounts> rows(static_cast<std::size_t>(disparity_px.height()));
   parallel_for(exec, disparity_px.height(), 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       rows[static_cast<std::size_t>(y)] =
-          support_in_row(disparity_px.row(y), y, disparity_px.width(), plane, infinity);
+          run.count_support(disparity_px.row(y), y, disparity_px.width(), plane, infinity, kTolerance);
     }
   });
   std::int64_t on = 0;
   std::int64_t all = 0;
-  for (const Support& row : rows) {
+  for (const kernels::PlaneCounts& row : rows) {
     on += row.on;
     all += row.all;
   }
@@ -493,7 +480,7 @@ Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>
 
   const Camera camera(disparity_px.size(), rig);
   const Places places(points, disparity_px.size(), step);
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const Kernels run(exec);
   const auto found = candidates(disparity_px, points, places, camera, run);
   if (found.floors.empty()) {
     return refused(found.others || faces_a_wall(points, camera, run) ? Refusal::implausible

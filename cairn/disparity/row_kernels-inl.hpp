@@ -320,6 +320,21 @@ inline PlaneCounts count_about(const PointArrays& points, const GroundPlane& pla
   return counts;
 }
 
+inline PlaneCounts count_support(const float* disparity_px, int y, int width, const GroundPlane& plane,
+                                 float infinity, float tolerance) {
+  const GroundPlane p = plane;
+  PlaneCounts counts;
+  for (int x = 0; x < width; ++x) {
+    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
+    const float distance =
+        std::abs(disparity_px[x] - floor);  // NaN for a hole, which no comparison holds for
+    const int visible = floor + infinity > 0 ? 1 : 0;
+    counts.all += distance >= 0 ? visible : 0;
+    counts.on += distance <= tolerance ? visible : 0;
+  }
+  return counts;
+}
+
 /// 16 bits hold the square of a difference of bytes, and multiply twice as many at once.
 inline std::uint16_t square(std::uint8_t p, std::uint8_t q, std::uint16_t most) {
   const auto difference = static_cast<std::int16_t>(p - q);
@@ -481,6 +496,7 @@ inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         put_behind,
                                         mark_between,
                                         count_about,
+                                        count_support,
                                         kSquareKernels<std::uint16_t>,
                                         kSquareKernels<std::uint32_t>,
                                         mark_jumps,

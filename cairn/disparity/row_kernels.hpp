@@ -138,6 +138,9 @@ struct RowKernels {
   /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
   PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
                              float tolerance);
+  /// The same of the pixels of row `y`: `all` of those with a disparity, and `on`.
+  PlaneCounts (*count_support)(const float* disparity_px, int y, int width, const GroundPlane& plane,
+                               float infinity, float tolerance);
   SquareKernels<std::uint16_t> narrow_squares;
   SquareKernels<std::uint32_t> wide_squares;
   /// Marks each hole, and each disparity that differs by more than `jump` from the one to the right or below.

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The seam to the instruction sets: what watershed(), build_graph() and measure() do for each pixel of a row
-/// or value of a list. Private to the library.
+/// The seam to the instruction sets: what watershed(), build_graph(), measure() and find_floor() do for each
+/// pixel of a row or value of a list. Private to the library.
 namespace cairn::kernels {
 
 /// One bit for each of 64 pixels, the leftmost in the lowest bit.
@@ -91,6 +91,8 @@ struct LabelKernels {
   /// bucket(values[i]) for each of them.
   void (*number_buckets)(const float* values, std::size_t count, const Buckets& buckets,
                          std::int32_t* numbers);
+  /// The i for which marks[i] is not 0, ascending. Returns how many.
+  std::size_t (*find_marked)(const std::uint8_t* marks, std::size_t count, std::uint32_t* found);
 };
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.

@@ -321,9 +321,25 @@ void number_buckets(const float* HWY_RESTRICT values, std::size_t count, const B
   plain_labels::number_buckets(values + i, count - i, buckets, numbers + i);
 }
 
+std::size_t find_marked(const std::uint8_t* HWY_RESTRICT marks, std::size_t count,
+                        std::uint32_t* HWY_RESTRICT found) {
+  const hn::ScalableTag<std::uint32_t> d;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  auto here = hn::Iota(d, 0);
+  std::size_t count_found = 0;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    const auto marked = hn::Ne(hn::PromoteTo(d, hn::LoadU(d8, marks + i)), hn::Zero(d));
+    hn::StoreU(hn::Compress(here, marked), d, found + count_found);
+    count_found += hn::CountTrue(d, marked);
+    here = hn::Add(here, hn::Set(d, static_cast<std::uint32_t>(hn::Lanes(d))));
+  }
+  return plain_labels::find_marked_from(i, count_found, marks, count, found);
+}
+
 constexpr LabelKernels kLabelKernels{compare,       count_up,    find_runs,       differing,   touches_beside,
                                      touches_below, sum_grey,    sum_disparities, sum_colours, keep_known,
-                                     find_range,    keep_bucket, number_buckets};
+                                     find_range,    keep_bucket, number_buckets,  find_marked};
 
 }  // namespace
 }  // namespace cairn::kernels::HWY_NAMESPACE

@@ -218,8 +218,22 @@ inline void number_buckets(const float* values, std::size_t count, const Buckets
   for (std::size_t i = 0; i < count; ++i) numbers[i] = buckets.bucket(values[i]);
 }
 
+/// find_marked() from `i` on, `count_found` of them found already.
+inline std::size_t find_marked_from(std::size_t i, std::size_t count_found, const std::uint8_t* marks,
+                                    std::size_t count, std::uint32_t* found) {
+  for (; i < count; ++i) {
+    found[count_found] = static_cast<std::uint32_t>(i);
+    count_found += marks[i] != 0 ? 1 : 0;
+  }
+  return count_found;
+}
+
+inline std::size_t find_marked(const std::uint8_t* marks, std::size_t count, std::uint32_t* found) {
+  return find_marked_from(0, 0, marks, count, found);
+}
+
 inline constexpr LabelKernels kLabelKernels{
-    compare,         count_up,    find_runs,  differing,  touches_beside, touches_below, sum_grey,
-    sum_disparities, sum_colours, keep_known, find_range, keep_bucket,    number_buckets};
+    compare,         count_up,    find_runs,  differing,  touches_beside, touches_below,  sum_grey,
+    sum_disparities, sum_colours, keep_known, find_range, keep_bucket,    number_buckets, find_marked};
 
 }  // namespace cairn::kernels::plain_labels

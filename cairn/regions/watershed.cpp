@@ -8,6 +8,7 @@
 #include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <numeric>
+#include <utility>
 
 namespace cairn {
 namespace {
@@ -177,58 +178,74 @@ class Flooding {
   Flooding(Bits& bits, const Exec& exec)
       : bits_(bits),
         still_(bits.at(kStill, 0)),
-        now_(slot(bits.words() * bits.size().height), exec.pool),
-        next_(now_.capacity(), exec.pool) {
-    const Word* const reached = bits.at(kReached, 0);
+        now_(slot(bits.words() * bits.size().height) + 1, exec.pool),
+        next_(now_.size(), exec.pool) {
+    Word* const reached = bits.at(kReached, 0);
     for (int y = 0; y < bits.size().height; ++y) {
+      std::fill_n(bits.at(kEqualRight, y), bits.words(), Word{0});  // has told all that it knew
       for (std::ptrdiff_t i = y * bits.row_stride(); i < y * bits.row_stride() + bits.words(); ++i) {
         still_[i] &= ~reached[i];
-        if (reached[i] != 0) now_.push_back({i, reached[i]});
+        now_[now_count_] = i;
+        now_count_ += reached[i] != 0 ? 1 : 0;
       }
     }
   }
 
   void run() {
     const std::ptrdiff_t stride = bits_.row_stride();
-    for (; now_.size() > 0; advance()) {
+    for (; now_count_ > 0; advance()) {
+      const Word* const pixels = bits_.at(level_, 0);
+      const auto for_each_word = [&](auto found) {
+        for (const std::ptrdiff_t* word = now_.begin(); word != now_.begin() + now_count_; ++word)
+          found(*word);
+      };
       // Ties: a pixel may be reached from several sides, and "up" must win. So the whole level first claims
-      // the pixels below (for them it is "up"), then those to the right, to the left, and above.
-      for (const Front& front : now_) claim(front.word + stride, front.pixels, kUp);
-      for (const Front& front : now_) {
-        claim(front.word, front.pixels << 1U, kLeft);
-        if ((front.pixels & kLastBit) != 0) claim(front.word + 1, 1, kLeft);
-      }
-      for (const Front& front : now_) {
-        claim(front.word, front.pixels >> 1U, kRight);
-        if ((front.pixels & 1U) != 0) claim(front.word - 1, kLastBit, kRight);
-      }
-      for (const Front& front : now_) claim(front.word - stride, front.pixels, kDown);
+      // the pixels below (for them it is "up"), then those to the right, to the left, and above. In a word
+      // right and left can take turns once all claims from other words to the right of them are known.
+      for_each_word([&](std::ptrdiff_t w) { claim(w + stride, pixels[w], kUp); });
+      for_each_word([&](std::ptrdiff_t w) {
+        if ((pixels[w] & kLastBit) != 0) claim(w + 1, 1, kLeft);
+      });
+      for_each_word([&](std::ptrdiff_t w) {
+        claim(w, pixels[w] << 1U, kLeft);
+        claim(w, pixels[w] >> 1U, kRight);
+      });
+      for_each_word([&](std::ptrdiff_t w) {
+        if ((pixels[w] & 1U) != 0) claim(w - 1, kLastBit, kRight);
+      });
+      for_each_word([&](std::ptrdiff_t w) { claim(w - stride, pixels[w], kDown); });
     }
   }
 
  private:
-  /// Pixels of one level in a word. Words are counted from the plane's first.
-  struct Front {
-    std::ptrdiff_t word;
-    Word pixels;
-  };
-
+  /// Without a branch: most claims find nothing, but no one can foretell which.
   void claim(std::ptrdiff_t word, Word pixels, Plane direction) {
     const Word found = pixels & still_[word];
-    if (found == 0) return;
+    Word& claimed = still_[word + bits_.step(kStill, next_level_)];
+    next_[next_count_] = word;
+    next_count_ += static_cast<int>(claimed == 0) & static_cast<int>(found != 0);
+    claimed |= found;
     still_[word] ^= found;
     still_[word + bits_.step(kStill, direction)] |= found;
-    next_.push_back({word, found});
   }
   void advance() {
+    Word* const done = bits_.at(level_, 0);
+    for (std::ptrdiff_t i = 0; i < now_count_; ++i) done[now_[i]] = 0;
+    std::swap(level_, next_level_);
     std::swap(now_, next_);
-    next_.clear();
+    now_count_ = std::exchange(next_count_, 0);
   }
 
   Bits& bits_;
   Word* still_;
-  ScratchList<Front> now_;
-  ScratchList<Front> next_;
+  // The pixels of a level are bits of a plane, and of the words that hold some there is a list. Words are
+  // counted from the plane's first.
+  Plane level_ = kReached;
+  Plane next_level_ = kEqualRight;
+  Scratch<std::ptrdiff_t> now_;
+  Scratch<std::ptrdiff_t> next_;
+  std::ptrdiff_t now_count_ = 0;
+  std::ptrdiff_t next_count_ = 0;
 };
 
 /// The ways that pixels flow, in stretches: what flows within a row to the same pixel of it, from where it
