@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/flatness.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cassert>
 
 namespace cairn {
@@ -11,15 +12,11 @@ Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config, 
   if (config.threshold < 0) return Image<Reject>(size, Reject::none, exec.pool);
   assert(matches.mean_cost.size() == size && matches.cost.size() == size);
   Image<Reject> verdict(size, exec.pool);
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      const float* const cost = matches.cost.row(y);
-      const float* const mean = matches.mean_cost.row(y);
-      Reject* const out = verdict.row(y);
-      for (int x = 0; x < size.width; ++x) {
-        const bool shallow = !(mean[x] > 0) | ((mean[x] - cost[x]) / mean[x] < config.threshold);
-        out[x] = (shallow & (cost[x] < kNoCost)) ? Reject::flat : Reject::none;
-      }
+      run.compare_with_mean(matches.cost.row(y), matches.mean_cost.row(y), size.width, config.threshold,
+                            verdict.row(y));
     }
   });
   return verdict;

@@ -8,8 +8,8 @@
 #include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/homography.hpp>
 #include <cairn/disparity/plane_fit.hpp>
+#include <cairn/disparity/row_kernels.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 
@@ -30,41 +30,10 @@ GroundPlane ground_from_pose(const StereoRig& rig, const GroundConfig& config) {
   return {static_cast<float>(scale * down[0]), static_cast<float>(scale * down[1]), static_cast<float>(c)};
 }
 
-/// The floor as a judge of rows of pixels. Its loops copy what they need: a byte that is written might
-/// otherwise be part of it.
-class Floor {
- public:
-  Floor(const Ground& ground, const std::optional<StereoRig>& rig, const GroundConfig& config)
-      : plane_(*ground.plane), infinity_(rig ? rig->doffs_px : 0.0F), margin_(config.margin) {}
-
-  void reject_row(float* d, int y, int width, Reject* reject) const {
-    const GroundPlane plane = plane_;
-    const float infinity = infinity_;
-    const float margin = margin_;
-    for (int x = 0; x < width; ++x) {
-      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      const bool below = (floor + infinity > 0) & (d[x] < floor - margin);
-      d[x] = below ? std::numeric_limits<float>::quiet_NaN() : d[x];
-      reject[x] |= below ? Reject::below_ground : Reject::none;
-    }
-  }
-
-  void label_row(const float* d, int y, int width, std::uint8_t* label) const {
-    const GroundPlane plane = plane_;
-    const float infinity = infinity_;
-    const float margin = margin_;
-    for (int x = 0; x < width; ++x) {
-      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      const bool on = (floor + infinity > 0) & (std::abs(d[x] - floor) <= margin);
-      label[x] = on ? std::uint8_t{255} : std::uint8_t{0};
-    }
-  }
-
- private:
-  GroundPlane plane_;
-  float infinity_;  // a point at infinity has disparity −infinity
-  float margin_;
-};
+kernels::FloorRow floor_row(const Ground& ground, const std::optional<StereoRig>& rig,
+                            const GroundConfig& config) {
+  return {*ground.plane, rig ? rig->doffs_px : 0.0F, config.margin};
+}
 
 void require_sound(const std::vector<PointPair>& points) {
   constexpr const char* kOption = "ground.points: ";
@@ -134,11 +103,11 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const Exec& exec) {
   if (!ground.plane) return disparity;
   const Size size = disparity.disparity_px.size();
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::FloorRow floor = floor_row(ground, rig, config);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
-    const Floor floor(ground, rig, config);
-    for (int y = first; y < last; ++y) {
-      floor.reject_row(disparity.disparity_px.row(y), y, size.width, disparity.reject.row(y));
-    }
+    for (int y = first; y < last; ++y)
+      run.reject_below(floor, y, size.width, disparity.disparity_px.row(y), disparity.reject.row(y));
   });
   return disparity;
 }
@@ -148,12 +117,12 @@ Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& gro
                                 const Exec& exec) {
   if (!ground.plane || !config.label_floor) return {};
   const Size size = disparity.disparity_px.size();
+  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::FloorRow floor = floor_row(ground, rig, config);
   Image<std::uint8_t> label(size, exec.pool);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
-    const Floor floor(ground, rig, config);
-    for (int y = first; y < last; ++y) {
-      floor.label_row(disparity.disparity_px.row(y), y, size.width, label.row(y));
-    }
+    for (int y = first; y < last; ++y)
+      run.label_floor(floor, y, size.width, disparity.disparity_px.row(y), label.row(y));
   });
   return label;
 }

@@ -76,6 +76,14 @@ inline void compare_with_runner_up(const float* cost, const float* runner_up, in
     verdict[x] = runner_up[x] * share < cost[x] * 100.0F ? Reject::not_unique : Reject::none;
 }
 
+inline void compare_with_mean(const float* cost, const float* mean, int width, float threshold,
+                              Reject* CAIRN_RESTRICT verdict) {
+  for (int x = 0; x < width; ++x) {
+    const bool shallow = !(mean[x] > 0) | ((mean[x] - cost[x]) / mean[x] < threshold);
+    verdict[x] = (shallow & (cost[x] < kNoCost)) ? Reject::flat : Reject::none;
+  }
+}
+
 inline void mark_holes(const float* disparity_px, int width, Reject* CAIRN_RESTRICT reject) {
   for (int x = 0; x < width; ++x)
     reject[x] = disparity_px[x] == disparity_px[x] ? Reject::none : Reject::border;  // a hole is NaN
@@ -320,6 +328,30 @@ inline PlaneCounts count_about(const PointArrays& points, const GroundPlane& pla
   return counts;
 }
 
+inline void reject_below(const FloorRow& given, int y, int width, float* CAIRN_RESTRICT disparity_px,
+                         Reject* CAIRN_RESTRICT reject) {
+  const FloorRow row = given;
+  const GroundPlane p = row.plane;
+  for (int x = 0; x < width; ++x) {
+    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
+    const float d = disparity_px[x];
+    const bool below = (floor + row.infinity > 0) & (d < floor - row.margin);
+    disparity_px[x] = below ? std::numeric_limits<float>::quiet_NaN() : d;
+    reject[x] |= below ? Reject::below_ground : Reject::none;
+  }
+}
+
+inline void label_floor(const FloorRow& given, int y, int width, const float* disparity_px,
+                        std::uint8_t* CAIRN_RESTRICT label) {
+  const FloorRow row = given;
+  const GroundPlane p = row.plane;
+  for (int x = 0; x < width; ++x) {
+    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
+    const bool on = (floor + row.infinity > 0) & (std::abs(disparity_px[x] - floor) <= row.margin);
+    label[x] = on ? std::uint8_t{255} : std::uint8_t{0};
+  }
+}
+
 inline PlaneCounts count_support(const float* disparity_px, int y, int width, const GroundPlane& plane,
                                  float infinity, float tolerance) {
   const GroundPlane p = plane;
@@ -478,6 +510,7 @@ inline void points_in_camera(const StereoRig& given, int y, int first, int last,
 inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         compare_with_right,
                                         compare_with_runner_up,
+                                        compare_with_mean,
                                         mark_holes,
                                         add_reasons,
                                         punch_holes,
@@ -497,6 +530,8 @@ inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         mark_between,
                                         count_about,
                                         count_support,
+                                        reject_below,
+                                        label_floor,
                                         kSquareKernels<std::uint16_t>,
                                         kSquareKernels<std::uint32_t>,
                                         mark_jumps,

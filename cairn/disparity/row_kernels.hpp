@@ -63,6 +63,13 @@ struct ConfidenceRow {
   const float* inverse_area;    // 1 / the pixels that these were counted over
 };
 
+/// What a row is judged by to be floor, or below it.
+struct FloorRow {
+  GroundPlane plane;
+  float infinity;  // a point at infinity has disparity −infinity
+  float margin;
+};
+
 /// Sums of squared differences, for reject_textureless(). The narrower the sums, the more at once.
 template <class Sum>
 struct SquareKernels {
@@ -88,6 +95,9 @@ struct RowKernels {
   /// Reject::not_unique where runner_up · share < cost · 100.
   void (*compare_with_runner_up)(const float* cost, const float* runner_up, int width, float share,
                                  Reject* verdict);
+  /// Reject::flat where (mean − cost) / mean is below `threshold`, or the mean not above 0.
+  void (*compare_with_mean)(const float* cost, const float* mean, int width, float threshold,
+                            Reject* verdict);
   /// Reject::border where there is no disparity (NaN).
   void (*mark_holes)(const float* disparity_px, int width, Reject* reject);
   void (*add_reasons)(const Reject* more, int width, Reject* reject);
@@ -141,6 +151,10 @@ struct RowKernels {
   /// The same of the pixels of row `y`: `all` of those with a disparity, and `on`.
   PlaneCounts (*count_support)(const float* disparity_px, int y, int width, const GroundPlane& plane,
                                float infinity, float tolerance);
+  /// reject_below_ground() and label_floor() for the pixels of row `y`.
+  void (*reject_below)(const FloorRow& floor, int y, int width, float* disparity_px, Reject* reject);
+  void (*label_floor)(const FloorRow& floor, int y, int width, const float* disparity_px,
+                      std::uint8_t* label);
   SquareKernels<std::uint16_t> narrow_squares;
   SquareKernels<std::uint32_t> wide_squares;
   /// Marks each hole, and each disparity that differs by more than `jump` from the one to the right or below.

@@ -69,11 +69,24 @@ Image<float> confidence_of(const DisparityMap& disparity, const Matches& matches
 
 /// The disparities that ground and background are found from: with fusion.method=evidence those that texture
 /// vouches for.
-Image<float> trusted(View<const Gray> left, const DisparityMap& disparity, const Config& config,
-                     const Exec& exec, Observed& stage) {
-  if (config.fusion.method == FusionMethod::overlap) return disparity.disparity_px.clone(exec.pool);
-  return stage("find_evidence", find_evidence(left, disparity, config.evidence, exec));
-}
+class Trusted {
+ public:
+  Trusted(View<const Gray> left, const DisparityMap& disparity, const Config& config, const Exec& exec,
+          Observed& stage) {
+    if (config.fusion.method == FusionMethod::overlap) {
+      px_ = disparity.disparity_px;
+    } else {
+      evidence_px_ = stage("find_evidence", find_evidence(left, disparity, config.evidence, exec));
+      px_ = evidence_px_;
+    }
+  }
+  /// Valid as long as this, and as the disparities stay as they were given.
+  [[nodiscard]] View<const float> px() const { return px_; }
+
+ private:
+  Image<float> evidence_px_;
+  View<const float> px_;
+};
 
 /// What the left image tells without a disparity. It takes longer than anything else but matching, and much
 /// of it can be done by one thread only: so it is done beside the caller's own.
@@ -139,12 +152,12 @@ Frame find_objects(LeftRegions& of_left, View<const Gray> left, View<const Rgb> 
                    DisparityMap disparity, const std::optional<StereoRig>& rig, const Config& config,
                    const Exec& exec, Observed& stage) {
   const bool by_evidence = config.fusion.method == FusionMethod::evidence;
-  const Image<float> trusted_px = trusted(left, disparity, config, exec, stage);
-  SceneDisparity scene = check_against_ground(std::move(disparity), trusted_px, rig, config, exec, stage);
+  const Trusted trusted(left, disparity, config, exec, stage);
+  SceneDisparity scene = check_against_ground(std::move(disparity), trusted.px(), rig, config, exec, stage);
   Regions regions;
   // Facets weigh small islands for themselves: thin legs and leaves are islands, too.
   if (by_evidence)
-    regions = regions_by_evidence(of_left, left, left_rgb, trusted_px, scene, rig, config, exec, stage);
+    regions = regions_by_evidence(of_left, left, left_rgb, trusted.px(), scene, rig, config, exec, stage);
   scene = clean_up(std::move(scene), rig, config, exec, stage);
   if (!by_evidence) regions = regions_by_overlap(of_left, scene, config, exec, stage);
 
@@ -168,10 +181,10 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
   Observed stage(exec);
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
   Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
-  const Image<float> trusted_px = trusted(pair.left(), matched.disparity, config, exec, stage);
+  const Trusted trusted(pair.left(), matched.disparity, config, exec, stage);
   SceneDisparity scene =
-      clean_up(check_against_ground(std::move(matched.disparity), trusted_px, rig, config, exec, stage), rig,
-               config, exec, stage);
+      clean_up(check_against_ground(std::move(matched.disparity), trusted.px(), rig, config, exec, stage),
+               rig, config, exec, stage);
   scene.confidence = confidence_of(scene.disparity, matched.matches, config, exec, stage);
   scene.epipolar = aligned.offset;
   return scene;
@@ -190,8 +203,8 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
   Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
   if (!by_evidence) begin_beside();
-  Frame frame = find_objects(*of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity), rig, config,
-                             exec, stage);
+  Frame frame = find_objects(*of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity), rig,
+                             config, exec, stage);
   frame.confidence = confidence_of(frame.disparity, matched.matches, config, exec, stage);
   frame.epipolar = aligned.offset;
   return frame;
