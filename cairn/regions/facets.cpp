@@ -215,138 +215,154 @@ class Contacts {
   std::vector<Recent> recent_;
 };
 
-/// Regions that fuse, round by round, numbered anew each time so that all stays small; their order is kept.
+/// Per region its border of least mean edge, where that is below `limit` (ties: the first in (a, b) order);
+/// −1 = there is none. `count`: of the regions.
+Scratch<std::int32_t> weakest_borders(const ScratchList<Border>& list, std::size_t count, double limit,
+                                      const Exec& exec) {
+  struct Weakest {
+    double edge;
+    std::int32_t border;
+  };
+  const double surely_strong = (1 + 1e-9) * limit;  // however the quotient rounds
+  Scratch<Weakest> weakest(count, {limit, -1}, exec.pool);
+  const Border* const borders = list.begin();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Border& border = borders[i];
+    if (static_cast<double>(border.edge_sum) > surely_strong * static_cast<double>(border.length)) continue;
+    const double edge = border.mean_edge();
+    for (const std::int32_t end : {border.a, border.b}) {
+      const Weakest so_far = weakest[end];
+      const bool first_of_ties =
+          edge == so_far.edge && so_far.border >= 0 && comes_before(border, borders[so_far.border]);
+      // Stored in any case: nothing tells which border will be the weaker one.
+      const bool weaker = (edge < so_far.edge) | first_of_ties;
+      weakest[end] = {weaker ? edge : so_far.edge, weaker ? static_cast<std::int32_t>(i) : so_far.border};
+    }
+  }
+  Scratch<std::int32_t> found(count, exec.pool);
+  std::transform(weakest.begin(), weakest.end(), found.begin(), [](const Weakest& w) { return w.border; });
+  return found;
+}
+
+/// The borders between regions that have fused, in the order of b. `numbers`: each region's now; `count`: how
+/// many there are.
+ScratchList<Border> moved(const ScratchList<Border>& borders, const Scratch<std::int32_t>& numbers,
+                          std::size_t count, const Exec& exec) {
+  Scratch<std::int32_t> first(count, -1, exec.pool);
+  ScratchList<Part> parts(borders.size(), exec.pool);
+  for (const Border& border : borders) {
+    const auto [a, b] = std::minmax({numbers[border.a], numbers[border.b]});
+    if (a == b) continue;
+    const auto i = static_cast<std::int32_t>(parts.size());
+    parts.push_back({first[b], a, &border});
+    first[b] = i;
+  }
+  return summed_up(first, parts, exec);
+}
+
+/// Some of many regions, and borders whose ends are places among them.
+struct Some {
+  Scratch<std::int32_t> regions;  // ascending
+  ScratchList<Border> borders;
+};
+
+/// Those that have a border below `limit`, and the borders between them. Whatever fuses, no other border ever
+/// gets below it: the mean edge of a sum lies between those of its parts.
+Some restless(const Scratch<std::int32_t>& regions, const ScratchList<Border>& borders, double limit,
+              const Exec& exec) {
+  Scratch<std::int32_t> place(regions.size(), -1, exec.pool);
+  for (const Border& border : borders) {
+    if (border.mean_edge() < limit) place[border.a] = place[border.b] = 0;
+  }
+  const auto count = static_cast<std::size_t>(std::count(place.begin(), place.end(), 0));
+  Some some{Scratch<std::int32_t>(count, exec.pool), ScratchList<Border>(borders.size(), exec.pool)};
+  std::int32_t next = 0;
+  for (std::ptrdiff_t i = 0; i < signed_slot(place.size()); ++i) {
+    if (place[i] < 0) continue;
+    some.regions[next] = regions[i];
+    place[i] = next++;
+  }
+  for (Border border : borders) {
+    border.a = place[border.a];
+    border.b = place[border.b];
+    if (border.a >= 0 && border.b >= 0) some.borders.push_back(border);
+  }
+  return some;
+}
+
+/// Regions that fuse, round by round: each across its weakest border, where that is below `limit`.
 class Fusing {
  public:
-  Fusing(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
+  Fusing(const Basins& basins, View<const std::uint16_t> edges, double limit, const Exec& exec)
       : exec_(exec),
+        limit_(limit),
         count_(slot(basins.count)),
         facets_(count_, exec.pool),
         borders_(Contacts(basins.labels, edges, count_, exec).borders(exec)) {
     std::iota(facets_.begin(), facets_.end(), 0);
-  }
-
-  /// Each region fuses across its border of least mean edge, where that is below `limit` (ties: the first in
-  /// (a, b) order); false where none is.
-  bool fuse_across_weak_borders(double limit) {
-    const Scratch<std::int32_t> weakest = weak_borders(limit);
-    Sets sets(count_, exec_.pool);
-    bool fused = false;
-    for (const std::int32_t i : weakest) {
-      if (i < 0) continue;
-      sets.unite(borders_.begin()[i].a, borders_.begin()[i].b);
-      fused = true;
-    }
-    if (fused) renumber(sets);
-    return fused;
+    Sets fused(count_, exec.pool);
+    if (!unite_across_weakest(borders_, count_, fused)) return;
+    renumber(fused);
+    // Few are left that anything will happen to.
+    Scratch<std::int32_t> all(count_, exec.pool);
+    std::iota(all.begin(), all.end(), 0);
+    Sets later(count_, exec.pool);
+    fuse_on(restless(all, borders_, limit, exec), later);
+    renumber(later);
   }
 
   [[nodiscard]] int count() const { return static_cast<int>(count_); }
   /// The facet of each basin.
   [[nodiscard]] const Scratch<std::int32_t>& facets() const { return facets_; }
-  [[nodiscard]] std::vector<Border> borders() && {
-    if (!in_order_) borders_ = sorted(borders_, count_, exec_);
-    return {borders_.begin(), borders_.end()};
+  [[nodiscard]] std::vector<Border> borders() const {
+    const ScratchList<Border> in_order = sorted(borders_, count_, exec_);
+    return {in_order.begin(), in_order.end()};
   }
 
  private:
-  /// Per region its weakest border; −1 = that is not weak, or there is none.
-  [[nodiscard]] Scratch<std::int32_t> weak_borders(double limit) const {
-    const double surely_strong = (1 + 1e-9) * limit;  // however the quotient rounds
-    Scratch<double> least(count_, limit, exec_.pool);
-    Scratch<std::int32_t> weakest(count_, -1, exec_.pool);
-    const Border* const borders = borders_.begin();
-    for (std::size_t i = 0; i < borders_.size(); ++i) {
-      const Border& border = borders[i];
-      if (static_cast<double>(border.edge_sum) > surely_strong * static_cast<double>(border.length)) continue;
-      const double edge = border.mean_edge();
-      for (const std::int32_t end : {border.a, border.b}) {
-        const bool first_of_ties =
-            edge == least[end] && weakest[end] >= 0 && comes_before(border, borders[weakest[end]]);
-        if (!(edge < least[end]) && !first_of_ties) continue;
-        least[end] = edge;
-        weakest[end] = static_cast<std::int32_t>(i);
-      }
+  /// False where none of the `count` regions has a weak one.
+  bool unite_across_weakest(const ScratchList<Border>& borders, std::size_t count, Sets& sets) const {
+    bool any = false;
+    for (const std::int32_t i : weakest_borders(borders, count, limit_, exec_)) {
+      if (i < 0) continue;
+      sets.unite(borders.begin()[i].a, borders.begin()[i].b);
+      any = true;
     }
-    return weakest;
+    return any;
   }
 
-  void renumber(Sets& sets) {
-    const Scratch<std::int32_t> numbers = sets.numbers();
-    const auto count = slot(sets.count());
-    Scratch<std::uint8_t> fused(count, 0, exec_.pool);
-    for (std::ptrdiff_t i = 1; i < signed_slot(count_); ++i)
-      if (!sets.is_root(static_cast<std::int32_t>(i))) fused[numbers[i]] = 1;
-    const auto touched = [&](const Border& border) {
-      return (fused[numbers[border.a]] | fused[numbers[border.b]]) != 0;
-    };
-    const auto changes = std::count_if(borders_.begin(), borders_.end(), touched);
-    constexpr std::ptrdiff_t kFew = 8;  // of as many as this one: then the others stay where they are
-    if (in_order_ && changes < signed_slot(borders_.size()) / kFew) {
-      move_few(numbers, touched);
-    } else {
-      borders_ = sorted(moved(numbers, count), count, exec_);
-      in_order_ = true;
+  /// All rounds but the first. Sets get numbers anew each time so that all stays small; their order is kept.
+  void fuse_on(Some some, Sets& all) const {
+    for (int round = 1; round < kRounds; ++round) {
+      Sets fused(some.regions.size(), exec_.pool);
+      if (!unite_across_weakest(some.borders, some.regions.size(), fused)) return;
+      const Scratch<std::int32_t> numbers = fused.numbers();
+      const auto count = slot(fused.count());
+      Scratch<std::int32_t> roots(count, exec_.pool);
+      for (std::int32_t i = 0; slot(i) < numbers.size(); ++i) {
+        if (fused.is_root(i)) {
+          roots[numbers[i]] = some.regions[i];
+        } else {
+          all.unite(roots[numbers[i]], some.regions[i]);
+        }
+      }
+      some = restless(roots, moved(some.borders, numbers, count, exec_), limit_, exec_);
     }
-    count_ = count;
+  }
+
+  void renumber(Sets& fused) {
+    const Scratch<std::int32_t> numbers = fused.numbers();
+    if (slot(fused.count()) == count_) return;
+    count_ = slot(fused.count());
+    borders_ = moved(borders_, numbers, count_, exec_);
     for (std::int32_t& facet : facets_) facet = numbers[facet];
   }
 
-  /// All borders between regions that are now different, in the order of b.
-  [[nodiscard]] ScratchList<Border> moved(const Scratch<std::int32_t>& numbers, std::size_t count) const {
-    Scratch<std::int32_t> first(count, -1, exec_.pool);
-    ScratchList<Part> parts(borders_.size(), exec_.pool);
-    for (const Border& border : borders_) {
-      const auto [a, b] = std::minmax({numbers[border.a], numbers[border.b]});
-      if (a == b) continue;
-      const auto i = static_cast<std::int32_t>(parts.size());
-      parts.push_back({first[b], a, &border});
-      first[b] = i;
-    }
-    return summed_up(first, parts, exec_);
-  }
-
-  /// The borders of regions that have fused are taken out, summed and put back in their order. All others
-  /// keep theirs, since the regions do.
-  template <class Touched>
-  void move_few(const Scratch<std::int32_t>& numbers, Touched touched) {
-    std::vector<Border> changed;
-    Border* const borders = borders_.data();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < borders_.size(); ++i) {
-      Border border = borders[i];
-      const bool change = touched(border);
-      std::tie(border.a, border.b) = std::minmax({numbers[border.a], numbers[border.b]});
-      if (!change) {
-        borders[kept++] = border;
-      } else if (border.a != border.b) {
-        changed.push_back(border);
-      }
-    }
-    std::sort(changed.begin(), changed.end(), comes_before);
-    std::size_t sums = 0;
-    for (std::size_t i = 0; i < changed.size(); ++i) {
-      const bool goes_on = sums > 0 && !comes_before(changed[sums - 1], changed[i]);
-      if (goes_on) {
-        add_to(changed[sums - 1], changed[i]);
-      } else {
-        changed[sums++] = changed[i];
-      }
-    }
-    // Merged from behind; there is room, as what was taken out was no fewer.
-    std::size_t end = kept + sums;
-    borders_.shrink_to(end);
-    while (sums > 0) {
-      const bool from_changed = kept == 0 || comes_before(borders[kept - 1], changed[sums - 1]);
-      borders[--end] = from_changed ? changed[--sums] : borders[--kept];
-    }
-  }
-
   const Exec& exec_;
+  double limit_;
   std::size_t count_;
   Scratch<std::int32_t> facets_;
-  ScratchList<Border> borders_;
-  bool in_order_ = false;  // or in the order of b alone
+  ScratchList<Border> borders_;  // in the order of b
 };
 
 /// What only one edge pixel in fifty is stronger than, in 1/4 grey level.
@@ -394,11 +410,9 @@ Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsCo
                       const Exec& exec) {
   const Image<std::uint16_t> edges = edge_strength(gray, rgb, config.smoothing_sigma, exec);
   Basins basins = watershed(edges, exec);
-  Fusing fusing(basins, edges, exec);
   const double limit = 4.0 * (config.edge_min + config.noise_factor * noise_sigma(gray)) +
                        0.01 * config.contrast_share * clear_edge(edges);
-  for (int round = 0; round < kRounds && fusing.fuse_across_weak_borders(limit); ++round) {
-  }
+  const Fusing fusing(basins, edges, limit, exec);
   const Scratch<std::int32_t>& facets = fusing.facets();
   parallel_for(exec, gray.height(), kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
@@ -407,7 +421,7 @@ Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsCo
     }
   });
   const int count = fusing.count();
-  return {std::move(basins.labels), count, std::move(fusing).borders()};
+  return {std::move(basins.labels), count, fusing.borders()};
 }
 
 Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const Exec& exec) {
