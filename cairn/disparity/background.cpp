@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
-#include <cairn/core/ids.hpp>
 #include <cairn/core/pool_memory.hpp>
 #include <cairn/disparity/background.hpp>
 #include <cairn/disparity/row_kernels.hpp>
@@ -133,22 +132,22 @@ class WallSearch {
   [[nodiscard]] std::vector<GroundPlane> planes() && { return std::move(planes_); }
 
  private:
-  /// Points, by their numbers.
-  using Chosen = std::pmr::vector<std::int32_t>;
-
-  [[nodiscard]] Chosen in_front() const {
-    Chosen before(points_.size() + 1, memory_);
+  [[nodiscard]] Points in_front() const {
+    Points before(points_.size() + 1, memory_);
     std::size_t count = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      before[count] = static_cast<std::int32_t>(i);
+      before.x[count] = points_.x[i];
+      before.y[count] = points_.y[i];
+      before.d[count] = points_.d[i];
+      before.behind[count] = points_.behind[i];
       count += points_.d[i] - points_.behind[i] > tolerance_ ? 1 : 0;
     }
-    before.resize(count);
+    before.shrink_to(count);
     return before;
   }
 
   bool add_best(double min_share) {
-    const Chosen before = in_front();
+    const Points before = in_front();
     const double least = min_share * static_cast<double>(points_.size());
     if (static_cast<double>(before.size()) < least || before.size() < 8) return false;
     const std::optional<GroundPlane> guess = best_guess(before);
@@ -164,28 +163,27 @@ class WallSearch {
     run_.put_behind(points_.arrays(), plane, points_.behind.data());
   }
 
-  /// Some of `count` points, which number(i) tells; all where they are few.
-  template <class Number>
-  Points sample(std::size_t count, Number number) {
-    const bool all = count <= kSample;
-    Points drawn(all ? count : kSample, memory_);
+  /// Some of the points; all where they are few.
+  Points sample(const Points& points) {
+    const bool all = points.size() <= kSample;
+    Points drawn(all ? points.size() : kSample, memory_);
     for (std::size_t i = 0; i < drawn.size(); ++i) {
-      const std::size_t from = number(all ? i : draw_.below(count));
-      drawn.x[i] = points_.x[from];
-      drawn.y[i] = points_.y[from];
-      drawn.d[i] = points_.d[from];
-      drawn.behind[i] = points_.behind[from];
+      const std::size_t from = all ? i : draw_.below(points.size());
+      drawn.x[i] = points.x[from];
+      drawn.y[i] = points.y[from];
+      drawn.d[i] = points.d[from];
+      drawn.behind[i] = points.behind[from];
     }
     return drawn;
   }
 
   /// Through as many points as the conditions leave free.
-  std::optional<GroundPlane> hypothesis(const Chosen& before) {
+  std::optional<GroundPlane> hypothesis(const Points& before) {
     std::array<Condition, 3> all{};
     std::copy(conditions_.begin(), conditions_.end(), all.begin());
     std::array<float, 3> columns{};
     for (std::size_t i = conditions_.size(); i < all.size(); ++i) {
-      const Point3 point = points_[slot(before[draw_.below(before.size())])];
+      const Point3 point = before[draw_.below(before.size())];
       all.at(i) = through(point);
       columns.at(i) = point.x;
       if (i == conditions_.size() + 1 && std::abs(columns.at(i) - columns.at(i - 1)) < least_distance_) {
@@ -195,9 +193,9 @@ class WallSearch {
     return solve(all);
   }
 
-  std::optional<GroundPlane> best_guess(const Chosen& before) {
-    const Points all = sample(points_.size(), [](std::size_t i) { return i; });
-    const Points front = sample(before.size(), [&](std::size_t i) { return slot(before[i]); });
+  std::optional<GroundPlane> best_guess(const Points& before) {
+    const Points all = sample(points_);
+    const Points front = sample(before);
     const double front_share = static_cast<double>(before.size()) / static_cast<double>(points_.size());
     std::optional<GroundPlane> best;
     double best_score = 0;
@@ -223,42 +221,29 @@ class WallSearch {
     std::array<Condition, 3> equations{};
     double weight = 0;
   };
-  [[nodiscard]] Normal normal_of(const GroundPlane& plane, const Chosen& before) const {
-    // Gathered first: which points are on the plane, nothing tells.
-    std::pmr::vector<Point3> on(before.size() + 1, memory_);
-    std::size_t count = 0;
-    for (const std::int32_t i : before) {
-      const Point3 p = points_[slot(i)];
-      on[count] = p;
-      count += std::abs(p.d - at(plane, p)) < 0.7F * tolerance_ ? 1 : 0;
-    }
-    double xx = 0;
-    double xy = 0;
-    double yy = 0;
-    double x = 0;
-    double y = 0;
+  [[nodiscard]] Normal normal_of(const GroundPlane& plane, const Points& before) const {
+    std::pmr::vector<float> d_on(before.size(), memory_);
+    const kernels::PlaneSums on = run_.sum_on(before.arrays(), plane, 0.7F * tolerance_, d_on.data());
+    // Disparities are no whole numbers: their sums depend on the order.
     double xd = 0;
     double yd = 0;
     double d = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double px = on[i].x;
-      const double py = on[i].y;
-      const double pd = on[i].d;
-      xx += px * px;
-      xy += px * py;
-      yy += py * py;
-      x += px;
-      y += py;
-      xd += px * pd;
-      yd += py * pd;
-      d += pd;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const double here = d_on[i];
+      xd += before.x[i] * here;
+      yd += before.y[i] * here;
+      d += here;
     }
-    const auto weight = static_cast<double>(count);
-    return {{{{{xx, xy, x}, xd}, {{xy, yy, y}, yd}, {{x, y, weight}, d}}}, weight};
+    const auto number = [](std::uint64_t sum) { return static_cast<double>(sum); };
+    const double xy = number(on.xy);
+    const double x = number(on.x);
+    const double y = number(on.y);
+    const double count = number(on.count);
+    return {{{{{number(on.xx), xy, x}, xd}, {{xy, number(on.yy), y}, yd}, {{x, y, count}, d}}}, count};
   }
 
   /// Least squares over the wall's own points; the condition of uprightness kept.
-  [[nodiscard]] GroundPlane refined(GroundPlane plane, const Chosen& before) const {
+  [[nodiscard]] GroundPlane refined(GroundPlane plane, const Points& before) const {
     for (int round = 0; round < 3; ++round) {
       auto [normal, weight] = normal_of(plane, before);
       if (weight < 3) return plane;

@@ -291,6 +291,26 @@ inline int count_on_before(const PointArrays& points, const GroundPlane& plane, 
   });
 }
 
+inline PlaneSums sum_on(const PointArrays& points, const GroundPlane& plane, float tolerance,
+                        float* CAIRN_RESTRICT d_on) {
+  const GroundPlane p = plane;
+  const PointArrays at = points;
+  PlaneSums sums;
+  for (int i = 0; i < at.count; ++i) {
+    const bool on = std::abs(at.d[i] - (p.a * at.x[i] + p.b * at.y[i] + p.c)) < tolerance;
+    const auto x = static_cast<std::uint32_t>(on ? static_cast<std::int32_t>(at.x[i]) : 0);
+    const auto y = static_cast<std::uint32_t>(on ? static_cast<std::int32_t>(at.y[i]) : 0);
+    d_on[i] = on ? at.d[i] : 0.0F;
+    sums.count += on ? 1 : 0;
+    sums.x += x;
+    sums.y += y;
+    sums.xx += std::uint64_t{x} * x;
+    sums.xy += std::uint64_t{x} * y;
+    sums.yy += std::uint64_t{y} * y;
+  }
+  return sums;
+}
+
 inline void put_behind(const PointArrays& points, const GroundPlane& plane, float* CAIRN_RESTRICT behind) {
   const GroundPlane p = plane;
   const PointArrays at = points;
@@ -526,6 +546,7 @@ inline constexpr RowKernels kRowKernels{compare_with_votes,
                                         count_on,
                                         count_beyond,
                                         count_on_before,
+                                        sum_on,
                                         put_behind,
                                         mark_between,
                                         count_about,

@@ -42,6 +42,16 @@ struct PointArrays {
   int count;
 };
 
+/// Sums over the points on a plane.
+struct PlaneSums {
+  std::uint64_t count = 0;
+  std::uint64_t x = 0;
+  std::uint64_t y = 0;
+  std::uint64_t xx = 0;
+  std::uint64_t xy = 0;
+  std::uint64_t yy = 0;
+};
+
 /// How many points lie where to a plane, of those that are seen below its horizon.
 struct PlaneCounts {
   int all = 0;
@@ -140,6 +150,9 @@ struct RowKernels {
   int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
   /// How many points lie nearer to the plane than `tolerance` where it stands before the background.
   int (*count_on_before)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// Sums over the points that lie nearer to the plane than `tolerance`; x and y are whole numbers. d_on[i] =
+  /// the disparity of these points, 0 of all others.
+  PlaneSums (*sum_on)(const PointArrays& points, const GroundPlane& plane, float tolerance, float* d_on);
   /// behind[i] = the plane's disparity at point i, where that is more.
   void (*put_behind)(const PointArrays& points, const GroundPlane& plane, float* behind);
   /// marks[i] = 1 where least ≤ the point's distance above the plane ≤ most, in px of disparity; else 0.
