@@ -38,6 +38,7 @@ std::optional<Vec3> StereoRig::point_in_camera_m(float x, float y, float dispari
   const float shift = disparity_px + doffs_px;
   if (!(shift > 0)) return std::nullopt;
   const float z = focal_px * baseline_m / shift;
+  if (!std::isfinite(z)) return std::nullopt;
   return Vec3{(x - cx_px) * z / focal_px, (y - cy_px) * z / focal_px, z};
 }
 

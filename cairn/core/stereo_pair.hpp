@@ -40,7 +40,7 @@ struct StereoRig {
   /// Throws Error (naming `source`) unless every number is finite and focal length and baseline are positive.
   void validate(const char* source = "rig") const;
   /// The point that pixel (x, y) with this disparity shows, in the left camera's frame (x right, y down, z
-  /// forward); nullopt where d + doffs ≤ 0: at or beyond infinity.
+  /// forward); nullopt at or beyond infinity: where d + doffs ≤ 0, or z is more than a float holds.
   [[nodiscard]] std::optional<Vec3> point_in_camera_m(float x, float y, float disparity_px) const;
 };
 

@@ -241,13 +241,14 @@ class Gathered {
   /// `of_run`: working memory, a row for each axis.
   void add(const Run& run, PerAxis& of_run) {
     const float* const disparity = in_.disparity_px.row(run.y);
-    valid_count_ += slot(labels_.keep_known(disparity, run.first, run.last, room_ + valid_count_));
+    valid_count_ += slot(labels_.keep_known(disparity, disparity, run.first, run.last, room_ + valid_count_));
     if (!in_.rig) return;
     rows_.points_in_camera(*in_.rig, run.y, run.first, run.last, disparity, of_run[0].data(),
                            of_run[1].data(), of_run[2].data());
     int found = 0;
     for (std::size_t i = 0; i < of_run.size(); ++i)
-      found = labels_.keep_known(of_run[i].data(), run.first, run.last, axis(i) + point_count_);
+      found = labels_.keep_known(of_run[i].data(), of_run.back().data(), run.first, run.last,
+                                 axis(i) + point_count_);
     point_count_ += slot(found);
   }
 

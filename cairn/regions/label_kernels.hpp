@@ -81,8 +81,8 @@ struct LabelKernels {
                           std::uint64_t* up_to, std::uint64_t* squares_up_to);
   /// The same of colours: red + green · 2²¹ + blue · 2⁴². Right for 8192 pixels.
   void (*sum_colours)(const Rgb* colours, int width, std::uint64_t* up_to);
-  /// Those of row[first] … row[last − 1] that are not NaN, in their order. Returns how many.
-  int (*keep_known)(const float* row, int first, int last, float* kept);
+  /// Those of row[first] … row[last − 1] where `by` is not NaN, in their order. Returns how many.
+  int (*keep_known)(const float* row, const float* by, int first, int last, float* kept);
   /// The least and the greatest of `count` values, at least one. No value is NaN.
   FloatRange (*find_range)(const float* values, std::size_t count);
   /// Those values whose bucket(value) is `wanted`, in their order. Returns how many.

@@ -250,10 +250,10 @@ void sum_colours(const Rgb* HWY_RESTRICT colours, int width, std::uint64_t* HWY_
 
 using Floats = hn::ScalableTag<float>;
 
-int keep_known(const float* HWY_RESTRICT row, int first, int last, float* HWY_RESTRICT kept) {
+int keep_known(const float* row, const float* by, int first, int last, float* HWY_RESTRICT kept) {
   const Floats d;
   const auto step = static_cast<int>(hn::Lanes(d));
-  if (last < step) return plain_labels::keep_known(row, first, last, kept);
+  if (last < step) return plain_labels::keep_known(row, by, first, last, kept);
   int count = 0;
   const auto keep = [&](auto values, auto mask) {
     hn::StoreU(hn::Compress(values, mask), d, kept + count);
@@ -261,14 +261,14 @@ int keep_known(const float* HWY_RESTRICT row, int first, int last, float* HWY_RE
   };
   int x = first;
   for (; x + step <= last; x += step) {
-    const auto values = hn::LoadU(d, row + x);
-    keep(values, hn::Eq(values, values));
+    const auto known = hn::LoadU(d, by + x);
+    keep(hn::LoadU(d, row + x), hn::Eq(known, known));
   }
   if (x == last) return count;
   // The last ones, with what is before them.
-  const auto values = hn::LoadU(d, row + last - step);
+  const auto known = hn::LoadU(d, by + last - step);
   const auto is_before = hn::FirstN(d, static_cast<std::size_t>(step - (last - x)));
-  keep(values, hn::AndNot(is_before, hn::Eq(values, values)));
+  keep(hn::LoadU(d, row + last - step), hn::AndNot(is_before, hn::Eq(known, known)));
   return count;
 }
 

@@ -197,8 +197,13 @@ Size keep_where(const float* values, Size count, float* kept, Counts counts) {
   return found;
 }
 
-inline int keep_known(const float* row, int first, int last, float* kept) {
-  return keep_where(row + first, last - first, kept, [](float v) { return v == v; });
+inline int keep_known(const float* row, const float* by, int first, int last, float* kept) {
+  int found = 0;
+  for (int x = first; x < last; ++x) {
+    kept[found] = row[x];
+    found += by[x] == by[x] ? 1 : 0;
+  }
+  return found;
 }
 
 inline std::size_t keep_bucket(const float* values, std::size_t count, const Buckets& buckets,

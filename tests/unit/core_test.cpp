@@ -205,6 +205,7 @@ TEST(StereoRig, TurnsDisparityIntoMetres) {
   EXPECT_FLOAT_EQ(point->x, 0.4F);
   EXPECT_FLOAT_EQ(point->y, -0.2F);
   EXPECT_FALSE(rig.point_in_camera_m(0, 0, -10));
+  EXPECT_FALSE((StereoRig{.focal_px = 1e30F, .baseline_m = 1e20F}.point_in_camera_m(0, 0, 10)));
 }
 
 TEST(StereoRig, RefusesNumbersThatAreNoCamera) {

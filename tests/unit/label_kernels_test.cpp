@@ -4,7 +4,9 @@
 
 #include <cairn/core/target.hpp>
 #include <cairn/regions/label_kernels.hpp>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -56,12 +58,18 @@ TEST(LabelKernels, SumColoursUpToEachPixel) {
 
 TEST(LabelKernels, KeepWhatIsKnownOfAnyStretchOfARow) {
   const std::vector<float> row = floats_with_holes();
+  std::vector<float> other(row.size());
+  std::iota(other.begin(), other.end(), 0.0F);
   for (const kernels::LabelKernels* const run : all_kernels()) {
     for (const int first : {0, 1, 5, 100, 190}) {
       for (int last = first; last <= kWidth; ++last) {
         std::vector<float> kept(slot(last - first) + kernels::kListSlack);
-        kept.resize(slot(run->keep_known(row.data(), first, last, kept.data())));
+        kept.resize(slot(run->keep_known(row.data(), row.data(), first, last, kept.data())));
         ASSERT_EQ(kept, known_of(row, first, last)) << first << " to " << last;
+        kept.resize(slot(last - first) + kernels::kListSlack);
+        kept.resize(slot(run->keep_known(other.data(), row.data(), first, last, kept.data())));
+        ASSERT_EQ(kept.size(), known_of(row, first, last).size());
+        for (const float at : kept) ASSERT_FALSE(std::isnan(row[static_cast<std::size_t>(at)]));
       }
     }
   }

@@ -214,6 +214,14 @@ TEST(Measure, AFewWildMatchesDoNotStretchTheExtent) {
   EXPECT_NEAR(scene.measured({}, kRig).list[0].extent_in_camera_m->z, 18, 1e-4);
 }
 
+TEST(Measure, AnObjectFartherThanAFloatHoldsHasNoPosition) {
+  constexpr StereoRig kFar{.focal_px = 1e30F, .cx_px = 20, .cy_px = 10, .baseline_m = 1e20F, .doffs_px = 0};
+  const Objects objects = Scene({120, 60}, {{{10, 10, 30, 20}, 8}}).measured({}, kFar);
+  ASSERT_EQ(objects.list.size(), 1U);
+  EXPECT_FALSE(objects.list[0].position_in_camera_m);
+  EXPECT_FALSE(objects.list[0].extent_in_camera_m);
+}
+
 TEST(Measure, AnObjectAtInfinityHasNoPosition) {
   const Scene scene({60, 20}, {{{20, 5, 10, 10}, 0}});
   ASSERT_EQ(scene.measured({}, kRig).list.size(), 1U);
