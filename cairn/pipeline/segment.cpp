@@ -67,6 +67,28 @@ Image<float> confidence_of(const DisparityMap& disparity, const Matches& matches
                                    config.confidence, exec));
 }
 
+/// The same beside the caller's own work: while disparities grow to regions a thread may have nothing to do.
+/// What it is given must stay as it is meanwhile.
+class ConfidenceBeside {
+ public:
+  ConfidenceBeside(const DisparityMap& disparity, const Matches& matches, const Config& config,
+                   const Exec& exec)
+      // The first store beside is that of the left image's regions.
+      : work_(exec, [this, &disparity, &matches, &config, beside = exec.beside().beside()] {
+          Observed unobserved(beside);
+          confidence_ = confidence_of(disparity, matches, config, beside, unobserved);
+        }) {}
+  /// Once.
+  Image<float> get() {
+    work_.wait();
+    return std::move(confidence_);
+  }
+
+ private:
+  Image<float> confidence_;
+  SideWork work_;  // the last, so that it is over before what it writes to is gone
+};
+
 /// The disparities that ground and background are found from: with fusion.method=evidence those that texture
 /// vouches for.
 class Trusted {
@@ -147,10 +169,11 @@ Regions regions_by_evidence(LeftRegions& of_left, View<const Gray> left, View<co
   return {std::move(by_intensity), std::move(by_disparity)};
 }
 
-/// From disparities that the per-pixel checks have passed to objects.
+/// From disparities that the per-pixel checks have passed to objects. Disparities that no matching has made
+/// have no confidence: `matches` is nullptr.
 Frame find_objects(LeftRegions& of_left, View<const Gray> left, View<const Rgb> left_rgb,
-                   DisparityMap disparity, const std::optional<StereoRig>& rig, const Config& config,
-                   const Exec& exec, Observed& stage) {
+                   DisparityMap disparity, const Matches* matches, const std::optional<StereoRig>& rig,
+                   const Config& config, const Exec& exec, Observed& stage) {
   const bool by_evidence = config.fusion.method == FusionMethod::evidence;
   const Trusted trusted(left, disparity, config, exec, stage);
   SceneDisparity scene = check_against_ground(std::move(disparity), trusted.px(), rig, config, exec, stage);
@@ -159,18 +182,24 @@ Frame find_objects(LeftRegions& of_left, View<const Gray> left, View<const Rgb> 
   if (by_evidence)
     regions = regions_by_evidence(of_left, left, left_rgb, trusted.px(), scene, rig, config, exec, stage);
   scene = clean_up(std::move(scene), rig, config, exec, stage);
+  std::optional<ConfidenceBeside> confidence;
+  if (matches != nullptr && config.confidence.enabled)
+    confidence.emplace(scene.disparity, *matches, config, exec);
   if (!by_evidence) regions = regions_by_overlap(of_left, scene, config, exec, stage);
 
   Fusion fusion = stage("fuse", fuse(regions.by_intensity, regions.by_disparity, exec));
   Objects objects = stage("measure", measure(fusion, regions.by_disparity, scene.disparity, left, left_rgb,
                                              rig, config.objects, exec));
+  if (confidence) scene.confidence = stage("estimate_confidence", confidence->get());
   return {std::move(scene.disparity),
           scene.ground,
           std::move(scene.floor),
           std::move(regions.by_intensity),
           std::move(regions.by_disparity),
           std::move(fusion),
-          std::move(objects)};
+          std::move(objects),
+          {},
+          std::move(scene.confidence)};
 }
 
 }  // namespace
@@ -203,9 +232,8 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
   Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
   if (!by_evidence) begin_beside();
-  Frame frame = find_objects(*of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity), rig,
-                             config, exec, stage);
-  frame.confidence = confidence_of(frame.disparity, matched.matches, config, exec, stage);
+  Frame frame = find_objects(*of_left, pair.left(), pair.left_rgb(), std::move(matched.disparity),
+                             &matched.matches, rig, config, exec, stage);
   frame.epipolar = aligned.offset;
   return frame;
 }
@@ -219,7 +247,7 @@ Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disp
   validate(config);
   Observed stage(exec);
   LeftRegions of_left(left, left_rgb, config, exec);
-  return find_objects(of_left, left, left_rgb, std::move(disparity), rig, config, exec, stage);
+  return find_objects(of_left, left, left_rgb, std::move(disparity), nullptr, rig, config, exec, stage);
 }
 
 }  // namespace cairn
