@@ -13,30 +13,21 @@ constexpr int round_up(int value, int step) {
   return (value + step - 1) / step * step;
 }
 
+/// Asks for the memory that `count` numbers from `at` on will be written to or read from. Must be inlined,
+/// and so must what calls it and does nothing else: compilers leave out calls that change nothing.
+template <bool kWrites>
+struct Expect {
+  template <class T>
+  [[gnu::always_inline]] inline void operator()([[maybe_unused]] const T* at,
+                                                [[maybe_unused]] int count) const {
 #if defined(__GNUC__)
-#define CAIRN_ALWAYS_INLINE [[gnu::always_inline]] inline
-#else
-#define CAIRN_ALWAYS_INLINE inline
+    constexpr int kLine = 64 / sizeof(T);
+    for (int i = 0; i < count; i += kLine) __builtin_prefetch(at + i, kWrites);
 #endif
-
-/// Asks for the memory that `count` numbers from `at` on will be written to. Must be inlined, and so must
-/// what calls it and does nothing else: compilers leave out calls that change nothing.
-template <class T>
-CAIRN_ALWAYS_INLINE void expect_writes([[maybe_unused]] const T* at, [[maybe_unused]] int count) {
-#if defined(__GNUC__)
-  constexpr int kLine = 64 / sizeof(T);
-  for (int i = 0; i < count; i += kLine) __builtin_prefetch(at + i, 1);
-#endif
-}
-/// … or will be read from.
-template <class T>
-CAIRN_ALWAYS_INLINE void expect_reads([[maybe_unused]] const T* at, [[maybe_unused]] int count) {
-#if defined(__GNUC__)
-  constexpr int kLine = 64 / sizeof(T);
-  for (int i = 0; i < count; i += kLine) __builtin_prefetch(at + i, 0);
-#endif
-}
-#undef CAIRN_ALWAYS_INLINE
+  }
+};
+inline constexpr Expect<true> expect_writes{};
+inline constexpr Expect<false> expect_reads{};
 
 /// Working memory of one band of rows: zeros at first, aligned like an image's rows. From the heap, not from
 /// the pool: how many bands are at work at a time depends on the threads, and what a pool holds shall not.
