@@ -20,7 +20,7 @@ set(private_headers
   disparity/floor_search disparity/homography disparity/plane_fit disparity/row_kernels
   matching/byte_lanes_plain matching/kernels matching/lanes_plain matching/pixel_math matching/prefilter matching/scratch
   matching/semi_global_kernels
-  objects/colour_model objects/like_facets objects/look_kernels objects/look_kernels_plain objects/looks objects/ranks
+  objects/colour_model objects/like_facets objects/look_kernels objects/looks objects/ranks
   regions/growing_regions regions/label_kernels regions/label_kernels_plain regions/minimum_cut regions/percent regions/runs
   regions/scratch regions/split_floor
   io/calibration_forms io/html_template io/raster io/read_file)
