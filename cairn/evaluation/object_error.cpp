@@ -178,12 +178,6 @@ double mean(const std::vector<double>& values) {
 
 }  // namespace
 
-double segmentation_error(std::int64_t area_truth, std::int64_t area_ours, std::int64_t area_both) {
-  if (area_both == 0) return std::numeric_limits<double>::infinity();
-  return static_cast<double>(area_truth + area_ours - 2 * area_both) /
-         static_cast<double>(area_both);  // Eq. (5)
-}
-
 double boundary_f(View<const std::uint8_t> a, View<const std::uint8_t> b, View<const std::uint8_t> ignored,
                   int tolerance_px) {
   const std::vector<Point> of_a = boundary(a, ignored);

@@ -67,9 +67,6 @@ struct ObjectErrors {
 ObjectErrors object_errors(View<const ObjectId> ours, View<const TruthId> truth,
                            const ObjectErrorConfig& config);
 
-/// The paper's E for two areas and that of their intersection, all in px; infinite where they do not meet.
-double segmentation_error(std::int64_t area_truth, std::int64_t area_ours, std::int64_t area_both);
-
 /// Boundary F of two masks (non-zero = inside, `ignored` non-zero = neither; may be empty): of each boundary,
 /// the share that lies within `tolerance_px` (Euclidean) of the other; their harmonic mean. The image's
 /// border is no boundary. Two masks without any boundary agree (1); one without against one with: 0.

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
 /// Vectors of one lane in plain C++, with those of Highway's operations that semi-global matching uses, under
 /// Highway's names and with its meaning; and those of byte_lanes_highway-inl.hpp.
@@ -18,8 +17,6 @@ struct Tag {
 };
 template <class T, std::size_t kMost>
 using CappedTag = Tag<T>;
-template <class T, class Other>
-using Repartition = Tag<T>;
 template <class D>
 using Vec = typename D::Lane;
 

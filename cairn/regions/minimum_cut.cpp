@@ -159,9 +159,4 @@ void MinimumCuts::spread_ones(std::vector<std::int32_t>& label) const {
   }
 }
 
-std::vector<std::int32_t> minimum_cut(const std::vector<std::int64_t>& cost_0,
-                                      const std::vector<std::int64_t>& cost_1, const std::vector<Tie>& ties) {
-  return MinimumCuts(cost_0.size(), ties).cut(cost_0, cost_1);
-}
-
 }  // namespace cairn

@@ -27,12 +27,8 @@ struct FlowArc {
 /// Labels every node 0 or 1 so that the sum of cost_0 of the nodes labelled 0, cost_1 of those labelled 1,
 /// and the costs of ties between differently labelled nodes is least; of several such labellings the one with
 /// the fewest 1s. Exact: a minimum s-t cut (Greig, Porteous & Seheult 1989), found with Dinic's augmenting
-/// paths. No cost is negative.
-std::vector<std::int32_t> minimum_cut(const std::vector<std::int64_t>& cost_0,
-                                      const std::vector<std::int64_t>& cost_1, const std::vector<Tie>& ties);
-
-/// The same for nodes whose ties stay and whose costs change: each cut begins with the flow of the one before
-/// (Kohli & Torr 2005, "Efficiently solving dynamic Markov random fields using graph cuts").
+/// paths. No cost is negative. The nodes' ties stay and their costs change: each cut begins with the flow of
+/// the one before (Kohli & Torr 2005, "Efficiently solving dynamic Markov random fields using graph cuts").
 class MinimumCuts {
  public:
   MinimumCuts(std::size_t nodes, std::span<const Tie> ties, const Pool& pool = {});

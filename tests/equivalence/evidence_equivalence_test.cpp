@@ -273,7 +273,7 @@ TEST(MinimumCut, IsThatOfItsDefinition) {
           const auto expected = reference::minimum_cut(net.cost_0, net.cost_1, net.ties);
           for (const std::int32_t label : expected) ones += label;
           labelled += nodes;
-          EXPECT_EQ(minimum_cut(net.cost_0, net.cost_1, net.ties), expected)
+          EXPECT_EQ(MinimumCuts(net.cost_0.size(), net.ties).cut(net.cost_0, net.cost_1), expected)
               << nodes << ' ' << ties_per_node << ' ' << highest << ' ' << seed;
         }
       }
@@ -293,7 +293,7 @@ TEST(MinimumCut, IsThatOfItsDefinitionAlongLongPaths) {
       net.ties.push_back({i + 1, i, 20 + static_cast<std::int64_t>(random() % 60)});
       if (i + 5 < 80) net.ties.push_back({i, i + 5, static_cast<std::int64_t>(random() % 9)});
     }
-    EXPECT_EQ(minimum_cut(net.cost_0, net.cost_1, net.ties),
+    EXPECT_EQ(MinimumCuts(net.cost_0.size(), net.ties).cut(net.cost_0, net.cost_1),
               reference::minimum_cut(net.cost_0, net.cost_1, net.ties))
         << seed;
   }

@@ -6,7 +6,6 @@
 #include <cairn/core/image.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cstdint>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -22,8 +21,7 @@ struct Box {
 
 struct Layout {
   Size size{96, 64};
-  int background_px = 4;  // disparity of the background in the top row
-  int rise_px = 0;  // how much nearer the background is in the bottom row: a floor, in whole-pixel steps
+  int background_px = 4;     // disparity of the background
   std::vector<Box> boxes{};  // later ones stand in front of earlier ones only where they are nearer
   std::uint32_t seed = 1;
 };
@@ -50,11 +48,8 @@ inline Scene make_scene(const Layout& layout) {
   const Size size = layout.size;
   Scene scene{random_dots(size, layout.seed), random_dots(size, layout.seed + 1), Image<float>(size),
               Image<std::uint8_t>(size), Image<std::uint16_t>(size)};
-  const int steps = std::max(1, size.height - 1);
   for (int y = 0; y < size.height; ++y) {
-    const int rise = (2 * layout.rise_px * y + steps) / (2 * steps);  // whole pixels, rounded
-    const auto background = static_cast<float>(layout.background_px + rise);
-    std::fill_n(scene.disparity_px.row(y), size.width, background);
+    std::fill_n(scene.disparity_px.row(y), size.width, static_cast<float>(layout.background_px));
     std::fill_n(scene.objects.row(y), size.width, std::uint16_t{0});
   }
   for (std::size_t i = 0; i < layout.boxes.size(); ++i) {

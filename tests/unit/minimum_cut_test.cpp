@@ -21,6 +21,10 @@ std::int64_t cost_of(const Labels& labels, const Costs& cost_0, const Costs& cos
   return cost;
 }
 
+Labels minimum_cut(const Costs& cost_0, const Costs& cost_1, const std::vector<Tie>& ties) {
+  return MinimumCuts(cost_0.size(), ties).cut(cost_0, cost_1);
+}
+
 /// Of all labellings that of least cost, and of those the one with the fewest 1s.
 Labels best_of_all(const Costs& cost_0, const Costs& cost_1, const std::vector<Tie>& ties) {
   std::pair<std::int64_t, int> least{std::numeric_limits<std::int64_t>::max(), 0};

@@ -31,17 +31,17 @@ struct Scene {
   }
 };
 
-TEST(SegmentationError, IsEquationFiveOfThePaper) {
-  EXPECT_DOUBLE_EQ(segmentation_error(100, 100, 100), 0.0);
-  EXPECT_DOUBLE_EQ(segmentation_error(100, 80, 60), (100 + 80 - 2 * 60) / 60.0);
-  EXPECT_EQ(segmentation_error(100, 100, 0), std::numeric_limits<double>::infinity());
+/// The paper's Equation (5), of areas in px.
+double segmentation_error(double truth, double ours, double both) {
+  return (truth + ours - 2 * both) / both;
 }
 
-TEST(SegmentationError, EqualsOneOverIouMinusOneForEveryOverlap) {
+TEST(TrueObjectScore, HasTheErrorOfEquationFiveForEveryOverlap) {
   for (int both = 1; both <= 60; ++both) {
-    const double iou = both / (90.0 + 60.0 - both);
-    EXPECT_NEAR(segmentation_error(90, 60, both), 1 / iou - 1, 1e-12) << both;
+    const TrueObjectScore score{.iou = both / (90.0 + 60.0 - both)};
+    EXPECT_NEAR(score.error(), segmentation_error(90, 60, both), 1e-12) << both;
   }
+  EXPECT_EQ(TrueObjectScore{.iou = 0}.error(), std::numeric_limits<double>::infinity());
 }
 
 TEST(ObjectErrors, APerfectResultHasNoErrorAnywhere) {
