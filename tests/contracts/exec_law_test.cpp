@@ -4,10 +4,10 @@
 
 #include <bit>
 #include <cairn/cairn.hpp>
+#include <cairn/core/target.hpp>
 #include <cstdint>
 #include <string>
 #include <support/samples.hpp>
-#include <vector>
 
 namespace cairn {
 namespace {
@@ -86,24 +86,6 @@ void expect_same(const Frame& a, const Frame& b) {
   expect_same_objects(a.objects, b.objects);
 }
 
-const char* name_of(Target target) {
-  switch (target) {
-    case Target::scalar:
-      return "scalar";
-    case Target::sse4:
-      return "sse4";
-    case Target::avx2:
-      return "avx2";
-    case Target::avx512:
-      return "avx512";
-    case Target::neon:
-      return "neon";
-    case Target::best:
-      break;
-  }
-  return "best";
-}
-
 /// Segments a sample with every thread count and target and compares all that comes out with one scalar
 /// thread's. A target that this machine has not falls back to one that it has.
 void expect_exec_changes_nothing(const std::string& name, const Config& preset) {
@@ -116,7 +98,8 @@ void expect_exec_changes_nothing(const std::string& name, const Config& preset) 
   for (const Target target :
        {Target::best, Target::scalar, Target::sse4, Target::avx2, Target::avx512, Target::neon}) {
     for (const int threads : {1, 2, 3}) {
-      SCOPED_TRACE(name + ", " + std::to_string(threads) + " threads, target " + name_of(target));
+      SCOPED_TRACE(name + ", " + std::to_string(threads) + " threads, target " +
+                   std::string(cairn::name(target)));
       expect_same(run(threads, target), expected);
     }
   }
