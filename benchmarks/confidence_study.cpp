@@ -14,7 +14,6 @@
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "reference/confidence.hpp"

@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "engines.hpp"
-#include "io/dataset.hpp"
 #include "markdown_table.hpp"
 #include "scored_frames.hpp"
 

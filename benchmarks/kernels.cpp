@@ -5,7 +5,6 @@
 // apply, e.g. --benchmark_filter=match_rows/sad.
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <cairn/core/target.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/matching/kernels.hpp>

@@ -8,7 +8,6 @@
 // pair that the program draws, so that nothing else is needed; what real pictures take, engines shows.
 #include <algorithm>
 #include <array>
-#include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
 #include <cairn/evaluation/object_error.hpp>
 #include <chrono>

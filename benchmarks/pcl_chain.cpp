@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cairn/cairn.hpp>
 #include <cairn/evaluation/object_error.hpp>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <numeric>

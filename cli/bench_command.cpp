@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <array>
 #include <benchmarks/drawn_pair.hpp>
 #include <benchmarks/frame_times.hpp>
 #include <benchmarks/machine.hpp>
@@ -19,7 +18,6 @@
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
 #include <iostream>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"

@@ -7,8 +7,6 @@
 #include <iostream>
 #include <new>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "app.hpp"

@@ -3,9 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cairn/core/error.hpp>
 #include <cmath>
 #include <cstdint>
 #include <io/html_page.hpp>

@@ -7,7 +7,6 @@
 #include <io/image_files.hpp>
 #include <io/raster.hpp>
 #include <string>
-#include <vector>
 
 namespace cairn::io {
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <io/calibration_forms.hpp>
 #include <io/stereo_calibration.hpp>
-#include <numeric>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>

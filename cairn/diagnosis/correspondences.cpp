@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/diagnosis/correspondences.hpp>
 #include <cairn/matching/sparse_points.hpp>

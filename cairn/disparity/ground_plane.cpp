@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "disparity.hpp"
 
-#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/disparity/confidence.hpp>
 #include <cairn/disparity/evidence.hpp>

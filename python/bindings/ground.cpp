@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/core/error.hpp>
 #include <cairn/disparity/background.hpp>
 #include <cairn/disparity/ground_plane.hpp>
 #include <string>

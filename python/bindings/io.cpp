@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <pybind11/stl/filesystem.h>
 
-#include <cairn/core/error.hpp>
 #include <filesystem>
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>

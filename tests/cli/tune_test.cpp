@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cmath>
 #include <cstdlib>
 #include <io/config_files.hpp>
 #include <io/disparity_files.hpp>

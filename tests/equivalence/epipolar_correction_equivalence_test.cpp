@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/target.hpp>
-#include <string>
 
 #include "reference/epipolar_correction.hpp"
 #include "support/first_difference.hpp"

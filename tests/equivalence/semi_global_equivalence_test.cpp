@@ -5,7 +5,6 @@
 #include <cairn/core/target.hpp>
 #include <cairn/matching/semi_global.hpp>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "reference/semi_global.hpp"

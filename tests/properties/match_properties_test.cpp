@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cairn/matching/match.hpp>
-#include <cmath>
 #include <string>
 
 #include "support/synthetic_scene.hpp"

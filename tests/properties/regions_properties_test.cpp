@@ -9,7 +9,6 @@
 #include <cairn/regions/segment_intensity.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <limits>
-#include <numeric>
 
 #include "support/grids.hpp"
 

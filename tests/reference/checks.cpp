@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "checks.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

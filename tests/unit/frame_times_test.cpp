@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <array>
 #include <benchmarks/drawn_pair.hpp>
 #include <benchmarks/frame_times.hpp>
 #include <benchmarks/statistics.hpp>

@@ -4,7 +4,6 @@
 #include <cairn/disparity/ground_plane.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>

@@ -5,7 +5,6 @@
 #include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/homography.hpp>
 
-#include <cmath>
 #include <limits>
 #include <string>
 

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <io/image_files.hpp>
 #include <io/raster.hpp>
 

@@ -6,7 +6,6 @@
 #include <cairn/core/target.hpp>
 #include <cairn/matching/match.hpp>
 #include <cmath>
-#include <vector>
 
 #include "support/synthetic_scene.hpp"
 

@@ -6,7 +6,6 @@
 #include <cairn/opencv.hpp>
 #include <cstring>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "support/samples.hpp"

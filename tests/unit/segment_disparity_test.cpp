@@ -5,8 +5,6 @@
 #include <cairn/regions/segment_disparity.hpp>
 #include <limits>
 
-#include "support/grids.hpp"
-
 namespace cairn {
 namespace {
 

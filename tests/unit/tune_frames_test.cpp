@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cairn/core/error.hpp>
 #include <cmath>
 
