@@ -14,7 +14,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <memory_resource>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -42,6 +44,9 @@ constexpr double kSeenShare = 0.25;  // of a facet's pixels: above it the facet 
 struct Votes {
   std::array<std::int64_t, 2> sides{};  // ground and figure
   std::int64_t seen_figure = 0;         // part of those for figure
+  friend Votes operator+(const Votes& p, const Votes& q) {
+    return {{p.sides[0] + q.sides[0], p.sides[1] + q.sides[1]}, p.seen_figure + q.seen_figure};
+  }
 };
 
 struct Scales {
@@ -61,8 +66,7 @@ struct Seen {
 /// Votes along one row.
 class RowVotes {
  public:
-  RowVotes(View<const RegionId> facets, const Scales& scales, std::pmr::vector<Votes>& votes,
-           const Exec& exec)
+  RowVotes(View<const RegionId> facets, const Scales& scales, std::vector<Votes>& votes, const Exec& exec)
       : run_(kernels::look_kernels(exec)),
         facets_(facets),
         scales_(scales),
@@ -128,7 +132,7 @@ class RowVotes {
   const kernels::LookKernels& run_;
   View<const RegionId> facets_;
   Scales scales_;
-  std::pmr::vector<Votes>& votes_;
+  std::vector<Votes>& votes_;
   const RegionId* facet_ = nullptr;
   std::vector<float> behind_px_;
   std::vector<std::uint8_t> at_border_;
@@ -328,8 +332,15 @@ std::pmr::vector<Votes> votes_of(const Facets& facets, View<const float> evidenc
                       static_cast<int>(0.01F * config.longest_bridge * static_cast<float>(size.width)),
                       static_cast<int>(std::lround(static_cast<float>(kSeen) * config.border_weight))};
   std::pmr::vector<Votes> votes(slot(facets.count), memory);
-  RowVotes row(facets.labels, scales, votes, exec);
-  for (int y = 0; y < size.height; ++y) row.add(y, evidence_px, background.planes);
+  std::mutex adding_up;
+  const int rows_each = (size.height + exec.threads() - 1) / exec.threads();
+  parallel_for(exec, size.height, rows_each, [&](int first, int last) {
+    std::vector<Votes> of_rows(votes.size());
+    RowVotes row(facets.labels, scales, of_rows, exec);
+    for (int y = first; y < last; ++y) row.add(y, evidence_px, background.planes);
+    const std::lock_guard lock(adding_up);
+    std::transform(votes.begin(), votes.end(), of_rows.begin(), votes.begin(), std::plus<>());
+  });
   return votes;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
 #include <cairn/objects/group.hpp>
 #include <cairn/objects/look_kernels.hpp>
@@ -171,24 +172,30 @@ Shown shown_by(const Facets& facets, const std::vector<std::int32_t>& figure, co
                View<const float> evidence_px, const Background& background, float margin_px, const Exec& exec,
                std::pmr::memory_resource* memory) {
   Shown shown(slot(facets.count), memory);
-  RowJudge judge(facets, disparity, evidence_px, background, margin_px, exec);
-  int row = -1;
-  for_each_run(facets.labels, exec, [&](const Run& run) {
-    const std::size_t facet = index(run.label);
-    if (shown.pixels[facet] == 0)
-      shown.first[facet] = std::int64_t{run.y} * facets.labels.width() + run.first;
-    shown.pixels[facet] += run.length();
-    shown.extents[facet].add(run);
-    if (figure[facet] == 0) return;
-    if (run.y != row) judge.look_at(row = run.y);
-    shown.evidence[facet] += judge.evidence_in(run);
-    const float* const disparity_px = disparity.disparity_px.row(run.y);
-    Plane plane = shown.planes[facet];  // where the compiler keeps it in registers
-    for (int x = run.first; x < run.last; ++x) {
-      const double weight = judge.weight(x);
-      if (weight > 0) plane.add(x, run.y, disparity_px[x], weight);
-    }
-    shown.planes[facet] = plane;
+  // Each thread has facets of its own, for their pixels must be taken in one order. What begins higher up in
+  // the picture has the smaller number, so that most rows are one thread's alone.
+  const int facets_each = (facets.count + exec.threads() - 1) / exec.threads();
+  parallel_for(exec, facets.count, facets_each, [&](int first, int last) {
+    RowJudge judge(facets, disparity, evidence_px, background, margin_px, exec);
+    int row = -1;
+    for_each_run(facets.labels, exec, [&](const Run& run) {
+      if (number(run.label) < first || number(run.label) >= last) return;
+      const std::size_t facet = index(run.label);
+      if (shown.pixels[facet] == 0)
+        shown.first[facet] = std::int64_t{run.y} * facets.labels.width() + run.first;
+      shown.pixels[facet] += run.length();
+      shown.extents[facet].add(run);
+      if (figure[facet] == 0) return;
+      if (run.y != row) judge.look_at(row = run.y);
+      shown.evidence[facet] += judge.evidence_in(run);
+      const float* const disparity_px = disparity.disparity_px.row(run.y);
+      Plane plane = shown.planes[facet];  // where the compiler keeps it in registers
+      for (int x = run.first; x < run.last; ++x) {
+        const double weight = judge.weight(x);
+        if (weight > 0) plane.add(x, run.y, disparity_px[x], weight);
+      }
+      shown.planes[facet] = plane;
+    });
   });
   return shown;
 }
