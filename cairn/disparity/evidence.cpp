@@ -109,11 +109,12 @@ float noise_sigma(View<const Gray> image, const Exec& exec) {
 }
 
 Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, const EvidenceConfig& config,
-                           const Exec& exec) {
+                           const Exec& exec, std::optional<float> noise) {
   const Size size = left.size();
   const kernels::RowKernels& run = kernels::row_kernels(exec);
-  const Image<float> candidates = textured(
-      left, disparity, config.noise_factor * noise_sigma(left, exec) + config.gradient_min, run, exec);
+  const float least_gradient =
+      config.noise_factor * (noise ? *noise : noise_sigma(left, exec)) + config.gradient_min;
+  const Image<float> candidates = textured(left, disparity, least_gradient, run, exec);
   const float agreement = config.agreement * 0.001F * static_cast<float>(size.width);
   Image<float> evidence(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {

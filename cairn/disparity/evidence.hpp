@@ -5,6 +5,7 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
 #include <cairn/disparity/disparity_map.hpp>
+#include <optional>
 
 namespace cairn {
 
@@ -31,8 +32,9 @@ float noise_sigma(View<const Gray> image, const Exec& exec = {});
 /// The disparities that rest on the pixel's own texture, NaN elsewhere: valid ones where the horizontal
 /// gradient stands out of the noise and is no mere grazing edge (|gx| > |gy|/2), and at least three pixels of
 /// the 5×5 neighbourhood that pass the same test agree. Elsewhere a matcher can only have carried disparity
-/// over from the surroundings, which is how near objects grow over their borders. (beyond the paper)
+/// over from the surroundings, which is how near objects grow over their borders. `noise`: noise_sigma(left),
+/// where that is known. (beyond the paper)
 Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, const EvidenceConfig& config,
-                           const Exec& exec);
+                           const Exec& exec, std::optional<float> noise = std::nullopt);
 
 }  // namespace cairn

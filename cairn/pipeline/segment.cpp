@@ -93,12 +93,12 @@ class ConfidenceBeside {
 /// vouches for.
 class Trusted {
  public:
-  Trusted(View<const Gray> left, const DisparityMap& disparity, const Config& config, const Exec& exec,
-          Observed& stage) {
+  Trusted(View<const Gray> left, std::optional<float> noise, const DisparityMap& disparity,
+          const Config& config, const Exec& exec, Observed& stage) {
     if (config.fusion.method == FusionMethod::overlap) {
       px_ = disparity.disparity_px;
     } else {
-      evidence_px_ = stage("find_evidence", find_evidence(left, disparity, config.evidence, exec));
+      evidence_px_ = stage("find_evidence", find_evidence(left, disparity, config.evidence, exec, noise));
       px_ = evidence_px_;
     }
   }
@@ -115,13 +115,16 @@ class Trusted {
 class LeftRegions {
  public:
   LeftRegions(View<const Gray> left, View<const Rgb> left_rgb, const Config& config, const Exec& exec)
-      : work_(exec, [=, this, &config, beside = exec.beside()] {
+      : noise_(config.fusion.method == FusionMethod::evidence ? noise_sigma(left, exec) : 0),
+        work_(exec, [=, this, &config, beside = exec.beside()] {
           if (config.fusion.method == FusionMethod::overlap) {
             by_intensity_ = segment_intensity(left, config.intensity, beside);
           } else {
-            facets_ = segment_facets(left, left_rgb, config.facets, beside);
+            facets_ = segment_facets(left, left_rgb, config.facets, beside, noise_);
           }
         }) {}
+  /// noise_sigma() of the image, with fusion.method=evidence.
+  [[nodiscard]] float noise() const { return noise_; }
   /// With fusion.method=overlap; once.
   Segmentation by_intensity() {
     work_.wait();
@@ -134,6 +137,7 @@ class LeftRegions {
   }
 
  private:
+  float noise_;
   Segmentation by_intensity_;
   Facets facets_;
   SideWork work_;  // the last, so that it is over before what it writes to is gone
@@ -163,7 +167,8 @@ Regions regions_by_evidence(LeftRegions& of_left, View<const Gray> left, View<co
   const Background background = fit_background(evidence_px, scene.ground, rig, config.background, exec);
   const Facets facets = of_left.facets();
   auto by_intensity = stage("segment_facets", as_segmentation(facets, left, exec));
-  const auto figure = separate_figure(facets, left, left_rgb, evidence_px, background, config.figure, exec);
+  const auto figure =
+      separate_figure(facets, left, left_rgb, evidence_px, background, config.figure, exec, of_left.noise());
   auto by_disparity = stage("group_facets", group_facets(facets, figure, scene.disparity, evidence_px,
                                                          background, rig, config.figure, config.group, exec));
   return {std::move(by_intensity), std::move(by_disparity)};
@@ -175,7 +180,7 @@ Frame find_objects(LeftRegions& of_left, View<const Gray> left, View<const Rgb> 
                    DisparityMap disparity, const Matches* matches, const std::optional<StereoRig>& rig,
                    const Config& config, const Exec& exec, Observed& stage) {
   const bool by_evidence = config.fusion.method == FusionMethod::evidence;
-  const Trusted trusted(left, disparity, config, exec, stage);
+  const Trusted trusted(left, of_left.noise(), disparity, config, exec, stage);
   SceneDisparity scene = check_against_ground(std::move(disparity), trusted.px(), rig, config, exec, stage);
   Regions regions;
   // Facets weigh small islands for themselves: thin legs and leaves are islands, too.
@@ -210,7 +215,7 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
   Observed stage(exec);
   const EpipolarCorrection aligned = align(pair, config, exec, stage);
   Matched matched = match_and_check(pair, aligned.right, config, exec, stage);
-  const Trusted trusted(pair.left(), matched.disparity, config, exec, stage);
+  const Trusted trusted(pair.left(), std::nullopt, matched.disparity, config, exec, stage);
   SceneDisparity scene =
       clean_up(check_against_ground(std::move(matched.disparity), trusted.px(), rig, config, exec, stage),
                rig, config, exec, stage);

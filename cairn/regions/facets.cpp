@@ -407,11 +407,12 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
 }
 
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
-                      const Exec& exec) {
+                      const Exec& exec, std::optional<float> noise) {
   const Image<std::uint16_t> edges = edge_strength(gray, rgb, config.smoothing_sigma, exec);
   Basins basins = watershed(edges, exec);
-  const double limit = 4.0 * (config.edge_min + config.noise_factor * noise_sigma(gray)) +
-                       0.01 * config.contrast_share * clear_edge(edges);
+  const double limit =
+      4.0 * (config.edge_min + config.noise_factor * (noise ? *noise : noise_sigma(gray, exec))) +
+      0.01 * config.contrast_share * clear_edge(edges);
   const Fusing fusing(basins, edges, limit, exec);
   const Scratch<std::int32_t>& facets = fusing.facets();
   parallel_for(exec, gray.height(), kGrain, [&](int first, int last) {

@@ -9,6 +9,7 @@
 #include <cairn/core/image.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace cairn {
@@ -71,10 +72,10 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
 /// its weakest border where that border's mean edge is below edge_min + noise_factor·noise_sigma(gray) +
 /// contrast_share·(the edge strength that one pixel in fifty exceeds);
 /// borders are recomputed and it is done again until nothing fuses, sixteen times at most. Unlike a
-/// comparison of means this follows shading across a plain surface and stops at faint outlines. (METHOD §4,
-/// beyond the paper)
+/// comparison of means this follows shading across a plain surface and stops at faint outlines. `noise`:
+/// noise_sigma(gray), where that is known. (METHOD §4, beyond the paper)
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
-                      const Exec& exec);
+                      const Exec& exec, std::optional<float> noise = std::nullopt);
 
 /// The facets as a segmentation, with their grey statistics.
 Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const Exec& exec);
