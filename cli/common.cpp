@@ -117,7 +117,7 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
   io::FrameFiles files;
   files.name = left.stem().string();
   // Nobody calls a frame so: it is its folder that has a name.
-  if (files.name == "left" || files.name == "right") files.name = name_of(left.parent_path());
+  if (files.name == "left" || files.name == "right") files.name = name_of(fs::absolute(left).parent_path());
   files.folder = left.parent_path();
   files.left = left;
   if (!options.right.empty()) files.right = options.right;

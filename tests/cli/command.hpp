@@ -64,7 +64,9 @@ class CommandTest : public testing::Test {
     return all;
   }
 
-  [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, const std::string& out = {}) const {
+  /// `folder`: of the test's own, where it is run.
+  [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, const std::string& out = {},
+                            const std::string& folder = {}) const {
     const std::string out_path = out.empty() ? (root_ / "out").string() : out;
     const std::string err_path = (root_ / "err").string();
     posix_spawn_file_actions_t files;
@@ -74,6 +76,7 @@ class CommandTest : public testing::Test {
                                      0644);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                      0644);
+    posix_spawn_file_actions_addchdir_np(&files, (root_ / "work" / folder).c_str());
     std::vector<std::string> words{CAIRN_COMMAND};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;

@@ -90,6 +90,7 @@ TEST_F(Command, SegmentTakesPairsThatDifferInTheirNamesAlone) {
 TEST_F(Command, APairOfFilesCalledLeftAndRightHasTheNameOfItsFolder) {
   const auto pair = pair_in("kitchen");
   EXPECT_EQ(run(with("segment", pair)).out.find("kitchen: "), 0U);
+  EXPECT_EQ(run({"segment", "left.png", "right.png"}, {}, "kitchen").out.find("kitchen: "), 0U);
   fs::copy_file(pair[0], at("near.png"));
   EXPECT_EQ(run({"segment", path("near.png"), pair[1]}).out.find("near: "), 0U);
 }
