@@ -17,9 +17,9 @@ endfunction()
 # The rest are the library's own business: they may change or go with any version.
 set(private_headers
   core/each_index core/highway_targets core/nearest core/observed core/of_target core/pool_memory
-  disparity/floor_search disparity/homography disparity/plane_fit disparity/row_kernels
+  diagnosis/robust_fit disparity/floor_search disparity/homography disparity/plane_fit disparity/row_kernels
   matching/byte_lanes_plain matching/kernels matching/lanes_plain matching/pixel_math matching/prefilter matching/scratch
-  matching/semi_global_kernels
+  matching/semi_global_kernels matching/sparse_points
   objects/colour_model objects/like_facets objects/look_kernels objects/looks objects/ranks
   regions/growing_regions regions/label_kernels regions/label_kernels_plain regions/minimum_cut regions/percent regions/runs
   regions/scratch regions/split_floor
@@ -37,6 +37,11 @@ if(CAIRN_IO)
     PATTERN "*.hpp"
     REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
   install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
+  # The commands' help names these pages.
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING
+    REGEX "\\.(md|png|svg)$"
+    PATTERN site EXCLUDE
+    PATTERN schema EXCLUDE)
 endif()
 
 # ---- for find_package(cairn) ----
