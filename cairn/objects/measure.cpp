@@ -246,9 +246,10 @@ class Gathered {
     rows_.points_in_camera(*in_.rig, run.y, run.first, run.last, disparity, of_run[0].data(),
                            of_run[1].data(), of_run[2].data());
     int found = 0;
-    for (std::size_t i = 0; i < of_run.size(); ++i)
+    for (std::size_t i = 0; i < of_run.size(); ++i) {
       found = labels_.keep_known(of_run[i].data(), of_run.back().data(), run.first, run.last,
                                  axis(i) + point_count_);
+    }
     point_count_ += slot(found);
   }
 
@@ -395,9 +396,10 @@ Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const Di
   Scratch<float> lists(room, exec.pool);
   const std::vector<std::size_t> begins = shares(found, outline, exec);
   parallel_for(exec, static_cast<int>(begins.size()) - 1, 1, [&](int first, int last) {
-    for (auto i = slot(first); i < slot(last); ++i)
+    for (auto i = slot(first); i < slot(last); ++i) {
       measure_range(in, bands, outline, std::span(found).subspan(begins[i], begins[i + 1] - begins[i]),
                     lists.data(), exec);
+    }
   });
   std::erase_if(found, [&](const Candidate& candidate) {
     return !candidate.object || candidate.object->confidence < config.min_confidence;

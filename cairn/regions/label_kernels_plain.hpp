@@ -186,16 +186,7 @@ inline void sum_colours(const Rgb* colours, int width, std::uint64_t* up_to) {
   sum_colours_from(0, colours, width, up_to);
 }
 
-/// Written is each value, and overwritten where it does not count: they come irregularly.
-template <class Size, class Counts>
-Size keep_where(const float* values, Size count, float* kept, Counts counts) {
-  Size found = 0;
-  for (Size i = 0; i < count; ++i) {
-    kept[found] = values[i];
-    found += counts(values[i]) ? 1 : 0;
-  }
-  return found;
-}
+// Written is each value, and overwritten where it does not count: they come irregularly.
 
 inline int keep_known(const float* row, const float* by, int first, int last, float* kept) {
   int found = 0;
@@ -208,7 +199,12 @@ inline int keep_known(const float* row, const float* by, int first, int last, fl
 
 inline std::size_t keep_bucket(const float* values, std::size_t count, const Buckets& buckets,
                                std::int32_t wanted, float* kept) {
-  return keep_where(values, count, kept, [&](float v) { return buckets.bucket(v) == wanted; });
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    kept[found] = values[i];
+    found += buckets.bucket(values[i]) == wanted ? 1 : 0;
+  }
+  return found;
 }
 
 inline FloatRange find_range(const float* values, std::size_t count) {
