@@ -19,8 +19,8 @@ struct DisparityMap {
 /// Disparities beyond ±this bound are refused at the door: regions count in 1/16 px of 16 bits.
 inline constexpr float kMaxDisparity = 2047.0F;
 
-/// Unites the checks' verdicts: a pixel keeps every bit that it got, NaN adds Reject::border. (METHOD §2)
-/// All views have the size of `refined_px`.
+/// Unites the checks' verdicts: a pixel keeps every bit that it got, NaN adds Reject::border.
+/// (docs/why_is_this_pixel_a_hole.md) All views have the size of `refined_px`.
 DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts,
                      const Exec& exec);
 

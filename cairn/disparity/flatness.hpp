@@ -17,7 +17,7 @@ void fields(FlatnessConfig& c, V&& v) {
 }
 
 /// Marks pixels with "a constant correlation function": (mean − best) / mean < threshold → Reject::flat; a
-/// mean of 0 is flat. Pixels without match are left to Reject::border. (METHOD §2; paper)
+/// mean of 0 is flat. Pixels without match are left to Reject::border. (docs/stages/flatness.md; paper)
 Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config, const Exec& exec);
 
 }  // namespace cairn

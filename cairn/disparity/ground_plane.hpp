@@ -42,7 +42,7 @@ void fields(GroundConfig& c, V&& v) {
   v("label_floor", c.label_floor, "", "label matches on the floor; the floor is no object", Any{});
 }
 
-/// The floor as the left image's disparity: d = a·x + b·y + c, pixels in px. (METHOD §3)
+/// The floor as the left image's disparity: d = a·x + b·y + c, pixels in px. (docs/stages/ground.md)
 struct GroundPlane {
   float a = 0;
   float b = 0;
@@ -72,7 +72,7 @@ struct Ground {
 /// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
 /// when no plane has enough support. points: the homography that the pairs induce (normalised DLT, RANSAC
 /// beyond four), reduced to (a, b, c) by least squares over its points. pose: from height, pitch and roll;
-/// needs a rig. (METHOD §3; paper, "ground plane")
+/// needs a rig. (docs/stages/ground.md; paper, "ground plane")
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 
@@ -86,7 +86,7 @@ Ground ground_from_points(const std::vector<PointPair>& points);
 
 /// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground.
 /// Nothing is above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground:
-/// nothing happens. (METHOD §3; paper)
+/// nothing happens. (docs/stages/ground.md; paper)
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const std::optional<StereoRig>& rig, const GroundConfig& config,
                                  const Exec& exec);

@@ -28,8 +28,8 @@ void fields(LeftRightConfig& c, V&& v) {
 /// Marks pixels whose match, followed back from the right image, does not return to them: mostly
 /// half-occluded ones, seen by one camera only. |best(x, y) − best_right(x − best, y + row)| ≤ max_diff, else
 /// Reject::left_right. With vote, the right pixel's disparity is that of the left pixel of least cost that
-/// claims it (ties: the smallest disparity). Pixels without match are left to Reject::border. (METHOD §2;
-/// paper, "right-left consistency check")
+/// claims it (ties: the smallest disparity). Pixels without match are left to Reject::border.
+/// (docs/stages/left_right.md; paper, "right-left consistency check")
 Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config, const Exec& exec);
 
 }  // namespace cairn

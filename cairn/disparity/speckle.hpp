@@ -18,7 +18,7 @@ void fields(SpeckleConfig& c, V&& v) {
 }
 
 /// Rejects small islands: 4-connected pixels whose neighbours differ by at most `range`, `size` pixels or
-/// fewer → Reject::speckle. (METHOD §2, beyond the paper; OpenCV's filterSpeckles)
+/// fewer → Reject::speckle. (docs/stages/speckle.md, beyond the paper; OpenCV's filterSpeckles)
 DisparityMap reject_speckles(DisparityMap disparity, const SpeckleConfig& config, const Exec& exec);
 
 }  // namespace cairn

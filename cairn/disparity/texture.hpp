@@ -21,8 +21,8 @@ void fields(TextureConfig& c, V&& v) {
 
 /// Marks pixels without enough texture: the Moravec operator, the least over the shifts s = (1,0), (0,1),
 /// (1,1), (1,−1) of the mean over the window of (I(q) − I(q+s))², below the threshold → Reject::no_texture.
-/// Pairs of which either pixel lies outside the image do not count; no pair at all → no texture. (METHOD §2;
-/// paper, "Moravec operator")
+/// Pairs of which either pixel lies outside the image do not count; no pair at all → no texture.
+/// (docs/stages/texture.md; paper, "Moravec operator")
 Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -17,7 +17,7 @@ void fields(UniquenessConfig& c, V&& v) {
 }
 
 /// Marks pixels with "more than one suitable minimum": runner_up·(100 − ratio) < cost·100 →
-/// Reject::not_unique. No runner-up (kNoCost): unique. (METHOD §2; paper; OpenCV's rule)
+/// Reject::not_unique. No runner-up (kNoCost): unique. (docs/stages/uniqueness.md; paper; OpenCV's rule)
 Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -31,7 +31,8 @@ struct DisparityErrors {
 
 /// Compares two disparity maps of one size; NaN = a hole of ours, a pixel without truth. `excluded` (may be
 /// empty): pixels where it is not 0 are left out, e.g. those that the right camera does not see. `skip_left`:
-/// columns x < skip_left are left out (matchers that cannot fill them are compared without). (METHOD §8)
+/// columns x < skip_left are left out (matchers that cannot fill them are compared without).
+/// (docs/evaluation.md)
 DisparityErrors disparity_errors(View<const float> ours_px, View<const float> truth_px,
                                  View<const std::uint8_t> excluded, int skip_left);
 

@@ -63,7 +63,7 @@ struct ObjectErrors {
   int boundary_tolerance_px = 0;
 };
 
-/// Compares a label image with the truth of the same size. (METHOD §8; paper, Eq. (5))
+/// Compares a label image with the truth of the same size. (docs/evaluation.md; paper, Eq. (5))
 ObjectErrors object_errors(View<const ObjectId> ours, View<const TruthId> truth,
                            const ObjectErrorConfig& config);
 

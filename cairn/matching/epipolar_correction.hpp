@@ -45,7 +45,8 @@ struct EpipolarOffset {
 /// pixels there and in the full images (Lucas & Kanade 1981; Baker & Matthews 2004). A line is laid through
 /// their rows by medians (Theil 1950, Sen 1968), then by least squares through those that agree with it. The
 /// roll is kept only where it is certain and matters; an offset that moves no column by kEpipolarLeastRows is
-/// `aligned`. Too few points, or less than half of them in agreement: no offset. (METHOD §1, "Vibration")
+/// `aligned`. Too few points, or less than half of them in agreement: no offset.
+/// (docs/stages/epipolar_correction.md)
 EpipolarOffset find_epipolar_offset(const StereoPair& pair, const MatchConfig& range,
                                     const EpipolarCorrectionConfig& config, const Exec& exec);
 

@@ -95,7 +95,7 @@ struct Matches {
 /// −1, 1, −2 …).
 ///
 /// The time per pixel and disparity depends neither on the window's size nor on what the picture shows.
-/// (METHOD §1; paper, "Disparity map estimation")
+/// (docs/stages/matching.md; paper, "Disparity map estimation")
 /// With method=semi_global: match_semi_global() with its default penalties instead.
 Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exec);
 

@@ -14,7 +14,8 @@ namespace cairn {
 Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec);
 
 /// Each pixel less the mean of the window centred on it (clipped at the image's border), in 1/16 grey levels;
-/// the mean is rounded to the nearest step, halves up. The images that zsad compares. (METHOD §1)
+/// the mean is rounded to the nearest step, halves up. The images that zsad compares.
+/// (docs/stages/matching.md)
 Image<std::int16_t> remove_mean(View<const Gray> image, int window_size, const Exec& exec);
 
 }  // namespace cairn

@@ -33,7 +33,7 @@ void fields(SubpixelConfig& c, V&& v) {
 ///   equiangular  best + (a − c) / (2·(max(a, c) − m))      (Shimizu & Okutomi 2001)
 /// The integer winner where a neighbour is
 /// missing, where the three are flat, or where refinement is off or Matches holds no neighbours. NaN where
-/// there is no match. (METHOD §1)
+/// there is no match. (docs/stages/subpixel.md)
 Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config, const Exec& exec);
 
 }  // namespace cairn

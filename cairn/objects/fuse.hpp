@@ -36,7 +36,7 @@ struct Fusion {
 /// Equation (4): each intensity region goes to the disparity region with the greatest overlap (ties: the one
 /// of higher mean disparity, then the lower id); all intensity regions of one disparity region form one fused
 /// region. Fused regions are numbered by their disparity region; disparity regions that no intensity region
-/// chose are left out. (METHOD §6; paper, "Region fusion")
+/// chose are left out. (docs/stages/fusion.md; paper, "Region fusion")
 Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity, const Exec& exec);
 
 }  // namespace cairn

@@ -49,7 +49,7 @@ void fields(GroupConfig& c, V&& v) {
 /// facet that shows no evidence of its own and mostly borders on ground may be what is seen between two
 /// objects, and connects nothing. Then groups below min_area join the figure neighbour with the longest,
 /// smoothest common border, facets without disparity follow their weakest border, and what a nearer object
-/// parts is put together again. (METHOD §5 c–g and "regions modelled as planes", beyond the paper)
+/// parts is put together again. (docs/stages/group.md, beyond the paper)
 ///
 /// Result: region 0 is the background (is_floor), the others are groups. Means in px.
 Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,

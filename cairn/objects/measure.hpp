@@ -50,7 +50,7 @@ struct Objects {
 
 /// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image
 /// or touches three of its borders (background); what is smaller than min_area; what has no valid pixel; what
-/// would have a confidence below min_confidence (beyond the paper). (METHOD §7)
+/// would have a confidence below min_confidence (beyond the paper).
 ///
 /// Confidence is a logistic function of the logarithm of the mask's share of the image, of edge_share and of
 /// cut_share; below a valid_share of one half it falls with that, too: what has no disparity is a guess. Its

@@ -52,7 +52,7 @@ struct Config {
   GroupConfig group;
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.2F};
 
-  /// Only what the paper describes. (METHOD, "Two presets")
+  /// Only what the paper describes.
   static Config paper();
   /// The presets by name: "default", "paper". Throws Error naming the known ones.
   static Config preset(std::string_view name);

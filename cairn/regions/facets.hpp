@@ -73,7 +73,7 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
 /// contrast_share·(the edge strength that one pixel in fifty exceeds);
 /// borders are recomputed and it is done again until nothing fuses, sixteen times at most. Unlike a
 /// comparison of means this follows shading across a plain surface and stops at faint outlines. `noise`:
-/// noise_sigma(gray), where that is known. (METHOD §4, beyond the paper)
+/// noise_sigma(gray), where that is known. (docs/stages/facets.md, beyond the paper)
 Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
                       const Exec& exec, std::optional<float> noise = std::nullopt);
 

@@ -17,14 +17,14 @@ inline constexpr std::uint16_t kHoleGradient = UINT16_MAX;
 inline constexpr int kSteepest16 = 4095;
 
 /// Gradient magnitude of the Gaussian-smoothed grey image, 0 … 255, in grey levels from one side of a pixel
-/// to the other: gx = s(x+1, y) − s(x−1, y), gy likewise, sqrt(gx² + gy²) rounded and capped. (METHOD §4)
+/// to the other: gx = s(x+1, y) − s(x−1, y), gy likewise, sqrt(gx² + gy²) rounded and capped.
 /// Smoothing is in fixed point: weights round(256·g(i)) for |i| ≤ ⌈3σ⌉ (15 at most), g normalised to 1, the
 /// centre takes what is missing to 256; border replicated; s is rounded to 1/16 grey level. σ = 0: none.
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma, const Exec& exec);
 
 /// The same for edges between facets: central differences ((s(x+1) − s(x−1))/2), in 1/4 grey level, not
 /// capped; with colour (`rgb` not empty) the largest of the three channels' magnitudes, so that edges of
-/// equal grey count. (METHOD §4, beyond the paper)
+/// equal grey count. (beyond the paper)
 Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, float smoothing_sigma,
                                    const Exec& exec);
 
@@ -33,7 +33,7 @@ Image<std::int16_t> quantised(const DisparityMap& disparity, const Exec& exec);
 
 /// Gradient magnitude of a quantised disparity map in 1/16 px from one side of a pixel to the other: gx, gy
 /// as above, but a neighbour that is missing (a hole, or outside) counts as equal to the pixel itself; capped
-/// at kSteepest16. kHoleGradient in holes. (METHOD §5 a) Smoothing: the same weights over the valid pixels of
+/// at kSteepest16. kHoleGradient in holes. Smoothing: the same weights over the valid pixels of
 /// the window, divided by the sum of their weights and rounded to 1/16 px (halves up); holes stay holes.
 Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smoothing_sigma, const Exec& exec);
 

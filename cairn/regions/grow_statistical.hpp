@@ -21,7 +21,7 @@ struct GrowCriteria {
 bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbour,
               const GrowCriteria& criteria);
 
-/// Statistical region growing. (METHOD §4; paper, Eq. 1–3)
+/// Statistical region growing. (docs/stages/intensity.md; paper, Eq. 1–3)
 /// A pass visits the regions in raster order of the first pixel that they had when the pass began. The
 /// visited region goes through its neighbours in raster order of their first pixels and absorbs those that
 /// may_fuse() admits, statistics recomputed on each fusion; it does so again, neighbours that came with the

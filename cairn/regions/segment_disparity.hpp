@@ -30,7 +30,7 @@ void fields(DisparityConfig& c, V&& v) {
 /// Regions of like disparity, nearest first: gradient → watershed → build_graph → grow_near_to_far. Floor
 /// pixels
 /// (`floor` non-zero; may be empty) are one region of their own, Region::is_floor. Means in px.
-/// (METHOD §5; paper, "Disparity segmentation")
+/// (docs/stages/disparity.md; paper, "Disparity segmentation")
 Segmentation segment_disparity(const DisparityMap& disparity, View<const std::uint8_t> floor,
                                const DisparityConfig& config, const Exec& exec);
 

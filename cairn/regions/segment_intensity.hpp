@@ -27,8 +27,8 @@ void fields(IntensityConfig& c, V&& v) {
     "smaller regions fuse with the most similar neighbour", range(0.0F, 100.0F));
 }
 
-/// Regions of like intensity: gradient → watershed → build_graph → grow_statistical. (METHOD §4; paper,
-/// "Intensity segmentation")
+/// Regions of like intensity: gradient → watershed → build_graph → grow_statistical.
+/// (docs/stages/intensity.md; paper, "Intensity segmentation")
 Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& config, const Exec& exec);
 
 }  // namespace cairn

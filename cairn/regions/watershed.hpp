@@ -17,7 +17,7 @@ struct Basins {
 /// A pixel flows to its lowest neighbour if that is lower than itself (ties: the first in the order up, left,
 /// right, down). A plateau's pixels without a lower neighbour flow to the plateau neighbour whose
 /// breadth-first distance to the plateau's lower border is one less (ties: the same order); a plateau without
-/// lower border is one basin. (METHOD §4; paper [3])
+/// lower border is one basin. (docs/stages/intensity.md; paper [3])
 Basins watershed(View<const std::uint16_t> gradient, const Exec& exec);
 
 }  // namespace cairn

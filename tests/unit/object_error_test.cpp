@@ -262,7 +262,7 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheTwoMiddleValues) {
   EXPECT_TRUE(std::isnan(median({})));
 }
 
-// The paper's own table, from which it draws no mean: these are METHOD's "mean 19.5, median 11.6".
+// The paper's own table, from which it draws no mean: it is 19.5, the median 11.6.
 TEST(Median, OfThePapersTableIsAsReported) {
   const std::vector<double> errors{24.97, 5.04, 11.64, 7.36, 13.34, 7.92, 18.78, 74.74, 41.83, 4.11, 4.94};
   EXPECT_NEAR(median(errors), 11.6, 0.05);
