@@ -5,7 +5,7 @@
 // thread each, but where the name says two.
 #include <algorithm>
 #include <cairn/cairn.hpp>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cstdint>
 #include <memory>

@@ -18,21 +18,21 @@
 #include <cairn/disparity/flatness.hpp>          // reject_flat
 #include <cairn/disparity/texture.hpp>           // reject_textureless
 #include <cairn/disparity/disparity_map.hpp>     // combine, external_disparity
-#include <cairn/disparity/evidence.hpp>          // find_evidence
-#include <cairn/disparity/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
+#include <cairn/grouping/evidence.hpp>          // find_evidence
+#include <cairn/scene/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
 #include <cairn/disparity/speckle.hpp>           // reject_speckles
 #include <cairn/disparity/confidence.hpp>        // estimate_confidence
-#include <cairn/disparity/background.hpp>        // fit_background
-#include <cairn/regions/gradient.hpp>            // gradient
+#include <cairn/scene/background.hpp>        // fit_background
+#include <cairn/image/gradient.hpp>            // gradient
 #include <cairn/regions/watershed.hpp>           // watershed
 #include <cairn/regions/region_graph.hpp>        // build_graph, apply_merges
 #include <cairn/regions/grow_statistical.hpp>    // grow_statistical
 #include <cairn/regions/grow_near_to_far.hpp>    // grow_near_to_far
 #include <cairn/regions/segment_intensity.hpp>   // segment_intensity
 #include <cairn/regions/segment_disparity.hpp>   // segment_disparity
-#include <cairn/regions/facets.hpp>              // segment_facets
-#include <cairn/objects/figure.hpp>              // separate_figure
-#include <cairn/objects/group.hpp>               // group_facets
+#include <cairn/grouping/facets.hpp>              // segment_facets
+#include <cairn/grouping/figure.hpp>              // separate_figure
+#include <cairn/grouping/group.hpp>               // group_facets
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/pipeline/config.hpp>             // Config, presets, options

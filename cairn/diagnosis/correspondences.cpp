@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/diagnosis/correspondences.hpp>
-#include <cairn/matching/sparse_points.hpp>
+#include <cairn/image/sparse_points.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <optional>

@@ -8,8 +8,8 @@
 #include <cairn/core/target.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/matching/match.hpp>
-#include <cairn/regions/gradient.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>

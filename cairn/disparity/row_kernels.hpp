@@ -5,8 +5,8 @@
 #include <bit>
 #include <cairn/core/exec.hpp>
 #include <cairn/disparity/confidence.hpp>
-#include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/reject.hpp>
+#include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
 
 /// The seam to the instruction sets: what the checks of single pixels, find_evidence(), gradient(),
@@ -126,10 +126,10 @@ struct RowKernels {
   /// that smooth() made from single samples.
   void (*steepness)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
                     std::uint16_t* out);
-  /// The same of quantised disparities: see gradient() in regions/gradient.hpp.
+  /// The same of quantised disparities: see gradient() in image/gradient.hpp.
   void (*disparity_steepness)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
                               int width, std::uint16_t* out);
-  /// Disparities in 1/16 px: see quantised() in regions/gradient.hpp.
+  /// Disparities in 1/16 px: see quantised() in image/gradient.hpp.
   void (*quantise)(const float* disparity_px, int width, std::int16_t* out);
   /// |(1 −2 1; −2 4 −2; 1 −2 1)| of the samples 1 … width − 2.
   void (*noise)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down, int width,

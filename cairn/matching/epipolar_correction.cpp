@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/image/sparse_points.hpp>
 #include <cairn/matching/epipolar_correction.hpp>
-#include <cairn/matching/sparse_points.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/evidence.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/grouping/evidence.hpp>
+#include <cairn/grouping/ranks.hpp>
 #include <cairn/objects/measure.hpp>
-#include <cairn/objects/ranks.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cairn/regions/scratch.hpp>

@@ -2,26 +2,26 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/background.hpp>
 #include <cairn/disparity/confidence.hpp>
-#include <cairn/disparity/evidence.hpp>
 #include <cairn/disparity/flatness.hpp>
-#include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/disparity/speckle.hpp>
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
+#include <cairn/grouping/evidence.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/grouping/figure.hpp>
+#include <cairn/grouping/group.hpp>
 #include <cairn/matching/epipolar_correction.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/semi_global.hpp>
 #include <cairn/matching/subpixel.hpp>
-#include <cairn/objects/figure.hpp>
 #include <cairn/objects/fuse.hpp>
-#include <cairn/objects/group.hpp>
 #include <cairn/objects/measure.hpp>
-#include <cairn/regions/facets.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
+#include <cairn/scene/background.hpp>
+#include <cairn/scene/ground_plane.hpp>
 #include <string>
 #include <string_view>
 #include <vector>

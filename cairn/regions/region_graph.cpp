@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cairn/regions/scratch.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/segment_disparity.hpp>

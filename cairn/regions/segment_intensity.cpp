@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/regions/gradient.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/regions/grow_statistical.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/segment_intensity.hpp>

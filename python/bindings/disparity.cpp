@@ -4,12 +4,12 @@
 
 #include <cairn/core/error.hpp>
 #include <cairn/disparity/confidence.hpp>
-#include <cairn/disparity/evidence.hpp>
 #include <cairn/disparity/flatness.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/disparity/speckle.hpp>
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
+#include <cairn/grouping/evidence.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/disparity/background.hpp>
-#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/scene/background.hpp>
+#include <cairn/scene/ground_plane.hpp>
 #include <string>
 
 #include "bindings.hpp"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <cairn/objects/figure.hpp>
+#include <cairn/grouping/figure.hpp>
+#include <cairn/grouping/group.hpp>
 #include <cairn/objects/fuse.hpp>
-#include <cairn/objects/group.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
-#include <cairn/regions/facets.hpp>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/grow_statistical.hpp>
 #include <cairn/regions/segment_disparity.hpp>

@@ -9,8 +9,8 @@
 
 #include <bit>
 #include <cairn/core/target.hpp>
-#include <cairn/disparity/background.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/scene/background.hpp>
 #include <cmath>
 #include <limits>
 

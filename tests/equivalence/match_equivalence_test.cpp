@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/target.hpp>
+#include <cairn/image/prefilter.hpp>
 #include <cairn/matching/match.hpp>
-#include <cairn/matching/prefilter.hpp>
 #include <cairn/matching/subpixel.hpp>
 #include <random>
 #include <string>

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/image/gradient.hpp>
 #include <cairn/objects/measure.hpp>
-#include <cairn/regions/gradient.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
 #include <cairn/regions/watershed.hpp>

@@ -4,11 +4,11 @@
 
 #include <cairn/disparity/disparity_map.hpp>
 #include <cairn/disparity/flatness.hpp>
-#include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/disparity/speckle.hpp>
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
+#include <cairn/scene/ground_plane.hpp>
 #include <vector>
 
 /// The slow twins of disparity/: what the fast ones must give, bit for bit. One pixel at a time, and each

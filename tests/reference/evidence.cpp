@@ -63,7 +63,7 @@ std::optional<int> next_seen(View<const float> evidence_px, int x, int y, int st
   return std::nullopt;
 }
 
-// The numbers of cairn/objects/figure.cpp.
+// The numbers of cairn/grouping/figure.cpp.
 constexpr int kSeen = 20;
 constexpr int kConcluded = 10;
 constexpr int kCutOff = 5;

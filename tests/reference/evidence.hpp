@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/evidence.hpp>
-#include <cairn/objects/figure.hpp>
-#include <cairn/regions/facets.hpp>
-#include <cairn/regions/gradient.hpp>
-#include <cairn/regions/minimum_cut.hpp>
+#include <cairn/grouping/evidence.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/grouping/figure.hpp>
+#include <cairn/grouping/minimum_cut.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cstdint>
 #include <vector>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/regions/facets.hpp>
+#include <cairn/grouping/facets.hpp>
 
 namespace cairn::reference {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/objects/group.hpp>
+#include <cairn/grouping/group.hpp>
 
 namespace cairn::reference {
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/image/gradient.hpp>
 #include <cairn/objects/fuse.hpp>
-#include <cairn/regions/gradient.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/disparity/background.hpp>
+#include <cairn/scene/background.hpp>
 #include <cmath>
 #include <limits>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/disparity/evidence.hpp>
+#include <cairn/grouping/evidence.hpp>
 #include <limits>
 
 #include "support/grids.hpp"

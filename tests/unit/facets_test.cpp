@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/regions/facets.hpp>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cmath>
 
 #include "support/grids.hpp"

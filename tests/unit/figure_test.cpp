@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cairn/objects/figure.hpp>
+#include <cairn/grouping/figure.hpp>
 #include <limits>
 
 namespace cairn {

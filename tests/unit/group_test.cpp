@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cairn/objects/group.hpp>
+#include <cairn/grouping/group.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 #include <cairn/core/error.hpp>
-#include <cairn/disparity/ground_plane.hpp>
-#include <cairn/disparity/homography.hpp>
+#include <cairn/scene/ground_plane.hpp>
+#include <cairn/scene/homography.hpp>
 
 #include <limits>
 #include <string>

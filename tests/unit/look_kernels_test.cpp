@@ -6,9 +6,9 @@
 #include <array>
 #include <bit>
 #include <cairn/core/target.hpp>
-#include <cairn/disparity/background.hpp>
-#include <cairn/objects/look_kernels.hpp>
-#include <cairn/regions/facets.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/grouping/look_kernels.hpp>
+#include <cairn/scene/background.hpp>
 #include <cmath>
 #include <limits>
 #include <random>

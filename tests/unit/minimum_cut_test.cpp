@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/regions/minimum_cut.hpp>
+#include <cairn/grouping/minimum_cut.hpp>
 #include <limits>
 #include <random>
 

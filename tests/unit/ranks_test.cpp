@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/target.hpp>
-#include <cairn/objects/ranks.hpp>
+#include <cairn/grouping/ranks.hpp>
 #include <limits>
 #include <random>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/objects/like_facets.hpp>
+#include <cairn/grouping/like_facets.hpp>
 #include <numeric>
 
 namespace cairn {

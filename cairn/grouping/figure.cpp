@@ -4,11 +4,11 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
-#include <cairn/disparity/evidence.hpp>
-#include <cairn/objects/colour_model.hpp>
-#include <cairn/objects/figure.hpp>
-#include <cairn/objects/like_facets.hpp>
-#include <cairn/regions/minimum_cut.hpp>
+#include <cairn/grouping/colour_model.hpp>
+#include <cairn/grouping/evidence.hpp>
+#include <cairn/grouping/figure.hpp>
+#include <cairn/grouping/like_facets.hpp>
+#include <cairn/grouping/minimum_cut.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cmath>

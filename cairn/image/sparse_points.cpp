@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/matching/sparse_points.hpp>
+#include <cairn/image/sparse_points.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

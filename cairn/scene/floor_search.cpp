@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/floor_search.hpp>
-#include <cairn/disparity/plane_fit.hpp>
 #include <cairn/disparity/row_kernels.hpp>
 #include <cairn/regions/label_kernels.hpp>
+#include <cairn/scene/floor_search.hpp>
+#include <cairn/scene/plane_fit.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/disparity/homography.hpp>
-#include <cairn/disparity/plane_fit.hpp>
+#include <cairn/scene/homography.hpp>
+#include <cairn/scene/plane_fit.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -3,11 +3,11 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/floor_search.hpp>
-#include <cairn/disparity/ground_plane.hpp>
-#include <cairn/disparity/homography.hpp>
-#include <cairn/disparity/plane_fit.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/scene/floor_search.hpp>
+#include <cairn/scene/ground_plane.hpp>
+#include <cairn/scene/homography.hpp>
+#include <cairn/scene/plane_fit.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/ground_plane.hpp>
+#include <cairn/scene/ground_plane.hpp>
 #include <cmath>
 #include <optional>
 

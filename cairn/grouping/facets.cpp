@@ -4,9 +4,9 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
-#include <cairn/disparity/evidence.hpp>
-#include <cairn/regions/facets.hpp>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/grouping/evidence.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cairn/regions/scratch.hpp>

@@ -6,7 +6,7 @@
 #include <array>
 #include <bit>
 #include <cairn/core/target.hpp>
-#include <cairn/objects/look_kernels.hpp>
+#include <cairn/grouping/look_kernels.hpp>
 #include <cstdint>
 #include <cstring>
 
@@ -19,14 +19,14 @@
 #if CAIRN_WITH_HWY
 #include <cairn/core/highway_targets.hpp>
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "cairn/objects/look_kernels.cpp"
+#define HWY_TARGET_INCLUDE "cairn/grouping/look_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
 #define CAIRN_KERNEL_TARGET HWY_NAMESPACE
 HWY_BEFORE_NAMESPACE();
-#include <cairn/objects/look_kernels-inl.hpp>
+#include <cairn/grouping/look_kernels-inl.hpp>
 HWY_AFTER_NAMESPACE();
 #undef CAIRN_KERNEL_TARGET
 #endif
@@ -34,7 +34,7 @@ HWY_AFTER_NAMESPACE();
 
 #if !CAIRN_WITH_HWY || HWY_ONCE
 #define CAIRN_KERNEL_TARGET plain_kernels
-#include <cairn/objects/look_kernels-inl.hpp>
+#include <cairn/grouping/look_kernels-inl.hpp>
 
 #include <cairn/core/of_target.hpp>
 

@@ -4,8 +4,8 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
-#include <cairn/disparity/background.hpp>
-#include <cairn/regions/facets.hpp>
+#include <cairn/grouping/facets.hpp>
+#include <cairn/scene/background.hpp>
 #include <cstdint>
 #include <optional>
 #include <vector>

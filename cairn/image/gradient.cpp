@@ -5,7 +5,7 @@
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/row_kernels.hpp>
-#include <cairn/regions/gradient.hpp>
+#include <cairn/image/gradient.hpp>
 #include <cmath>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
-#include <cairn/objects/group.hpp>
-#include <cairn/objects/look_kernels.hpp>
+#include <cairn/grouping/group.hpp>
+#include <cairn/grouping/look_kernels.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cairn/regions/scratch.hpp>

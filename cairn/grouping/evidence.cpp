@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/evidence.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/grouping/evidence.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cairn/core/exec.hpp>
-#include <cairn/objects/look_kernels.hpp>
-#include <cairn/objects/looks.hpp>
+#include <cairn/grouping/look_kernels.hpp>
+#include <cairn/grouping/looks.hpp>
 #include <cstdint>
 #include <memory_resource>
 #include <vector>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/ids.hpp>
-#include <cairn/regions/minimum_cut.hpp>
+#include <cairn/grouping/minimum_cut.hpp>
 #include <numeric>
 
 namespace cairn {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/image/prefilter.hpp>
 #include <cairn/matching/kernels.hpp>
 #include <cairn/matching/pixel_math.hpp>
-#include <cairn/matching/prefilter.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

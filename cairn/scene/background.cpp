@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/pool_memory.hpp>
-#include <cairn/disparity/background.hpp>
 #include <cairn/disparity/row_kernels.hpp>
+#include <cairn/scene/background.hpp>
 #include <cmath>
 #include <cstdint>
 #include <memory_resource>

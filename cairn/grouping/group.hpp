@@ -4,7 +4,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
-#include <cairn/objects/figure.hpp>
+#include <cairn/grouping/figure.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <optional>
 

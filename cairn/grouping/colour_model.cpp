@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/objects/colour_model.hpp>
+#include <cairn/grouping/colour_model.hpp>
 #include <cmath>
 
 namespace cairn {

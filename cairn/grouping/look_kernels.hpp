@@ -4,8 +4,8 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
-#include <cairn/disparity/ground_plane.hpp>
 #include <cairn/disparity/reject.hpp>
+#include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
 
 /// The seam to the instruction sets: how separate_figure() compares facets with each other and with the
