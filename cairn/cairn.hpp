@@ -23,7 +23,8 @@
 #include <cairn/disparity/speckle.hpp>           // reject_speckles
 #include <cairn/disparity/confidence.hpp>        // estimate_confidence
 #include <cairn/scene/background.hpp>        // fit_background
-#include <cairn/image/gradient.hpp>            // gradient
+#include <cairn/image/gradient.hpp>            // gradient, edge_strength
+#include <cairn/disparity/gradient.hpp>        // quantised, gradient
 #include <cairn/regions/watershed.hpp>           // watershed
 #include <cairn/regions/region_graph.hpp>        // build_graph, apply_merges
 #include <cairn/regions/grow_statistical.hpp>    // grow_statistical

@@ -16,13 +16,14 @@ endfunction()
 
 # The rest are the library's own business: they may change or go with any version.
 set(private_headers
-  core/each_index core/highway_targets core/nearest core/observed core/of_target core/pool_memory
-  diagnosis/robust_fit scene/floor_search scene/homography scene/plane_fit disparity/row_kernels
-  matching/byte_lanes_plain matching/kernels matching/lanes_plain matching/pixel_math image/prefilter matching/scratch
-  matching/semi_global_kernels image/sparse_points
-  grouping/colour_model grouping/like_facets grouping/look_kernels grouping/looks grouping/ranks
-  regions/growing_regions regions/label_kernels regions/label_kernels_plain grouping/minimum_cut regions/percent regions/runs
-  regions/scratch regions/split_floor
+  core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory   core/scratch
+  diagnosis/robust_fit scene/floor_search scene/homography scene/plane_fit
+  matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
+  image/gaussian image/sparse_points image/texture
+  grouping/colour_model grouping/like_facets grouping/looks grouping/ranks
+  regions/growing_regions regions/label_kernels_plain grouping/minimum_cut regions/percent regions/runs
+  regions/split_floor
+  [a-z]+/[a-z_]+_kernels
   io/calibration_forms io/html_template io/raster io/read_file)
 list(JOIN private_headers "|" private_headers)
 

@@ -5,11 +5,12 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
-#include <cairn/matching/kernels.hpp>
 #include <string>
 #include <utility>
 
 #if CAIRN_WITH_HWY
+#include <cairn/core/highway_targets.hpp>
+// After what tells it which targets there are.
 #include <hwy/targets.h>
 #endif
 
@@ -22,6 +23,18 @@ constexpr std::array kNames{std::pair{Target::best, std::string_view("best")},
                             std::pair{Target::avx2, std::string_view("avx2")},
                             std::pair{Target::avx512, std::string_view("avx512")},
                             std::pair{Target::neon, std::string_view("neon")}};
+
+/// Whether the kernels are compiled for it: see each_target-inl.hpp.
+constexpr bool is_compiled(Target target) {
+  if (target == Target::scalar) return true;
+#if CAIRN_WITH_HWY
+  if (target == Target::sse4) return (HWY_TARGETS & HWY_SSE4) != 0;
+  if (target == Target::avx2) return (HWY_TARGETS & HWY_AVX2) != 0;
+  if (target == Target::avx512) return (HWY_TARGETS & HWY_AVX3) != 0;
+  if (target == Target::neon) return (HWY_TARGETS & HWY_NEON) != 0;
+#endif
+  return false;
+}
 
 bool runs_here(Target target) {
   if (target == Target::scalar) return true;
@@ -48,7 +61,7 @@ bool runs_here(Target target) {
 std::vector<Target> compiled_targets() {
   std::vector<Target> targets;
   for (const auto& [target, unused] : kNames) {
-    if (target != Target::best && kernels::match_kernels(target) != nullptr) targets.push_back(target);
+    if (is_compiled(target)) targets.push_back(target);
   }
   return targets;
 }

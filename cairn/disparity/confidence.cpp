@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/confidence.hpp>
-#include <cairn/disparity/row_kernels.hpp>
+#include <cairn/disparity/confidence_kernels.hpp>
 #include <cassert>
 #include <vector>
 
@@ -20,7 +20,7 @@ static_assert(kConfidenceWindow * kConfidenceWindow < 256);
 
 /// The last row is its own neighbour below: no jump.
 Image<Counts> mark(View<const float> disparity_px, const Exec& exec) {
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::ConfidenceKernels& run = kernels::confidence_kernels(exec);
   const int height = disparity_px.height();
   Image<Counts> marks(disparity_px.size(), exec.pool);
   parallel_for(exec, height, kGrain, [&](int first, int last) {
@@ -40,7 +40,7 @@ int inside(int p, int length) {
 /// Counts around each pixel, for rows from the top down.
 class WindowCounts {
  public:
-  WindowCounts(View<const Counts> marks, int first_row, const kernels::RowKernels& run)
+  WindowCounts(View<const Counts> marks, int first_row, const kernels::ConfidenceKernels& run)
       : marks_(marks),
         row_(first_row),
         run_(run),
@@ -63,7 +63,7 @@ class WindowCounts {
   [[nodiscard]] const float* inverse_area() const { return inverse_area_.data(); }
 
  private:
-  void update(int y, decltype(kernels::RowKernels::add_counts) with) {
+  void update(int y, decltype(kernels::ConfidenceKernels::add_counts) with) {
     if (y >= 0 && y < marks_.height()) with(marks_.row(y), marks_.width(), columns_.data() + kRadius);
   }
 
@@ -78,7 +78,7 @@ class WindowCounts {
   View<const Counts> marks_;
   int row_;
   int rows_ = 0;  // of the window, inside the image
-  const kernels::RowKernels& run_;
+  const kernels::ConfidenceKernels& run_;
   std::vector<Counts> columns_;  // sums of the window's rows; kRadius zeros on either side
   std::vector<Counts> blocks_;   // working memory
   std::vector<Counts> around_;
@@ -94,7 +94,7 @@ Image<float> estimate_confidence(const Matches& matches, const DisparityMap& dis
   const View<const float> disparity_px = disparity.disparity_px;
   const Size size = disparity_px.size();
   assert(matches.runner_up.size() == size && matches.mean_cost.size() == size);
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::ConfidenceKernels& run = kernels::confidence_kernels(exec);
   const Image<Counts> marks = mark(disparity_px, exec);
   Image<float> confidence(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {

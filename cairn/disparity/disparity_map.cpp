@@ -3,7 +3,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/disparity_map.hpp>
-#include <cairn/disparity/row_kernels.hpp>
+#include <cairn/disparity/disparity_map_kernels.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -41,7 +41,7 @@ DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const R
   DisparityMap map{std::move(refined_px), {}};
   const Size size = map.disparity_px.size();
   map.reject = Image<Reject>(size, exec.pool);
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::DisparityMapKernels& run = kernels::disparity_map_kernels(exec);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       float* const d = map.disparity_px.row(y);

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/disparity/left_right.hpp>
-#include <cairn/disparity/row_kernels.hpp>
-#include <cairn/matching/scratch.hpp>
+#include <cairn/disparity/left_right_kernels.hpp>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -85,11 +85,11 @@ Image<Reject> compare_with_votes_across_rows(const Matches& matches, int max_dif
 Image<Reject> compare_with_votes(const Matches& matches, int max_diff, const Exec& exec) {
   if (!matches.row_offset.empty()) return compare_with_votes_across_rows(matches, max_diff, exec);
   const Size size = matches.best.size();
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::LeftRightKernels& run = kernels::left_right_kernels(exec);
   Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
-    const kernels::Scratch<std::int32_t> partners(size.width);
-    const kernels::Scratch<Claim> claims(size.width + 1);
+    Scratch<std::int32_t> partners(size.width);
+    Scratch<Claim> claims(size.width + 1);
     for (int y = first; y < last; ++y) {
       run.compare_with_votes(matches.best.row(y), matches.cost.row(y), size.width, max_diff, partners.data(),
                              claims.data(), verdict.row(y));
@@ -101,12 +101,12 @@ Image<Reject> compare_with_votes(const Matches& matches, int max_diff, const Exe
 Image<Reject> compare_with_right(const Matches& matches, int max_diff, const Exec& exec) {
   assert(matches.best_right.size() == matches.best.size());
   const Size size = matches.best.size();
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::LeftRightKernels& run = kernels::left_right_kernels(exec);
   const auto right = [&](int x, int right_y) { return matches.best_right(x, right_y); };
   Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
-    const kernels::Scratch<std::int32_t> partners(size.width);
-    const kernels::Scratch<std::int32_t> back(size.width);
+    Scratch<std::int32_t> partners(size.width);
+    Scratch<std::int32_t> back(size.width);
     for (int y = first; y < last; ++y) {
       if (matches.row_offset.empty()) {
         run.compare_with_right(matches.best.row(y), matches.best_right.row(y), size.width, max_diff,

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/disjoint_sets.hpp>
+#include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/speckle.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace cairn {
@@ -17,19 +18,18 @@ constexpr int kGrain = 64;  // rows
 struct Run {
   int begin;
   int end;
-  // Of the first run of an island: −(pixels of the island). Of any other: a run that is nearer to the first.
-  int parent;
 };
 
-/// The runs of an image, row by row, as a forest: each tree is one island.
+/// The runs of an image, row by row, and which of them make an island.
 class Islands {
  public:
   Islands(View<const float> disparity_px, float range, const Exec& exec)
       : disparity_(disparity_px),
         range_(range),
-        row_begin_(static_cast<std::size_t>(disparity_px.height()) + 1) {
-    count_runs(exec);
-    runs_.resize(static_cast<std::size_t>(row_begin_.back()));
+        row_begin_(count_runs(exec)),
+        runs_(static_cast<std::size_t>(row_begin_.back())),
+        sets_(runs_.size()),
+        island_(runs_.size()) {
     std::vector<char> starts_block(static_cast<std::size_t>(disparity_px.height()), 0);
     parallel_for(exec, disparity_px.height(), kGrain, [&](int first, int last) {
       starts_block[static_cast<std::size_t>(first)] = 1;
@@ -42,15 +42,14 @@ class Islands {
     for (int y = 1; y < disparity_px.height(); ++y) {
       if (starts_block[static_cast<std::size_t>(y)] != 0) join_with_row_above(y);
     }
+    measure();
   }
 
   /// Calls visit(begin, end) for each run of row y that belongs to an island of at most `size` pixels.
   template <class Visit>
   void for_each_small(int y, int size, Visit visit) const {
     for (int i = row_begin(y); i < row_begin(y + 1); ++i) {
-      int root = i;
-      while (run(root).parent >= 0) root = run(root).parent;
-      if (-run(root).parent <= size) visit(run(i).begin, run(i).end);
+      if (pixels_[slot(island_[slot(i)])] <= size) visit(run(i).begin, run(i).end);
     }
   }
 
@@ -62,7 +61,9 @@ class Islands {
   [[nodiscard]] Run& run(int i) { return runs_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const Run& run(int i) const { return runs_[static_cast<std::size_t>(i)]; }
 
-  void count_runs(const Exec& exec) {
+  /// How many runs begin above each row, and above the end.
+  [[nodiscard]] std::vector<int> count_runs(const Exec& exec) const {
+    std::vector<int> begin(static_cast<std::size_t>(disparity_.height()) + 1);
     parallel_for(exec, disparity_.height(), kGrain, [&](int first, int last) {
       for (int y = first; y < last; ++y) {
         const float* const d = disparity_.row(y);
@@ -70,10 +71,11 @@ class Islands {
         for (int x = 1; x < disparity_.width(); ++x) {
           count += static_cast<int>(d[x] == d[x]) & static_cast<int>(!linked(d[x], d[x - 1]));
         }
-        row_begin_[static_cast<std::size_t>(y) + 1] = count;
+        begin[slot(y) + 1] = count;
       }
     });
-    for (std::size_t y = 1; y < row_begin_.size(); ++y) row_begin_[y] += row_begin_[y - 1];
+    for (std::size_t y = 1; y < begin.size(); ++y) begin[y] += begin[y - 1];
+    return begin;
   }
 
   void find_runs(int y) {
@@ -87,7 +89,7 @@ class Islands {
       }
       const int begin = x++;
       while (x < width && linked(d[x], d[x - 1])) ++x;
-      run(i++) = {begin, x, begin - x};
+      run(i++) = {begin, x};
     }
   }
 
@@ -100,7 +102,7 @@ class Islands {
       const int end = std::min(run(i).end, run(j).end);
       for (int x = std::max(run(i).begin, run(j).begin); x < end; ++x) {
         if (!linked(above[x], here[x])) continue;
-        join(i, j);
+        sets_.unite(i, j);
         break;  // once is enough for two runs
       }
       if (run(i).end == end) {
@@ -111,28 +113,18 @@ class Islands {
     }
   }
 
-  int root(int i) {
-    while (run(i).parent >= 0) {
-      const int parent = run(i).parent;
-      if (run(parent).parent >= 0) run(i).parent = run(parent).parent;
-      i = parent;
-    }
-    return i;
-  }
-
-  void join(int i, int j) {
-    int first = root(i);
-    int second = root(j);
-    if (first == second) return;
-    if (second < first) std::swap(first, second);
-    run(first).parent += run(second).parent;
-    run(second).parent = first;
+  void measure() {
+    pixels_.resize(slot(sets_.number(island_.data())));
+    for (std::size_t i = 0; i < runs_.size(); ++i) pixels_[slot(island_[i])] += runs_[i].end - runs_[i].begin;
   }
 
   View<const float> disparity_;
   float range_;
   std::vector<int> row_begin_;
   std::vector<Run> runs_;
+  DisjointSets sets_;                 // of runs: the islands
+  std::vector<std::int32_t> island_;  // of each run
+  std::vector<int> pixels_;           // of each island
 };
 
 }  // namespace

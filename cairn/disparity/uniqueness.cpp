@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/disparity/uniqueness.hpp>
+#include <cairn/disparity/uniqueness_kernels.hpp>
 #include <cassert>
 
 namespace cairn {
@@ -11,7 +11,7 @@ Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& c
   const Size size = matches.best.size();
   if (config.ratio < 0) return Image<Reject>(size, Reject::none, exec.pool);
   assert(matches.runner_up.size() == size && matches.cost.size() == size);
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::UniquenessKernels& run = kernels::uniqueness_kernels(exec);
   const float share = 100.0F - config.ratio;
   Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, 64, [&](int first, int last) {

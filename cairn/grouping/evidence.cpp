@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/grouping/evidence.hpp>
+#include <cairn/grouping/evidence_kernels.hpp>
+#include <cairn/image/noise_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -20,7 +21,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// The image smoothed by (1 6 1)/8 both ways, in 1/64 grey level: enough to tell an edge from single-pixel
 /// noise.
-Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::RowKernels& run,
+Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::EvidenceKernels& run,
                                      const Exec& exec) {
   const int height = image.height();
   Image<std::int16_t> result(image.size(), exec.pool);
@@ -37,7 +38,7 @@ Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::RowK
 /// The disparities of textured pixels, NaN elsewhere. NaN frame it, so that no neighbour needs a bounds
 /// check: pixel (x, y) of the picture stands at (x + kReach, y + kReach).
 Image<float> textured(View<const Gray> left, const DisparityMap& disparity, float least_gradient,
-                      const kernels::RowKernels& run, const Exec& exec) {
+                      const kernels::EvidenceKernels& run, const Exec& exec) {
   const Image<std::int16_t> smooth = lightly_smoothed(left, run, exec);
   const int width = left.width();
   const int height = left.height();
@@ -61,7 +62,7 @@ Image<float> textured(View<const Gray> left, const DisparityMap& disparity, floa
 using Responses = std::array<std::int64_t, kGreatestResponse + 1>;
 
 Responses responses(View<const Gray> image, int first_row, int last_row, const Exec& exec) {
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::NoiseKernels& run = kernels::noise_kernels(exec);
   // Two counters for each response: neighbours often respond alike, and one would wait for the other.
   std::array<Responses, 2> counts{};
   std::vector<std::uint16_t> response(static_cast<std::size_t>(image.width()));
@@ -111,7 +112,7 @@ float noise_sigma(View<const Gray> image, const Exec& exec) {
 Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, const EvidenceConfig& config,
                            const Exec& exec, std::optional<float> noise) {
   const Size size = left.size();
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::EvidenceKernels& run = kernels::evidence_kernels(exec);
   const float least_gradient =
       config.noise_factor * (noise ? *noise : noise_sigma(left, exec)) + config.gradient_min;
   const Image<float> candidates = textured(left, disparity, least_gradient, run, exec);

@@ -2,14 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/disjoint_sets.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/grouping/evidence.hpp>
 #include <cairn/grouping/facets.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <numeric>
 #include <tuple>
@@ -24,43 +25,6 @@ constexpr int kRounds = 16;
 std::ptrdiff_t signed_slot(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
 }
-
-/// Disjoint sets; the smallest number is the root.
-class Sets {
- public:
-  explicit Sets(std::size_t count, const Pool& pool = {}) : pool_(pool), parent_(count, pool) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  std::int32_t root(std::int32_t i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-  void unite(std::int32_t a, std::int32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-  [[nodiscard]] bool is_root(std::int32_t i) const { return parent_[i] == i; }
-  /// Numbers the sets in the order of their roots: each element's set.
-  [[nodiscard]] Scratch<std::int32_t> numbers() {
-    Scratch<std::int32_t> number(parent_.size(), pool_);
-    count_ = 0;
-    // A parent is smaller than its children and has its number already.
-    for (std::ptrdiff_t i = 0; i < signed_slot(parent_.size()); ++i)
-      number[i] = parent_[i] == i ? count_++ : number[parent_[i]];
-    return number;
-  }
-  /// How many sets numbers() has found.
-  [[nodiscard]] std::int32_t count() const { return count_; }
-
- private:
-  Pool pool_;
-  Scratch<std::int32_t> parent_;
-  std::int32_t count_ = 0;
-};
 
 /// Part of a border. It hangs in the list of its larger region `b`, which the list knows.
 struct Part {
@@ -300,13 +264,13 @@ class Fusing {
         facets_(count_, exec.pool),
         borders_(Contacts(basins.labels, edges, count_, exec).borders(exec)) {
     std::iota(facets_.begin(), facets_.end(), 0);
-    Sets fused(count_, exec.pool);
+    DisjointSets fused(count_, exec.pool);
     if (!unite_across_weakest(borders_, count_, fused)) return;
     renumber(fused);
     // Few are left that anything will happen to.
     Scratch<std::int32_t> all(count_, exec.pool);
     std::iota(all.begin(), all.end(), 0);
-    Sets later(count_, exec.pool);
+    DisjointSets later(count_, exec.pool);
     fuse_on(restless(all, borders_, limit, exec), later);
     renumber(later);
   }
@@ -321,7 +285,7 @@ class Fusing {
 
  private:
   /// False where none of the `count` regions has a weak one.
-  bool unite_across_weakest(const ScratchList<Border>& borders, std::size_t count, Sets& sets) const {
+  bool unite_across_weakest(const ScratchList<Border>& borders, std::size_t count, DisjointSets& sets) const {
     bool any = false;
     for (const std::int32_t i : weakest_borders(borders, count, limit_, exec_)) {
       if (i < 0) continue;
@@ -332,12 +296,12 @@ class Fusing {
   }
 
   /// All rounds but the first. Sets get numbers anew each time so that all stays small; their order is kept.
-  void fuse_on(Some some, Sets& all) const {
+  void fuse_on(Some some, DisjointSets& all) const {
     for (int round = 1; round < kRounds; ++round) {
-      Sets fused(some.regions.size(), exec_.pool);
+      DisjointSets fused(some.regions.size(), exec_.pool);
       if (!unite_across_weakest(some.borders, some.regions.size(), fused)) return;
-      const Scratch<std::int32_t> numbers = fused.numbers();
-      const auto count = slot(fused.count());
+      Scratch<std::int32_t> numbers(fused.size(), exec_.pool);
+      const auto count = slot(fused.number(numbers.data()));
       Scratch<std::int32_t> roots(count, exec_.pool);
       for (std::int32_t i = 0; slot(i) < numbers.size(); ++i) {
         if (fused.is_root(i)) {
@@ -350,10 +314,11 @@ class Fusing {
     }
   }
 
-  void renumber(Sets& fused) {
-    const Scratch<std::int32_t> numbers = fused.numbers();
-    if (slot(fused.count()) == count_) return;
-    count_ = slot(fused.count());
+  void renumber(const DisjointSets& fused) {
+    Scratch<std::int32_t> numbers(fused.size(), exec_.pool);
+    const auto count = slot(fused.number(numbers.data()));
+    if (count == count_) return;
+    count_ = count;
     borders_ = moved(borders_, numbers, count_, exec_);
     for (std::int32_t& facet : facets_) facet = numbers[facet];
   }
@@ -482,7 +447,7 @@ std::vector<std::int32_t> flooded(std::vector<std::int32_t> labels, const std::v
   std::sort(order.begin(), order.end(), [](const Channel& p, const Channel& q) {
     return std::tie(p.edge, p.border) < std::tie(q.edge, q.border);
   });
-  Sets sets(labels.size());
+  DisjointSets sets(labels.size());
   for (const auto& [edge, i] : order) {
     const std::int32_t p = sets.root(borders[slot(i)].a);
     const std::int32_t q = sets.root(borders[slot(i)].b);

@@ -4,11 +4,11 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/grouping/group.hpp>
 #include <cairn/grouping/look_kernels.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/runs.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <cmath>
 #include <functional>
 #include <map>

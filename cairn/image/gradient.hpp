@@ -3,18 +3,9 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/disparity_map.hpp>
 #include <cstdint>
 
 namespace cairn {
-
-/// Disparity in 1/16 px as the regions count it; kHole16 where the map has a hole.
-inline constexpr std::int16_t kHole16 = INT16_MIN;
-/// The gradient that holes get: higher than any other, so that the watershed floods them last.
-inline constexpr std::uint16_t kHoleGradient = UINT16_MAX;
-/// The steepest disparity gradient that is told apart, in 1/16 px: just under 256 px from one side of a pixel
-/// to the other.
-inline constexpr int kSteepest16 = 4095;
 
 /// Gradient magnitude of the Gaussian-smoothed grey image, 0 … 255, in grey levels from one side of a pixel
 /// to the other: gx = s(x+1, y) − s(x−1, y), gy likewise, sqrt(gx² + gy²) rounded and capped.
@@ -27,14 +18,5 @@ Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma, con
 /// equal grey count. (beyond the paper)
 Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, float smoothing_sigma,
                                    const Exec& exec);
-
-/// d·16 rounded to the nearest integer (halves up), kHole16 in holes.
-Image<std::int16_t> quantised(const DisparityMap& disparity, const Exec& exec);
-
-/// Gradient magnitude of a quantised disparity map in 1/16 px from one side of a pixel to the other: gx, gy
-/// as above, but a neighbour that is missing (a hole, or outside) counts as equal to the pixel itself; capped
-/// at kSteepest16. kHoleGradient in holes. Smoothing: the same weights over the valid pixels of
-/// the window, divided by the sum of their weights and rounded to 1/16 px (halves up); holes stay holes.
-Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smoothing_sigma, const Exec& exec);
 
 }  // namespace cairn

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/image/prefilter.hpp>
-#include <cairn/matching/kernels.hpp>
-#include <cairn/matching/pixel_math.hpp>
+#include <cairn/image/prefilter_kernels.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -67,7 +66,7 @@ class Quotient {
 Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec) {
   Image<Gray> filtered(image.size(), exec.pool);
   const Size size = image.size();
-  const kernels::MatchKernels& run = kernels::match_kernels(exec);
+  const kernels::PrefilterKernels& run = kernels::prefilter_kernels(exec);
   parallel_for(exec, size.height, 16, [&](int first, int last) {
     std::vector<std::int16_t> columns(static_cast<std::size_t>(size.width));
     for (int y = first; y < last; ++y) {
@@ -93,8 +92,8 @@ Image<std::int16_t> remove_mean(View<const Gray> image, int window_size, const E
       int sum = 0;
       for (int x = 0; x < std::min(half, width); ++x) sum += sums[static_cast<std::size_t>(x)];
       const auto write = [&](int x, int count, const Quotient& quotient) {
-        const int mean = quotient.of(pixel_math::kMeanSteps * sum + count / 2);
-        out[x] = static_cast<std::int16_t>(pixel_math::kMeanSteps * in[x] - mean);
+        const int mean = quotient.of(kMeanSteps * sum + count / 2);
+        out[x] = static_cast<std::int16_t>(kMeanSteps * in[x] - mean);
       };
       const auto slide_at_border = [&](int x) {
         if (x + half < width) sum += sums[static_cast<std::size_t>(x + half)];

@@ -13,6 +13,8 @@ namespace cairn {
 /// out the last of an odd number of rows; here it is filtered too.)
 Image<Gray> filter_xsobel(View<const Gray> image, int cap, const Exec& exec);
 
+inline constexpr int kMeanSteps = 16;
+
 /// Each pixel less the mean of the window centred on it (clipped at the image's border), in 1/16 grey levels;
 /// the mean is rounded to the nearest step, halves up. The images that zsad compares.
 /// (docs/stages/matching.md)

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/image/prefilter.hpp>
-#include <cairn/matching/kernels.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/semi_global.hpp>
+#include <cairn/matching/window_kernels.hpp>
 
 namespace cairn {
 namespace {
@@ -43,7 +43,7 @@ Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exe
     task.right_flat = right_flat;
   }
 
-  const auto rows = kernels::match_kernels(exec).match_rows;
+  const auto rows = kernels::window_kernels(config.cost, exec).match_rows;
   // A band first sums up the window's rows above it, at about a third of a row's price: few and large ones,
   // but two for each thread, to even out what else the processors do.
   const int bands = 2 * exec.threads();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cairn/image/prefilter.hpp>
 #include <cmath>
 #include <cstdint>
 
@@ -14,7 +15,6 @@
 namespace cairn::pixel_math {
 
 inline constexpr float kNoEnergyCost = 65536.0F;  // nssd of a window that is all black
-inline constexpr int kMeanSteps = 16;             // zsad's pixels are in 1/16 grey levels
 inline constexpr int kPartialSums = 16;           // of mean_cost; see sum_of_partials()
 
 /// 1/√v in float, 0 where v is 0.

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/core/target.hpp>
 #include <cairn/matching/semi_global.hpp>
 #include <cairn/matching/semi_global_kernels.hpp>
 #include <cmath>
@@ -75,7 +74,7 @@ void follow_paths(const SemiGlobalTask& task, const SemiGlobalKernels& run, cons
 
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec) {
-  const SemiGlobalKernels& run = *kernels::semi_global_kernels(active_target(exec));
+  const SemiGlobalKernels& run = kernels::semi_global_kernels(exec);
   const Size size = pair.size();
   const SearchLayout layout{size.width, size.height, config.min_disparity, config.num_disparities,
                             run.lanes(config.num_disparities)};

@@ -8,6 +8,8 @@
 // anything from them: a real L is at most 54 + 127. For the same reason a saturated L + P1 changes nothing.
 //
 // What a path adds to C is at most P2. Only that is kept of the vertical paths, both in the same byte.
+#include <cairn/matching/byte_lanes-inl.hpp>
+#include <cairn/matching/lanes-inl.hpp>
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cairn/core/exec.hpp>
 #include <cairn/matching/match.hpp>
-#include <cairn/matching/scratch.hpp>
+#include <cairn/matching/memory.hpp>
 #include <cstdint>
 
 /// The seam to the instruction sets: everything of match_semi_global() that runs per pixel. Private to the
@@ -81,5 +81,7 @@ struct SemiGlobalKernels {
 
 /// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
 const SemiGlobalKernels* semi_global_kernels(Target target);
+/// Those for the target that `exec` gets.
+const SemiGlobalKernels& semi_global_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

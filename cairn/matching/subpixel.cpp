@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/matching/kernels.hpp>
 #include <cairn/matching/subpixel.hpp>
+#include <cairn/matching/subpixel_kernels.hpp>
 
 namespace cairn {
 
 Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config, const Exec& exec) {
   Image<float> refined(matches.best.size(), exec.pool);
   const bool refines = config.enabled && !matches.cost_before.empty();
-  const kernels::MatchKernels& run = kernels::match_kernels(exec);
+  const kernels::SubpixelKernels& run = kernels::subpixel_kernels(exec);
   parallel_for(exec, refined.height(), 16, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       run.refine_row(config.method, {matches.best.row(y), refines ? matches.cost_before.row(y) : nullptr,

@@ -8,6 +8,11 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
+template <class T>
+int length(const Scratch<T>& list) {
+  return static_cast<int>(list.size());
+}
+
 /// Sums of one image's own windows for the current row, each clipped at that image's borders. Entries: the
 /// pixels of the row in the order of its pairs, with margins before and after.
 struct Moments {
@@ -33,14 +38,14 @@ struct Moments {
         first(g.pad),
         width(wanted ? g.width : 0),
         column_sum(wanted ? round_up(lead + g.length + half + 16, 16) : 0),
-        column_energy(column_sum.size()),
-        sum_before(column_sum.size() + 1),
-        energy_before(column_sum.size() + 1),
+        column_energy(length(column_sum)),
+        sum_before(length(column_sum) + 1),
+        energy_before(length(column_sum) + 1),
         columns(wanted ? g.length + 16 : 0),
-        sum(columns.size()),
-        energy(columns.size()),
-        variance(columns.size()),
-        inverse(columns.size()) {
+        sum(length(columns)),
+        energy(length(columns)),
+        variance(length(columns)),
+        inverse(length(columns)) {
     for (int x = 0; x < width; ++x) {
       columns[first + x] = std::min(x + half, width - 1) - std::max(x - half, 0) + 1;
     }
@@ -66,9 +71,9 @@ struct CutWindows {
         count(wanted ? std::max(0, std::min(g.width - g.half, g.first_d + g.lanes + g.half) - first_x) : 0),
         stride(round_up(half, 4)),
         columns(count > 0 ? round_up(count * stride, 16) + 2 * kMargin : 0),
-        sum(columns.size()),
-        energy(columns.size()),
-        inverse(columns.size()) {
+        sum(length(columns)),
+        energy(length(columns)),
+        inverse(length(columns)) {
     for (int x = first_x; x < first_x + count; ++x) {
       for (int d = x - half + 1; d <= x; ++d) columns[at(x, d)] = x + half + 1 - d;
     }
@@ -256,7 +261,7 @@ struct RightSums {
 template <Cost kCost>
 CAIRN_LANES_INLINE VF cost_of(VI box) {
   const VF cost = lanes::ConvertTo(F(), box);
-  return kCost == Cost::zsad ? lanes::Mul(cost, lanes::Set(F(), 1.0F / pixel_math::kMeanSteps)) : cost;
+  return kCost == Cost::zsad ? lanes::Mul(cost, lanes::Set(F(), 1.0F / kMeanSteps)) : cost;
 }
 
 template <Cost kCost, bool kDouble>
@@ -332,7 +337,7 @@ inline void sum_up_columns(Moments& m) {
   const lanes::CappedTag<std::int32_t, 4> d;
   auto sum = lanes::Zero(d);
   auto energy = lanes::Zero(d);
-  for (int e = 0, count = m.column_sum.size(); e < count; e += static_cast<int>(lanes::Lanes(d))) {
+  for (int e = 0, count = length(m.column_sum); e < count; e += static_cast<int>(lanes::Lanes(d))) {
     sum = lanes::RunningSum(d, sum, lanes::Load(d, column_sum + e));
     energy = lanes::RunningSum(d, energy, lanes::Load(d, column_energy + e));
     lanes::StoreU(sum, d, sum_before + e + 1);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/objects/fuse.hpp>
 #include <cairn/regions/label_kernels.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <cassert>
 #include <numeric>
 #include <span>

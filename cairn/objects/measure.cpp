@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/row_kernels.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/grouping/evidence.hpp>
 #include <cairn/grouping/ranks.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/objects/measure_kernels.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -234,7 +234,7 @@ class Gathered {
   Gathered(const Inputs& in, std::size_t pixels, float* room, const Exec& exec)
       : in_(in),
         labels_(kernels::label_kernels(exec)),
-        rows_(kernels::row_kernels(exec)),
+        points_(kernels::measure_kernels(exec)),
         room_(room),
         length_(pixels + kernels::kListSlack) {}
 
@@ -243,8 +243,8 @@ class Gathered {
     const float* const disparity = in_.disparity_px.row(run.y);
     valid_count_ += slot(labels_.keep_known(disparity, disparity, run.first, run.last, room_ + valid_count_));
     if (!in_.rig) return;
-    rows_.points_in_camera(*in_.rig, run.y, run.first, run.last, disparity, of_run[0].data(),
-                           of_run[1].data(), of_run[2].data());
+    points_.points_in_camera(*in_.rig, run.y, run.first, run.last, disparity, of_run[0].data(),
+                             of_run[1].data(), of_run[2].data());
     int found = 0;
     for (std::size_t i = 0; i < of_run.size(); ++i) {
       found = labels_.keep_known(of_run[i].data(), of_run.back().data(), run.first, run.last,
@@ -265,7 +265,7 @@ class Gathered {
 
   const Inputs& in_;
   const kernels::LabelKernels& labels_;
-  const kernels::RowKernels& rows_;
+  const kernels::MeasureKernels& points_;
   float* room_;  // lists of length_: the disparities, then one for each axis
   std::size_t length_;
   std::size_t valid_count_ = 0;

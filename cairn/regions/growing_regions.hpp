@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cairn/core/disjoint_sets.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/regions/grow_statistical.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -42,7 +43,7 @@ class GrowingRegions {
 
   GrowingRegions(const RegionGraph& graph, const Exec& exec)
       : arcs_(2 * graph.arcs.size(), exec.pool),
-        parents_(graph.nodes.size(), exec.pool),
+        sets_(graph.nodes.size(), exec.pool),
         means_(graph.nodes.size(), exec.pool),
         places_(graph.nodes.size(), exec.pool),
         seen_(graph.nodes.size(), -1, exec.pool),
@@ -52,7 +53,6 @@ class GrowingRegions {
     for (std::int32_t i = 0; i < count(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const RegionGraph::Node& node = graph.nodes[at];
-      parents_[i] = i;
       means_[i] = mean_of(node.sum, static_cast<std::int32_t>(node.valid_count), node.is_floor);
       places_[i] = node.first_pixel;
       rests_[i] = {graph.first_arc[at],
@@ -67,7 +67,7 @@ class GrowingRegions {
     }
   }
 
-  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(parents_.size()); }
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(sets_.size()); }
   [[nodiscard]] Brief brief(std::int32_t region) const {
     return {means_[region], rests_[region].sum, rests_[region].valid_count};
   }
@@ -80,14 +80,14 @@ class GrowingRegions {
   [[nodiscard]] std::int64_t squares(std::int32_t region) const { return rests_[region].squares; }
   [[nodiscard]] std::int32_t pixel_count(std::int32_t region) const { return rests_[region].pixel_count; }
   [[nodiscard]] bool is_floor(std::int32_t region) const { return rests_[region].is_floor; }
-  [[nodiscard]] bool is_alive(std::int32_t region) const { return parents_[region] == region; }
+  [[nodiscard]] bool is_alive(std::int32_t region) const { return sets_.is_root(region); }
 
   /// Calls found(neighbour) for each living neighbour of `region`, for some of them more than once, and
   /// perhaps for the region itself.
   template <class Found>
   void for_each_neighbour(std::int32_t region, Found found) {
     for (std::int32_t member = region; member >= 0; member = rests_[member].next_member) {
-      for (const std::int32_t neighbour : arcs_of(member)) found(living(neighbour));
+      for (const std::int32_t neighbour : arcs_of(member)) found(sets_.root(neighbour));
     }
   }
 
@@ -114,7 +114,7 @@ class GrowingRegions {
       std::int32_t* const room = found.room_for(arcs.size() + 1);
       std::size_t count = 0;
       for (const std::int32_t arc : arcs) {
-        const std::int32_t neighbour = living(arc);
+        const std::int32_t neighbour = sets_.root(arc);
         room[count] = neighbour;
         count += seen[neighbour] != visit_ ? 1 : 0;
         seen[neighbour] = visit_;
@@ -132,7 +132,7 @@ class GrowingRegions {
     rest.pixel_count += absorbed.pixel_count;
     show_mean(survivor);
     places_[survivor] = std::min(places_[survivor], places_[other]);
-    parents_[other] = survivor;
+    sets_.hang(other, survivor);
     rests_[rest.last_member].next_member = other;
     rest.last_member = absorbed.last_member;
   }
@@ -153,8 +153,8 @@ class GrowingRegions {
   }
 
   [[nodiscard]] Merges merges() {
-    Merges merged_into(parents_.size());
-    for (std::int32_t i = 0; i < count(); ++i) merged_into[static_cast<std::size_t>(i)] = living(i);
+    Merges merged_into(sets_.size());
+    for (std::int32_t i = 0; i < count(); ++i) merged_into[static_cast<std::size_t>(i)] = sets_.root(i);
     return merged_into;
   }
 
@@ -174,14 +174,6 @@ class GrowingRegions {
   [[nodiscard]] std::span<const std::int32_t> arcs_of(std::int32_t member) const {
     return {arcs_.begin() + rests_[member].begin, arcs_.begin() + rests_[member].end};
   }
-  std::int32_t living(std::int32_t region) {
-    // Two steps at once, as most are there then: how many it takes cannot be foretold.
-    std::int32_t* const parents = parents_.data();
-    std::int32_t root = parents[parents[region]];
-    while (parents[root] != root) root = parents[root];
-    parents[region] = root;
-    return root;
-  }
   static double mean_of(std::int64_t sum, std::int32_t valid_count, bool is_floor) {
     return valid_count == 0 || is_floor ? std::numeric_limits<double>::quiet_NaN()
                                         : static_cast<double>(sum) / static_cast<double>(valid_count);
@@ -189,7 +181,7 @@ class GrowingRegions {
 
   ScratchList<std::int32_t> arcs_;  // the graph's, and behind them those stated anew
   // What a look at a neighbour needs lies in arrays of its own: short ones stay near the processor.
-  Scratch<std::int32_t> parents_;  // of a living region itself
+  DisjointSets sets_;  // whose roots are the living regions
   Scratch<double> means_;
   Scratch<std::int32_t> places_;
   Scratch<std::int32_t> seen_;  // the last visit that named it

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cairn/image/gradient.hpp>
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/label_kernels.hpp>
 
 namespace cairn::kernels::plain_labels {

@@ -2,10 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/image/gradient.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/region_graph.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <limits>
 #include <numeric>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/image/gradient.hpp>
+#include <cairn/core/disjoint_sets.hpp>
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/segment_disparity.hpp>
@@ -34,61 +35,43 @@ void append_runs(const RegionId* basin, const std::uint8_t* floor, int width, st
   }
 }
 
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
-  const auto at = [&](std::int32_t i) -> std::int32_t& { return parent[static_cast<std::size_t>(i)]; };
-  while (at(run) != run) {
-    at(run) = at(at(run));
-    run = at(run);
-  }
-  return run;
-}
-
-/// The earlier run becomes the root, so that roots are first in raster order.
-void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-}
-
 }  // namespace
 
 Basins split_floor(const Basins& basins, View<const std::uint8_t> floor, const Exec& exec) {
   const Size size = basins.labels.size();
   std::vector<Run> runs;
   std::vector<std::size_t> row_begin{0};
-  std::vector<std::int32_t> parent;
-  std::int32_t floor_run = -1;
   for (int y = 0; y < size.height; ++y) {
     append_runs(basins.labels.row(y), floor.row(y), size.width, runs);
-    std::size_t above = y > 0 ? row_begin[static_cast<std::size_t>(y) - 1] : 0;
-    const std::size_t above_end = row_begin.back();
-    for (std::size_t i = row_begin.back(); i < runs.size(); ++i) {
+    row_begin.push_back(runs.size());
+  }
+  // The earlier run becomes the root, so that roots are first in raster order.
+  DisjointSets sets(runs.size());
+  std::int32_t floor_run = -1;
+  for (std::size_t y = 0; y + 1 < row_begin.size(); ++y) {
+    std::size_t above = y > 0 ? row_begin[y - 1] : 0;
+    for (std::size_t i = row_begin[y]; i < row_begin[y + 1]; ++i) {
       const auto id = static_cast<std::int32_t>(i);
-      parent.push_back(id);
       if (runs[i].kind == kFloor) {
         if (floor_run < 0) floor_run = id;
-        unite(parent, id, floor_run);
+        sets.unite(id, floor_run);
         continue;
       }
-      while (above < above_end && runs[above].end <= runs[i].begin) ++above;
-      for (std::size_t j = above; j < above_end && runs[j].begin < runs[i].end; ++j) {
-        if (runs[j].kind == runs[i].kind) unite(parent, id, static_cast<std::int32_t>(j));
+      while (above < row_begin[y] && runs[above].end <= runs[i].begin) ++above;
+      for (std::size_t j = above; j < row_begin[y] && runs[j].begin < runs[i].end; ++j) {
+        if (runs[j].kind == runs[i].kind) sets.unite(id, static_cast<std::int32_t>(j));
       }
     }
-    row_begin.push_back(runs.size());
   }
 
   Basins result{Image<RegionId>(size, exec.pool), 0};
-  std::vector<RegionId> labels(runs.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto root = static_cast<std::size_t>(root_of(parent, static_cast<std::int32_t>(i)));
-    labels[i] = root == i ? RegionId{result.count++} : labels[root];
-  }
+  std::vector<std::int32_t> labels(runs.size());
+  result.count = sets.number(labels.data());
   for (int y = 0; y < size.height; ++y) {
     RegionId* const out = result.labels.row(y);
     for (std::size_t i = row_begin[static_cast<std::size_t>(y)];
          i < row_begin[static_cast<std::size_t>(y) + 1]; ++i) {
-      std::fill(out + runs[i].begin, out + runs[i].end, labels[i]);
+      std::fill(out + runs[i].begin, out + runs[i].end, RegionId{labels[i]});
     }
   }
   return result;

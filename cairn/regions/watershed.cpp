@@ -4,8 +4,8 @@
 #include <array>
 #include <bit>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/regions/label_kernels.hpp>
-#include <cairn/regions/scratch.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <numeric>
 #include <utility>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/pool_memory.hpp>
-#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/scene/background.hpp>
+#include <cairn/scene/plane_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <memory_resource>
@@ -102,7 +102,7 @@ class WallSearch {
   /// `rig`: given where the first of `planes` is a floor that walls stand upright on.
   WallSearch(Points points, std::vector<GroundPlane> planes, std::optional<StereoRig> rig, int width,
              const BackgroundConfig& config, const Exec& exec, std::pmr::memory_resource* memory)
-      : run_(kernels::row_kernels(exec)),
+      : run_(kernels::plane_kernels(exec)),
         memory_(memory),
         points_(std::move(points)),
         planes_(std::move(planes)),
@@ -269,7 +269,7 @@ class WallSearch {
            max_behind_ * static_cast<double>(on);
   }
 
-  const kernels::RowKernels& run_;
+  const kernels::PlaneKernels& run_;
   std::pmr::memory_resource* memory_;
   Points points_;
   std::vector<GroundPlane> planes_;

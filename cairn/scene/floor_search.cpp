@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/plane_fit.hpp>
+#include <cairn/scene/plane_kernels.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -65,17 +65,17 @@ struct Points {
 
 /// The kernels that the search calls.
 struct Kernels {
-  const kernels::RowKernels& rows;
+  const kernels::PlaneKernels& planes;
   const kernels::LabelKernels& lists;
   explicit Kernels(const Exec& exec)
-      : rows(kernels::row_kernels(exec)), lists(kernels::label_kernels(exec)) {}
+      : planes(kernels::plane_kernels(exec)), lists(kernels::label_kernels(exec)) {}
 };
 
 /// The numbers of those points whose distance above the plane is least … most, in their order.
 std::vector<std::uint32_t> between(const Points& points, const GroundPlane& plane, float least, float most,
                                    const Kernels& run) {
   std::vector<std::uint8_t> marks(points.size());
-  run.rows.mark_between(points.arrays(), plane, least, most, marks.data());
+  run.planes.mark_between(points.arrays(), plane, least, most, marks.data());
   std::vector<std::uint32_t> found(points.size() + kernels::kListSlack);
   found.resize(run.lists.find_marked(marks.data(), marks.size(), found.data()));
   return found;
@@ -142,7 +142,7 @@ struct Tally {
 };
 
 Tally tally(const GroundPlane& plane, const Points& points, float infinity, const Kernels& run) {
-  const kernels::PlaneCounts counts = run.rows.count_about(points.arrays(), plane, infinity, kTolerance);
+  const kernels::PlaneCounts counts = run.planes.count_about(points.arrays(), plane, infinity, kTolerance);
   return {counts.on, counts.near - counts.on, counts.below, 0, counts.all};
 }
 
@@ -435,7 +435,7 @@ bool faces_a_wall(const Points& points, const Camera& camera, const Kernels& run
 
 /// The share of all matches under the horizon that lie on the plane.
 float support(const GroundPlane& plane, View<const float> disparity_px, float infinity, const Exec& exec) {
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::PlaneKernels& run = kernels::plane_kernels(exec);
   std::vector<kernels::PlaneCounts> rows(static_cast<std::size_t>(disparity_px.height()));
   parallel_for(exec, disparity_px.height(), 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {

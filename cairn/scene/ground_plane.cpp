@@ -3,7 +3,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/row_kernels.hpp>
+#include <cairn/scene/floor_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cairn/scene/homography.hpp>
@@ -102,7 +102,7 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const Exec& exec) {
   if (!ground.plane) return disparity;
   const Size size = disparity.disparity_px.size();
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::FloorKernels& run = kernels::floor_kernels(exec);
   const kernels::FloorRow floor = floor_row(ground, rig, config);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y)
@@ -116,7 +116,7 @@ Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& gro
                                 const Exec& exec) {
   if (!ground.plane || !config.label_floor) return {};
   const Size size = disparity.disparity_px.size();
-  const kernels::RowKernels& run = kernels::row_kernels(exec);
+  const kernels::FloorKernels& run = kernels::floor_kernels(exec);
   const kernels::FloorRow floor = floor_row(ground, rig, config);
   Image<std::uint8_t> label(size, exec.pool);
   parallel_for(exec, size.height, 64, [&](int first, int last) {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/grouping/facets.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>

@@ -9,8 +9,8 @@
 
 #include <bit>
 #include <cairn/core/target.hpp>
-#include <cairn/disparity/row_kernels.hpp>
 #include <cairn/scene/background.hpp>
+#include <cairn/scene/plane_kernels.hpp>
 #include <cmath>
 #include <limits>
 
@@ -158,14 +158,14 @@ TEST(PointCounts, AreThoseOfTheirDefinitionsOnEveryTarget) {
       beyond += p(i, 2) - std::max(p(i, 3), at(i)) < -6.0F ? 1 : 0;
     }
     for (const Target target : supported_targets()) {
-      EXPECT_EQ(kernels::row_kernels(target)->count_on(points, plane, 6.0F), on_plane) << name(target);
-      EXPECT_EQ(kernels::row_kernels(target)->count_beyond(points, plane, 6.0F), beyond) << name(target);
+      EXPECT_EQ(kernels::plane_kernels(target)->count_on(points, plane, 6.0F), on_plane) << name(target);
+      EXPECT_EQ(kernels::plane_kernels(target)->count_beyond(points, plane, 6.0F), beyond) << name(target);
     }
   }
 }
 
 TEST(RowKernels, AreThereForTheSameTargetsAsThoseOfTheMatcher) {
-  for (const Target target : compiled_targets()) EXPECT_NE(kernels::row_kernels(target), nullptr);
+  for (const Target target : compiled_targets()) EXPECT_NE(kernels::plane_kernels(target), nullptr);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/objects/fuse.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>

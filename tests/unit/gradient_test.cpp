@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/image/gradient.hpp>
 #include <limits>
 

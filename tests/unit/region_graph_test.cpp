@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/image/gradient.hpp>
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/region_graph.hpp>
 
 #include "support/grids.hpp"

@@ -5,6 +5,13 @@
 //
 // The walk over a band of rows: geometry-inl.hpp says how a row is matched.
 
+// clang-format off
+#include <cairn/matching/lanes-inl.hpp>
+#include <cairn/matching/geometry-inl.hpp>
+#include <cairn/matching/winners-inl.hpp>
+#include <cairn/matching/window_sums-inl.hpp>
+// clang-format on
+
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
@@ -369,42 +376,33 @@ class Band {
   std::vector<RightRow> right_rows_;
 };
 
-template <Cost kCost, class Width = Wide, bool kDouble = false>
+template <class Width = Wide, bool kDouble = false>
 void run_band(const MatchTask& task, int first, int last) {
-  Band<kCost, Width, kDouble>(task, first, last).run();
+  Band<CAIRN_COST, Width, kDouble>(task, first, last).run();
 }
 
 void match_rows(const MatchTask& task, int first, int last) {
   const MatchConfig& config = task.config;
   const int n = config.window_size * config.window_size;
-  const int levels = config.prefilter == Prefilter::xsobel ? 2 * config.prefilter_cap : 255;
   // The largest n for which n²·255² (zssd), n²·127.5² (zncc) are below 2^31.
   constexpr int kSingleZssd = 181;
   constexpr int kSingleZncc = 363;
-  switch (config.cost) {
-    case Cost::sad:
-      if (levels <= Tagged::kLargestDifference && n * levels <= Tagged::kLargestSum)
-        return run_band<Cost::sad, Tagged>(task, first, last);
-      return n * levels <= Narrow::kLargestSum ? run_band<Cost::sad, Narrow>(task, first, last)
-                                               : run_band<Cost::sad>(task, first, last);
-    case Cost::ssd:
-      return run_band<Cost::ssd>(task, first, last);
-    case Cost::zsad:
-      return run_band<Cost::zsad>(task, first, last);
-    case Cost::zssd:
-      return n <= kSingleZssd ? run_band<Cost::zssd>(task, first, last)
-                              : run_band<Cost::zssd, Wide, true>(task, first, last);
-    case Cost::nssd:
-      return run_band<Cost::nssd>(task, first, last);
-    case Cost::zncc:
-      return n <= kSingleZncc ? run_band<Cost::zncc>(task, first, last)
-                              : run_band<Cost::zncc, Wide, true>(task, first, last);
+  if constexpr (CAIRN_COST == Cost::sad) {
+    const int levels = config.prefilter == Prefilter::xsobel ? 2 * config.prefilter_cap : 255;
+    if (levels <= Tagged::kLargestDifference && n * levels <= Tagged::kLargestSum)
+      return run_band<Tagged>(task, first, last);
+    return n * levels <= Narrow::kLargestSum ? run_band<Narrow>(task, first, last)
+                                             : run_band<>(task, first, last);
+  } else if constexpr (takes_covariance(CAIRN_COST)) {
+    return n <= (CAIRN_COST == Cost::zssd ? kSingleZssd : kSingleZncc)
+               ? run_band<>(task, first, last)
+               : run_band<Wide, true>(task, first, last);
+  } else {
+    run_band<>(task, first, last);
   }
 }
 
+inline constexpr WindowKernels kWindowKernels{match_rows};
+
 }  // namespace
-
-extern const MatchKernels kMatchKernels;
-const MatchKernels kMatchKernels{match_rows, filter_row, refine_row};
-
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -2,47 +2,51 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <bit>
-#include <cairn/core/image.hpp>
+#include <cairn/core/pool.hpp>
 #include <cassert>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
 
 namespace cairn {
 
-/// A flat array from a pool, for the graph's working memory: at some thousand regions its arrays are as large
-/// as images, and fresh memory from the heap costs as much time as filling it. Elements are undefined at
-/// first. Sizes differ from frame to frame; rounding them up to a power of two lets the pool give the same
-/// buffer again.
+/// A flat array for working memory, aligned like an image's rows. Elements are undefined at first unless a
+/// value is given.
 template <class T>
 class Scratch {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
  public:
+  /// From a pool: at some thousand regions a graph's arrays are as large as images, and fresh memory from the
+  /// heap costs as much time as filling it. Sizes differ from frame to frame; rounding them up to a power of
+  /// two lets the pool give the same buffer again.
   Scratch(std::size_t size, const Pool& pool)
-      : size_(size),
-        image_(Size{static_cast<int>(std::bit_ceil(std::max<std::size_t>(size, 1024))), 1}, pool),
-        data_(image_.row(0)) {}
+      : size_(size), buffer_(pool.take(std::bit_ceil(std::max<std::size_t>(size, 1024)) * sizeof(T))) {}
   Scratch(std::size_t size, T value, const Pool& pool) : Scratch(size, pool) {
-    std::fill_n(data_, size_, value);
+    std::fill_n(data(), size_, value);
+  }
+  /// Zeros, for one band of rows. From the heap, not from the pool: how many bands are at work at a time
+  /// depends on the threads, and what a pool holds shall not.
+  explicit Scratch(int size)
+      : size_(static_cast<std::size_t>(size)), buffer_(Pool().take(size_ * sizeof(T))) {
+    std::fill_n(data(), size_, T{0});
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] T* data() { return data_; }
-  [[nodiscard]] T* begin() { return data_; }
-  [[nodiscard]] T* end() { return data_ + size_; }
-  [[nodiscard]] const T* begin() const { return data_; }
-  [[nodiscard]] const T* end() const { return data_ + size_; }
+  [[nodiscard]] T* data() const { return reinterpret_cast<T*>(buffer_.data()); }
+  [[nodiscard]] T* begin() const { return data(); }
+  [[nodiscard]] T* end() const { return data() + size_; }
   // Indices are region numbers, rows and the like: plain ints.
-  [[nodiscard]] T& operator[](std::ptrdiff_t i) {
+  [[nodiscard]] T& operator[](std::ptrdiff_t i) const {
     assert(i >= 0 && static_cast<std::size_t>(i) < size_);
-    return data_[i];
-  }
-  [[nodiscard]] const T& operator[](std::ptrdiff_t i) const {
-    assert(i >= 0 && static_cast<std::size_t>(i) < size_);
-    return data_[i];
+    return data()[i];
   }
 
  private:
   std::size_t size_;
-  Image<T> image_;
-  T* data_;  // moves along with image_, whose buffer stays where it is
+  Pool::Buffer buffer_;
 };
 
 /// A Scratch that grows: a list whose memory comes from a pool.

@@ -2,24 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
-//
-// What is done for each pixel of a row before and after the search. Most are plain loops over short types, on
-// copies of all that they need: compilers turn them into vectors without help.
+#include <cairn/matching/lanes-inl.hpp>
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-inline void filter_row(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
-                       std::int16_t* columns, Gray* out) {
-  for (int x = 0; x < width; ++x) columns[x] = static_cast<std::int16_t>(above[x] + 2 * here[x] + below[x]);
-  const auto most = static_cast<std::int16_t>(cap);
-  const auto least = static_cast<std::int16_t>(-cap);
-  for (int x = 1; x < width - 1; ++x) {
-    const auto slope = static_cast<std::int16_t>(columns[x + 1] - columns[x - 1]);
-    out[x] = static_cast<Gray>(std::clamp(slope, least, most) + most);
-  }
-  out[0] = out[width - 1] = static_cast<Gray>(cap);
-}
+using F = lanes::CappedTag<float, 16>;
+using I = lanes::Rebind<std::int32_t, F>;
+using VF = lanes::Vec<F>;
+using VI = lanes::Vec<I>;
 
 /// How steeply the curve through (−1, before), (0, least), (1, after) rises.
 template <SubpixelMethod kMethod>
@@ -47,7 +38,7 @@ template <SubpixelMethod kMethod>
 void refine_row(const RefinedRow& row) {
   const F f;
   const I i32;
-  for (int x = 0; x < row.width; x += lane_count<Wide>()) {
+  for (int x = 0; x < row.width; x += static_cast<int>(lanes::Lanes(f))) {
     const VI best = lanes::LoadWidened(i32, row.best + x);
     VF d = lanes::ConvertTo(f, best);
     if (row.before != nullptr) {
@@ -64,6 +55,8 @@ inline void refine_row(SubpixelMethod method, const RefinedRow& row) {
   method == SubpixelMethod::parabola ? refine_row<SubpixelMethod::parabola>(row)
                                      : refine_row<SubpixelMethod::equiangular>(row);
 }
+
+inline constexpr SubpixelKernels kSubpixelKernels{refine_row};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// The one way in which a file of kernels is compiled for each instruction set. A kernel file is three:
+//
+//   gradient_kernels.hpp      the seam: a struct of functions, and gradient_kernels(target)
+//   gradient_kernels-inl.hpp  the functions, in namespace cairn::kernels::CAIRN_KERNEL_TARGET, and a constant
+//   of the
+//                             struct that lists them
+//   gradient_kernels.cpp      #define CAIRN_KERNELS <cairn/image/gradient_kernels-inl.hpp>
+//                             #include <cairn/core/each_target-inl.hpp>
+//                             CAIRN_CHOOSE_KERNELS(GradientKernels, gradient_kernels, kGradientKernels)
+//
+// What CAIRN_KERNELS names is included here once for each of Highway's targets and once for plain C++, then
+// with CAIRN_PLAIN_KERNELS = 1. Plain loops need no more than that, as what Highway adds to them is the
+// switch of the instruction set; kernels that are written in its vectors define CAIRN_KERNELS_USE_VECTORS
+// before.
+//
+// No include guard: to be included once, by a source.
+#include <cairn/core/target.hpp>
+
+#if defined(__GNUC__)
+#define CAIRN_RESTRICT __restrict__
+#else
+#define CAIRN_RESTRICT
+#endif
+
+#if CAIRN_WITH_HWY
+#include <cairn/core/highway_targets.hpp>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cairn/core/one_target-inl.hpp"
+#include <hwy/foreach_target.h>
+// The last target, of which Highway leaves the inclusion to the source.
+#include <cairn/core/one_target-inl.hpp>
+#endif
+
+#define CAIRN_PLAIN_KERNELS 1
+#define CAIRN_KERNEL_TARGET plain_kernels
+#define CAIRN_LANES_INLINE inline
+#define CAIRN_LANES_ATTR
+#define CAIRN_NOINLINE
+#define CAIRN_UNROLL
+#include CAIRN_KERNELS
+
+// CAIRN_OF_TARGET(target, name) ends a function: it returns the address of what is called `name` in the
+// namespace for `target`, nullptr where this build has none.
+#if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_SSE4)
+#define CAIRN_OF_SSE4(name) \
+  case Target::sse4:        \
+    return &N_SSE4::name;
+#else
+#define CAIRN_OF_SSE4(name)
+#endif
+#if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_AVX2)
+#define CAIRN_OF_AVX2(name) \
+  case Target::avx2:        \
+    return &N_AVX2::name;
+#else
+#define CAIRN_OF_AVX2(name)
+#endif
+#if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_AVX3)
+#define CAIRN_OF_AVX512(name) \
+  case Target::avx512:        \
+    return &N_AVX3::name;
+#else
+#define CAIRN_OF_AVX512(name)
+#endif
+#if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_NEON)
+#define CAIRN_OF_NEON(name) \
+  case Target::neon:        \
+    return &N_NEON::name;
+#else
+#define CAIRN_OF_NEON(name)
+#endif
+
+#define CAIRN_OF_TARGET(target, name) \
+  switch (target) {                   \
+    case Target::scalar:              \
+      return &plain_kernels::name;    \
+      CAIRN_OF_SSE4(name)             \
+      CAIRN_OF_AVX2(name)             \
+      CAIRN_OF_AVX512(name)           \
+      CAIRN_OF_NEON(name)             \
+    default:                          \
+      return nullptr;                 \
+  }
+
+// Defines `choose(target)`, nullptr where this build has no kernels for it, and `choose(exec)`, those for the
+// target that `exec` gets: the constant `list`, a Kernels, of each target.
+#define CAIRN_CHOOSE_KERNELS(Kernels, choose, list) \
+  namespace cairn::kernels {                        \
+  const Kernels* choose(Target target) {            \
+    CAIRN_OF_TARGET(target, list)                   \
+  }                                                 \
+  const Kernels& choose(const Exec& exec) {         \
+    return *choose(active_target(exec));            \
+  }                                                 \
+  }

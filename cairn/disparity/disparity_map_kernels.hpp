@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/disparity/reject.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: how the verdicts on the pixels of a row are united. Private to the
+/// library.
+namespace cairn::kernels {
+
+/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
+/// rounds in another order than it is written in, so that each gives the same bits.
+struct DisparityMapKernels {
+  /// Reject::border where there is no disparity (NaN).
+  void (*mark_holes)(const float* disparity_px, int width, Reject* reject);
+  void (*add_reasons)(const Reject* more, int width, Reject* reject);
+  /// NaN where there is a reason.
+  void (*punch_holes)(const Reject* reject, int width, float* disparity_px);
+  /// `why` where `mask` is not 0.
+  void (*reject_where)(const std::uint8_t* mask, int width, Reject why, Reject* verdict);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const DisparityMapKernels* disparity_map_kernels(Target target);
+/// Those for the target that `exec` gets.
+const DisparityMapKernels& disparity_map_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

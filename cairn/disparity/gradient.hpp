@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/disparity/disparity_map.hpp>
+#include <cstdint>
+
+namespace cairn {
+
+/// Disparity in 1/16 px as the regions count it; kHole16 where the map has a hole.
+inline constexpr std::int16_t kHole16 = INT16_MIN;
+/// The gradient that holes get: higher than any other, so that the watershed floods them last.
+inline constexpr std::uint16_t kHoleGradient = UINT16_MAX;
+/// The steepest disparity gradient that is told apart, in 1/16 px: just under 256 px from one side of a pixel
+/// to the other.
+inline constexpr int kSteepest16 = 4095;
+
+/// d·16 rounded to the nearest integer (halves up), kHole16 in holes.
+Image<std::int16_t> quantised(const DisparityMap& disparity, const Exec& exec);
+
+/// Gradient magnitude of a quantised disparity map in 1/16 px from one side of a pixel to the other: gx =
+/// d(x+1, y) − d(x−1, y), gy likewise, but a neighbour that is missing (a hole, or outside) counts as equal
+/// to the pixel itself; capped at kSteepest16. kHoleGradient in holes. Smoothing: the weights of
+/// image/gradient.hpp over the valid pixels of
+/// the window, divided by the sum of their weights and rounded to 1/16 px (halves up); holes stay holes.
+Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smoothing_sigma, const Exec& exec);
+
+}  // namespace cairn

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/disparity/reject.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: what find_evidence() does for each pixel of a row. Private to the
+/// library.
+namespace cairn::kernels {
+
+/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
+/// rounds in another order than it is written in, so that each gives the same bits.
+struct EvidenceKernels {
+  /// (1 6 1)/8 both ways, in 1/64 level. `column`: width + 2 samples, working memory.
+  void (*smooth_lightly)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down,
+                         int width, std::int16_t* column, std::int16_t* out);
+  /// The disparities of valid pixels whose difference across is above `least` and above half of that down;
+  /// NaN elsewhere.
+  void (*textured)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
+                   const Reject* reject, const float* disparity_px, int width, int least, float* out);
+  /// Keeps those of rows[2] to which at least three others of the 5×5 neighbours are as near as `agreement`;
+  /// NaN elsewhere. All rows go on for two NaN at either end.
+  void (*agreed)(const float* const* rows, int width, float agreement, float* out);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const EvidenceKernels* evidence_kernels(Target target);
+/// Those for the target that `exec` gets.
+const EvidenceKernels& evidence_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/image/gradient_kernels.hpp>
+#include <cmath>
+#include <cstdint>
+
+#define CAIRN_KERNELS <cairn/image/gradient_kernels-inl.hpp>
+#include <cairn/core/each_target-inl.hpp>
+
+CAIRN_CHOOSE_KERNELS(GradientKernels, gradient_kernels, kGradientKernels)

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/matching/subpixel.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: what refine_subpixel() does for each pixel of a row. Private to the
+/// library.
+namespace cairn::kernels {
+
+/// One row of refine_subpixel(). Rows of images: whole vectors are read and written, beyond `width` in their
+/// padding.
+struct RefinedRow {
+  const std::int16_t* best;
+  const float* before;  // nullptr: nothing is refined
+  const float* cost;
+  const float* after;
+  int width;
+  float* out;
+};
+
+struct SubpixelKernels {
+  void (*refine_row)(SubpixelMethod method, const RefinedRow& row);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const SubpixelKernels* subpixel_kernels(Target target);
+/// Those for the target that `exec` gets.
+const SubpixelKernels& subpixel_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

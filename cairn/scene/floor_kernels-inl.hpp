@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// No include guard: compiled once for each target.
+namespace cairn::kernels::CAIRN_KERNEL_TARGET {
+namespace {
+
+inline void reject_below(const FloorRow& given, int y, int width, float* CAIRN_RESTRICT disparity_px,
+                         Reject* CAIRN_RESTRICT reject) {
+  const FloorRow row = given;
+  const GroundPlane p = row.plane;
+  for (int x = 0; x < width; ++x) {
+    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
+    const float d = disparity_px[x];
+    const bool below = (floor + row.infinity > 0) & (d < floor - row.margin);
+    disparity_px[x] = below ? std::numeric_limits<float>::quiet_NaN() : d;
+    reject[x] |= below ? Reject::below_ground : Reject::none;
+  }
+}
+
+inline void label_floor(const FloorRow& given, int y, int width, const float* disparity_px,
+                        std::uint8_t* CAIRN_RESTRICT label) {
+  const FloorRow row = given;
+  const GroundPlane p = row.plane;
+  for (int x = 0; x < width; ++x) {
+    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
+    const bool on = (floor + row.infinity > 0) & (std::abs(disparity_px[x] - floor) <= row.margin);
+    label[x] = on ? std::uint8_t{255} : std::uint8_t{0};
+  }
+}
+
+inline constexpr FloorKernels kFloorKernels{reject_below, label_floor};
+
+}  // namespace
+}  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/disparity/reject.hpp>
+#include <cairn/scene/ground_plane.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: what reject_below_ground() and label_floor() do for each pixel of a row.
+/// Private to the library.
+namespace cairn::kernels {
+
+/// What a row is judged by to be floor, or below it.
+struct FloorRow {
+  GroundPlane plane;
+  float infinity;  // a point at infinity has disparity −infinity
+  float margin;
+};
+
+/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
+/// rounds in another order than it is written in, so that each gives the same bits.
+struct FloorKernels {
+  /// reject_below_ground() and label_floor() for the pixels of row `y`.
+  void (*reject_below)(const FloorRow& floor, int y, int width, float* disparity_px, Reject* reject);
+  void (*label_floor)(const FloorRow& floor, int y, int width, const float* disparity_px,
+                      std::uint8_t* label);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const FloorKernels* floor_kernels(Target target);
+/// Those for the target that `exec` gets.
+const FloorKernels& floor_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/scene/ground_plane.hpp>
+#include <cstdint>
+
+/// The seam to the instruction sets: what the searches for planes do for each point of a sample, and for each
+/// pixel of a row. Private to the library.
+namespace cairn::kernels {
+
+/// Points, one array per coordinate.
+struct PointArrays {
+  const float* x;
+  const float* y;
+  const float* d;
+  const float* behind;  // the background's disparity there
+  int count;
+};
+
+/// Sums over the points on a plane.
+struct PlaneSums {
+  std::uint64_t count = 0;
+  std::uint64_t x = 0;
+  std::uint64_t y = 0;
+  std::uint64_t xx = 0;
+  std::uint64_t xy = 0;
+  std::uint64_t yy = 0;
+};
+
+/// How many points lie where to a plane, of those that are seen below its horizon.
+struct PlaneCounts {
+  int all = 0;
+  int on = 0;     // within the tolerance
+  int near = 0;   // within twice of it
+  int below = 0;  // farther away than that
+};
+
+/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
+/// rounds in another order than it is written in, so that each gives the same bits.
+struct PlaneKernels {
+  /// How many points lie nearer to the plane than `tolerance`.
+  int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// How many points lie farther than `tolerance` behind the plane and the background.
+  int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// How many points lie nearer to the plane than `tolerance` where it stands before the background.
+  int (*count_on_before)(const PointArrays& points, const GroundPlane& plane, float tolerance);
+  /// Sums over the points that lie nearer to the plane than `tolerance`; x and y are whole numbers. d_on[i] =
+  /// the disparity of these points, 0 of all others.
+  PlaneSums (*sum_on)(const PointArrays& points, const GroundPlane& plane, float tolerance, float* d_on);
+  /// behind[i] = the plane's disparity at point i, where that is more.
+  void (*put_behind)(const PointArrays& points, const GroundPlane& plane, float* behind);
+  /// marks[i] = 1 where least ≤ the point's distance above the plane ≤ most, in px of disparity; else 0.
+  void (*mark_between)(const PointArrays& points, const GroundPlane& plane, float least, float most,
+                       std::uint8_t* marks);
+  /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
+  PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
+                             float tolerance);
+  /// How many pixels of row `y` lie where to a plane, of those that are seen below its horizon: `all` of
+  /// those with a disparity, and `on`. A point at infinity has the disparity −infinity.
+  PlaneCounts (*count_support)(const float* disparity_px, int y, int width, const GroundPlane& plane,
+                               float infinity, float tolerance);
+};
+
+/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+const PlaneKernels* plane_kernels(Target target);
+/// Those for the target that `exec` gets.
+const PlaneKernels& plane_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels
