@@ -16,8 +16,9 @@ endfunction()
 
 # The rest are the library's own business: they may change or go with any version.
 set(private_headers
-  core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory   core/scratch
-  diagnosis/robust_fit scene/floor_search scene/homography scene/plane_fit
+  core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
+  core/scratch
+  diagnosis/robust_fit scene/floor_search scene/plane_fit scene/plane_through_pairs
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
   image/gaussian image/sparse_points image/texture
   grouping/colour_model grouping/like_facets grouping/looks grouping/ranks

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/pool_memory.hpp>
+#include <cairn/core/random.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/plane_kernels.hpp>
 #include <cmath>
@@ -35,18 +36,6 @@ struct Points {
   [[nodiscard]] kernels::PointArrays arrays() const {
     return {x.data(), y.data(), d.data(), behind.data(), static_cast<int>(size())};
   }
-};
-
-/// Minimal standard generator: the same walls on every machine.
-class Draw {
- public:
-  std::size_t below(std::size_t n) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<std::size_t>((state_ >> 33U) % n);
-  }
-
- private:
-  std::uint64_t state_ = 0x9E3779B97F4A7C15ULL;
 };
 
 float at(const GroundPlane& p, const Point3& q) {
@@ -280,7 +269,7 @@ class WallSearch {
   double min_share_;
   double min_share_square_;
   double max_behind_;
-  Draw draw_;
+  Random draw_;
 };
 
 /// The pixels with evidence, in raster order; but not what a glossy floor mirrors: that lies behind every

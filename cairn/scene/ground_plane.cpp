@@ -6,8 +6,7 @@
 #include <cairn/scene/floor_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/ground_plane.hpp>
-#include <cairn/scene/homography.hpp>
-#include <cairn/scene/plane_fit.hpp>
+#include <cairn/scene/plane_through_pairs.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -54,26 +53,18 @@ void require_sound(const std::vector<PointPair>& points) {
 
 Ground ground_from_points(const std::vector<PointPair>& points) {
   require_sound(points);
-  const auto fit = fit_homography_robustly(points);
-  PlaneFit plane_fit(points[0].x_left, points[0].y_left);
-  if (fit) {
-    for (const auto& p : fit->inliers) {
-      plane_fit.add(p.x_left, p.y_left, p.x_left - map_to_right(fit->homography, p.x_left, p.y_left)[0]);
-    }
-  }
-  const auto plane = plane_fit.solve();
-  if (!plane) {
-    throw Error(
-        "ground.points: found " + std::to_string(points.size()) +
-        " pairs that determine no plane, expected four of which no three lie on a line, in either image");
+  const auto found = plane_through(points);
+  if (!found) {
+    throw Error("ground.points: found " + std::to_string(points.size()) +
+                " pairs that determine no plane, expected some that do not all lie on a line");
   }
   double sum = 0;
-  for (const auto& p : fit->inliers) {
-    const double off = double{p.x_left} - p.x_right - plane->disparity_px(p.x_left, p.y_left);
+  for (const auto& p : found->pairs) {
+    const double off = double{p.x_left} - p.x_right - found->plane.disparity_px(p.x_left, p.y_left);
     sum += off * off;
   }
-  const double residual = std::sqrt(sum / static_cast<double>(fit->inliers.size()));
-  return {plane, 1.0F, static_cast<float>(residual), Refusal::none};
+  const double residual = std::sqrt(sum / static_cast<double>(found->pairs.size()));
+  return {found->plane, 1.0F, static_cast<float>(residual), Refusal::none};
 }
 
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,

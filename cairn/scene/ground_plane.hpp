@@ -19,7 +19,7 @@ inline constexpr std::array kGroundSources{Choice<GroundSource>{"off", GroundSou
 
 struct GroundConfig {
   GroundSource source = GroundSource::automatic;
-  std::vector<PointPair> points;  // ≥ 4, no three on a line being all of them
+  std::vector<PointPair> points;  // ≥ 4, not all on a line
   float height = 1.0F;            // m, of the left camera above the floor
   float pitch = 0.0F;             // degrees, positive looks down
   float roll = 0.0F;              // degrees, positive tilts the camera's right side down
@@ -70,9 +70,8 @@ struct Ground {
 };
 
 /// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
-/// when no plane has enough support. points: the homography that the pairs induce (normalised DLT, RANSAC
-/// beyond four), reduced to (a, b, c) by least squares over its points. pose: from height, pitch and roll;
-/// needs a rig. (docs/stages/ground.md; paper, "ground plane")
+/// when no plane has enough support. points: the plane of least squares through the pairs (RANSAC beyond
+/// four). pose: from height, pitch and roll; needs a rig. (docs/stages/ground.md; paper, "ground plane")
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 
