@@ -31,6 +31,7 @@ set(here ${CMAKE_CURRENT_SOURCE_DIR}/contracts)
 cairn_contract(mistakes_do_not_compile ${here}/must_not_compile.sh ${CMAKE_CXX_COMPILER} ${PROJECT_SOURCE_DIR})
 cairn_contract(headers_define_no_foreign_macro ${here}/no_foreign_macros.sh ${CMAKE_CXX_COMPILER} ${PROJECT_SOURCE_DIR})
 cairn_contract(io_headers_hold_where_they_are_installed ${here}/io_headers_move.sh ${PROJECT_SOURCE_DIR})
+cairn_contract(no_include_runs_upwards ${here}/no_upward_includes.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(links_of_the_pages_exist ${here}/links_exist.sh ${PROJECT_SOURCE_DIR})
 # No generator expression: the comma of "address,undefined" would part its arguments.
 set(consumer_flags)

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# no_upward_includes.sh SOURCE_DIR: every folder includes only what is below it (ARCHITECTURE.md).
+set -euo pipefail
+cd "$1"
+
+# From the lowest to the highest; `cairn` is what lies in that folder itself.
+ranks='cairn/core cairn/image cairn/matching cairn/disparity cairn/regions cairn/scene cairn/grouping cairn/objects
+  cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn io page timing cli python examples benchmarks tests'
+
+find cairn io page timing cli python examples benchmarks tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
+  xargs awk -v ranks="$ranks" '
+    BEGIN {
+      count = split(ranks, listed)
+      for (i = 1; i <= count; ++i) rank[listed[i]] = i
+    }
+    function folder_of(path, parts, depth) {
+      depth = split(path, parts, "/")
+      return parts[1] == "cairn" && depth > 2 ? "cairn/" parts[2] : parts[1]
+    }
+    # Also the files that kernels are compiled from, which each_target-inl.hpp includes by a macro.
+    match($0, /^ *#(include|define CAIRN_[A-Z_]+) [<"][^>"]+[>"]/) {
+      split($0, quoted, /[<>"]/)
+      from = folder_of(FILENAME)
+      to = folder_of(quoted[2])
+      if (to == "cairn/io") to = "io"  # as it is installed
+      if (to !~ "^cairn" && !(to in rank)) next  # not ours, or beside the file
+      if (!(from in rank) || !(to in rank)) {
+        printf "%s:%d: a folder without a rank: %s includes %s\n", FILENAME, FNR, from, to
+        wrong = 1
+      } else if (rank[to] > rank[from]) {
+        printf "%s:%d: %s includes %s, which is above it\n", FILENAME, FNR, from, quoted[2]
+        wrong = 1
+      }
+      ++seen
+    }
+    END {
+      if (seen < 100) print "hardly any include: is this the source folder?"
+      exit wrong || seen < 100
+    }'
