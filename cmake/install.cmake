@@ -23,7 +23,7 @@ set(private_headers
   grouping/colour_model grouping/like_facets grouping/look_kernels grouping/looks grouping/ranks
   regions/growing_regions regions/label_kernels regions/label_kernels_plain grouping/minimum_cut regions/percent regions/runs
   regions/scratch regions/split_floor
-  io/calibration_forms io/html_template io/raster io/read_file)
+  io/calibration_forms io/raster io/read_file page/html_template)
 list(JOIN private_headers "|" private_headers)
 
 cairn_install_library(cairn cairnTargets)
@@ -33,9 +33,11 @@ install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
 if(CAIRN_IO)
   cairn_install_library(cairn_io cairnIoTargets)
-  install(DIRECTORY io/ DESTINATION ${include_dir}/io COMPONENT dev FILES_MATCHING
-    PATTERN "*.hpp"
-    REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  foreach(folder io page)
+    install(DIRECTORY ${folder}/ DESTINATION ${include_dir}/${folder} COMPONENT dev FILES_MATCHING
+      PATTERN "*.hpp"
+      REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  endforeach()
   install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help names these pages.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING
