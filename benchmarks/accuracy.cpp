@@ -31,11 +31,11 @@
 #include <utility>
 #include <vector>
 
+#include <timing/clock.hpp>
+#include <timing/machine.hpp>
+#include <timing/opencv_matchers.hpp>
 #include "ablations.hpp"
-#include "clock.hpp"
-#include "machine.hpp"
 #include "markdown_table.hpp"
-#include "opencv_matchers.hpp"
 #include "scored_frames.hpp"
 #include "svg_plot.hpp"
 

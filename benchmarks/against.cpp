@@ -30,10 +30,10 @@
 #include <utility>
 #include <vector>
 
+#include <timing/drawn_pair.hpp>
+#include <timing/statistics.hpp>
 #include "arguments.hpp"
-#include "drawn_pair.hpp"
 #include "markdown_table.hpp"
-#include "statistics.hpp"
 
 namespace {
 

@@ -20,8 +20,8 @@
 #include <set>
 #include <utility>
 
+#include <timing/clock.hpp>
 #include "arguments.hpp"
-#include "clock.hpp"
 #include "markdown_table.hpp"
 
 namespace cairn::engines {

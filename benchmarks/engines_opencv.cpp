@@ -7,8 +7,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <timing/opencv_matrix.hpp>
 #include "engines.hpp"
-#include "opencv_matrix.hpp"
 
 namespace cairn::engines {
 namespace {

@@ -25,11 +25,11 @@
 #include <utility>
 #include <vector>
 
-#include "drawn_pair.hpp"
-#include "frame_times.hpp"
-#include "machine.hpp"
+#include <timing/drawn_pair.hpp>
+#include <timing/frame_times.hpp>
+#include <timing/machine.hpp>
+#include <timing/statistics.hpp>
 #include "markdown_table.hpp"
-#include "statistics.hpp"
 #include "svg_plot.hpp"
 
 namespace {

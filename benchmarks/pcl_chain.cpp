@@ -26,9 +26,9 @@
 #include <utility>
 #include <vector>
 
-#include "clock.hpp"
+#include <timing/clock.hpp>
+#include <timing/opencv_matchers.hpp>
 #include "markdown_table.hpp"
-#include "opencv_matchers.hpp"
 #include "scored_frames.hpp"
 
 namespace {

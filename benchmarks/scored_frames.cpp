@@ -5,7 +5,7 @@
 #include <io/calibration_files.hpp>
 #include <io/disparity_files.hpp>
 
-#include "clock.hpp"
+#include <timing/clock.hpp>
 
 namespace cairn::report {
 namespace {

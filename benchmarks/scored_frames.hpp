@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "statistics.hpp"
+#include <timing/statistics.hpp>
 
 /// Frames with their truth in memory, and how well a configuration does on them.
 namespace cairn::report {

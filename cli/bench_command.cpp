@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <benchmarks/drawn_pair.hpp>
-#include <benchmarks/frame_times.hpp>
-#include <benchmarks/machine.hpp>
-#include <benchmarks/opencv_matchers.hpp>
-#include <benchmarks/statistics.hpp>
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
@@ -19,6 +14,11 @@
 #include <io/image_files.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <timing/drawn_pair.hpp>
+#include <timing/frame_times.hpp>
+#include <timing/machine.hpp>
+#include <timing/opencv_matchers.hpp>
+#include <timing/statistics.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"

@@ -5,9 +5,9 @@
 #include <cairn/evaluation/object_error.hpp>
 #include <filesystem>
 #include <io/dataset.hpp>
-#include <io/html_page.hpp>
 #include <io/image_files.hpp>
 #include <optional>
+#include <page/html_page.hpp>
 #include <string>
 
 /// What `cairn evaluate` reads.

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
-#include <io/html_page.hpp>
 #include <iostream>
 #include <optional>
+#include <page/html_page.hpp>
 #include <set>
 
 #include "commands.hpp"

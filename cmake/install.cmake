@@ -25,7 +25,7 @@ set(private_headers
   regions/growing_regions regions/label_kernels_plain grouping/minimum_cut regions/percent regions/runs
   regions/split_floor
   [a-z]+/[a-z_]+_kernels
-  io/calibration_forms io/html_template io/raster io/read_file)
+  io/calibration_forms io/raster io/read_file page/html_template)
 list(JOIN private_headers "|" private_headers)
 
 cairn_install_library(cairn cairnTargets)
@@ -35,9 +35,11 @@ install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
 if(CAIRN_IO)
   cairn_install_library(cairn_io cairnIoTargets)
-  install(DIRECTORY io/ DESTINATION ${include_dir}/io COMPONENT dev FILES_MATCHING
-    PATTERN "*.hpp"
-    REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  foreach(folder io page)
+    install(DIRECTORY ${folder}/ DESTINATION ${include_dir}/${folder} COMPONENT dev FILES_MATCHING
+      PATTERN "*.hpp"
+      REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  endforeach()
   install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help names these pages.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING

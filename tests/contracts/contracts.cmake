@@ -2,11 +2,11 @@
 
 # Each public header compiles alone, and twice over: one generated source per header.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-  ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp)
+  ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp ${PROJECT_SOURCE_DIR}/page/*.hpp)
 # What a kernel's source includes once per instruction set is no header in this sense.
 list(FILTER headers EXCLUDE REGEX "-inl\\.hpp$")
 if(NOT CAIRN_IO)
-  list(FILTER headers EXCLUDE REGEX "^io/|^cairn/opencv\\.hpp$")
+  list(FILTER headers EXCLUDE REGEX "^(io|page)/|^cairn/opencv\\.hpp$")
 endif()
 set(alone_sources)
 foreach(header IN LISTS headers)

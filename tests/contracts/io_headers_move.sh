@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# io_headers_move.sh SOURCE_DIR: no header of io/ names another by <io/...>, a path that an installed cairn does not have.
+# io_headers_move.sh SOURCE_DIR: no header of io/ and page/ names another by <io/...> or <page/...>, paths that
+# an installed cairn does not have.
 set -euo pipefail
 cd "$1"
-! grep -n '#include <io/' io/*.hpp
+! grep -nE '#include <(io|page)/' io/*.hpp page/*.hpp

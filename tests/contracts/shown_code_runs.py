@@ -100,7 +100,7 @@ def run_python(blocks, folder, environment):
 def check_declarations(block, compiler, source):
     """A declaration that the headers have already is redundant, and the compiler says so; one that differs is not."""
     code = "#include <cairn/cairn.hpp>\n" + "".join(
-        f"#include <{name}>\n" for name in re.findall(r"//.*?((?:cairn|io)/\w+(?:/\w+)*\.hpp)", block.text))
+        f"#include <{name}>\n" for name in re.findall(r"//.*?((?:cairn|io|page)/\w+(?:/\w+)*\.hpp)", block.text))
     code += f"namespace cairn {{\n{block.text}}}\n"
     run = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-Wredundant-decls", f"-I{source}", "-xc++", "-"],
                          input=code, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <io/html_page.hpp>
 #include <io/raster.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <page/html_page.hpp>
 
 namespace cairn::io {
 namespace {

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
 # cmake -DFOLDER=… -DOUT=… -P embed.cmake: the files of the page as string constants of a C++ source.
-set(source "// Made from io/html/ by io/html/embed.cmake.\n#include <io/html_template.hpp>\n\nnamespace cairn::io {\n\n")
+set(source "// Made from page/ by page/embed.cmake.\n#include <page/html_template.hpp>\n\nnamespace cairn::io {\n\n")
 foreach(part IN ITEMS Layout:page.html Style:page.css Script:page.js)
   string(REGEX MATCH "(.*):(.*)" unused ${part})
   file(READ ${FOLDER}/${CMAKE_MATCH_2} content)

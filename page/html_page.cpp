@@ -6,12 +6,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <io/html_page.hpp>
-#include <io/html_template.hpp>
 #include <io/overlay.hpp>
 #include <io/raster.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <page/html_page.hpp>
+#include <page/html_template.hpp>
 #include <string_view>
 
 namespace cairn::io {

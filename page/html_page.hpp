@@ -10,7 +10,7 @@
 #include <vector>
 
 /// A run's results as one page for the browser, which needs nothing but itself: no network, no other file.
-/// Style, script and layout are in io/html/.
+/// Style, script and layout are the files beside this one.
 namespace cairn::io {
 
 /// What the page shows of one frame. Any view may be empty: what rests on it is then left out; the others

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // The page of `cairn segment --html` and `cairn evaluate --html`. Its data are JSON blocks beside this script
-// (io/html_page.cpp): `run`, and for each frame `facts-N`, read at once, and `maps-N`, read when it is shown.
+// (page/html_page.cpp): `run`, and for each frame `facts-N`, read at once, and `maps-N`, read when it is shown.
 'use strict';
 (() => {
   // ---- small helpers ----

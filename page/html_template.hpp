@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-/// The files of io/html/, built into the program; internal to io.
+/// page.html, page.css and page.js, built into the program; internal to the page.
 namespace cairn::io {
 
 extern const std::string_view kPageLayout;  // page.html, with {{title}}, {{style}}, {{data}} and {{script}}
