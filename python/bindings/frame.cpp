@@ -278,9 +278,7 @@ void bind_frame_class(py::module_& m) {
           "to_json", [](const PyFrame& self) { return io::objects_json(self.frame, self.provenance); },
           "The text of objects.json: objects with masks, ground, configuration, timings (docs/formats.md).")
       .def("save", &save, py::arg("folder"),
-           "Writes what `cairn segment -o FOLDER` does: disparity, reject, confidence, objects and floor as "
-           "pictures, "
-           "overlay.png, disparity_view.png and objects.json; whole or not at all.")
+           "Writes the files that `cairn segment -o FOLDER` does (docs/formats.md); whole or not at all.")
       .def("_repr_png_", &overlay_png)
       .def(py::pickle(&frame_state, &frame_of))
       .def("__repr__", &frame_repr);

@@ -444,9 +444,7 @@ class Frame:
     def to_json(self) -> str:
         """The text of objects.json: objects with masks, ground, configuration, timings (docs/formats.md)."""
     def save(self, folder: PathLike) -> None:
-        """Writes what `cairn segment -o FOLDER` does: disparity, reject, confidence, objects and floor as
-        pictures, overlay.png, disparity_view.png and objects.json; whole or not at all.
-        """
+        """Writes the files that `cairn segment -o FOLDER` does (docs/formats.md); whole or not at all."""
     def _repr_png_(self) -> bytes: ...
 
 class Fusion:

@@ -199,6 +199,21 @@ TEST_F(ResultFolder, ReplacesAnOlderResultWhollyAndLeavesForeignFilesAlone) {
                                    "overlay.png", "disparity_view.png", "objects.json", "notes.txt"}));
 }
 
+TEST_F(ResultFolder, OfASecondRunHoldsNothingOfTheFirst) {
+  const Provenance plenty = some_provenance();
+  const Image<Gray> left(kSize, Gray{90}, {});
+  write_result(root_ / "out", left, {}, frame_with_one_object(true), plenty, {.point_cloud = true});
+  Frame least = frame_with_one_object(false);
+  least.confidence = {};
+  Provenance other = some_provenance();
+  other.rig = std::nullopt;
+  other.config.match.min_disparity = -16;
+  write(root_ / "alone", least, other);
+  EXPECT_GT(names(root_ / "out").size(), names(root_ / "alone").size());
+  write(root_ / "out", least, other);
+  EXPECT_EQ(names(root_ / "out"), names(root_ / "alone"));
+}
+
 TEST_F(ResultFolder, HasNoConfidenceWhereThereIsNoneNotEvenAnOlderOne) {
   write(root_ / "out", frame_with_one_object(true), some_provenance());
   Frame frame = frame_with_one_object(true);
