@@ -222,7 +222,7 @@ void bind_frame_class(py::module_& m) {
                              "float32, px; NaN = hole, see `reject`")
       .def_property_readonly(
           "reject", image_of<Reject>([](const PyFrame& f) -> auto& { return f.frame.disparity.reject; }),
-          "uint8, why there is no disparity: bits of cairn.Reject; 0 = there is one")
+          "uint16, why there is no disparity: bits of cairn.Reject; 0 = there is one")
       .def_property_readonly(
           "confidence", image_of_some<float>([](const PyFrame& f) -> auto& { return f.frame.confidence; }),
           "float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where "
@@ -299,7 +299,7 @@ void bind_frame_class(py::module_& m) {
           [](const py::object& self) {
             return array_over(self.cast<const SceneDisparity&>().disparity.reject, self, false);
           },
-          "(H, W) uint8, bits of cairn.Reject")
+          "(H, W) uint16, bits of cairn.Reject")
       .def_readonly("ground", &SceneDisparity::ground, "the floor as a plane, or why there is none")
       .def_property_readonly("floor", shown(&SceneDisparity::floor),
                              "(H, W) uint8, 255 = floor; None where there is none")

@@ -167,7 +167,7 @@ TEST_F(ResultFolder, ComesBackAsItWasWritten) {
   EXPECT_EQ(objects.ids(20, 10), 1);
   EXPECT_EQ(objects.ids(19, 10), 0);
   const Labels reject = load_labels(root_ / "out" / "reject.png");
-  EXPECT_EQ(reject.bits, 8);
+  EXPECT_EQ(reject.bits, 16);
   EXPECT_EQ(reject.ids(0, 0), 1 + 8);
   const Labels confidence = load_labels(root_ / "out" / "confidence.png");
   EXPECT_EQ(confidence.bits, 8);
