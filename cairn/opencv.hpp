@@ -20,8 +20,8 @@
 ///   const cv::Mat labels = cairn::mat_of(frame.objects.labels);                    // CV_32SC1, 0 = none
 namespace cairn {
 
-/// OpenCV's number of the pixel type T: CV_8UC1 for Gray and Reject, CV_8UC3 for Rgb, CV_32SC1 for RegionId
-/// and ObjectId, CV_32FC1 for float, and so on.
+/// OpenCV's number of the pixel type T: CV_8UC1 for Gray, CV_16UC1 for Reject, CV_8UC3 for Rgb, CV_32SC1 for
+/// RegionId and ObjectId, CV_32FC1 for float, and so on.
 template <class T>
 constexpr int mat_type() {
   if constexpr (std::is_same_v<T, Rgb>) {

@@ -111,7 +111,7 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
   Image<Reject> reject;
   if (result.reject && result.disparity) {
     reject = converted<Reject>(io::load_labels(*result.reject),
-                               [](std::uint16_t bits) { return static_cast<Reject>(bits & 0xff); });
+                               [](std::uint16_t bits) { return static_cast<Reject>(bits); });
     check(*result.reject, reject.size());
     shown.reject = reject;
   }

@@ -216,8 +216,7 @@ Work declare_segment(CLI::App& app) {
       ->type_name("FILE");
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
-                 "folder for disparity.png, reject.png, confidence.png, objects.png, floor.png, overlay.png, "
-                 "disparity_view.png and objects.json")
+                 "folder for objects.json and its maps and pictures; docs/formats.md names them")
       ->type_name("DIR");
   app.add_flag("--json", options->json, "print the content of objects.json instead of a table");
   app.add_flag(

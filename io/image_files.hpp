@@ -50,7 +50,7 @@ struct Labels {
 /// A one-channel file's values, never scaled. A PNG with a palette gives the indices. Colour is refused.
 Labels load_labels(const std::filesystem::path& path, const Pool& pool = {});
 
-/// Writes a PNG atomically: grey of 8 or 16 bits, colour, or the bit set of reasons as 8-bit grey.
+/// Writes a PNG atomically: grey of 8 or 16 bits, colour, or the bit set of reasons as 16-bit grey.
 void save_png(const std::filesystem::path& path, View<const std::uint8_t> image);
 void save_png(const std::filesystem::path& path, View<const std::uint16_t> image);
 void save_png(const std::filesystem::path& path, View<const Rgb> image);

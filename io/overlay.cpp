@@ -151,10 +151,10 @@ void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> f
 
 // ---- disparity ----
 
-const HoleReason& shown_reason(Reject reject) {
-  const auto found = std::find_if(kHoleReasons.begin(), kHoleReasons.end(),
-                                  [&](const HoleReason& r) { return has(reject, r.bit); });
-  return found == kHoleReasons.end() ? kHoleReasons.front() : *found;
+const Reason& shown_reason(Reject reject) {
+  const auto found =
+      std::find_if(kReasons.begin(), kReasons.end(), [&](const Reason& r) { return has(reject, r.bit); });
+  return found == kReasons.end() ? kReasons.front() : *found;
 }
 
 Rgb colour_of(float disparity, DisparitySpan span, const std::array<Rgb, 256>& colours) {
@@ -171,7 +171,7 @@ std::string scale_text(float disparity, const std::optional<StereoRig>& rig) {
 
 constexpr int kLegendWidth = 190;
 constexpr int kLegendRow = 20;
-constexpr int kLegendHeight = kLegendRow * (int(kHoleReasons.size()) + 6) + 10;
+constexpr int kLegendHeight = kLegendRow * (int(kReasons.size()) + 6) + 10;
 
 void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, DisparitySpan span,
                  const std::array<Rgb, 256>& colours, const std::optional<StereoRig>& rig) {
@@ -188,7 +188,7 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Dispa
     const float d = span.high + (span.low - span.high) * static_cast<float>(i) / 2;
     write(canvas, scale_text(d, rig), {left + 32, bar_top + 10 + i * (bar_height - 14) / 2}, kScale, white);
   }
-  std::array<std::int64_t, kHoleReasons.size()> counts{};
+  std::array<std::int64_t, kReasons.size()> counts{};
   std::int64_t valid = 0;
   for (int y = 0; y < map.reject.height(); ++y) {
     for (int x = 0; x < map.reject.width(); ++x) {
@@ -196,7 +196,7 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Dispa
       if (reject == Reject::none) {
         ++valid;
       } else {
-        ++counts[static_cast<std::size_t>(&shown_reason(reject) - kHoleReasons.data())];
+        ++counts[static_cast<std::size_t>(&shown_reason(reject) - kReasons.data())];
       }
     }
   }
@@ -206,10 +206,10 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Dispa
   };
   int y = bar_top + bar_height + kLegendRow;
   write(canvas, "valid" + percent(valid), {left + 10, y}, kScale, white);
-  for (std::size_t i = 0; i < kHoleReasons.size(); ++i) {
+  for (std::size_t i = 0; i < kReasons.size(); ++i) {
     y += kLegendRow;
-    cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kHoleReasons[i].colour), cv::FILLED);
-    write(canvas, kHoleReasons[i].name + percent(counts[i]), {left + 32, y}, kScale, white);
+    cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kReasons[i].colour), cv::FILLED);
+    write(canvas, std::string(kReasons[i].label) + percent(counts[i]), {left + 32, y}, kScale, white);
   }
 }
 

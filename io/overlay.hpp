@@ -50,26 +50,6 @@ LabelPlace label_place(View<const std::uint8_t> mask);
 /// finds no free place stays at its own.
 std::vector<Rect> place_labels(const std::vector<Rect>& wanted, Size picture);
 
-/// How a hole is drawn.
-struct HoleReason {
-  Reject bit = Reject::none;
-  const char* name = "";
-  Rgb colour;
-};
-/// Where several bits are set, the first of these is shown: what cannot be helped before what the matcher
-/// decided.
-inline constexpr std::array kHoleReasons{
-    HoleReason{Reject::no_data, "no data", {25, 25, 25}},
-    HoleReason{Reject::border, "border", {60, 60, 60}},
-    HoleReason{Reject::below_ground, "below ground", {205, 185, 255}},
-    HoleReason{Reject::speckle, "speckle", {255, 240, 200}},
-    HoleReason{Reject::no_texture, "no texture", {105, 105, 105}},
-    HoleReason{Reject::not_unique, "not unique", {150, 135, 135}},
-    HoleReason{Reject::flat, "flat", {125, 150, 140}},
-    HoleReason{Reject::left_right, "left-right", {205, 205, 205}},
-};
-static_assert(kHoleReasons.size() == kRejects.size());
-
 /// The disparities that the scale of colours spans: from the 1st to the 99th percentile, so that a few wrong
 /// matches do not take the colours from the rest.
 struct DisparitySpan {

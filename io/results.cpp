@@ -128,10 +128,6 @@ Json json(const Object& object, View<const ObjectId> labels) {
 
 // ---- the folder ----
 
-constexpr std::array kResultFiles{"disparity.png", "disparity.pfm", "reject.png",  "confidence.png",
-                                  "objects.png",   "floor.png",     "overlay.png", "disparity_view.png",
-                                  "cloud.ply",     "objects.json"};
-
 /// A folder that is gone with all that it holds unless it is kept.
 class TemporaryFolder {
  public:
@@ -182,48 +178,102 @@ class Ancestors {
   bool kept_ = false;
 };
 
-Image<std::uint16_t> ids_of_16_bits(View<const ObjectId> labels, const fs::path& folder) {
+// ---- its files ----
+
+/// What the files of a result are made from.
+struct Result {
+  View<const Gray> left;
+  View<const Rgb> left_rgb;
+  const Frame& frame;
+  const Provenance& provenance;
+  Extras extras;
+};
+
+void write_disparity(const fs::path& path, const Result& r) {
+  save_disparity(path, r.frame.disparity.disparity_px);
+}
+
+void write_objects(const fs::path& path, const Result& r) {
+  const View<const ObjectId> labels = r.frame.objects.labels;
   Image<std::uint16_t> ids(labels.size());
   for (int y = 0; y < labels.height(); ++y) {
     for (int x = 0; x < labels.width(); ++x) {
       const std::int32_t id = number(labels(x, y));
       if (id > std::numeric_limits<std::uint16_t>::max()) {
-        throw Error(folder.string() +
+        throw Error(path.parent_path().string() +
                     ": more than 65535 objects do not fit into objects.png; raise objects.min_area");
       }
       ids(x, y) = static_cast<std::uint16_t>(id);
     }
   }
-  return ids;
+  save_png(path, View<const std::uint16_t>(ids));
 }
 
-void write_files(const fs::path& folder, View<const Gray> left, View<const Rgb> left_rgb, const Frame& frame,
-                 const Provenance& provenance, Extras extras) {
-  save_disparity(folder / disparity_file_name(frame, provenance), frame.disparity.disparity_px);
-  save_png(folder / "reject.png", View<const Reject>(frame.disparity.reject));
-  if (!frame.confidence.empty()) save_confidence(folder / "confidence.png", frame.confidence);
-  const Image<std::uint16_t> ids = ids_of_16_bits(frame.objects.labels, folder);
-  save_png(folder / "objects.png", View<const std::uint16_t>(ids));
-  if (!frame.floor.empty()) save_png(folder / "floor.png", View<const std::uint8_t>(frame.floor));
-  const Image<Rgb> overlay = draw_objects(left, left_rgb, frame.objects, frame.floor);
-  save_png(folder / "overlay.png", View<const Rgb>(overlay));
-  const Image<Rgb> view = draw_disparity(frame.disparity, provenance.rig);
-  save_png(folder / "disparity_view.png", View<const Rgb>(view));
-  if (extras.point_cloud && provenance.rig) {
-    save_ply(folder / "cloud.ply", left, left_rgb, frame.disparity.disparity_px, frame.objects.labels,
-             *provenance.rig);
+void write_cloud(const fs::path& path, const Result& r) {
+  save_ply(path, r.left, r.left_rgb, r.frame.disparity.disparity_px, r.frame.objects.labels,
+           *r.provenance.rig);
+}
+
+bool always(const Result&) {
+  return true;
+}
+
+struct ResultFile {
+  const char* name;
+  bool (*is_wanted)(const Result&);
+  void (*write)(const fs::path&, const Result&);
+};
+
+/// All that a result may hold: what is written, and what is removed of an older one. In the order in which
+/// they are put in place: objects.json last, so that it never speaks of other files.
+constexpr std::array kResultFiles{
+    ResultFile{"disparity.png",
+               [](const Result& r) { return disparity_file_name(r.frame, r.provenance) == "disparity.png"; },
+               write_disparity},
+    ResultFile{"disparity.pfm",
+               [](const Result& r) { return disparity_file_name(r.frame, r.provenance) == "disparity.pfm"; },
+               write_disparity},
+    ResultFile{"reject.png", always,
+               [](const fs::path& path, const Result& r) {
+                 save_png(path, View<const Reject>(r.frame.disparity.reject));
+               }},
+    ResultFile{"confidence.png", [](const Result& r) { return !r.frame.confidence.empty(); },
+               [](const fs::path& path, const Result& r) { save_confidence(path, r.frame.confidence); }},
+    ResultFile{"objects.png", always, write_objects},
+    ResultFile{"floor.png", [](const Result& r) { return !r.frame.floor.empty(); },
+               [](const fs::path& path, const Result& r) {
+                 save_png(path, View<const std::uint8_t>(r.frame.floor));
+               }},
+    ResultFile{"overlay.png", always,
+               [](const fs::path& path, const Result& r) {
+                 const Image<Rgb> picture = draw_objects(r.left, r.left_rgb, r.frame.objects, r.frame.floor);
+                 save_png(path, View<const Rgb>(picture));
+               }},
+    ResultFile{"disparity_view.png", always,
+               [](const fs::path& path, const Result& r) {
+                 const Image<Rgb> picture = draw_disparity(r.frame.disparity, r.provenance.rig);
+                 save_png(path, View<const Rgb>(picture));
+               }},
+    ResultFile{"cloud.ply",
+               [](const Result& r) { return r.extras.point_cloud && r.provenance.rig.has_value(); },
+               write_cloud},
+    ResultFile{"objects.json", always, [](const fs::path& path, const Result& r) {
+                 write_file(path, objects_json(r.frame, r.provenance));
+               }}};
+
+void write_files(const fs::path& folder, const Result& result) {
+  for (const ResultFile& file : kResultFiles) {
+    if (file.is_wanted(result)) file.write(folder / file.name, result);
   }
-  write_file(folder / "objects.json", objects_json(frame, provenance));
 }
 
-/// Moves a complete result over an older one: file by file, objects.json last, so that it never speaks of
-/// other files.
+/// Moves a complete result over an older one, file by file.
 void replace(const fs::path& made, const fs::path& folder) {
-  for (const char* name : kResultFiles) {
-    if (fs::exists(made / name)) {
-      fs::rename(made / name, folder / name);
+  for (const ResultFile& file : kResultFiles) {
+    if (fs::exists(made / file.name)) {
+      fs::rename(made / file.name, folder / file.name);
     } else {
-      fs::remove(folder / name);
+      fs::remove(folder / file.name);
     }
   }
 }
@@ -282,13 +332,13 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
     if (fs::exists(folder)) {
       if (!fs::is_directory(folder)) throw Error(given_folder.string() + ": is a file, expected a folder");
       const TemporaryFolder made(folder);  // inside: a folder beside might lie on another disk
-      write_files(made.path(), left, left_rgb, frame, provenance, extras);
+      write_files(made.path(), {left, left_rgb, frame, provenance, extras});
       replace(made.path(), folder);
       return;
     }
     Ancestors ancestors(folder.parent_path());
     const TemporaryFolder made(folder.parent_path());
-    write_files(made.path(), left, left_rgb, frame, provenance, extras);
+    write_files(made.path(), {left, left_rgb, frame, provenance, extras});
     fs::rename(made.path(), folder);
     ancestors.keep();
   } catch (const fs::filesystem_error& error) {

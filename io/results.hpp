@@ -46,8 +46,7 @@ struct Extras {
   bool point_cloud = false;  // cloud.ply, see save_ply(); needs provenance.rig
 };
 
-/// Writes disparity.png (or .pfm), reject.png, confidence.png (where disparities were matched), objects.png,
-/// floor.png (where a floor was labelled), overlay.png, disparity_view.png, objects.json and the extras,
+/// Writes the files that docs/formats.md lists for a frame's result, each where the frame has what it shows,
 /// whole or not at all: everything is written under a temporary name first. An older result in `folder` is
 /// replaced, files of it that the new one has not are removed, foreign files stay. `left_rgb` may be empty.
 /// Throws Error (names the folder).

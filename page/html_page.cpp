@@ -216,7 +216,7 @@ Json maps(const PageFrame& frame) {
   const auto id = [](auto label) { return number(label); };
   return {{"left", left_as_uri(frame.left, frame.left_rgb)},
           {"disparity", packed_disparity(frame.disparity_px)},
-          {"reject", packed(frame.reject, [](Reject r) { return static_cast<std::uint8_t>(r); })},
+          {"reject", packed(frame.reject, [](Reject r) { return static_cast<std::uint16_t>(r); })},
           {"confidence", packed(frame.confidence, [](float c) { return std::lround(255 * c); })},
           {"by_intensity", packed(frame.by_intensity, id)},
           {"by_disparity", packed(frame.by_disparity, id)},
@@ -231,9 +231,9 @@ Json look() {
   Json ramp = Json::array();
   for (const Rgb colour : disparity_colours()) ramp.push_back(hex(colour));
   Json reasons = Json::array();
-  for (const HoleReason& reason : kHoleReasons) {
+  for (const Reason& reason : kReasons) {
     reasons.push_back(
-        {{"bit", static_cast<int>(reason.bit)}, {"name", reason.name}, {"colour", hex(reason.colour)}});
+        {{"bit", static_cast<int>(reason.bit)}, {"name", reason.label}, {"colour", hex(reason.colour)}});
   }
   constexpr int kObjectColours = 1000;  // object_colour() begins anew after as many
   Json objects = Json::array();

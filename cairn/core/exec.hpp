@@ -13,7 +13,7 @@
 
 namespace cairn {
 
-enum class Reject : std::uint8_t;  // defined in disparity/reject.hpp; the rest beside its stage
+enum class Reject : std::uint16_t;  // defined in disparity/reject.hpp; the rest beside its stage
 struct Matches;
 struct DisparityMap;
 struct Ground;

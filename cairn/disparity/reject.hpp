@@ -2,37 +2,72 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cairn/core/fields.hpp>
+#include <cairn/core/image.hpp>
 #include <cstdint>
+#include <string_view>
 
 namespace cairn {
 
 /// Why a pixel has no disparity: a bit set, since the per-pixel checks are independent and each leaves its
-/// own bit.
-enum class Reject : std::uint8_t {
+/// own bit. In files and in Python the bits have these numbers, too: they stay as they are.
+enum class Reject : std::uint16_t {
   none = 0,
-  border = 1,         // no candidate lay inside the right image
-  left_right = 2,     // followed back from the right image, the match does not return
-  not_unique = 4,     // another disparity fits nearly as well
-  flat = 8,           // every disparity fits equally badly or well
-  no_texture = 16,    // too little texture to match at all
-  below_ground = 32,  // under the floor: a reflection
-  speckle = 64,       // a small island of disparity
-  no_data = 128,      // the external disparity map had no value here
+  border = 1,
+  left_right = 2,
+  not_unique = 4,
+  flat = 8,
+  no_texture = 16,
+  below_ground = 32,
+  speckle = 64,
+  no_data = 128,
 };
 
-inline constexpr std::array kRejects{
-    Choice<Reject>{"border", Reject::border},         Choice<Reject>{"left_right", Reject::left_right},
-    Choice<Reject>{"not_unique", Reject::not_unique}, Choice<Reject>{"flat", Reject::flat},
-    Choice<Reject>{"no_texture", Reject::no_texture}, Choice<Reject>{"below_ground", Reject::below_ground},
-    Choice<Reject>{"speckle", Reject::speckle},       Choice<Reject>{"no_data", Reject::no_data}};
+/// What is said of a reason, and how it is drawn.
+struct Reason {
+  Reject bit = Reject::none;
+  std::string_view name;   // as users write it
+  std::string_view label;  // in legends
+  Rgb colour;
+  std::string_view says;
+};
+
+/// All of them: legends, names, the browser page and Python have theirs from here. Where several bits are
+/// set, the first of these is drawn: what cannot be helped before what the matcher decided.
+// clang-format off
+inline constexpr std::array kReasons{
+    Reason{Reject::no_data, "no_data", "no data", {25, 25, 25}, "the external disparity map had no value here"},
+    Reason{Reject::border, "border", "border", {60, 60, 60}, "no candidate lay inside the right image"},
+    Reason{Reject::below_ground, "below_ground", "below ground", {205, 185, 255}, "under the floor: a reflection"},
+    Reason{Reject::speckle, "speckle", "speckle", {255, 240, 200}, "a small island of disparity"},
+    Reason{Reject::no_texture, "no_texture", "no texture", {105, 105, 105}, "too little texture to match at all"},
+    Reason{Reject::not_unique, "not_unique", "not unique", {150, 135, 135}, "another disparity fits nearly as well"},
+    Reason{Reject::flat, "flat", "flat", {125, 150, 140}, "every disparity fits equally badly or well"},
+    Reason{Reject::left_right, "left_right", "left-right", {205, 205, 205},
+           "followed back from the right image, the match does not return"},
+};
+// clang-format on
+
+/// Their names, in the order of the bits.
+inline constexpr auto kRejects = [] {
+  std::array<Choice<Reject>, kReasons.size()> all{};
+  std::transform(kReasons.begin(), kReasons.end(), all.begin(), [](const Reason& r) {
+    return Choice<Reject>{r.name, r.bit};
+  });
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+  return all;
+}();
+static_assert(std::adjacent_find(kRejects.begin(), kRejects.end(), [](const auto& a, const auto& b) {
+                return a.value == b.value;
+              }) == kRejects.end());
 
 constexpr Reject operator|(Reject a, Reject b) {
-  return static_cast<Reject>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+  return static_cast<Reject>(static_cast<std::uint16_t>(a) | static_cast<std::uint16_t>(b));
 }
 constexpr Reject operator&(Reject a, Reject b) {
-  return static_cast<Reject>(static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(b));
+  return static_cast<Reject>(static_cast<std::uint16_t>(a) & static_cast<std::uint16_t>(b));
 }
 constexpr Reject& operator|=(Reject& a, Reject b) {
   return a = a | b;

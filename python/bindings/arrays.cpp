@@ -91,7 +91,7 @@ struct Accepted<std::int32_t> {
 };
 template <>
 struct Accepted<Reject> {
-  using Number = std::uint8_t;
+  using Number = std::uint16_t;
   static constexpr const char* kKinds = "";
 };
 template <>

@@ -131,7 +131,7 @@ struct NumbersOf {
 };
 template <>
 struct NumbersOf<Reject> {
-  using Type = std::uint8_t;
+  using Type = std::uint16_t;
   static constexpr int kCount = 1;
 };
 template <>

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "disparity.hpp"
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/disparity/confidence.hpp>
 #include <cairn/disparity/flatness.hpp>
@@ -112,14 +113,17 @@ py::object reject_enum() {
   for (const auto& [name, bit] : kRejects) members.append(py::make_tuple(std::string(name), int(bit)));
   py::object made =
       py::module_::import("enum").attr("IntFlag")("Reject", members, py::arg("module") = "cairn");
-  made.attr("__doc__") =
+  std::string doc =
       "Why a pixel has no disparity: a set of bits, as in frame.reject.\n"
-      "    frame.reject & cairn.Reject.left_right != 0   # seen by one camera only\n"
-      "border: no candidate lay inside the right picture; left_right: the match does not lead back; "
-      "not_unique: another "
-      "disparity fits nearly as well; flat: every disparity fits equally; no_texture: too little texture; "
-      "below_ground: "
-      "under the floor, a reflection; speckle: a small island; no_data: the map from outside had none.";
+      "    frame.reject & cairn.Reject.left_right != 0   # seen by one camera only\n";
+  const char* between = "";
+  for (const auto& [name, bit] : kRejects) {
+    const auto reason =
+        std::find_if(kReasons.begin(), kReasons.end(), [bit = bit](const Reason& r) { return r.bit == bit; });
+    doc += between + std::string(name) + ": " + std::string(reason->says);
+    between = "; ";
+  }
+  made.attr("__doc__") = doc + ".";
   return made;
 }
 
@@ -150,7 +154,7 @@ void bind_disparity(py::module_& m) {
       .def_property_readonly("disparity_px", always_shown(&DisparityMap::disparity_px),
                              "float32, px; NaN = hole")
       .def_property_readonly("reject", always_shown(&DisparityMap::reject),
-                             "uint8, the bits of cairn.Reject; 0 = none")
+                             "uint16, the bits of cairn.Reject; 0 = none")
       .def("__repr__",
            [](const DisparityMap& self) {
              return "<cairn.DisparityMap " + text(self.disparity_px.size()) + ">";
@@ -159,22 +163,22 @@ void bind_disparity(py::module_& m) {
 
   def_stage(
       m, "reject_inconsistent", {"left_right"},
-      "Pixels whose match, followed back from the right picture, does not return to them: (H, W) uint8, "
+      "Pixels whose match, followed back from the right picture, does not return to them: (H, W) uint16, "
       "Reject.left_right or 0.",
       &inconsistent, "matches"_a, py::kw_only());
   def_stage(m, "reject_ambiguous", {"uniqueness"},
-            "Pixels with more than one suitable minimum: (H, W) uint8, Reject.not_unique or 0.", &ambiguous,
+            "Pixels with more than one suitable minimum: (H, W) uint16, Reject.not_unique or 0.", &ambiguous,
             "matches"_a, py::kw_only());
   def_stage(m, "reject_flat", {"flatness"},
-            "Pixels with a constant correlation function: (H, W) uint8, Reject.flat or 0.", &flat,
+            "Pixels with a constant correlation function: (H, W) uint16, Reject.flat or 0.", &flat,
             "matches"_a, py::kw_only());
   def_stage(m, "reject_textureless", {"texture"},
-            "Pixels without enough texture (Moravec operator): (H, W) uint8, Reject.no_texture or 0. left: "
+            "Pixels without enough texture (Moravec operator): (H, W) uint16, Reject.no_texture or 0. left: "
             "(H, W) or "
             "(H, W, 3) uint8.",
             &textureless, "left"_a, py::kw_only(), "bgr"_a = false);
   def_stage(m, "combine", {},
-            "Unites verdicts, arrays (H, W) uint8 of cairn.Reject bits (yours among them), with the "
+            "Unites verdicts, arrays (H, W) uint16 of cairn.Reject bits (yours among them), with the "
             "disparities: a pixel "
             "keeps every bit that it got, NaN adds Reject.border. refined_px: (H, W) float32, px.",
             &combine_verdicts, "refined_px"_a, "verdicts"_a, py::kw_only());

@@ -222,7 +222,7 @@ void bind_frame_class(py::module_& m) {
                              "float32, px; NaN = hole, see `reject`")
       .def_property_readonly(
           "reject", image_of<Reject>([](const PyFrame& f) -> auto& { return f.frame.disparity.reject; }),
-          "uint8, why there is no disparity: bits of cairn.Reject; 0 = there is one")
+          "uint16, why there is no disparity: bits of cairn.Reject; 0 = there is one")
       .def_property_readonly(
           "confidence", image_of_some<float>([](const PyFrame& f) -> auto& { return f.frame.confidence; }),
           "float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where "
@@ -278,9 +278,7 @@ void bind_frame_class(py::module_& m) {
           "to_json", [](const PyFrame& self) { return io::objects_json(self.frame, self.provenance); },
           "The text of objects.json: objects with masks, ground, configuration, timings (docs/formats.md).")
       .def("save", &save, py::arg("folder"),
-           "Writes what `cairn segment -o FOLDER` does: disparity, reject, confidence, objects and floor as "
-           "pictures, "
-           "overlay.png, disparity_view.png and objects.json; whole or not at all.")
+           "Writes the files that `cairn segment -o FOLDER` does (docs/formats.md); whole or not at all.")
       .def("_repr_png_", &overlay_png)
       .def(py::pickle(&frame_state, &frame_of))
       .def("__repr__", &frame_repr);
@@ -301,7 +299,7 @@ void bind_frame_class(py::module_& m) {
           [](const py::object& self) {
             return array_over(self.cast<const SceneDisparity&>().disparity.reject, self, false);
           },
-          "(H, W) uint8, bits of cairn.Reject")
+          "(H, W) uint16, bits of cairn.Reject")
       .def_readonly("ground", &SceneDisparity::ground, "the floor as a plane, or why there is none")
       .def_property_readonly("floor", shown(&SceneDisparity::floor),
                              "(H, W) uint8, 255 = floor; None where there is none")

@@ -271,8 +271,8 @@ class DisparityMap:
     def disparity_px(self) -> NDArray[numpy.float32]:
         """float32, px; NaN = hole"""
     @property
-    def reject(self) -> NDArray[numpy.uint8]:
-        """uint8, the bits of cairn.Reject; 0 = none"""
+    def reject(self) -> NDArray[numpy.uint16]:
+        """uint16, the bits of cairn.Reject; 0 = none"""
 
 class EpipolarCorrection:
     """What correct_epipolar() makes."""
@@ -389,8 +389,8 @@ class Frame:
     def disparity(self) -> NDArray[numpy.float32]:
         """float32, px; NaN = hole, see `reject`"""
     @property
-    def reject(self) -> NDArray[numpy.uint8]:
-        """uint8, why there is no disparity: bits of cairn.Reject; 0 = there is one"""
+    def reject(self) -> NDArray[numpy.uint16]:
+        """uint16, why there is no disparity: bits of cairn.Reject; 0 = there is one"""
     @property
     def confidence(self) -> Optional[NDArray[numpy.float32]]:
         """float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where
@@ -444,9 +444,7 @@ class Frame:
     def to_json(self) -> str:
         """The text of objects.json: objects with masks, ground, configuration, timings (docs/formats.md)."""
     def save(self, folder: PathLike) -> None:
-        """Writes what `cairn segment -o FOLDER` does: disparity, reject, confidence, objects and floor as
-        pictures, overlay.png, disparity_view.png and objects.json; whole or not at all.
-        """
+        """Writes the files that `cairn segment -o FOLDER` does (docs/formats.md); whole or not at all."""
     def _repr_png_(self) -> bytes: ...
 
 class Fusion:
@@ -706,7 +704,7 @@ class RegionGraph:
 class Reject(enum.IntFlag):
     """Why a pixel has no disparity: a set of bits, as in frame.reject.
     frame.reject & cairn.Reject.left_right != 0   # seen by one camera only
-border: no candidate lay inside the right picture; left_right: the match does not lead back; not_unique: another disparity fits nearly as well; flat: every disparity fits equally; no_texture: too little texture; below_ground: under the floor, a reflection; speckle: a small island; no_data: the map from outside had none."""
+border: no candidate lay inside the right image; left_right: followed back from the right image, the match does not return; not_unique: another disparity fits nearly as well; flat: every disparity fits equally badly or well; no_texture: too little texture to match at all; below_ground: under the floor: a reflection; speckle: a small island of disparity; no_data: the external disparity map had no value here."""
     none: Reject
     border: Reject
     left_right: Reject
@@ -785,8 +783,8 @@ class SceneDisparity:
     def disparity(self) -> NDArray[numpy.float32]:
         """(H, W) float32, px, read-only; NaN = hole"""
     @property
-    def reject(self) -> NDArray[numpy.uint8]:
-        """(H, W) uint8, bits of cairn.Reject"""
+    def reject(self) -> NDArray[numpy.uint16]:
+        """(H, W) uint16, bits of cairn.Reject"""
     @property
     def ground(self) -> Ground:
         """the floor as a plane, or why there is none"""
@@ -1046,7 +1044,7 @@ def combine(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
 ) -> DisparityMap:
-    """Unites verdicts, arrays (H, W) uint8 of cairn.Reject bits (yours among them), with the disparities:
+    """Unites verdicts, arrays (H, W) uint16 of cairn.Reject bits (yours among them), with the disparities:
     a pixel keeps every bit that it got, NaN adds Reject.border. refined_px: (H, W) float32, px.
     """
 
@@ -1522,8 +1520,8 @@ def reject_ambiguous(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     ratio: float = ...,
-) -> NDArray[numpy.uint8]:
-    """Pixels with more than one suitable minimum: (H, W) uint8, Reject.not_unique or 0."""
+) -> NDArray[numpy.uint16]:
+    """Pixels with more than one suitable minimum: (H, W) uint16, Reject.not_unique or 0."""
 
 def reject_below_ground(
     disparity: DisparityLike,
@@ -1548,8 +1546,8 @@ def reject_flat(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     threshold: float = ...,
-) -> NDArray[numpy.uint8]:
-    """Pixels with a constant correlation function: (H, W) uint8, Reject.flat or 0."""
+) -> NDArray[numpy.uint16]:
+    """Pixels with a constant correlation function: (H, W) uint16, Reject.flat or 0."""
 
 def reject_inconsistent(
     matches: Matches,
@@ -1558,8 +1556,8 @@ def reject_inconsistent(
     exec: Optional[Exec] = None,
     max_diff: float = ...,
     method: Literal["true", "vote"] = ...,
-) -> NDArray[numpy.uint8]:
-    """Pixels whose match, followed back from the right picture, does not return to them: (H, W) uint8,
+) -> NDArray[numpy.uint16]:
+    """Pixels whose match, followed back from the right picture, does not return to them: (H, W) uint16,
     Reject.left_right or 0.
     """
 
@@ -1581,9 +1579,9 @@ def reject_textureless(
     exec: Optional[Exec] = None,
     window_size: int = ...,
     threshold: float = ...,
-) -> NDArray[numpy.uint8]:
-    """Pixels without enough texture (Moravec operator): (H, W) uint8, Reject.no_texture or 0. left: (H, W)
-    or (H, W, 3) uint8.
+) -> NDArray[numpy.uint16]:
+    """Pixels without enough texture (Moravec operator): (H, W) uint16, Reject.no_texture or 0. left: (H,
+    W) or (H, W, 3) uint8.
     """
 
 def save_disparity(path: PathLike, disparity_px: FloatsLike) -> None:

@@ -52,7 +52,7 @@ def stages(left, right, rig):
     matches = cairn.match(left, right, num_disparities=32)
     inconsistent = cairn.reject_inconsistent(matches, max_diff=1)
     bright = left.min(axis=2) > 250  # over-exposed: no data
-    saturated = np.where(bright, cairn.Reject.no_data, cairn.Reject.none).astype(np.uint8)
+    saturated = np.where(bright, cairn.Reject.no_data, cairn.Reject.none).astype(np.uint16)
     disparity = cairn.combine(cairn.refine_subpixel(matches), [inconsistent, saturated])
     frame = cairn.segment(left, rig=rig, disparity_map=disparity)
     # [/stages]

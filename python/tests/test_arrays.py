@@ -195,7 +195,7 @@ def test_arrays_of_a_frame_are_its_own_memory_and_outlive_it(sample):
 
 def test_arrays_have_the_types_and_shapes_that_the_guide_says(sample):
     frame = sample.frame
-    for name, kind in (("disparity", np.float32), ("reject", np.uint8), ("confidence", np.float32), ("floor", np.uint8),
+    for name, kind in (("disparity", np.float32), ("reject", np.uint16), ("confidence", np.float32), ("floor", np.uint8),
                        ("objects_map", np.int32)):
         array = getattr(frame, name)
         assert array.dtype == kind and array.shape == frame.shape == (240, 320), name

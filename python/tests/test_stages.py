@@ -14,7 +14,9 @@ from conftest import same, same_frame
 def test_every_stage_of_the_umbrella_header_is_there(source):
     text = (source / "cairn" / "cairn.hpp").read_text()
     names = {name for words in re.findall(r"// ([a-z_, ]+)(?::.*)?$", text, re.M) for name in words.split(", ")}
-    assert {"match", "fuse", "measure", "segment_facets", "segment", "diagnose"} <= names
+    for header in (source / "cairn" / "disparity").glob("*.hpp"):  # the checks, which it has by way of Config
+        names |= set(re.findall(r"^Image<Reject> (reject_\w+)\(", header.read_text(), re.M))
+    assert {"match", "fuse", "measure", "segment_facets", "segment", "diagnose", "reject_flat"} <= names
     assert [name for name in sorted(names) if not callable(getattr(cairn, name.strip(), None))] == []
 
 
@@ -85,7 +87,7 @@ def test_a_segmentation_is_gradient_watershed_graph_growing(sample):
 def test_a_check_of_ones_own_is_an_array(sample):
     """examples/03_your_own_check.cpp in Python."""
     matches = cairn.match(sample.left, sample.right, num_disparities=32)
-    saturated = np.where(sample.gray()[0] >= 150, np.uint8(cairn.Reject.no_data), np.uint8(0))
+    saturated = np.where(sample.gray()[0] >= 150, np.uint16(cairn.Reject.no_data), np.uint16(0))
     disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches), saturated])
     assert np.isnan(disparity.disparity_px[saturated != 0]).all() and (saturated != 0).any()
     frame = cairn.segment(sample.left, rig=sample.calibration, disparity_map=disparity)
@@ -102,7 +104,7 @@ def test_matches_hold_what_evidence_asks_for(sample):
         cairn.reject_flat(matches, threshold=0.1)
     with pytest.raises(cairn.Error, match="hold no best_right"):
         cairn.reject_inconsistent(matches)
-    assert cairn.reject_inconsistent(matches, method="vote").dtype == np.uint8
+    assert cairn.reject_inconsistent(matches, method="vote").dtype == np.uint16
     assert not cairn.reject_ambiguous(matches).any()  # off in the preset default
     assert cairn.estimate_confidence(matches, cairn.combine(cairn.refine_subpixel(matches), [])) is None
 

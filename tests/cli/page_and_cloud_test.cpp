@@ -88,6 +88,24 @@ TEST_F(PageAndCloudTest, EvaluateWritesAPageOfWhatThereIs) {
   EXPECT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("new/page")}).code, 0);
 }
 
+TEST_F(PageAndCloudTest, ReasonsOfEightBitsAreReadAsEarlierVersionsWroteThem) {
+  pair_in("frame");
+  ASSERT_EQ(
+      run({"segment", path("frame"), "--set", "match.num_disparities=16", "-o", path("out/frame")}).code, 0);
+  fs::create_directories(at("truth/frame"));
+  write(at("truth/frame") / "disp_left.pfm", pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
+  ASSERT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("now")}).code, 0);
+  const io::Labels wide = io::load_labels(at("out/frame/reject.png"));
+  EXPECT_EQ(wide.bits, 16);
+  Image<std::uint8_t> narrow(wide.ids.size());
+  for (int y = 0; y < narrow.height(); ++y) {
+    for (int x = 0; x < narrow.width(); ++x) narrow(x, y) = static_cast<std::uint8_t>(wide.ids(x, y));
+  }
+  io::save_png(at("out/frame/reject.png"), View<const std::uint8_t>(narrow));
+  ASSERT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("earlier")}).code, 0);
+  EXPECT_EQ(content(at("earlier/evaluation.html")), content(at("now/evaluation.html")));
+}
+
 TEST_F(PageAndCloudTest, EvaluateWritesNoPageOfMapsThatDiffer) {
   pair_in("frame");
   ASSERT_EQ(

@@ -8,6 +8,7 @@
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/io/results.hpp>
+#include <cairn/page/html_page.hpp>
 #include <cstdio>
 #include <filesystem>
 
@@ -23,7 +24,8 @@ int main(int, char** argv) {
   const auto frame = cairn::segment(pair, calibration.rig, config, cairn::Exec::with_threads(0));
   cairn::io::write_result(result, pictures.left.gray, pictures.left.rgb, frame,
                           {"default", config, calibration.rig, {}, false});
-  std::printf("files: %zu objects, %zu bytes of options\n", frame.objects.list.size(),
-              cairn::io::config_yaml(config).size());
+  std::printf("files: %zu objects, %zu bytes of options, %zu of an empty page\n", frame.objects.list.size(),
+              cairn::io::config_yaml(config).size(),
+              cairn::io::html_page({"segment", "none", {}}, {}).size());
   return frame.objects.list.empty() || !std::filesystem::exists(result / "overlay.png") ? 1 : 0;
 }

@@ -131,25 +131,19 @@ TEST_P(ChecksEquivalence, LeftRight) {
   }
 }
 
-TEST_P(ChecksEquivalence, Uniqueness) {
+TEST_P(ChecksEquivalence, OfAPixelByItsOwnCosts) {
   for (const Size size : sizes()) {
     const Matches matches = random_matches(size, 0, 12);
-    for (const float ratio : {-1.0F, 0.0F, 10.0F, 33.3F, 100.0F}) {
-      SCOPED_TRACE(text(size) + " ratio " + std::to_string(ratio));
-      EXPECT_EQ(numbers(reject_ambiguous(matches, {ratio}, exec)),
-                numbers(reference::reject_ambiguous(matches, {ratio})));
-    }
-  }
-}
-
-TEST_P(ChecksEquivalence, Flatness) {
-  for (const Size size : sizes()) {
-    const Matches matches = random_matches(size, 0, 13);
-    for (const float threshold : {-1.0F, 0.0F, 0.1F, 0.5F, 1.0F}) {
-      SCOPED_TRACE(text(size) + " threshold " + std::to_string(threshold));
-      EXPECT_EQ(numbers(reject_flat(matches, {threshold}, exec)),
-                numbers(reference::reject_flat(matches, {threshold})));
-    }
+    reference::for_each_pixel_check([&](const auto& check) {
+      for (std::size_t i = 0; i < check.configs.size(); ++i) {
+        SCOPED_TRACE(text(size) + " " + check.name + " options " + std::to_string(i));
+        const auto expected = numbers(check.slow(matches, check.configs[i]));
+        for (const Target target : supported_targets()) {
+          exec.target = target;
+          EXPECT_EQ(numbers(check.fast(matches, check.configs[i], exec)), expected) << name(target);
+        }
+      }
+    });
   }
 }
 

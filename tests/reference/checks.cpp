@@ -8,16 +8,6 @@
 namespace cairn::reference {
 namespace {
 
-/// An image whose pixel (x, y) is judge(x, y).
-template <class Judge>
-Image<Reject> verdicts(Size size, Judge judge) {
-  Image<Reject> image(size);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) image(x, y) = judge(x, y);
-  }
-  return image;
-}
-
 DisparityMap clone(const DisparityMap& map) {
   return {map.disparity_px.clone(), map.reject.clone()};
 }
@@ -60,24 +50,6 @@ Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig&
     const int back = config.method == LeftRightMethod::vote ? vote(matches, right_x, right_y)
                                                             : int{matches.best_right(right_x, right_y)};
     return static_cast<float>(std::abs(d - back)) <= config.max_diff ? Reject::none : Reject::left_right;
-  });
-}
-
-Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& config) {
-  return verdicts(matches.best.size(), [&](int x, int y) {
-    if (config.ratio < 0 || matches.best(x, y) == kNoMatch || matches.runner_up(x, y) == kNoCost)
-      return Reject::none;
-    const bool ambiguous = matches.runner_up(x, y) * (100.0F - config.ratio) < matches.cost(x, y) * 100.0F;
-    return ambiguous ? Reject::not_unique : Reject::none;
-  });
-}
-
-Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config) {
-  return verdicts(matches.best.size(), [&](int x, int y) {
-    if (config.threshold < 0 || matches.best(x, y) == kNoMatch) return Reject::none;
-    const float mean = matches.mean_cost(x, y);
-    if (mean == 0) return Reject::flat;
-    return (mean - matches.cost(x, y)) / mean < config.threshold ? Reject::flat : Reject::none;
   });
 }
 

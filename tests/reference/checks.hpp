@@ -3,21 +3,19 @@
 #pragma once
 
 #include <cairn/disparity/disparity_map.hpp>
-#include <cairn/disparity/flatness.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/disparity/speckle.hpp>
 #include <cairn/disparity/texture.hpp>
-#include <cairn/disparity/uniqueness.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <vector>
 
-/// The slow twins of disparity/: what the fast ones must give, bit for bit. One pixel at a time, and each
-/// from scratch.
+#include "pixel_checks.hpp"
+
+/// The slow twins of disparity/, beside those of pixel_checks.hpp: what the fast ones must give, bit for bit.
+/// One pixel at a time, and each from scratch.
 namespace cairn::reference {
 
 Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config);
-Image<Reject> reject_ambiguous(const Matches& matches, const UniquenessConfig& config);
-Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& config);
 Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config);
 DisparityMap combine(const Image<float>& refined_px, const std::vector<View<const Reject>>& verdicts);
 DisparityMap reject_below_ground(const DisparityMap& disparity, const GroundPlane& plane, float doffs_px,

@@ -5,6 +5,8 @@
 #include <cairn/disparity/disparity_map.hpp>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -26,6 +28,16 @@ std::string refusal(const Image<float>& map) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST(Reasons, HaveALineEachInTheirPage) {
+  std::ifstream page(CAIRN_SOURCE_DIR "/docs/why_is_this_pixel_a_hole.md");
+  const std::string all(std::istreambuf_iterator<char>(page), {});
+  for (const auto& [name, bit] : kRejects) {
+    const std::string line =
+        "| " + std::to_string(static_cast<int>(bit)) + " | `" + std::string(name) + "` |";
+    EXPECT_NE(all.find(line), std::string::npos) << line;
+  }
 }
 
 TEST(Combine, APixelKeepsEveryBitThatItGot) {

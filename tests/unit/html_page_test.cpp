@@ -94,7 +94,7 @@ TEST(HtmlPage, PacksIdsOfAnySizeWithoutLoss) {
 
 TEST(HtmlPage, PacksEveryReasonAndTheDontCare) {
   const auto reject =
-      filled<Reject>([](int x, int y) { return static_cast<Reject>((x * 31 + y * 17) % 256); });
+      filled<Reject>([](int x, int y) { return static_cast<Reject>((x * 3100 + y * 17) % 65536); });
   const auto truth = filled<TruthId>([](int x, int y) { return TruthId{(x + y) % 5 - 1}; });
   PageFrame frame;
   frame.reject = reject;

@@ -216,11 +216,12 @@ TEST_F(ImageFiles, WhatIsWrittenIsReadBack) {
 }
 
 TEST_F(ImageFiles, ReasonsAreWrittenAsTheirBits) {
-  Image<Reject> reasons({2, 1}, Reject::left_right, {});
+  Image<Reject> reasons({3, 1}, Reject::left_right, {});
   reasons(1, 0) = Reject::none;
+  reasons(2, 0) = static_cast<Reject>(0x8001);
   io::save_png(folder_.path() / "reject.png", View<const Reject>(reasons.view()));
   EXPECT_EQ(pixels(io::load_labels(folder_.path() / "reject.png").ids),
-            (std::vector<int>{static_cast<int>(Reject::left_right), 0}));
+            (std::vector<int>{static_cast<int>(Reject::left_right), 0, 0x8001}));
 }
 
 TEST_F(ImageFiles, AnEmptyImageIsNotWritten) {

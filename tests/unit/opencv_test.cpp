@@ -76,7 +76,7 @@ TEST(OpenCv, PutsHeadersOverTheImagesOwnPixels) {
   const Image<ObjectId> labels({7, 3}, ObjectId{4}, {});
   EXPECT_EQ(mat_of(labels).data, reinterpret_cast<const uchar*>(labels.row(0)));
   EXPECT_EQ(mat_of(labels).at<int>(2, 6), 4);
-  EXPECT_EQ(mat_of(View<const Reject>{}).type(), CV_8UC1);
+  EXPECT_EQ(mat_of(View<const Reject>{}).type(), CV_16UC1);
   EXPECT_TRUE(mat_of(View<const Reject>{}).empty());
 }
 

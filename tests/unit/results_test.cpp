@@ -167,7 +167,7 @@ TEST_F(ResultFolder, ComesBackAsItWasWritten) {
   EXPECT_EQ(objects.ids(20, 10), 1);
   EXPECT_EQ(objects.ids(19, 10), 0);
   const Labels reject = load_labels(root_ / "out" / "reject.png");
-  EXPECT_EQ(reject.bits, 8);
+  EXPECT_EQ(reject.bits, 16);
   EXPECT_EQ(reject.ids(0, 0), 1 + 8);
   const Labels confidence = load_labels(root_ / "out" / "confidence.png");
   EXPECT_EQ(confidence.bits, 8);
@@ -197,6 +197,21 @@ TEST_F(ResultFolder, ReplacesAnOlderResultWhollyAndLeavesForeignFilesAlone) {
   EXPECT_EQ(names(root_ / "out"),
             (std::set<std::string>{"disparity.pfm", "reject.png", "confidence.png", "objects.png",
                                    "overlay.png", "disparity_view.png", "objects.json", "notes.txt"}));
+}
+
+TEST_F(ResultFolder, OfASecondRunHoldsNothingOfTheFirst) {
+  const Provenance plenty = some_provenance();
+  const Image<Gray> left(kSize, Gray{90}, {});
+  write_result(root_ / "out", left, {}, frame_with_one_object(true), plenty, {.point_cloud = true});
+  Frame least = frame_with_one_object(false);
+  least.confidence = {};
+  Provenance other = some_provenance();
+  other.rig = std::nullopt;
+  other.config.match.min_disparity = -16;
+  write(root_ / "alone", least, other);
+  EXPECT_GT(names(root_ / "out").size(), names(root_ / "alone").size());
+  write(root_ / "out", least, other);
+  EXPECT_EQ(names(root_ / "out"), names(root_ / "alone"));
 }
 
 TEST_F(ResultFolder, HasNoConfidenceWhereThereIsNoneNotEvenAnOlderOne) {
