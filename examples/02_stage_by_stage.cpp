@@ -24,6 +24,19 @@ int count(const Image<Reject>& verdicts, Reject bit) {
   return found;
 }
 
+double mean_where_known(const Image<float>& values, const DisparityMap& disparity) {
+  double sum = 0;
+  int known = 0;
+  for (int y = 0; y < values.height(); ++y) {
+    for (int x = 0; x < values.width(); ++x) {
+      if (disparity.reject(x, y) != Reject::none) continue;
+      sum += static_cast<double>(values(x, y));
+      ++known;
+    }
+  }
+  return known > 0 ? sum / known : 0;
+}
+
 void print_holes(const DisparityMap& disparity, const Ground& ground) {
   std::printf("rejected pixels, of %lld\n", static_cast<long long>(disparity.reject.size().area()));
   for (const auto& [name, bit] : kRejects) {
@@ -117,8 +130,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   std::printf("walls: %zu; superpixels: %d, groups: %zu; objects: %zu\n",
               background.planes.size() - (background.has_floor ? 1 : 0), facets.count,
               groups.regions.size() - 1, objects.list.size());
-  std::printf("confidence of the pixel in the middle: %.2f\n",
-              confidence(confidence.width() / 2, confidence.height() / 2));
+  std::printf("confidence of the disparities: %.2f in the mean\n", mean_where_known(confidence, disparity));
 }
 
 }  // namespace
