@@ -97,7 +97,7 @@ MatchConfig search(const Scene& scene, MatchConfig config) {
 
 Run winner(const Scene& scene, MatchConfig config, const Exec& exec = one_thread()) {
   config.evidence = Evidence::winner;
-  return [=, &scene] { static_cast<void>(match(scene.pair(), search(scene, config), exec)); };
+  return [=, &scene] { static_cast<void>(match_windows(scene.pair(), search(scene, config), exec)); };
 }
 
 /// As StereoBM has it by default.
@@ -238,7 +238,7 @@ void add_comparisons(Registry& all) {
 std::int64_t working_bytes(const Scene& scene, const MatchConfig& config, const Exec& exec) {
   const std::int64_t before = held_bytes;
   most_held_bytes = before;
-  const Matches matches = match(scene.pair(), search(scene, config), exec);
+  const Matches matches = match_windows(scene.pair(), search(scene, config), exec);
   const std::int64_t maps = held_bytes - before;
   return most_held_bytes - before - maps;
 }

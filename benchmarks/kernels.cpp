@@ -94,7 +94,7 @@ void add_all() {
   }
   add_match("match/semi_global", {.method = MatchMethod::semi_global});
 
-  static const Matches matches = match(pictures().pair(), kFiltered, {});
+  static const Matches matches = match_windows(pictures().pair(), kFiltered, {});
   add_stage("filter_xsobel", [](const Exec& exec) { return filter_xsobel(pictures().left, 31, exec); });
   add_stage("remove_mean", [](const Exec& exec) { return remove_mean(pictures().left, 9, exec); });
   add_stage("refine_subpixel", [](const Exec& exec) { return refine_subpixel(matches, {}, exec); });

@@ -10,14 +10,15 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/matching/epipolar_correction.hpp>  // correct_epipolar
-#include <cairn/matching/match.hpp>              // match
-#include <cairn/matching/semi_global.hpp>        // match_semi_global
+#include <cairn/matching/match.hpp>              // match_windows
+#include <cairn/matching/semi_global.hpp>        // match, match_semi_global
 #include <cairn/matching/subpixel.hpp>           // refine_subpixel
 #include <cairn/disparity/left_right.hpp>        // reject_inconsistent
 #include <cairn/disparity/uniqueness.hpp>        // reject_ambiguous
 #include <cairn/disparity/flatness.hpp>          // reject_flat
 #include <cairn/disparity/texture.hpp>           // reject_textureless
 #include <cairn/disparity/disparity_map.hpp>     // combine, external_disparity
+#include <cairn/image/noise.hpp>                 // noise_sigma
 #include <cairn/grouping/evidence.hpp>          // find_evidence
 #include <cairn/scene/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
 #include <cairn/disparity/speckle.hpp>           // reject_speckles
@@ -31,7 +32,7 @@
 #include <cairn/regions/grow_near_to_far.hpp>    // grow_near_to_far
 #include <cairn/regions/segment_intensity.hpp>   // segment_intensity
 #include <cairn/regions/segment_disparity.hpp>   // segment_disparity
-#include <cairn/grouping/facets.hpp>              // segment_facets
+#include <cairn/grouping/facets.hpp>              // segment_facets, as_segmentation
 #include <cairn/grouping/figure.hpp>              // separate_figure
 #include <cairn/grouping/group.hpp>               // group_facets
 #include <cairn/objects/fuse.hpp>                // fuse

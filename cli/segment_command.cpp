@@ -94,6 +94,8 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   shown.confidence = frame.confidence;
   shown.by_intensity = frame.by_intensity.labels;
   shown.by_disparity = frame.by_disparity.labels;
+  shown.superpixels = frame.superpixels.labels;
+  shown.groups = frame.groups.labels;
   shown.objects = frame.objects.labels;
   shown.objects_json = io::objects_json(frame, provenance);
   return io::encode_frame(shown);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// What cairn::segment() does with the preset `paper`, one stage at a time, with a look at what each one made.
+// What cairn::segment() does with the presets `paper` and `default`, one stage at a time, with a look at what
+// each one made.
 //   02_stage_by_stage samples/glossy_floor
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -22,11 +24,39 @@ int count(const Image<Reject>& verdicts, Reject bit) {
   return found;
 }
 
-void run_stages(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
-                const Exec& exec) {
+double mean_where_known(const Image<float>& values, const DisparityMap& disparity) {
+  double sum = 0;
+  int known = 0;
+  for (int y = 0; y < values.height(); ++y) {
+    for (int x = 0; x < values.width(); ++x) {
+      if (disparity.reject(x, y) != Reject::none) continue;
+      sum += static_cast<double>(values(x, y));
+      ++known;
+    }
+  }
+  return known > 0 ? sum / known : 0;
+}
+
+void print_holes(const DisparityMap& disparity, const Ground& ground) {
+  std::printf("rejected pixels, of %lld\n", static_cast<long long>(disparity.reject.size().area()));
+  for (const auto& [name, bit] : kRejects) {
+    std::printf("  %-13.*s %6d\n", static_cast<int>(name.size()), name.data(), count(disparity.reject, bit));
+  }
+  if (ground.plane) {
+    std::printf("floor: d = %.5f x + %.5f y + %.3f, support %.2f\n", ground.plane->a, ground.plane->b,
+                ground.plane->c, ground.support);
+  } else {
+    const auto reason = kRefusals.at(static_cast<std::size_t>(ground.refusal)).name;
+    std::printf("no floor: %.*s\n", static_cast<int>(reason.size()), reason.data());
+  }
+}
+
+/// What cairn/pipeline/paper.cpp does.
+void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
+               const Exec& exec) {
   // [stages]
   // Correlation, and a disparity for every pixel that has a candidate.
-  const Matches matches = match(pair, config.match, exec);
+  const Matches matches = match(pair, config.match, config.semi_global, exec);
   Image<float> refined = refine_subpixel(matches, config.subpixel, exec);
 
   // What speaks against each match. The checks know nothing of each other; each leaves its own bit.
@@ -43,27 +73,64 @@ void run_stages(const StereoPair& pair, const std::optional<StereoRig>& rig, con
   const Image<std::uint8_t> floor = label_floor(disparity, ground, rig, config.ground, exec);
 
   // The left picture and the disparities are segmented apart, and then united.
-  const Segmentation by_intensity = segment_intensity(pair.left(), config.intensity, exec);
   const Segmentation by_disparity = segment_disparity(disparity, floor, config.disparity, exec);
+  const Segmentation by_intensity = segment_intensity(pair.left(), config.intensity, exec);
   const Fusion fusion = fuse(by_intensity, by_disparity, exec);
-  const Objects objects =
-      measure(fusion, by_disparity, disparity, pair.left(), pair.left_rgb(), rig, config.objects, exec);
+
+  // Which of the fused regions are objects, and where.
+  const float noise = noise_sigma(pair.left(), exec);
+  const Objects objects = measure(fusion.labels, fusion.is_floor, disparity, pair.left(), pair.left_rgb(),
+                                  noise, rig, config.objects, exec);
   // [/stages]
 
-  std::printf("rejected pixels, of %lld\n", static_cast<long long>(pair.size().area()));
-  for (const auto& [name, bit] : kRejects) {
-    std::printf("  %-13.*s %6d\n", static_cast<int>(name.size()), name.data(), count(disparity.reject, bit));
-  }
-  if (ground.plane) {
-    std::printf("floor: d = %.5f x + %.5f y + %.3f, support %.2f\n", ground.plane->a, ground.plane->b,
-                ground.plane->c, ground.support);
-  } else {
-    const auto reason = kRefusals.at(static_cast<std::size_t>(ground.refusal)).name;
-    std::printf("no floor: %.*s\n", static_cast<int>(reason.size()), reason.data());
-  }
+  print_holes(disparity, ground);
   std::printf("regions: %zu by intensity, %zu by disparity, %zu fused; objects: %zu\n",
               by_intensity.regions.size(), by_disparity.regions.size(), fusion.parts.size(),
               objects.list.size());
+}
+
+/// What cairn/pipeline/evidence.cpp does.
+void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, const Config& config,
+                 const Exec& exec) {
+  // [stages_by_evidence]
+  // What the left picture tells without a disparity: its noise, and pieces that no clear edge runs through.
+  const float noise = noise_sigma(given.left(), exec);
+  const Facets facets = segment_facets(given.left(), given.left_rgb(), noise, config.facets, exec);
+
+  // A right picture that vibration has moved is moved back; then disparities, smooth along paths.
+  const EpipolarCorrection aligned = correct_epipolar(given, config.match, config.epipolar_correction, exec);
+  const StereoPair pair =
+      aligned.right.empty() ? given : StereoPair::from(given.left(), aligned.right, given.left_rgb());
+  const Matches matches = match(pair, config.match, config.semi_global, exec);
+  const Image<Reject> inconsistent = reject_inconsistent(matches, config.left_right, exec);
+  // (The other checks are off in this preset.)
+  DisparityMap disparity = combine(refine_subpixel(matches, config.subpixel, exec), {inconsistent}, exec);
+
+  // Those that texture vouches for show the scene: its ground, what is reflected in it, its walls.
+  const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
+  const Ground ground = fit_ground(evidence_px, rig, config.ground, exec);
+  disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
+  const Background background = fit_background(evidence_px, ground, rig, config.background, exec);
+
+  // Which pieces stand before the background, and which of those belong together.
+  const std::vector<std::int32_t> figure = separate_figure(facets, pair.left(), pair.left_rgb(), evidence_px,
+                                                           background, noise, config.figure, exec);
+  const Segmentation groups = group_facets(facets, figure, disparity, evidence_px, background, rig,
+                                           config.figure, config.group, exec);
+  disparity = reject_speckles(std::move(disparity), config.speckle, exec);
+
+  // Which of the groups are objects, and where; how far each disparity is to be trusted.
+  const Objects objects = measure(groups.labels, background_of(groups), disparity, pair.left(),
+                                  pair.left_rgb(), noise, rig, config.objects, exec);
+  const Image<float> confidence =
+      estimate_confidence(matches, disparity, confidence_model(config.match.method), config.confidence, exec);
+  // [/stages_by_evidence]
+
+  print_holes(disparity, ground);
+  std::printf("walls: %zu; superpixels: %d, groups: %zu; objects: %zu\n",
+              background.planes.size() - (background.has_floor ? 1 : 0), facets.count,
+              groups.regions.size() - 1, objects.list.size());
+  std::printf("confidence of the disparities: %.2f in the mean\n", mean_where_known(confidence, disparity));
 }
 
 }  // namespace
@@ -78,10 +145,14 @@ int main(int argc, char** argv) try {
   const auto calibration = io::load_calibration(folder / "calib.txt");
   const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
 
-  Config config = Config::paper();
-  config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
-  validate(config, pair.size(), calibration.rig.has_value());  // past this no stage can fail
-  run_stages(pair, calibration.rig, config, Exec::with_threads(0));
+  for (const char* const preset : {"paper", "default"}) {
+    Config config = Config::preset(preset);
+    config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
+    validate(config, pair.size(), calibration.rig.has_value());  // past this no stage can fail
+    std::printf("%s\n", preset);
+    const auto run_stages = config.fusion.method == FusionMethod::overlap ? run_paper : run_default;
+    run_stages(pair, calibration.rig, config, Exec::with_threads(0));
+  }
 } catch (const cairn::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

@@ -31,7 +31,7 @@ Image<Reject> reject_saturated(View<const Gray> image, const Exec& exec) {
 /// The pair's disparities with one more reason to refuse; ground, segmentation and objects follow as ever.
 Frame segment_without_saturated(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                 const Config& config, const Exec& exec) {
-  const Matches matches = match(pair, config.match, exec);
+  const Matches matches = match(pair, config.match, config.semi_global, exec);
   const Image<Reject> inconsistent = reject_inconsistent(matches, config.left_right, exec);
   const Image<Reject> ambiguous = reject_ambiguous(matches, config.uniqueness, exec);
   const Image<Reject> saturated = reject_saturated(pair.left(), exec);

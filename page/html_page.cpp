@@ -220,6 +220,8 @@ Json maps(const PageFrame& frame) {
           {"confidence", packed(frame.confidence, [](float c) { return std::lround(255 * c); })},
           {"by_intensity", packed(frame.by_intensity, id)},
           {"by_disparity", packed(frame.by_disparity, id)},
+          {"superpixels", packed(frame.superpixels, id)},
+          {"groups", packed(frame.groups, id)},
           {"objects", packed(frame.objects, id)},
           // One more than the id: don't care is 0.
           {"true_objects", packed(frame.true_objects, [](TruthId t) { return number(t) + 1; })},

@@ -24,6 +24,8 @@ struct PageFrame {
   View<const float> confidence;  // 0 … 1
   View<const RegionId> by_intensity;
   View<const RegionId> by_disparity;
+  View<const RegionId> superpixels;
+  View<const RegionId> groups;
   View<const ObjectId> objects;
   View<const TruthId> true_objects;
   View<const float> true_disparity_px;

@@ -99,7 +99,7 @@
     const packed = block(`maps-${index}`);
     const count = frames[index].width * frames[index].height;
     const maps = {left: packed.left || null};
-    const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'objects'];
+    const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'superpixels', 'groups', 'objects'];
     for (const name of names) maps[name] = await unpacked(packed[name], count);
     maps.disparity = await disparities(packed.disparity, count);
     maps.true_disparity = await disparities(packed.true_disparity, count);
@@ -360,6 +360,8 @@
       : {regions: [
           {name: 'Regions by intensity', needs: ['by_intensity'], base: 'faded', paint: (out, m) => paintRegions(out, m.by_intensity)},
           {name: 'Regions by disparity', needs: ['by_disparity'], base: 'faded', paint: (out, m) => paintRegions(out, m.by_disparity)},
+          {name: 'Superpixels', needs: ['superpixels'], base: 'faded', paint: (out, m) => paintRegions(out, m.superpixels)},
+          {name: 'Groups', needs: ['groups'], base: 'faded', paint: (out, m) => paintRegions(out, m.groups)},
         ]}),
     objects: [{name: evaluates ? 'Objects found' : 'Objects', needs: ['objects'], base: 'faded', paint: paintFound}],
   };
@@ -454,6 +456,9 @@
     }
     if (maps.by_intensity) {
       parts.push(group(null, [['region by intensity', maps.by_intensity[i]], ['by disparity', maps.by_disparity?.[i] ?? null]]));
+    }
+    if (maps.superpixels) {
+      parts.push(group(null, [['superpixel', maps.superpixels[i]], ['group', maps.groups?.[i] ?? null]]));
     }
     const id = maps.objects?.[i] ?? 0;
     if (id > 0) {

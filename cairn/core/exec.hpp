@@ -17,14 +17,17 @@ enum class Reject : std::uint16_t;  // defined in disparity/reject.hpp; the rest
 struct Matches;
 struct DisparityMap;
 struct Ground;
+struct Background;
+struct Facets;
 struct Segmentation;
 struct Fusion;
 struct Objects;
 
 /// What a stage made, as an observer sees it: borrowed, valid during the call only.
-using Artifact = std::variant<const Matches*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
-                              const Ground*, const Image<std::uint8_t>*, const Segmentation*, const Fusion*,
-                              const Objects*>;
+using Artifact =
+    std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
+                 const Ground*, const Image<std::uint8_t>*, const Background*, const Facets*,
+                 const std::vector<std::int32_t>*, const Segmentation*, const Fusion*, const Objects*>;
 
 /// Called after each stage on the calling thread: the stage's name (as the function's), its result, its time.
 using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;
@@ -45,7 +48,7 @@ struct Exec {
   /// `threads` ≥ 1 persistent threads, the calling one counted; 0 = one for each processor.
   static Exec with_threads(int threads, Target target = Target::best);
   [[nodiscard]] int threads() const;
-  /// For a SideWork: unobserved, and where it is done at the same time, with a pool of its own.
+  /// For a Later: unobserved, and where it is done at the same time, with a pool of its own.
   [[nodiscard]] Exec beside() const;
 };
 

@@ -5,7 +5,6 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
 #include <cairn/disparity/disparity_map.hpp>
-#include <optional>
 
 namespace cairn {
 
@@ -24,17 +23,12 @@ void fields(EvidenceConfig& c, V&& v) {
     "how far the disparities of neighbouring evidence may lie apart", range(0.0F, 100.0F));
 }
 
-/// The standard deviation of the image's noise in grey levels: the median of |response| to a kernel that
-/// answers to neither steps nor ramps (1 −2 1; −2 4 −2; 1 −2 1), over 6·0.6745. Images under 3×3 have none
-/// (0). (beyond the paper)
-float noise_sigma(View<const Gray> image, const Exec& exec = {});
-
 /// The disparities that rest on the pixel's own texture, NaN elsewhere: valid ones where the horizontal
 /// gradient stands out of the noise and is no mere grazing edge (|gx| > |gy|/2), and at least three pixels of
 /// the 5×5 neighbourhood that pass the same test agree. Elsewhere a matcher can only have carried disparity
-/// over from the surroundings, which is how near objects grow over their borders. `noise`: noise_sigma(left),
-/// where that is known. (beyond the paper)
-Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, const EvidenceConfig& config,
-                           const Exec& exec, std::optional<float> noise = std::nullopt);
+/// over from the surroundings, which is how near objects grow over their borders. `noise_sigma`: of the left
+/// image. (beyond the paper)
+Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, float noise_sigma,
+                           const EvidenceConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -6,7 +6,6 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/grouping/evidence.hpp>
 #include <cairn/grouping/facets.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/label_kernels.hpp>
@@ -371,13 +370,12 @@ std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint
   return {borders.begin(), borders.end()};
 }
 
-Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
-                      const Exec& exec, std::optional<float> noise) {
+Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, float noise_sigma,
+                      const FacetsConfig& config, const Exec& exec) {
   const Image<std::uint16_t> edges = edge_strength(gray, rgb, config.smoothing_sigma, exec);
   Basins basins = watershed(edges, exec);
-  const double limit =
-      4.0 * (config.edge_min + config.noise_factor * (noise ? *noise : noise_sigma(gray, exec))) +
-      0.01 * config.contrast_share * clear_edge(edges);
+  const double limit = 4.0 * (config.edge_min + config.noise_factor * noise_sigma) +
+                       0.01 * config.contrast_share * clear_edge(edges);
   const Fusing fusing(basins, edges, limit, exec);
   const Scratch<std::int32_t>& facets = fusing.facets();
   parallel_for(exec, gray.height(), kGrain, [&](int first, int last) {

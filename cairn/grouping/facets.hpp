@@ -9,7 +9,6 @@
 #include <cairn/core/image.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace cairn {
@@ -69,13 +68,13 @@ inline bool beside_border(View<const RegionId> labels, int x, int y) {
 std::vector<Border> borders_of(View<const RegionId> labels, View<const std::uint16_t> edges);
 
 /// Watershed of the edges (in colour where there is colour), then each basin fuses with the neighbour across
-/// its weakest border where that border's mean edge is below edge_min + noise_factor·noise_sigma(gray) +
+/// its weakest border where that border's mean edge is below edge_min + noise_factor·noise_sigma +
 /// contrast_share·(the edge strength that one pixel in fifty exceeds);
 /// borders are recomputed and it is done again until nothing fuses, sixteen times at most. Unlike a
-/// comparison of means this follows shading across a plain surface and stops at faint outlines. `noise`:
-/// noise_sigma(gray), where that is known. (docs/stages/facets.md, beyond the paper)
-Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, const FacetsConfig& config,
-                      const Exec& exec, std::optional<float> noise = std::nullopt);
+/// comparison of means this follows shading across a plain surface and stops at faint outlines.
+/// `noise_sigma`: of `gray`. (docs/stages/facets.md, beyond the paper)
+Facets segment_facets(View<const Gray> gray, View<const Rgb> rgb, float noise_sigma,
+                      const FacetsConfig& config, const Exec& exec);
 
 /// The facets as a segmentation, with their grey statistics.
 Segmentation as_segmentation(const Facets& facets, View<const Gray> gray, const Exec& exec);

@@ -5,7 +5,6 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
 #include <cairn/grouping/colour_model.hpp>
-#include <cairn/grouping/evidence.hpp>
 #include <cairn/grouping/figure.hpp>
 #include <cairn/grouping/like_facets.hpp>
 #include <cairn/grouping/minimum_cut.hpp>
@@ -348,8 +347,7 @@ std::pmr::vector<Votes> votes_of(const Facets& facets, View<const float> evidenc
 
 std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                                           View<const float> evidence_px, const Background& background,
-                                          const FigureConfig& config, const Exec& exec,
-                                          std::optional<float> noise) {
+                                          float noise_sigma, const FigureConfig& config, const Exec& exec) {
   PoolMemory memory(exec.pool);
   const std::pmr::vector<Votes> votes = votes_of(facets, evidence_px, background, config, exec, &memory);
   const std::pmr::vector<Look> looks = looks_of(facets, gray, rgb, votes, exec, &memory);
@@ -361,10 +359,7 @@ std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray>
     ground_costs[i] = kVote * (at_foot[i] ? votes[i].seen_figure : votes[i].sides[1]);
     figure_costs[i] = kVote * (votes[i].sides[0] + kInDoubt * static_cast<std::int64_t>(looks[i].pixels));
   }
-  MinimumCuts cuts(
-      looks.size(),
-      ties_of(facets.borders, config.smoothness, noise ? *noise : noise_sigma(gray, exec), &memory),
-      exec.pool);
+  MinimumCuts cuts(looks.size(), ties_of(facets.borders, config.smoothness, noise_sigma, &memory), exec.pool);
   std::vector<std::int32_t> figure = cuts.cut(ground_costs, figure_costs);
   // Where no floor is known, what mirrors an object would pass for a part of it.
   const double largest_part =

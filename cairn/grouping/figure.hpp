@@ -7,7 +7,6 @@
 #include <cairn/grouping/facets.hpp>
 #include <cairn/scene/background.hpp>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace cairn {
@@ -72,11 +71,10 @@ void fields(FigureConfig& c, V&& v) {
 /// with all that is ground and with all that is seen to be figure, and by whether the ground around them goes
 /// on in their colour, as a wall does behind two objects. Ground that touches figure has a say in that only
 /// with what it is larger than largest_part: it may be the object's (but where no floor is known, it may as
-/// well mirror it). `noise`: noise_sigma(gray), where that is known. (docs/stages/figure.md, beyond the
-/// paper; colour against the two models and cut in turn: Rother, Kolmogorov & Blake 2004, "GrabCut")
+/// well mirror it). `noise_sigma`: of `gray`. (docs/stages/figure.md, beyond the paper; colour against the
+/// two models and cut in turn: Rother, Kolmogorov & Blake 2004, "GrabCut")
 std::vector<std::int32_t> separate_figure(const Facets& facets, View<const Gray> gray, View<const Rgb> rgb,
                                           View<const float> evidence_px, const Background& background,
-                                          const FigureConfig& config, const Exec& exec,
-                                          std::optional<float> noise = std::nullopt);
+                                          float noise_sigma, const FigureConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -523,7 +523,7 @@ Segmentation as_regions(std::vector<std::int32_t> groups, const Facets& facets, 
     RegionId* const group = result.labels.row(y);
     for (int x = 0; x < facets.labels.width(); ++x) group[x] = RegionId{groups[index(facet[x])]};
   }
-  result.regions[0].is_floor = true;
+  result.regions[0].is_background = true;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (shown.pixels[i] == 0) continue;
     Region& region = result.regions[slot(groups[i])];

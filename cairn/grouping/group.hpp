@@ -51,7 +51,7 @@ void fields(GroupConfig& c, V&& v) {
 /// smoothest common border, facets without disparity follow their weakest border, and what a nearer object
 /// parts is put together again. (docs/stages/group.md, beyond the paper)
 ///
-/// Result: region 0 is the background (is_floor), the others are groups. Means in px.
+/// Result: region 0 is the background (is_background), the others are groups. Means in px.
 Segmentation group_facets(const Facets& facets, const std::vector<std::int32_t>& figure,
                           const DisparityMap& disparity, View<const float> evidence_px,
                           const Background& background, const std::optional<StereoRig>& rig,

@@ -4,7 +4,6 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/image/prefilter.hpp>
 #include <cairn/matching/match.hpp>
-#include <cairn/matching/semi_global.hpp>
 #include <cairn/matching/window_kernels.hpp>
 
 namespace cairn {
@@ -21,8 +20,7 @@ Matches make_matches(Size size, const MatchConfig& config, const Pool& pool) {
 
 }  // namespace
 
-Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exec) {
-  if (config.method == MatchMethod::semi_global) return match_semi_global(pair, config, {}, exec);
+Matches match_windows(const StereoPair& pair, const MatchConfig& config, const Exec& exec) {
   Matches matches = make_matches(pair.size(), config, exec.pool);
   kernels::MatchTask task{config, pair.left(), pair.right(), {}, {}, matches, exec.pool};
 

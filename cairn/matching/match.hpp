@@ -96,7 +96,7 @@ struct Matches {
 ///
 /// The time per pixel and disparity depends neither on the window's size nor on what the picture shows.
 /// (docs/stages/matching.md; paper, "Disparity map estimation")
-/// With method=semi_global: match_semi_global() with its default penalties instead.
-Matches match(const StereoPair& pair, const MatchConfig& config, const Exec& exec);
+/// Whatever config.method says: match() in semi_global.hpp goes by that.
+Matches match_windows(const StereoPair& pair, const MatchConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -102,7 +102,7 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
 Matches match(const StereoPair& pair, const MatchConfig& config, const SemiGlobalConfig& penalties,
               const Exec& exec) {
   return config.method == MatchMethod::semi_global ? match_semi_global(pair, config, penalties, exec)
-                                                   : match(pair, config, exec);
+                                                   : match_windows(pair, config, exec);
 }
 
 }  // namespace cairn

@@ -41,7 +41,7 @@ void fields(SemiGlobalConfig& c, V&& v) {
 ///    down.
 /// 5. S(x, y, d) = the sum of the four L. It is what the maps of Matches hold for costs; candidates outside
 /// the
-///    right image have none and never win. Ties and best_right as with match().
+///    right image have none and never win. Ties and best_right as with match_windows().
 ///
 /// All of it is integer, so that every instruction set gets the same bits. Of `config` only min_disparity,
 /// num_disparities and evidence count; row_offset stays empty. Unlike a window's, this takes memory for all
@@ -49,7 +49,7 @@ void fields(SemiGlobalConfig& c, V&& v) {
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec);
 
-/// match() by either method, as config.method says.
+/// By either method, as config.method says: match_windows() or match_semi_global().
 Matches match(const StereoPair& pair, const MatchConfig& config, const SemiGlobalConfig& penalties,
               const Exec& exec);
 

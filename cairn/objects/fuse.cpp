@@ -88,7 +88,7 @@ Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity, 
   assert(by_intensity.labels.size() == by_disparity.labels.size());
   const std::vector<RegionId> chosen = best_overlaps(by_intensity, by_disparity, exec);
 
-  Fusion fusion{Image<RegionId>(by_intensity.labels.size(), exec.pool), {}, {}};
+  Fusion fusion{Image<RegionId>(by_intensity.labels.size(), exec.pool), {}, {}, {}};
   std::vector<std::vector<RegionId>> parts(by_disparity.regions.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     parts[index(chosen[i])].push_back(RegionId{static_cast<std::int32_t>(i)});
@@ -100,6 +100,7 @@ Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity, 
       fused[index(part)] = RegionId{static_cast<std::int32_t>(fusion.parts.size())};
     fusion.parts.push_back(std::move(parts[d]));
     fusion.disparity_region.push_back(RegionId{static_cast<std::int32_t>(d)});
+    fusion.is_floor.push_back(by_disparity.regions[d].is_floor);
   }
 
   parallel_for(exec, fusion.labels.height(), kGrain, [&](int first, int last) {

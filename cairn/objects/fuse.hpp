@@ -30,7 +30,8 @@ struct Fusion {
   Image<RegionId> labels;                    // fused region per pixel, 0 … parts.size()−1
   std::vector<std::vector<RegionId>> parts;  // per fused region: its intensity regions, ascending
   std::vector<RegionId>
-      disparity_region;  // per fused region: the disparity region that it follows, ascending
+      disparity_region;        // per fused region: the disparity region that it follows, ascending
+  std::vector<bool> is_floor;  // per fused region: whether that one is the floor
 };
 
 /// Equation (4): each intensity region goes to the disparity region with the greatest overlap (ties: the one

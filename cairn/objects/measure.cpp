@@ -4,7 +4,6 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/grouping/evidence.hpp>
 #include <cairn/grouping/ranks.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/measure_kernels.hpp>
@@ -38,7 +37,7 @@ struct Rim {
   }
 };
 
-/// What is known of a fused region without its disparities. All of it are whole numbers: in which order they
+/// What is known of a candidate without its disparities. All of it are whole numbers: in which order they
 /// are added changes nothing.
 struct Outline {
   std::int64_t pixel_count = 0;
@@ -60,7 +59,8 @@ struct Outline {
 };
 
 struct Inputs {
-  const Fusion& fusion;
+  View<const RegionId> candidates;
+  std::size_t count;  // of the candidates
   const Image<float>& disparity_px;
   View<const Gray> left;
   View<const Rgb> left_rgb;
@@ -79,8 +79,8 @@ class Survey {
   Survey(const Inputs& in, const Exec& exec)
       : in_(in),
         run_(kernels::label_kernels(exec)),
-        outlines_(in.fusion.parts.size()),
-        ends_(slot(in.fusion.labels.width()) + kernels::kListSlack),
+        outlines_(in.count),
+        ends_(slot(in.candidates.width()) + kernels::kListSlack),
         upper_(ends_.size()),
         lower_(ends_.size()),
         up_to_(ends_.size()) {}
@@ -98,8 +98,8 @@ class Survey {
 
  private:
   void add_runs(int y) {
-    const auto [width, height] = in_.fusion.labels.size();
-    const RegionId* const label = in_.fusion.labels.row(y);
+    const auto [width, height] = in_.candidates.size();
+    const RegionId* const label = in_.candidates.row(y);
     const int count = run_.find_runs(label, label, width, ends_.data());
     sum_colours(y, width);
     const int at_border = (y == 0 ? 1 : 0) + (y + 1 == height ? 1 : 0);
@@ -138,7 +138,7 @@ class Survey {
 
   /// From each pixel to the one above.
   void look_up(int y) {
-    const int count = run_.differing(in_.fusion.labels.row(y), in_.fusion.labels.row(y - 1), in_.left.width(),
+    const int count = run_.differing(in_.candidates.row(y), in_.candidates.row(y - 1), in_.left.width(),
                                      ends_.data(), {upper_.data(), lower_.data()});
     for (std::size_t k = 0; k < slot(count); ++k) {
       const int x = ends_[k];
@@ -198,11 +198,9 @@ int borders_touched(Rect box, Size image) {
          (box.y + box.height == image.height ? 1 : 0);
 }
 
-bool is_object(const Outline& outline, const Region& disparity_region, Size image,
-               const ObjectsConfig& config) {
+bool may_be_object(const Outline& outline, Size image, const ObjectsConfig& config) {
   const double percent = 100.0 * static_cast<double>(outline.pixel_count) / static_cast<double>(image.area());
-  return !disparity_region.is_floor && percent >= config.min_area && percent <= config.max_area &&
-         borders_touched(outline.box, image) < 3;
+  return percent >= config.min_area && percent <= config.max_area && borders_touched(outline.box, image) < 3;
 }
 
 /// The 2nd to the 98th percentile: the values of ranks ⌊(p·(n−1) + 50)/100⌋ in ascending order. Reorders
@@ -376,20 +374,26 @@ std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const 
 
 }  // namespace
 
-Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
-                View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
-                const ObjectsConfig& config, const Exec& exec) {
-  const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma(left, exec));
-  const Inputs in{fusion, disparity.disparity_px, left, left_rgb, rig, edge_min};
-  const Size size = fusion.labels.size();
+std::vector<bool> background_of(const Segmentation& groups) {
+  std::vector<bool> is_background;
+  for (const Region& region : groups.regions) is_background.push_back(region.is_background);
+  return is_background;
+}
+
+Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
+                const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
+                float noise_sigma, const std::optional<StereoRig>& rig, const ObjectsConfig& config,
+                const Exec& exec) {
+  const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma);
+  const Inputs in{candidates, is_background.size(), disparity.disparity_px, left, left_rgb, rig, edge_min};
+  const Size size = candidates.size();
   std::vector<Survey> bands = survey(in, exec);
   const std::vector<Outline>& outline = outlines_of(bands);
 
   std::vector<Candidate> found;
   std::size_t room = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Region& followed = by_disparity.regions[index(fusion.disparity_region[i])];
-    if (!is_object(outline[i], followed, size, config)) continue;
+    if (is_background[i] || !may_be_object(outline[i], size, config)) continue;
     found.push_back({i, room});
     room += Gathered::room_for(in, pixels_of(found.back(), outline));
   }
@@ -411,7 +415,7 @@ Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const Di
   });
 
   Objects objects{Image<ObjectId>(size, exec.pool), {}};
-  std::vector<ObjectId> id_of(fusion.parts.size(), ObjectId::none);
+  std::vector<ObjectId> id_of(is_background.size(), ObjectId::none);
   for (Candidate& candidate : found) {
     candidate.object->id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
     id_of[candidate.region] = candidate.object->id;
@@ -419,7 +423,7 @@ Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const Di
   }
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      const RegionId* const in_row = fusion.labels.row(y);
+      const RegionId* const in_row = candidates.row(y);
       ObjectId* const out = objects.labels.row(y);
       for (int x = 0; x < size.width; ++x) out[x] = id_of[index(in_row[x])];
     }

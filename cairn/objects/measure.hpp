@@ -5,7 +5,7 @@
 #include <cairn/core/fields.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/disparity/disparity_map.hpp>
-#include <cairn/objects/fuse.hpp>
+#include <cairn/regions/region_graph.hpp>
 #include <optional>
 #include <vector>
 
@@ -48,15 +48,21 @@ struct Objects {
   std::vector<Object> list;
 };
 
-/// Turns fused regions into objects. No objects are: the floor; what covers more than max_area of the image
-/// or touches three of its borders (background); what is smaller than min_area; what has no valid pixel; what
-/// would have a confidence below min_confidence (beyond the paper).
+/// Which regions of a segmentation are background, as measure() asks for it.
+std::vector<bool> background_of(const Segmentation& groups);
+
+/// Turns candidates into objects: regions 0 … is_background.size()−1 that divide the image among them, fused
+/// ones or groups. No objects are: what is known to be background, such as the floor; what covers more than
+/// max_area of the image or touches three of its borders (background); what is smaller than min_area; what
+/// has no valid pixel; what would have a confidence below min_confidence (beyond the paper).
 ///
 /// Confidence is a logistic function of the logarithm of the mask's share of the image, of edge_share and of
 /// cut_share; below a valid_share of one half it falls with that, too: what has no disparity is a guess. Its
 /// four numbers were fitted on objects found with the default preset; see docs/stages/objects.md.
-Objects measure(const Fusion& fusion, const Segmentation& by_disparity, const DisparityMap& disparity,
-                View<const Gray> left, View<const Rgb> left_rgb, const std::optional<StereoRig>& rig,
-                const ObjectsConfig& config, const Exec& exec);
+/// `noise_sigma`: of the left image; a step that stands out of it is an edge.
+Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
+                const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
+                float noise_sigma, const std::optional<StereoRig>& rig, const ObjectsConfig& config,
+                const Exec& exec);
 
 }  // namespace cairn

@@ -15,14 +15,19 @@ struct SceneDisparity {
   Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
 };
 
-/// All that is known of one pair.
+/// All that is known of one pair. What the other method makes is empty.
 struct Frame {
   DisparityMap disparity;
   Ground ground;
-  Image<std::uint8_t> floor;
+  Image<std::uint8_t> floor;  // 255 = floor; empty where there is none
+  // With fusion.method=overlap: the left picture's regions, the disparities', and what unites them.
   Segmentation by_intensity;
   Segmentation by_disparity;
   Fusion fusion;
+  // With fusion.method=evidence: the facets of the left picture with their grey levels, and the groups that
+  // those before the background make.
+  Segmentation superpixels;
+  Segmentation groups;
   Objects objects;
   EpipolarOffset epipolar{};
   Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched

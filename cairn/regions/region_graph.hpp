@@ -18,8 +18,9 @@ struct Region {
   int valid_count = 0;  // pixels that carry a value; mean and variance are 0 where there is none
   Rect box;
   double mean = 0;
-  double variance = 0;    // of the population
-  bool is_floor = false;  // the one floor region of a disparity segmentation
+  double variance = 0;         // of the population
+  bool is_floor = false;       // the one floor region of a disparity segmentation
+  bool is_background = false;  // what groups of facets stand before: floor, walls and all that is no figure
 };
 
 /// The result of a segmentation: every pixel's region, 0 … regions.size()−1 in raster order of their first

@@ -22,6 +22,11 @@ namespace cairn::python {
 
 namespace py = pybind11;
 
+/// Labels as the library has them.
+inline View<const RegionId> as_regions(View<const std::int32_t> labels) {
+  return {reinterpret_cast<const RegionId*>(labels.data()), labels.size(), labels.stride()};
+}
+
 // ---- what the signatures call the arguments ----
 
 inline bool is_anything(PyObject*) {

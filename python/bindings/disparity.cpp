@@ -11,6 +11,8 @@
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
 #include <cairn/grouping/evidence.hpp>
+#include <cairn/image/noise.hpp>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,11 +86,18 @@ DisparityMap from_outside(const Config&, const Exec& exec, const FloatsArgument&
 }
 
 ArrayOf<float> evidence(const Config& config, const Exec& exec, const ImageArgument& left,
-                        const DisparityArgument& disparity, bool bgr) {
+                        const DisparityArgument& disparity, float noise_sigma, bool bgr) {
   const Picture in(left, "left", bgr, exec.pool);
   const DisparityInput map(disparity, "disparity", exec);
   expect_size(map.size(), "disparity", in.size(), "left");
-  return array_from(released([&] { return find_evidence(in.gray(), map.map(), config.evidence, exec); }));
+  expect_noise(noise_sigma);
+  return array_from(
+      released([&] { return find_evidence(in.gray(), map.map(), noise_sigma, config.evidence, exec); }));
+}
+
+float noise_of(const Config&, const Exec& exec, const ImageArgument& left, bool bgr) {
+  const Picture in(left, "left", bgr, exec.pool);
+  return released([&] { return noise_sigma(in.gray(), exec); });
 }
 
 DisparityMap without_speckles(const Config& config, const Exec& exec, const DisparityArgument& disparity) {
@@ -128,6 +137,11 @@ py::object reject_enum() {
 }
 
 }  // namespace
+
+void expect_noise(float noise_sigma) {
+  if (noise_sigma >= 0 && std::isfinite(noise_sigma)) return;
+  throw Error("noise_sigma: found " + std::to_string(noise_sigma) + ", expected 0 or more grey levels");
+}
 
 DisparityInput::DisparityInput(const DisparityArgument& argument, const char* name, const Exec& exec) {
   if (py::isinstance<DisparityMap>(argument)) {
@@ -187,9 +201,13 @@ void bind_disparity(py::module_& m) {
             "holes with "
             "Reject.no_data.",
             &from_outside, "disparity_px"_a, py::kw_only());
+  def_stage(m, "noise_sigma", {},
+            "The standard deviation of the picture's noise, grey levels; stages that weigh edges ask for it.",
+            &noise_of, "left"_a, py::kw_only(), "bgr"_a = false);
   def_stage(m, "find_evidence", {"evidence"},
-            "The disparities that rest on the pixel's own texture, NaN elsewhere: (H, W) float32, px.",
-            &evidence, "left"_a, "disparity"_a, py::kw_only(), "bgr"_a = false);
+            "The disparities that rest on the pixel's own texture, NaN elsewhere: (H, W) float32, px. "
+            "noise_sigma as noise_sigma() gives it.",
+            &evidence, "left"_a, "disparity"_a, "noise_sigma"_a, py::kw_only(), "bgr"_a = false);
   def_stage(m, "reject_speckles", {"speckle"}, "Rejects small islands of disparity.", &without_speckles,
             "disparity"_a, py::kw_only());
   def_stage(m, "estimate_confidence", {"confidence", "match"},

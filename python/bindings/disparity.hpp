@@ -23,4 +23,7 @@ class DisparityInput {
   const DisparityMap* borrowed_ = nullptr;
 };
 
+/// Throws Error unless it can be the noise of a picture.
+void expect_noise(float noise_sigma);
+
 }  // namespace cairn::python

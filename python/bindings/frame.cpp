@@ -4,10 +4,12 @@
 
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segmenter.hpp>
+#include <functional>
 #include <io/image_files.hpp>
 #include <io/overlay.hpp>
 #include <io/results.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -207,6 +209,16 @@ auto part(Member Frame::*member) {
   return [member](const PyFrame& self) -> const Member& { return self.frame.*member; };
 }
 
+/// What only one of the methods makes; None in a frame of the other.
+template <class Part>
+auto part_of_some(Part Frame::*member) {
+  return [member](const PyFrame& self) -> std::optional<std::reference_wrapper<const Part>> {
+    const Part& part = self.frame.*member;
+    if (part.labels.empty()) return std::nullopt;
+    return std::cref(part);
+  };
+}
+
 void bind_frame_class(py::module_& m) {
   constexpr auto kInside = py::return_value_policy::reference_internal;
   py::class_<PyFrame>(
@@ -239,11 +251,17 @@ void bind_frame_class(py::module_& m) {
                              "disparity and reject as the DisparityMap that stages take")
       .def_property_readonly("ground", part(&Frame::ground), kInside,
                              "the floor as a plane, or why there is none")
-      .def_property_readonly("by_intensity", part(&Frame::by_intensity), kInside,
-                             "Segmentation of the picture: by intensity, or the facets")
-      .def_property_readonly("by_disparity", part(&Frame::by_disparity), kInside,
-                             "Segmentation by disparity, or the groups of facets")
-      .def_property_readonly("fusion", part(&Frame::fusion), kInside, "both fused")
+      .def_property_readonly("by_intensity", part_of_some(&Frame::by_intensity), kInside,
+                             "Segmentation of the picture by intensity; None with fusion.method=evidence")
+      .def_property_readonly("by_disparity", part_of_some(&Frame::by_disparity), kInside,
+                             "Segmentation by disparity; None with fusion.method=evidence")
+      .def_property_readonly("fusion", part_of_some(&Frame::fusion), kInside,
+                             "both fused; None with fusion.method=evidence")
+      .def_property_readonly("superpixels", part_of_some(&Frame::superpixels), kInside,
+                             "the picture's facets as a Segmentation; None with fusion.method=overlap")
+      .def_property_readonly("groups", part_of_some(&Frame::groups), kInside,
+                             "Segmentation: the background, and the groups of facets before it; None with "
+                             "fusion.method=overlap")
       .def_property_readonly("epipolar", part(&Frame::epipolar), kInside,
                              "how far the right picture's rows were off")
       .def_property_readonly(

@@ -48,6 +48,12 @@ Matches match_pair(const Config& config, const Exec& exec, const ImageArgument& 
   return released([&] { return match(in.pair, config.match, config.semi_global, exec); });
 }
 
+Matches match_by_windows(const Config& config, const Exec& exec, const ImageArgument& left,
+                         const ImageArgument& right, bool bgr) {
+  const Pair in(left, right, bgr, config, exec);
+  return released([&] { return match_windows(in.pair, config.match, exec); });
+}
+
 Matches match_along_paths(const Config& config, const Exec& exec, const ImageArgument& left,
                           const ImageArgument& right, bool bgr) {
   const Pair in(left, right, bgr, config, exec);
@@ -156,6 +162,10 @@ void bind_matching(py::module_& m) {
             "on the left "
             "stands at (x - d, y) on the right.",
             &match_pair, "left"_a, "right"_a, py::kw_only(), "bgr"_a = false);
+  def_stage(m, "match_windows", {"match"},
+            "match() with method='window', whatever the configuration says: a square window for every pixel, "
+            "on its own.",
+            &match_by_windows, "left"_a, "right"_a, py::kw_only(), "bgr"_a = false);
   def_stage(
       m, "match_semi_global", {"match", "semi_global"},
       "match() with method='semi_global', whatever the configuration says: neighbours vote along four paths "

@@ -8,6 +8,7 @@
 #include <cairn/grouping/figure.hpp>
 #include <cairn/grouping/group.hpp>
 #include <cairn/objects/fuse.hpp>
+#include <cairn/objects/measure.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -25,13 +26,15 @@ namespace {
 
 Array<std::int32_t> figure_of(const Config& config, const Exec& exec, const Facets& facets,
                               const ImageArgument& left, const FloatsArgument& evidence_px,
-                              const Background& background, bool bgr) {
+                              const Background& background, float noise_sigma, bool bgr) {
   const Picture in(left, "left", bgr, exec.pool);
   const BorrowedDisparities evidence(evidence_px, "evidence_px");
   expect_size(in.size(), "left", facets.labels.size(), "facets");
   expect_size(evidence.size(), "evidence_px", facets.labels.size(), "facets");
+  expect_noise(noise_sigma);
   return array_from(released([&] {
-    return separate_figure(facets, in.gray(), in.rgb(), evidence.view(), background, config.figure, exec);
+    return separate_figure(facets, in.gray(), in.rgb(), evidence.view(), background, noise_sigma,
+                           config.figure, exec);
   }));
 }
 
@@ -62,20 +65,28 @@ Fusion fused(const Config&, const Exec& exec, const Segmentation& by_intensity,
   return released([&] { return fuse(by_intensity, by_disparity, exec); });
 }
 
-Objects measured(const Config& config, const Exec& exec, const Fusion& fusion,
-                 const Segmentation& by_disparity, const DisparityArgument& disparity,
-                 const ImageArgument& left, const RigArgument& rig, bool bgr) {
+Objects measured(const Config& config, const Exec& exec, const LabelsArgument& candidates,
+                 const std::vector<bool>& is_background, const DisparityArgument& disparity,
+                 const ImageArgument& left, float noise_sigma, const RigArgument& rig, bool bgr) {
   const auto known = rig_of(rig);
+  const Borrowed<std::int32_t> labels(candidates, "candidates");
   const DisparityInput map(disparity, "disparity", exec);
   const Picture in(left, "left", bgr, exec.pool);
-  expect_size(map.size(), "disparity", fusion.labels.size(), "fusion");
-  expect_size(in.size(), "left", fusion.labels.size(), "fusion");
-  expect_size(by_disparity.labels.size(), "by_disparity", fusion.labels.size(), "fusion");
-  const bool fits = std::all_of(fusion.disparity_region.begin(), fusion.disparity_region.end(),
-                                [&](RegionId id) { return index(id) < by_disparity.regions.size(); });
-  if (!fits) throw Error("by_disparity: found another segmentation than the fusion's, expected that");
+  expect_size(map.size(), "disparity", labels.size(), "candidates");
+  expect_size(in.size(), "left", labels.size(), "candidates");
+  expect_noise(noise_sigma);
+  for (int y = 0; y < labels.size().height; ++y) {
+    const std::int32_t* const row = labels.view().row(y);
+    const bool fits = std::all_of(row, row + labels.size().width, [&](std::int32_t region) {
+      return region >= 0 && static_cast<std::size_t>(region) < is_background.size();
+    });
+    if (fits) continue;
+    throw Error("candidates: found a region that is_background does not tell of, expected 0 … " +
+                std::to_string(is_background.size()) + " - 1");
+  }
   return released([&] {
-    return measure(fusion, by_disparity, map.map(), in.gray(), in.rgb(), known, config.objects, exec);
+    return measure(as_regions(labels.view()), is_background, map.map(), in.gray(), in.rgb(), noise_sigma,
+                   known, config.objects, exec);
   });
 }
 
@@ -125,6 +136,7 @@ void bind_classes(py::module_& m) {
       .def_property_readonly("parts", &parts, "for each fused region its intensity regions, ascending")
       .def_property_readonly("disparity_region", &disparity_region,
                              "for each fused region the disparity region that it follows")
+      .def_readonly("is_floor", &Fusion::is_floor, "for each fused region: does it follow the floor?")
       .def("__len__", [](const Fusion& self) { return self.parts.size(); })
       .def("__repr__",
            [](const Fusion& self) {
@@ -223,13 +235,13 @@ void bind_objects(py::module_& m) {
   def_stage(m, "separate_figure", {"figure"},
             "For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, "
             "one number for "
-            "each facet.",
-            &figure_of, "facets"_a, "left"_a, "evidence_px"_a, "background"_a, py::kw_only(),
+            "each facet. noise_sigma as noise_sigma() gives it.",
+            &figure_of, "facets"_a, "left"_a, "evidence_px"_a, "background"_a, "noise_sigma"_a, py::kw_only(),
             "bgr"_a = false);
   def_stage(m, "group_facets", {"group", "figure"},
             "Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the "
             "background "
-            "(is_floor), the others are groups. Means in px.",
+            "(is_background), the others are groups. Means in px.",
             &groups_of, "facets"_a, "figure"_a, "disparity"_a, "evidence_px"_a, "background"_a,
             "rig"_a = py::none(), py::kw_only());
   def_stage(m, "fuse", {},
@@ -237,9 +249,11 @@ void bind_objects(py::module_& m) {
             &fused, "by_intensity"_a, "by_disparity"_a, py::kw_only());
   def_stage(
       m, "measure", {"objects"},
-      "Turns fused regions into objects: what is floor, background, too small, unseen or unlikely is none.",
-      &measured, "fusion"_a, "by_disparity"_a, "disparity"_a, "left"_a, "rig"_a = py::none(), py::kw_only(),
-      "bgr"_a = false);
+      "Turns candidates into objects: what is background, too large, too small, unseen or unlikely is none. "
+      "candidates: (H, W) integers, the regions of a Fusion or of group_facets(); is_background: for each of "
+      "them, whether it is known to be no object; noise_sigma as noise_sigma() gives it.",
+      &measured, "candidates"_a, "is_background"_a, "disparity"_a, "left"_a, "noise_sigma"_a,
+      "rig"_a = py::none(), py::kw_only(), "bgr"_a = false);
 }
 
 }  // namespace cairn::python

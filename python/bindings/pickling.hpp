@@ -79,20 +79,20 @@ CAIRN_PARTS(DisparityMap, disparity, reject)
 CAIRN_PARTS(GroundPlane, a, b, c)
 CAIRN_PARTS(Ground, plane, support, residual, refusal)
 CAIRN_PARTS(Background, planes, has_floor)
-CAIRN_PARTS(Region, pixel_count, valid_count, box, mean, variance, is_floor)
+CAIRN_PARTS(Region, pixel_count, valid_count, box, mean, variance, is_floor, is_background)
 CAIRN_PARTS(Segmentation, labels, regions)
 CAIRN_PARTS(Basins, labels, count)
 CAIRN_PARTS(RegionGraph::Node, pixel_count, valid_count, sum, squares, first_pixel, box, is_floor)
 CAIRN_PARTS(RegionGraph, nodes, first_arc, arcs)
 CAIRN_PARTS(Border, a, b, length, edge_sum, x2_sum, y2_sum)
 CAIRN_PARTS(Facets, labels, count, borders)
-CAIRN_PARTS(Fusion, labels, parts, disparity_region)
+CAIRN_PARTS(Fusion, labels, parts, disparity_region, is_floor)
 CAIRN_PARTS(Object, id, box, pixel_count, disparity, valid_share, colour, position, extent, edge_share,
             cut_share, confidence)
 CAIRN_PARTS(Objects, labels, list)
 CAIRN_PARTS(SceneDisparity, disparity, ground, floor, epipolar, confidence)
-CAIRN_PARTS(Frame, disparity, ground, floor, by_intensity, by_disparity, fusion, objects, epipolar,
-            confidence)
+CAIRN_PARTS(Frame, disparity, ground, floor, by_intensity, by_disparity, fusion, superpixels, groups, objects,
+            epipolar, confidence)
 CAIRN_PARTS(io::StageTime, stage, milliseconds)
 CAIRN_PARTS(io::Provenance, preset, config, rig, timings, external_disparity)
 CAIRN_PARTS(DisparityErrors, known, matched, bad, absolute_sum, square_sum)
@@ -182,6 +182,8 @@ void restore(const py::handle& state, T& value) {
     value = static_cast<T>(state.cast<std::int64_t>());
   } else if constexpr (is_optional<T>) {
     if (!state.is_none()) restore(state, value.emplace());
+  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
+    value = state.cast<T>();  // its entries are no objects to restore into
   } else if constexpr (is_vector<T> || is_array<T>) {
     const auto all = py::reinterpret_borrow<py::list>(state);
     if constexpr (is_vector<T>) value.resize(all.size());

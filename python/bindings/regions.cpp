@@ -26,10 +26,6 @@ namespace {
 
 // ---- arrays from outside that index others ----
 
-View<const RegionId> as_regions(View<const std::int32_t> labels) {
-  return {reinterpret_cast<const RegionId*>(labels.data()), labels.size(), labels.stride()};
-}
-
 /// How many regions the labels tell apart. Throws Error unless each of 0 … count − 1 has a pixel.
 int count_of(View<const std::int32_t> labels) {
   const auto area = static_cast<std::size_t>(labels.size().area());
@@ -165,9 +161,11 @@ Segmentation by_disparity(const Config& config, const Exec& exec, const Disparit
   return released([&] { return segment_disparity(map.map(), mask.view(), config.disparity, exec); });
 }
 
-Facets facets_of(const Config& config, const Exec& exec, const ImageArgument& left, bool bgr) {
+Facets facets_of(const Config& config, const Exec& exec, const ImageArgument& left, float noise_sigma,
+                 bool bgr) {
   const Picture in(left, "left", bgr, exec.pool);
-  return released([&] { return segment_facets(in.gray(), in.rgb(), config.facets, exec); });
+  expect_noise(noise_sigma);
+  return released([&] { return segment_facets(in.gray(), in.rgb(), noise_sigma, config.facets, exec); });
 }
 
 Segmentation facets_as_segmentation(const Config&, const Exec& exec, const Facets& facets,
@@ -190,7 +188,8 @@ std::vector<std::int32_t> neighbours(const RegionGraph& self, Whole region) {
 std::string region_repr(const Region& r) {
   return "<cairn.Region " + std::to_string(r.pixel_count) + " px at (" + std::to_string(r.box.x) + ", " +
          std::to_string(r.box.y) + ", " + std::to_string(r.box.width) + ", " + std::to_string(r.box.height) +
-         "), mean " + std::to_string(r.mean) + (r.is_floor ? ", floor>" : ">");
+         "), mean " + std::to_string(r.mean) + (r.is_floor ? ", floor" : "") +
+         (r.is_background ? ", background>" : ">");
 }
 
 void bind_classes(py::module_& m) {
@@ -206,6 +205,8 @@ void bind_classes(py::module_& m) {
       .def_readonly("variance", &Region::variance,
                     "of its valid pixels (population), at least 0: grey levels squared, or px squared")
       .def_readonly("is_floor", &Region::is_floor, "the one floor region of a disparity segmentation")
+      .def_readonly("is_background", &Region::is_background,
+                    "what groups of facets stand before: floor, walls and all that is no figure")
       .def("__repr__", &region_repr)
       .def(pickled<Region>());
   py::class_<Segmentation>(m, "Segmentation", "Regions: every pixel belongs to one.")
@@ -303,8 +304,9 @@ void bind_regions(py::module_& m) {
             "uint8 as label_floor() gives it, one region of its own; or None.",
             &by_disparity, "disparity"_a, "floor"_a = py::none(), py::kw_only());
   def_stage(m, "segment_facets", {"facets"},
-            "Cuts the picture into pieces that no clear edge runs through, by colour where there is colour.",
-            &facets_of, "left"_a, py::kw_only(), "bgr"_a = false);
+            "Cuts the picture into pieces that no clear edge runs through, by colour where there is colour. "
+            "noise_sigma as noise_sigma() gives it.",
+            &facets_of, "left"_a, "noise_sigma"_a, py::kw_only(), "bgr"_a = false);
   def_stage(m, "as_segmentation", {}, "The facets as a segmentation, with their grey statistics.",
             &facets_as_segmentation, "facets"_a, "left"_a, py::kw_only(), "bgr"_a = false);
 }

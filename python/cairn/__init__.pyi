@@ -412,14 +412,20 @@ class Frame:
     def ground(self) -> Ground:
         """the floor as a plane, or why there is none"""
     @property
-    def by_intensity(self) -> Segmentation:
-        """Segmentation of the picture: by intensity, or the facets"""
+    def by_intensity(self) -> Optional[Segmentation]:
+        """Segmentation of the picture by intensity; None with fusion.method=evidence"""
     @property
-    def by_disparity(self) -> Segmentation:
-        """Segmentation by disparity, or the groups of facets"""
+    def by_disparity(self) -> Optional[Segmentation]:
+        """Segmentation by disparity; None with fusion.method=evidence"""
     @property
-    def fusion(self) -> Fusion:
-        """both fused"""
+    def fusion(self) -> Optional[Fusion]:
+        """both fused; None with fusion.method=evidence"""
+    @property
+    def superpixels(self) -> Optional[Segmentation]:
+        """the picture's facets as a Segmentation; None with fusion.method=overlap"""
+    @property
+    def groups(self) -> Optional[Segmentation]:
+        """Segmentation: the background, and the groups of facets before it; None with fusion.method=overlap"""
     @property
     def epipolar(self) -> EpipolarOffset:
         """how far the right picture's rows were off"""
@@ -458,6 +464,9 @@ class Fusion:
     @property
     def disparity_region(self) -> List[int]:
         """for each fused region the disparity region that it follows"""
+    @property
+    def is_floor(self) -> List[bool]:
+        """for each fused region: does it follow the floor?"""
     def __len__(self) -> int: ...
 
 class Ground:
@@ -694,6 +703,9 @@ class Region:
     @property
     def is_floor(self) -> bool:
         """the one floor region of a disparity segmentation"""
+    @property
+    def is_background(self) -> bool:
+        """what groups of facets stand before: floor, walls and all that is no figure"""
 
 class RegionGraph:
     """Regions and which of them touch (4-neighbourhood)."""
@@ -1226,6 +1238,7 @@ def find_epipolar_offset(
 def find_evidence(
     left: ImageLike,
     disparity: DisparityLike,
+    noise_sigma: float,
     *,
     bgr: bool = False,
     config: Optional[Config] = None,
@@ -1234,7 +1247,9 @@ def find_evidence(
     gradient_min: float = ...,
     agreement: float = ...,
 ) -> NDArray[numpy.float32]:
-    """The disparities that rest on the pixel's own texture, NaN elsewhere: (H, W) float32, px."""
+    """The disparities that rest on the pixel's own texture, NaN elsewhere: (H, W) float32, px. noise_sigma
+    as noise_sigma() gives it.
+    """
 
 def fit_background(
     evidence_px: FloatsLike,
@@ -1318,7 +1333,7 @@ def group_facets(
     largest_part: float = ...,
 ) -> Segmentation:
     """Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the
-    background (is_floor), the others are groups. Means in px.
+    background (is_background), the others are groups. Means in px.
     """
 
 def grow_near_to_far(
@@ -1444,11 +1459,33 @@ def match_semi_global(
     (Hirschmueller 2008). Of the group match only min_disparity, num_disparities and evidence count.
     """
 
+def match_windows(
+    left: ImageLike,
+    right: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    method: Literal["window", "semi_global"] = ...,
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
+    window_size: int = ...,
+    min_disparity: int = ...,
+    num_disparities: int = ...,
+    row_band: int = ...,
+    prefilter: Literal["none", "xsobel"] = ...,
+    prefilter_cap: int = ...,
+    evidence: Literal["winner", "minimum", "full"] = ...,
+) -> Matches:
+    """match() with method='window', whatever the configuration says: a square window for every pixel, on
+    its own.
+    """
+
 def measure(
-    fusion: Fusion,
-    by_disparity: Segmentation,
+    candidates: LabelsLike,
+    is_background: List[bool],
     disparity: DisparityLike,
     left: ImageLike,
+    noise_sigma: float,
     rig: RigLike = None,
     *,
     bgr: bool = False,
@@ -1458,7 +1495,10 @@ def measure(
     max_area: float = ...,
     min_confidence: float = ...,
 ) -> Objects:
-    """Turns fused regions into objects: what is floor, background, too small, unseen or unlikely is none."""
+    """Turns candidates into objects: what is background, too large, too small, unseen or unlikely is none.
+    candidates: (H, W) integers, the regions of a Fusion or of group_facets(); is_background: for each
+    of them, whether it is known to be no object; noise_sigma as noise_sigma() gives it.
+    """
 
 def measure_pair(
     left: ImageLike,
@@ -1476,6 +1516,15 @@ def measure_synchrony(pairs: PairsLike, *, bgr: bool = False, exec: Optional[Exe
     their pictures at the same moments. All of them are held at once; of fewer than 8 nothing is
     measured but repeats.
     """
+
+def noise_sigma(
+    left: ImageLike,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> float:
+    """The standard deviation of the picture's noise, grey levels; stages that weigh edges ask for it."""
 
 def object_errors(
     ours: LabelsLike,
@@ -1650,6 +1699,7 @@ def segment_disparity(
 
 def segment_facets(
     left: ImageLike,
+    noise_sigma: float,
     *,
     bgr: bool = False,
     config: Optional[Config] = None,
@@ -1659,7 +1709,9 @@ def segment_facets(
     noise_factor: float = ...,
     contrast_share: float = ...,
 ) -> Facets:
-    """Cuts the picture into pieces that no clear edge runs through, by colour where there is colour."""
+    """Cuts the picture into pieces that no clear edge runs through, by colour where there is colour.
+    noise_sigma as noise_sigma() gives it.
+    """
 
 def segment_intensity(
     left: ImageLike,
@@ -1682,6 +1734,7 @@ def separate_figure(
     left: ImageLike,
     evidence_px: FloatsLike,
     background: Background,
+    noise_sigma: float,
     *,
     bgr: bool = False,
     config: Optional[Config] = None,
@@ -1697,7 +1750,7 @@ def separate_figure(
     largest_part: float = ...,
 ) -> NDArray[numpy.int32]:
     """For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, one
-    number for each facet.
+    number for each facet. noise_sigma as noise_sigma() gives it.
     """
 
 def shift_rows(

@@ -183,13 +183,13 @@ def test_arrays_of_a_frame_are_its_own_memory_and_outlive_it(sample):
     frame = cairn.segment(sample.left, sample.right, sample.calibration)
     assert address(frame.disparity) == address(frame.disparity)
     assert address(frame.disparity) == address(frame.disparity_map.disparity_px)
-    disparity, labels, objects = frame.disparity, frame.by_disparity.labels, frame.objects
+    disparity, labels, objects = frame.disparity, frame.groups.labels, frame.objects
     before = disparity.copy()
     del frame
     gc.collect()
     [cairn.segment(sample.left[::-1], sample.right) for _ in range(3)]  # would reuse freed memory
     np.testing.assert_array_equal(disparity, before)
-    assert labels.max() == len(sample.frame.by_disparity) - 1
+    assert labels.max() == len(sample.frame.groups) - 1
     assert repr(objects) == repr(sample.frame.objects)
 
 
@@ -204,13 +204,16 @@ def test_arrays_have_the_types_and_shapes_that_the_guide_says(sample):
     assert not frame.confidence[frame.reject != 0].any()
     assert set(np.unique(frame.floor)) == {0, 255}
     assert sorted(set(np.unique(frame.objects_map)) - {0}) == [o.id for o in frame.objects]
-    for made in (frame.by_intensity, frame.by_disparity, frame.fusion):
+    assert frame.by_intensity is None and frame.by_disparity is None and frame.fusion is None
+    paper = cairn.segment(sample.left, sample.right, sample.calibration, preset="paper")
+    assert paper.superpixels is None and paper.groups is None
+    for made in (frame.superpixels, frame.groups, paper.by_intensity, paper.by_disparity, paper.fusion):
         assert made.labels.dtype == np.int32 and made.labels.max() == len(made) - 1
     assert frame.overlay().dtype == np.uint8 and frame.overlay().shape[2] == 3
 
 
 def test_what_stages_rely_on_cannot_be_written_to(sample):
-    for array in (sample.frame.disparity, sample.frame.objects_map, sample.frame.by_disparity.labels):
+    for array in (sample.frame.disparity, sample.frame.objects_map, sample.frame.groups.labels):
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 1
         with pytest.raises(ValueError):
@@ -244,7 +247,7 @@ def test_memory_does_not_grow_with_the_number_of_frames(sample):
     before = resident()
     for _ in range(60):
         frame = cairn.segment(left, right, match={"num_disparities": 8})
-        frame.disparity, frame.by_disparity.labels, frame._repr_png_(), frame.disparity_view()
+        frame.disparity, frame.groups.labels, frame._repr_png_(), frame.disparity_view()
     per_frame = sample.left[80:160].nbytes * 10
     assert resident() - before < 30 * per_frame
 

@@ -65,7 +65,8 @@ def test_a_frame_without_colour_rig_and_matching_comes_back(sample):
 def one_of_each(sample):
     left, right = sample.left, sample.right
     matches = cairn.match(left, right, num_disparities=32)
-    facets = cairn.segment_facets(left)
+    facets = cairn.segment_facets(left, cairn.noise_sigma(left))
+    paper = cairn.segment(left, right, sample.calibration, preset="paper")
     basins = cairn.watershed(cairn.gradient(left))
     errors = cairn.object_errors(sample.frame.objects_map, cairn.load_labels(sample.folder / "objects.png"))
     measures = cairn.measure_pair(right, left)
@@ -79,9 +80,10 @@ def one_of_each(sample):
         basins,
         cairn.build_graph(basins.labels, sample.gray()[0]),
         facets,
-        sample.frame.fusion,
-        sample.frame.by_disparity,
-        sample.frame.by_disparity.regions[0],
+        paper,
+        paper.fusion,
+        sample.frame.groups,
+        sample.frame.groups.regions[0],
         sample.frame.epipolar,
         cairn.disparity_errors(sample.frame.disparity, sample.frame.disparity),
         errors,

@@ -36,39 +36,44 @@ def by_the_paper(sample):
     disparity = cairn.reject_below_ground(disparity, ground, rig, config=config)
     disparity = cairn.reject_speckles(disparity, config=config)
     floor = cairn.label_floor(disparity, ground, rig, config=config)
-    by_intensity = cairn.segment_intensity(sample.left, config=config)
     by_disparity = cairn.segment_disparity(disparity, floor, config=config)
+    by_intensity = cairn.segment_intensity(sample.left, config=config)
     fusion = cairn.fuse(by_intensity, by_disparity)
-    objects = cairn.measure(fusion, by_disparity, disparity, sample.left, rig, config=config)
-    return disparity, cairn.estimate_confidence(matches, disparity, config=config), by_disparity, objects
+    noise = cairn.noise_sigma(sample.left)
+    objects = cairn.measure(fusion.labels, fusion.is_floor, disparity, sample.left, noise, rig, config=config)
+    confidence = cairn.estimate_confidence(matches, disparity, config=config)
+    return disparity, confidence, {"by_intensity": by_intensity, "by_disparity": by_disparity, "fusion": fusion}, objects
 
 
 def by_evidence(sample):
     rig = sample.calibration.rig
+    noise = cairn.noise_sigma(sample.left)
+    facets = cairn.segment_facets(sample.left, noise)
     offset = cairn.find_epipolar_offset(sample.left, sample.right, num_disparities=32)
     assert offset.outcome == "aligned"
     matches = cairn.match_semi_global(sample.left, sample.right, num_disparities=32)
     disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches)])
-    evidence = cairn.find_evidence(sample.left, disparity)
+    evidence = cairn.find_evidence(sample.left, disparity, noise)
     ground = cairn.fit_ground(evidence, rig)
     disparity = cairn.reject_below_ground(disparity, ground, rig)
     background = cairn.fit_background(evidence, ground, rig)
-    facets = cairn.segment_facets(sample.left)
-    figure = cairn.separate_figure(facets, sample.left, evidence, background)
+    superpixels = cairn.as_segmentation(facets, sample.left)
+    figure = cairn.separate_figure(facets, sample.left, evidence, background, noise)
     groups = cairn.group_facets(facets, figure, disparity, evidence, background, rig)
     disparity = cairn.reject_speckles(disparity)
-    fusion = cairn.fuse(cairn.as_segmentation(facets, sample.left), groups)
-    objects = cairn.measure(fusion, groups, disparity, sample.left, rig)
-    return disparity, cairn.estimate_confidence(matches, disparity), groups, objects
+    is_background = [region.is_background for region in groups.regions]
+    objects = cairn.measure(groups.labels, is_background, disparity, sample.left, noise, rig)
+    return disparity, cairn.estimate_confidence(matches, disparity), {"superpixels": superpixels, "groups": groups}, objects
 
 
 @pytest.mark.parametrize("preset, stages", [("paper", by_the_paper), ("default", by_evidence)])
 def test_stage_by_stage_gives_the_frame(sample, preset, stages):
     frame = cairn.segment(sample.left, sample.right, sample.calibration, preset=preset)
-    disparity, confidence, by_disparity, objects = stages(sample)
+    disparity, confidence, regions, objects = stages(sample)
     assert same(disparity.disparity_px, frame.disparity) and same(disparity.reject, frame.reject)
     assert same(confidence, frame.confidence)
-    assert same(by_disparity.labels, frame.by_disparity.labels)
+    for name, made in regions.items():
+        assert same(made.labels, getattr(frame, name).labels), name
     assert same(objects.labels, frame.objects_map) and repr(objects) == repr(frame.objects)
 
 
@@ -111,24 +116,28 @@ def test_matches_hold_what_evidence_asks_for(sample):
 
 def test_what_does_not_belong_together_is_refused(sample):
     frame, half = sample.frame, sample.left[:, :160]
-    other = cairn.segment_facets(half)
-    labels = frame.by_disparity.labels
+    other = cairn.segment_facets(half, 1)
+    labels, ground = frame.groups.labels, [False] * len(frame.groups)
     calls = [
-        lambda: cairn.measure(frame.fusion, frame.by_disparity, frame.disparity_map, half),
-        lambda: cairn.measure(frame.fusion, cairn.as_segmentation(other, half), frame.disparity_map, sample.left),
-        lambda: cairn.measure(frame.fusion, cairn.segment_intensity(np.zeros((240, 320), np.uint8)), frame.disparity_map, sample.left),
-        lambda: cairn.fuse(cairn.as_segmentation(other, half), frame.by_disparity),
-        lambda: cairn.find_evidence(half, frame.disparity_map),
+        lambda: cairn.measure(labels, ground, frame.disparity_map, half, 1),
+        lambda: cairn.measure(labels, ground[1:], frame.disparity_map, sample.left, 1),
+        lambda: cairn.measure(labels - 1, ground, frame.disparity_map, sample.left, 1),
+        lambda: cairn.measure(labels, ground, frame.disparity_map, sample.left, -1),
+        lambda: cairn.measure(labels[:, 1:], ground, frame.disparity_map, sample.left, 1),
+        lambda: cairn.fuse(cairn.as_segmentation(other, half), frame.groups),
+        lambda: cairn.find_evidence(half, frame.disparity_map, 1),
+        lambda: cairn.find_evidence(sample.left, frame.disparity_map, float("nan")),
+        lambda: cairn.segment_facets(half, -1),
         lambda: cairn.combine(frame.disparity, [frame.reject[:, 1:]]),
         lambda: cairn.segment_disparity(frame.disparity_map, frame.floor[1:]),
-        lambda: cairn.separate_figure(other, half, frame.disparity, cairn.fit_background(frame.disparity, frame.ground)),
+        lambda: cairn.separate_figure(other, half, frame.disparity, cairn.fit_background(frame.disparity, frame.ground), 1),
         lambda: cairn.group_facets(other, [2] * other.count, half, half, cairn.fit_background(frame.disparity, frame.ground)),
         lambda: cairn.build_graph(labels - 1, sample.gray()[0]),
         lambda: cairn.build_graph(labels * 2, sample.gray()[0]),
         lambda: cairn.build_graph(labels, sample.gray()[0][1:]),
         lambda: cairn.build_graph(labels.astype(float), sample.gray()[0]),
         lambda: cairn.apply_merges(labels, cairn.build_graph(labels, sample.gray()[0]), [0]),
-        lambda: cairn.apply_merges(labels, cairn.build_graph(labels, sample.gray()[0]), [1, 0] + [0] * (len(frame.by_disparity) - 2)),
+        lambda: cairn.apply_merges(labels, cairn.build_graph(labels, sample.gray()[0]), [1, 0] + [0] * (len(frame.groups) - 2)),
         lambda: cairn.gradient(sample.gray()[0], 50),
         lambda: cairn.watershed(sample.gray()[0]),
         lambda: cairn.fit_ground(np.full((20, 20), 1e30, np.float32)),

@@ -40,6 +40,7 @@ void expect_same_regions(const Segmentation& a, const Segmentation& b) {
     EXPECT_EQ(a.regions[i].mean, b.regions[i].mean);
     EXPECT_EQ(a.regions[i].variance, b.regions[i].variance);
     EXPECT_EQ(a.regions[i].is_floor, b.regions[i].is_floor);
+    EXPECT_EQ(a.regions[i].is_background, b.regions[i].is_background);
   }
 }
 
@@ -83,6 +84,9 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(differing(a.fusion.labels, b.fusion.labels), 0);
   EXPECT_EQ(a.fusion.parts, b.fusion.parts);
   EXPECT_EQ(a.fusion.disparity_region, b.fusion.disparity_region);
+  EXPECT_EQ(a.fusion.is_floor, b.fusion.is_floor);
+  expect_same_regions(a.superpixels, b.superpixels);
+  expect_same_regions(a.groups, b.groups);
   expect_same_objects(a.objects, b.objects);
 }
 

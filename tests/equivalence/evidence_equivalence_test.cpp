@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cairn/image/noise.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cmath>
 #include <limits>
@@ -194,7 +195,8 @@ TEST(FindEvidence, IsThatOfItsDefinitionOnAnyNumberOfThreads) {
       const auto expected = bits(reference::find_evidence(image, map, config));
       for (const std::uint32_t b : expected) found += b != 0xFFFFFFFFU ? 1 : 0;
       for (const int count : {1, 2, 3}) {
-        EXPECT_EQ(bits(find_evidence(image, map, config, threads(count))), expected) << text(size);
+        EXPECT_EQ(bits(find_evidence(image, map, noise_sigma(image), config, threads(count))), expected)
+            << text(size);
       }
     }
   }
@@ -353,7 +355,8 @@ TEST(SeparateFigure, IsThatOfItsDefinition) {
         const Image<Gray> grey = greens(coloured);
         const View<const Rgb> rgb = seed > 3 ? coloured.view() : View<const Rgb>{};
         const auto figure = [&](const FigureConfig& with) {
-          return separate_figure(facets, grey, rgb, map.disparity_px, background, with, {});
+          return separate_figure(facets, grey, rgb, map.disparity_px, background, noise_sigma(grey), with,
+                                 {});
         };
         const auto expected =
             reference::separate_figure(facets, grey, rgb, map.disparity_px, background, config);
@@ -390,7 +393,7 @@ void expect_same_bits(const Segmentation& segmentation, const Segmentation& expe
     EXPECT_EQ(p.pixel_count, q.pixel_count) << i;
     EXPECT_EQ(p.valid_count, q.valid_count) << i;
     EXPECT_EQ(p.box, q.box) << i;
-    EXPECT_EQ(p.is_floor, q.is_floor) << i;
+    EXPECT_EQ(p.is_background, q.is_background) << i;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(p.mean), std::bit_cast<std::uint64_t>(q.mean)) << i;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(p.variance), std::bit_cast<std::uint64_t>(q.variance)) << i;
   }
@@ -408,7 +411,8 @@ TEST(GroupFacets, IsThatOfItsDefinition) {
                                             : backwards(random_blocks(size, 12, seed), seed);
       const DisparityMap map = random_map(size, seed, static_cast<int>(seed % 4) * 2);
       const Image<Gray> picture = random_picture(size, seed);
-      const Image<float> evidence = find_evidence(picture, map, {0.3F, 0.5F, 40.0F}, {});
+      const Image<float> evidence =
+          find_evidence(picture, map, noise_sigma(picture), {0.3F, 0.5F, 40.0F}, {});
       std::mt19937 random(seed);
       std::vector<std::int32_t> figure(static_cast<std::size_t>(facets.count));
       for (std::int32_t& f : figure) f = random() % 5 == 0 ? 0 : 1;
@@ -448,9 +452,9 @@ TEST(SegmentFacets, GivesTheSameOnAnyNumberOfThreads) {
     const Image<Rgb> rgb = random_colours(size, 4);
     for (const bool colour : {false, true}) {
       const View<const Rgb> colours = colour ? rgb.view() : View<const Rgb>{};
-      const Facets expected = segment_facets(grey, colours, {}, {});
+      const Facets expected = segment_facets(grey, colours, noise_sigma(grey), {}, {});
       for (const int count : {2, 3}) {
-        const Facets facets = segment_facets(grey, colours, {}, threads(count));
+        const Facets facets = segment_facets(grey, colours, noise_sigma(grey), {}, threads(count));
         EXPECT_EQ(facets.count, expected.count);
         EXPECT_EQ(numbers(facets.labels), numbers(expected.labels)) << text(size);
         expect_equal(facets.borders, expected.borders);
@@ -482,7 +486,8 @@ void expect_partition(const Segmentation& segmentation, const DisparityMap& map)
     EXPECT_EQ(region.valid_count, valid);
     EXPECT_NEAR(region.mean, valid > 0 ? sum / valid : 0.0, 1e-6);
     EXPECT_GE(region.variance, 0);
-    EXPECT_EQ(region.is_floor, id == 0);
+    EXPECT_EQ(region.is_background, id == 0);
+    EXPECT_FALSE(region.is_floor);
   }
 }
 
@@ -501,12 +506,12 @@ void run_and_check(View<const Gray> grey, View<const Rgb> rgb, const DisparityMa
     return segment(grey, rgb, {map.disparity_px.clone(), map.reject.clone()}, rig, config, exec);
   };
   const Frame frame = run(1);
-  expect_partition(frame.by_disparity, frame.disparity);
-  EXPECT_EQ(frame.fusion.labels.size(), grey.size());
+  expect_partition(frame.groups, frame.disparity);
+  EXPECT_EQ(frame.superpixels.labels.size(), grey.size());
   const Frame again = run(3);
-  EXPECT_EQ(numbers(again.by_intensity.labels), numbers(frame.by_intensity.labels));
-  EXPECT_EQ(numbers(again.by_disparity.labels), numbers(frame.by_disparity.labels));
-  EXPECT_EQ(numbers(again.fusion.labels), numbers(frame.fusion.labels));
+  EXPECT_EQ(numbers(again.superpixels.labels), numbers(frame.superpixels.labels));
+  EXPECT_EQ(numbers(again.groups.labels), numbers(frame.groups.labels));
+  EXPECT_EQ(numbers(again.objects.labels), numbers(frame.objects.labels));
 }
 
 constexpr StereoRig kRig{60, 30, 25, 0.1F, 0};
@@ -585,7 +590,7 @@ TEST(WayByEvidence, GoesAllTheWayFromSmallPairs) {
     const Image<Gray> left = random_picture(size, 1);
     const Image<Gray> right = random_picture(size, 2);
     const Frame frame = segment(StereoPair::from(left, right), std::nullopt, config, {});
-    expect_partition(frame.by_disparity, frame.disparity);
+    expect_partition(frame.groups, frame.disparity);
   }
 }
 

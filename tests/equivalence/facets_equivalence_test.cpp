@@ -9,6 +9,7 @@
 
 #include <bit>
 #include <cairn/core/target.hpp>
+#include <cairn/image/noise.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/plane_kernels.hpp>
 #include <cmath>
@@ -116,7 +117,8 @@ TEST(FindEvidence, IsThatOfItsDefinitionOnEveryTarget) {
     const EvidenceConfig config{0.5F, 1.0F, 3.0F};
     const auto expected = bits(reference::find_evidence(grey, map, config));
     for (const Target target : supported_targets())
-      EXPECT_EQ(bits(find_evidence(grey, map, config, on(target, 2))), expected) << name(target);
+      EXPECT_EQ(bits(find_evidence(grey, map, noise_sigma(grey), config, on(target, 2))), expected)
+          << name(target);
   }
 }
 
@@ -127,9 +129,9 @@ TEST(SegmentFacets, IsThatOfItsDefinition) {
       const Image<Gray> grey = blocks(size, noise, 5);
       const Image<Rgb> rgb = coloured(size, noise, 6);
       const FacetsConfig config{0.7F, noise == 4 ? 12.0F : 2.0F, 1.0F};
-      const Facets plain = segment_facets(grey, {}, config, {});
+      const Facets plain = segment_facets(grey, {}, noise_sigma(grey), config, {});
       expect_equal(plain, reference::segment_facets(grey, {}, config));
-      expect_equal(segment_facets(grey, rgb, config, on(Target::best, 2)),
+      expect_equal(segment_facets(grey, rgb, noise_sigma(grey), config, on(Target::best, 2)),
                    reference::segment_facets(grey, rgb, config));
       facets += plain.count;
     }

@@ -68,7 +68,7 @@ void expect_equal_to_reference(const StereoPair& pair, const MatchConfig& config
   const Matches expected = reference::match(pair, config);
   for (const Target target : supported_targets()) {
     for (const int threads : thread_counts) {
-      const Matches got = match(pair, config, Exec::with_threads(threads, target));
+      const Matches got = match_windows(pair, config, Exec::with_threads(threads, target));
       EXPECT_EQ(first_difference(expected, got), "") << description(pair.size(), config, target, threads);
     }
   }
@@ -261,13 +261,13 @@ TEST(SubpixelEquivalence, RefinementMeetsItsDefinition) {
   for (const Size size : {Size{1, 1}, Size{5, 3}, Size{70, 9}}) {
     const Pictures pictures(size, 7);
     for (const Evidence evidence : {Evidence::winner, Evidence::full}) {
-      const Matches matches = match(pictures.pair(),
-                                    {.cost = Cost::sad,
-                                     .window_size = 3,
-                                     .min_disparity = 2,
-                                     .num_disparities = 9,
-                                     .evidence = evidence},
-                                    {});
+      const Matches matches = match_windows(pictures.pair(),
+                                            {.cost = Cost::sad,
+                                             .window_size = 3,
+                                             .min_disparity = 2,
+                                             .num_disparities = 9,
+                                             .evidence = evidence},
+                                            {});
       for (const auto& [method_name, method] : kSubpixelMethods) {
         for (const bool enabled : {false, true}) {
           const SubpixelConfig config{enabled, method};

@@ -408,6 +408,7 @@ TEST(RegionsEquivalence, FusionIsItsTwin) {
     EXPECT_EQ(numbers(fusion.labels), numbers(expected.labels));
     EXPECT_EQ(fusion.parts, expected.parts);
     EXPECT_EQ(fusion.disparity_region, expected.disparity_region);
+    EXPECT_EQ(fusion.is_floor, expected.is_floor);
   }
 }
 

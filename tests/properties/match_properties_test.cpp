@@ -55,8 +55,8 @@ class ZeroMeanProperty : public MatchProperty {};
 TEST_P(ZeroMeanProperty, AnOffsetBetweenTheCamerasChangesNothing) {
   const auto scene = dim_scene();
   const auto brighter = mapped(scene.right, [](int grey) { return grey + 100; });
-  const Matches expected = match(scene.pair(), config(), {});
-  const Matches got = match(StereoPair::from(scene.left, brighter), config(), {});
+  const Matches expected = match_windows(scene.pair(), config(), {});
+  const Matches got = match_windows(StereoPair::from(scene.left, brighter), config(), {});
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 72; ++x) {
       ASSERT_EQ(got.best(x, y), expected.best(x, y)) << x << ", " << y;
@@ -71,8 +71,8 @@ TEST(ZnccProperty, AGainBetweenTheCamerasChangesNothing) {
   const auto scene = dim_scene();
   const auto brighter = mapped(scene.right, [](int grey) { return 2 * grey + 20; });
   const MatchConfig config{.window_size = 5, .num_disparities = 16};
-  const Matches expected = match(scene.pair(), config, {});
-  const Matches got = match(StereoPair::from(scene.left, brighter), config, {});
+  const Matches expected = match_windows(scene.pair(), config, {});
+  const Matches got = match_windows(StereoPair::from(scene.left, brighter), config, {});
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 72; ++x) {
       ASSERT_EQ(got.best(x, y), expected.best(x, y)) << x << ", " << y;
@@ -87,8 +87,8 @@ TEST(NssdProperty, AGainCommonToBothImagesChangesNothing) {
   const auto left = mapped(scene.left, twice);
   const auto right = mapped(scene.right, twice);
   const MatchConfig config{.cost = Cost::nssd, .window_size = 5, .num_disparities = 16};
-  const Matches expected = match(scene.pair(), config, {});
-  const Matches got = match(StereoPair::from(left, right), config, {});
+  const Matches expected = match_windows(scene.pair(), config, {});
+  const Matches got = match_windows(StereoPair::from(left, right), config, {});
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 72; ++x) ASSERT_NEAR(got.cost(x, y), expected.cost(x, y), 1e-6) << x << ", " << y;
   }
@@ -99,8 +99,8 @@ TEST_P(MatchProperty, TheMirroredAndSwappedPairHasTheRightImagesDisparities) {
   const auto scene = synthetic::box_before_wall({72, 40}, 3, 11, 5);
   const auto left = mirrored(scene.right);
   const auto right = mirrored(scene.left);
-  const Matches straight = match(scene.pair(), config(), {});
-  const Matches swapped = match(StereoPair::from(left, right), config(), {});
+  const Matches straight = match_windows(scene.pair(), config(), {});
+  const Matches swapped = match_windows(StereoPair::from(left, right), config(), {});
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 72; ++x) {
       ASSERT_EQ(swapped.best(x, y), straight.best_right(71 - x, y)) << x << ", " << y;
@@ -112,7 +112,7 @@ TEST_P(MatchProperty, TheMirroredAndSwappedPairHasTheRightImagesDisparities) {
 TEST_P(MatchProperty, RecoversARandomDotStereogramExactly) {
   // Where a whole window lies on one surface that both cameras see, its cost is that of a perfect match.
   const auto scene = synthetic::box_before_wall({96, 64}, 4, 12);
-  const Matches matches = match(scene.pair(), config(), {});
+  const Matches matches = match_windows(scene.pair(), config(), {});
   int checked = 0;
   for (int y = 2; y < 62; ++y) {
     for (int x = 2; x < 94; ++x) {
@@ -139,8 +139,8 @@ TEST_P(MatchProperty, TheWinnerIsTheSameWithAndWithoutFullEvidence) {
   const auto scene = synthetic::box_before_wall();
   auto winner = config();
   winner.evidence = Evidence::winner;
-  const Matches full = match(scene.pair(), config(), {});
-  const Matches alone = match(scene.pair(), winner, {});
+  const Matches full = match_windows(scene.pair(), config(), {});
+  const Matches alone = match_windows(scene.pair(), winner, {});
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 96; ++x) {
       ASSERT_EQ(alone.best(x, y), full.best(x, y));
@@ -151,7 +151,7 @@ TEST_P(MatchProperty, TheWinnerIsTheSameWithAndWithoutFullEvidence) {
 
 TEST_P(MatchProperty, NoOtherCandidateBeatsTheWinner) {
   const auto scene = synthetic::box_before_wall();
-  const Matches matches = match(scene.pair(), config(), {});
+  const Matches matches = match_windows(scene.pair(), config(), {});
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 96; ++x) {
       const float least = matches.cost(x, y);

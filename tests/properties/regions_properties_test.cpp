@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cairn/image/gradient.hpp>
+#include <cairn/image/noise.hpp>
+#include <cairn/objects/fuse.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
@@ -184,7 +186,8 @@ Objects objects_of(const World& w, float baseline_m) {
   const Segmentation by_intensity = segment_intensity(w.left, {}, {});
   const Segmentation by_disparity = segment_disparity(w.disparity, {}, {}, {});
   const StereoRig rig{.focal_px = 80, .cx_px = 48, .cy_px = 35, .baseline_m = baseline_m};
-  return measure(fuse(by_intensity, by_disparity, {}), by_disparity, w.disparity, w.left, {}, rig, {}, {});
+  const Fusion fusion = fuse(by_intensity, by_disparity, {});
+  return measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), rig, {}, {});
 }
 
 TEST(RegionsProperties, DoublingTheBaselineDoublesDepthAndExtent) {
@@ -216,9 +219,10 @@ TEST(RegionsProperties, MeasureDoesNotDependOnThreads) {
   const Segmentation by_disparity = segment_disparity(w.disparity, {}, {}, {});
   const Fusion fusion = fuse(by_intensity, by_disparity, {});
   const StereoRig rig{.focal_px = 80, .cx_px = 48, .cy_px = 35, .baseline_m = 0.1F};
-  const Objects one = measure(fusion, by_disparity, w.disparity, w.left, {}, rig, {}, {});
-  const Objects three =
-      measure(fusion, by_disparity, w.disparity, w.left, {}, rig, {}, Exec::with_threads(3));
+  const Objects one =
+      measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), rig, {}, {});
+  const Objects three = measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left),
+                                rig, {}, Exec::with_threads(3));
   EXPECT_EQ(numbers(three.labels), numbers(one.labels));
   ASSERT_EQ(three.list.size(), one.list.size());
   for (std::size_t i = 0; i < one.list.size(); ++i) {

@@ -328,7 +328,7 @@ Segmentation regions_of(const std::vector<std::int32_t>& groups, const Facets& f
                         const DisparityMap& disparity) {
   std::map<std::int32_t, std::int32_t> renumbered{{0, 0}};
   Segmentation result{Image<RegionId>(facets.labels.size()), std::vector<Region>(1)};
-  result.regions[0].is_floor = true;
+  result.regions[0].is_background = true;
   for (int y = 0; y < facets.labels.height(); ++y) {
     for (int x = 0; x < facets.labels.width(); ++x) {
       const auto next = static_cast<std::int32_t>(renumbered.size());

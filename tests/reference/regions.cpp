@@ -446,12 +446,13 @@ Fusion fuse(const Segmentation& by_intensity, const Segmentation& by_disparity) 
     parts[best].push_back(i);
     chosen[i] = best;
   }
-  Fusion fusion{Image<RegionId>(size), {}, {}};
+  Fusion fusion{Image<RegionId>(size), {}, {}, {}};
   std::map<RegionId, RegionId> fused;
   for (const auto& [d, list] : parts) {
     fused[d] = RegionId{static_cast<int>(fusion.parts.size())};
     fusion.parts.push_back(list);
     fusion.disparity_region.push_back(d);
+    fusion.is_floor.push_back(by_disparity.regions[index(d)].is_floor);
   }
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) fusion.labels(x, y) = fused[chosen[by_intensity.labels(x, y)]];

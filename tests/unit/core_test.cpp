@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/core/later.hpp>
 #include <cairn/core/nearest.hpp>
 #include <cairn/core/observed.hpp>
 #include <cairn/core/parallel.hpp>
@@ -157,6 +158,18 @@ TEST(SideWork, IsOverWhenNobodyWaitsForItAnyMore) {
     }
     gone = true;
     EXPECT_FALSE(late) << threads;
+  }
+}
+
+TEST(Later, IsWorkedOutBesideWithAPoolOfItsOwn) {
+  for (const int threads : {1, 2}) {
+    Exec exec = Exec::with_threads(threads);
+    exec.observe = [](std::string_view, const Artifact&, double) {};
+    Later<std::string> later(
+        exec, [](const Exec& beside) { return std::string(beside.observe ? "seen" : "unseen"); });
+    EXPECT_EQ(later.get(), "unseen") << threads;
+    Later<int> fails(exec, [](const Exec&) -> int { throw Error("no"); });
+    EXPECT_THROW((void)fails.get(), Error) << threads;
   }
 }
 

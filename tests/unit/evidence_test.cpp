@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/grouping/evidence.hpp>
+#include <cairn/image/noise.hpp>
 #include <limits>
 
 #include "support/grids.hpp"
@@ -49,7 +50,7 @@ Image<Gray> textured_patch(Rect rect, double noise_sigma, std::uint32_t seed) {
 
 Image<float> evidence_of(const Image<Gray>& image, const DisparityMap& map,
                          const EvidenceConfig& config = {}) {
-  return find_evidence(image, map, config, {});
+  return find_evidence(image, map, noise_sigma(image), config, {});
 }
 
 int evidence_count(const Image<float>& evidence) {

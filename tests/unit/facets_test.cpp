@@ -4,6 +4,7 @@
 
 #include <cairn/grouping/facets.hpp>
 #include <cairn/image/gradient.hpp>
+#include <cairn/image/noise.hpp>
 #include <cmath>
 
 #include "support/grids.hpp"
@@ -19,9 +20,9 @@ using support::picture;
 constexpr Size kSize{80, 60};
 
 template <class Brightness>
-Facets facets_of(Brightness brightness, double noise_sigma = 0) {
-  const Image<Gray> image = picture(kSize, noise_sigma, 3, brightness);
-  return segment_facets(image, {}, {}, {});
+Facets facets_of(Brightness brightness, double noise = 0) {
+  const Image<Gray> image = picture(kSize, noise, 3, brightness);
+  return segment_facets(image, {}, noise_sigma(image), {}, {});
 }
 
 /// 0 for a step to the left of x = 40, its height from there on.
@@ -86,8 +87,8 @@ TEST(Facets, TakeTheNoiseOfThePictureIntoAccount) {
   const Image<Gray> image = picture(kSize, 6, 3, [](int x, int) { return 60 + 1.0 * x; });
   FacetsConfig deaf;
   deaf.noise_factor = 0;
-  EXPECT_LE(segment_facets(image, {}, {}, {}).count, 10);
-  EXPECT_GT(segment_facets(image, {}, deaf, {}).count, 40);
+  EXPECT_LE(segment_facets(image, {}, noise_sigma(image), {}, {}).count, 10);
+  EXPECT_GT(segment_facets(image, {}, noise_sigma(image), deaf, {}).count, 40);
 }
 
 TEST(Facets, StopAtAFaintOutline) {
@@ -117,14 +118,14 @@ TEST(Facets, StopAtAThinLineAroundAnArea) {
 TEST(Facets, StopAtAnEdgeOfColourAlone) {
   const Image<Gray> grey(kSize, Gray{90}, {});
   const Image<Rgb> rgb = colour(kSize, {150, 80, 20}, {50, 110, 60});
-  EXPECT_EQ(segment_facets(grey, {}, {}, {}).count, 1);
-  EXPECT_EQ(segment_facets(grey, rgb, {}, {}).count, 2);
+  EXPECT_EQ(segment_facets(grey, {}, noise_sigma(grey), {}, {}).count, 1);
+  EXPECT_EQ(segment_facets(grey, rgb, noise_sigma(grey), {}, {}).count, 2);
 }
 
 TEST(Facets, AreNumberedByTheirFirstPixelAndTellTheirBorders) {
   const Image<Gray> image =
       picture(kSize, 4, 5, [](int x, int y) { return (x / 16 + y / 12) % 2 * 80 + 60.0; });
-  const Facets facets = segment_facets(image, {}, {}, {});
+  const Facets facets = segment_facets(image, {}, noise_sigma(image), {}, {});
   ASSERT_GT(facets.count, 10);
   int next = 0;
   for (int y = 0; y < kSize.height; ++y) {
@@ -246,7 +247,7 @@ TEST(Facets, KeepFaintBordersOnlyAmongFaintOnes) {
     }
     FacetsConfig config;
     config.contrast_share = 14;
-    const Facets facets = segment_facets(picture, {}, config, {});
+    const Facets facets = segment_facets(picture, {}, noise_sigma(picture), config, {});
     return facets.labels(20, 10) == facets.labels(80, 10);
   };
   EXPECT_FALSE(one_piece(false));

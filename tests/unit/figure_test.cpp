@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cairn/grouping/figure.hpp>
+#include <cairn/image/noise.hpp>
 #include <limits>
 
 namespace cairn {
@@ -42,7 +43,7 @@ struct Stage {
   }
   [[nodiscard]] Labels figure(int facets, const FigureConfig& config = {}, bool has_floor = false) const {
     return separate_figure({labels.clone(), facets, borders_of(labels, edges)}, grey, rgb, evidence,
-                           Background{{{0, 0, kBehind}}, has_floor}, config, {});
+                           Background{{{0, 0, kBehind}}, has_floor}, noise_sigma(grey), config, {});
   }
 };
 
@@ -302,7 +303,7 @@ Labels before_a_skirting_board(int height, float skirting, bool has_floor = true
   FigureConfig config = cut_only();
   config.skirting = skirting;
   return separate_figure({stage.labels.clone(), 4, borders_of(stage.labels, stage.edges)}, stage.grey, {},
-                         stage.evidence, room, config, {});
+                         stage.evidence, room, noise_sigma(stage.grey), config, {});
 }
 
 TEST(Figure, IsNotConcludedAlongTheFootOfAWall) {

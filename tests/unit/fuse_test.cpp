@@ -56,6 +56,13 @@ TEST(Fuse, LeavesOutDisparityRegionsThatNobodyChose) {
   EXPECT_EQ(numbers(fusion.labels), (Rows{{0, 0, 0, 1}}));
 }
 
+TEST(Fuse, SaysWhichFusedRegionIsTheFloor) {
+  const Segmentation by_intensity = segmentation({{0, 0, 0, 1}}, {0, 0});
+  Segmentation by_disparity = segmentation({{0, 0, 1, 2}}, {4, 9, 7});
+  by_disparity.regions[2].is_floor = true;
+  EXPECT_EQ(fuse(by_intensity, by_disparity, {}).is_floor, (std::vector<bool>{false, true}));
+}
+
 TEST(Fuse, AddsUpAnOverlapThatComesInPieces) {
   const Segmentation by_intensity = segmentation({{0, 0, 0, 0, 0}}, {0});
   const Segmentation by_disparity = segmentation({{0, 1, 0, 1, 0}}, {4, 9});

@@ -62,7 +62,7 @@ struct Stage {
 TEST(Group, IsTheBackgroundWhereNothingIsFigure) {
   const Segmentation result = Stage().group();
   ASSERT_EQ(result.regions.size(), 1U);
-  EXPECT_TRUE(result.regions[0].is_floor);
+  EXPECT_TRUE(result.regions[0].is_background);
   EXPECT_EQ(result.regions[0].pixel_count, kSize.area());
 }
 
@@ -73,8 +73,8 @@ TEST(Group, HasTheBackgroundAsRegionZeroEvenWhereAnObjectComesFirst) {
   ASSERT_EQ(result.regions.size(), 2U);
   EXPECT_EQ(result.labels(0, 0), RegionId{1});
   EXPECT_EQ(result.labels(200, 100), RegionId{0});
-  EXPECT_TRUE(result.regions[0].is_floor);
-  EXPECT_FALSE(result.regions[1].is_floor);
+  EXPECT_TRUE(result.regions[0].is_background);
+  EXPECT_FALSE(result.regions[1].is_background);
   EXPECT_DOUBLE_EQ(result.regions[1].mean, 12);
   EXPECT_EQ(result.regions[1].pixel_count, 3600);
   EXPECT_EQ(result.regions[1].valid_count, 3600);

@@ -26,8 +26,8 @@ TEST(Match, ComparesTheWindowWithTheOneDisparityPixelsToTheLeft) {
   // The bright pixel stands at x = 3 on the left, at x = 1 on the right: disparity 2.
   const auto left = picture({{0, 0, 0, 90, 0, 0}, {0, 0, 0, 90, 0, 0}, {0, 0, 0, 90, 0, 0}});
   const auto right = picture({{0, 90, 0, 0, 0, 0}, {0, 90, 0, 0, 0, 0}, {0, 90, 0, 0, 0, 0}});
-  const Matches matches =
-      match(StereoPair::from(left, right), {.cost = Cost::sad, .window_size = 3, .num_disparities = 4}, {});
+  const Matches matches = match_windows(StereoPair::from(left, right),
+                                        {.cost = Cost::sad, .window_size = 3, .num_disparities = 4}, {});
   EXPECT_EQ(matches.best(3, 1), 2);
   EXPECT_EQ(matches.cost(3, 1), 0.0F);
   // At d = 1 and 3 each bright column of three meets a dark one; at d = 0 the right one is outside the
@@ -42,8 +42,8 @@ TEST(Match, ComparesTheWindowWithTheOneDisparityPixelsToTheLeft) {
 TEST(Match, CutsTheWindowAtTheBorder) {
   const auto left = picture({{10, 20}, {30, 40}});
   const auto right = picture({{11, 22}, {33, 44}});
-  const Matches matches =
-      match(StereoPair::from(left, right), {.cost = Cost::sad, .window_size = 3, .num_disparities = 1}, {});
+  const Matches matches = match_windows(StereoPair::from(left, right),
+                                        {.cost = Cost::sad, .window_size = 3, .num_disparities = 1}, {});
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 2; ++x) EXPECT_EQ(matches.cost(x, y), 1 + 2 + 3 + 4);
   }
@@ -52,8 +52,8 @@ TEST(Match, CutsTheWindowAtTheBorder) {
 TEST(Match, SaysWhereThereIsNoCandidate) {
   const auto dots = synthetic::random_dots({8, 4}, 1);
   const Matches matches =
-      match(StereoPair::from(dots, dots),
-            {.window_size = 3, .min_disparity = 5, .num_disparities = 2, .row_band = 1}, {});
+      match_windows(StereoPair::from(dots, dots),
+                    {.window_size = 3, .min_disparity = 5, .num_disparities = 2, .row_band = 1}, {});
   EXPECT_EQ(matches.best(4, 1), kNoMatch);
   EXPECT_EQ(matches.cost(4, 1), kNoCost);
   EXPECT_EQ(matches.mean_cost(4, 1), kNoCost);
@@ -70,8 +70,8 @@ TEST(Match, GivesTiesToTheSmallestDisparity) {
   Image<Gray> grey({40, 6}, Gray{77}, Pool{});
   for (const auto& [name, cost] : kCosts) {
     const Matches matches =
-        match(StereoPair::from(grey, grey),
-              {.cost = cost, .window_size = 5, .min_disparity = -3, .num_disparities = 20}, {});
+        match_windows(StereoPair::from(grey, grey),
+                      {.cost = cost, .window_size = 5, .min_disparity = -3, .num_disparities = 20}, {});
     for (int x = 0; x < 40; ++x) {
       EXPECT_EQ(matches.best(x, 3), std::max(-3, x - 39)) << name << " at " << x;
       EXPECT_EQ(matches.best_right(x, 3), std::max(-3, -x)) << name << " at " << x;
@@ -85,13 +85,13 @@ TEST(Match, TakesNoVarianceForNoLikenessAndNoEnergyForTheWorst) {
   const MatchConfig config{.window_size = 3, .num_disparities = 3};
   auto nssd = config;
   nssd.cost = Cost::nssd;
-  EXPECT_EQ(match(pair, config, {}).cost(4, 4), 1.0F);
-  EXPECT_EQ(match(pair, nssd, {}).cost(4, 4), 65536.0F);
+  EXPECT_EQ(match_windows(pair, config, {}).cost(4, 4), 1.0F);
+  EXPECT_EQ(match_windows(pair, nssd, {}).cost(4, 4), 65536.0F);
 }
 
 TEST(Match, PaysOnlyForTheEvidenceThatIsAskedFor) {
   const auto dots = synthetic::random_dots({12, 5}, 1);
-  const Matches matches = match(StereoPair::from(dots, dots), {.evidence = Evidence::winner}, {});
+  const Matches matches = match_windows(StereoPair::from(dots, dots), {.evidence = Evidence::winner}, {});
   EXPECT_EQ(matches.best.size(), (Size{12, 5}));
   EXPECT_EQ(matches.cost.size(), (Size{12, 5}));
   EXPECT_TRUE(matches.best_right.empty());
@@ -106,8 +106,8 @@ TEST(Match, FindsTheRowWhenTheRightCameraShook) {
   const auto dots = synthetic::random_dots({60, 40}, 3);
   Image<Gray> shaken({60, 40});
   for (int y = 0; y < 40; ++y) std::copy_n(dots.row(std::max(0, y - 2)), 60, shaken.row(y));
-  const Matches matches =
-      match(StereoPair::from(dots, shaken), {.window_size = 5, .num_disparities = 8, .row_band = 3}, {});
+  const Matches matches = match_windows(StereoPair::from(dots, shaken),
+                                        {.window_size = 5, .num_disparities = 8, .row_band = 3}, {});
   for (int y = 5; y < 35; ++y) {
     for (int x = 10; x < 50; ++x) {
       ASSERT_EQ(matches.best(x, y), 0);
@@ -120,7 +120,7 @@ TEST(Match, SurvivesTheSmallestImages) {
   for (const auto& [name, cost] : kCosts) {
     for (const Size size : {Size{1, 1}, Size{1, 7}, Size{7, 1}, Size{2, 2}}) {
       const auto dots = synthetic::random_dots(size, 1);
-      const Matches matches = match(
+      const Matches matches = match_windows(
           StereoPair::from(dots, dots),
           {.cost = cost, .window_size = 31, .min_disparity = -8, .num_disparities = 1024, .row_band = 8}, {});
       EXPECT_NE(matches.best(0, 0), kNoMatch) << name << " " << text(size);

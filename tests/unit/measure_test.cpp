@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/image/noise.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cmath>
 #include <limits>
@@ -16,39 +17,33 @@ constexpr StereoRig kRig{.focal_px = 100, .cx_px = 20, .cy_px = 10, .baseline_m 
 
 /// A background of region 0 with rectangles as regions 1, 2, …; each region has one disparity.
 struct Scene {
-  Fusion fusion;
-  Segmentation by_disparity;
+  Image<RegionId> labels;
+  std::vector<bool> is_background;
   DisparityMap disparity;
   Image<Gray> left;
 
   Scene(Size size, const std::vector<std::pair<Rect, float>>& boards)
-      : fusion{Image<RegionId>(size, RegionId{0}, {}), {}, {}},
-        by_disparity{Image<RegionId>(size, RegionId{0}, {}), {}},
+      : labels(size, RegionId{0}, {}),
+        is_background{false},
         disparity{Image<float>(size, 2.0F, {}), Image<Reject>(size, Reject::none, {})},
         left(size, Gray{10}, {}) {
-    add_region();
     for (const auto& [rect, d] : boards) {
-      const RegionId id{static_cast<std::int32_t>(fusion.parts.size())};
+      const RegionId id{static_cast<std::int32_t>(is_background.size())};
       for (int y = rect.y; y < rect.y + rect.height; ++y) {
         for (int x = rect.x; x < rect.x + rect.width; ++x) {
-          fusion.labels(x, y) = id;
+          labels(x, y) = id;
           disparity.disparity_px(x, y) = d;
           left(x, y) = static_cast<Gray>(100 + number(id));
         }
       }
-      add_region();
+      is_background.push_back(false);
     }
   }
   [[nodiscard]] Objects measured(const ObjectsConfig& config = {}, std::optional<StereoRig> rig = {}) const {
-    return measure(fusion, by_disparity, disparity, left, {}, rig, config, {});
+    return measure(labels, is_background, disparity, left, {}, noise_sigma(left), rig, config, {});
   }
-
- private:
-  void add_region() {
-    const RegionId id{static_cast<std::int32_t>(fusion.parts.size())};
-    fusion.parts.push_back({id});
-    fusion.disparity_region.push_back(id);
-    by_disparity.regions.emplace_back();
+  [[nodiscard]] Objects measured_in_colour(View<const Rgb> rgb) const {
+    return measure(labels, is_background, disparity, left, rgb, noise_sigma(left), {}, {}, {});
   }
 };
 
@@ -72,9 +67,9 @@ TEST(Measure, DecidesEqualDisparitiesInRasterOrder) {
   EXPECT_EQ(objects.list[2].box_px.x, 2);
 }
 
-TEST(Measure, TheFloorIsNoObject) {
+TEST(Measure, TheBackgroundIsNoObject) {
   Scene scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, 9}});
-  scene.by_disparity.regions[1].is_floor = true;
+  scene.is_background[1] = true;
   const Objects objects = scene.measured();
   ASSERT_EQ(objects.list.size(), 1U);
   EXPECT_EQ(objects.list[0].box_px.x, 10);
@@ -126,8 +121,7 @@ TEST(Measure, FindsAnEdgeInColourThatGreyDoesNotShow) {
   scene.left = Image<Gray>(Size{40, 20}, 100, {});
   Image<Rgb> rgb(Size{40, 20}, Rgb{100, 100, 100}, {});
   for (int y = 5; y < 9; ++y) std::fill_n(rgb.row(y) + 10, 4, Rgb{100, 60, 140});
-  const Objects objects =
-      measure(scene.fusion, scene.by_disparity, scene.disparity, scene.left, rgb, {}, {}, {});
+  const Objects objects = scene.measured_in_colour(rgb);
   EXPECT_EQ(objects.list[0].edge_share, 1);
 }
 
@@ -187,8 +181,7 @@ TEST(Measure, TakesTheMeanColourOfTheMask) {
   Image<Rgb> rgb(Size{40, 20}, Rgb{1, 2, 3}, {});
   rgb(2, 2) = {10, 20, 31};
   rgb(3, 2) = {20, 40, 60};
-  const Objects objects =
-      measure(scene.fusion, scene.by_disparity, scene.disparity, scene.left, rgb, {}, {}, {});
+  const Objects objects = scene.measured_in_colour(rgb);
   EXPECT_EQ(objects.list[0].mean_colour, (Rgb{15, 30, 46}));
 }
 

@@ -80,7 +80,8 @@ TEST(SemiGlobal, AnswersFromTheSurroundingsWhereThereIsNoTexture) {
   const PlainPatch scene;
   const auto pair = StereoPair::from(scene.left, scene.right);
   const Matches paths = matched(pair, 16);
-  const Matches windows = match(pair, {.cost = Cost::sad, .window_size = 5, .num_disparities = 16}, {});
+  const Matches windows =
+      match_windows(pair, {.cost = Cost::sad, .window_size = 5, .num_disparities = 16}, {});
   const int x = scene.patch.x + scene.patch.width / 2;
   const int y = scene.patch.y + scene.patch.height / 2;
   EXPECT_EQ(windows.best(x, y), 0);  // all are alike; the smallest wins
@@ -171,7 +172,7 @@ TEST(SemiGlobal, IsWhatMatchDoesByThatMethod) {
   const auto scene = synthetic::make_scene({.size = {50, 20}});
   auto config = search(0, 12);
   const SemiGlobalConfig penalties{.penalty_small = 0.2F, .penalty_large = 1.0F};
-  EXPECT_EQ(evidence(match(scene.pair(), config, {})), evidence(matched(scene.pair(), 12)));
+  EXPECT_EQ(evidence(match(scene.pair(), config, {}, {})), evidence(matched(scene.pair(), 12)));
   EXPECT_EQ(evidence(match(scene.pair(), config, penalties, {})),
             evidence(matched(scene.pair(), 12, penalties)));
   EXPECT_NE(evidence(matched(scene.pair(), 12, penalties)), evidence(matched(scene.pair(), 12)));
@@ -180,9 +181,10 @@ TEST(SemiGlobal, IsWhatMatchDoesByThatMethod) {
   config.window_size = 21;
   config.row_band = 2;
   config.prefilter = Prefilter::xsobel;
-  EXPECT_EQ(evidence(match(scene.pair(), config, {})), evidence(matched(scene.pair(), 12)));
+  EXPECT_EQ(evidence(match(scene.pair(), config, {}, {})), evidence(matched(scene.pair(), 12)));
   config = {.cost = Cost::sad, .window_size = 5, .num_disparities = 12};
-  EXPECT_EQ(evidence(match(scene.pair(), config, penalties, {})), evidence(match(scene.pair(), config, {})));
+  EXPECT_EQ(evidence(match(scene.pair(), config, penalties, {})),
+            evidence(match_windows(scene.pair(), config, {})));
 }
 
 }  // namespace
