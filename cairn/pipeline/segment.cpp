@@ -3,6 +3,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/observed.hpp>
 #include <cairn/core/parallel.hpp>
+#include <cairn/disparity/confidence.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <utility>
 
@@ -61,10 +62,8 @@ Matched match_and_check(const StereoPair& given, View<const Gray> aligned_right,
 
 Image<float> confidence_of(const DisparityMap& disparity, const Matches& matches, const Config& config,
                            const Exec& exec, Observed& stage) {
-  if (!config.confidence.enabled) return {};
   return stage("estimate_confidence",
-               estimate_confidence(matches, disparity, confidence_model(config.match.method),
-                                   config.confidence, exec));
+               estimate_confidence(matches, disparity, confidence_model(config.match.method), exec));
 }
 
 /// The same beside the caller's own work: while disparities grow to regions a thread may have nothing to do.
@@ -188,8 +187,7 @@ Frame find_objects(LeftRegions& of_left, View<const Gray> left, View<const Rgb> 
     regions = regions_by_evidence(of_left, left, left_rgb, trusted.px(), scene, rig, config, exec, stage);
   scene = clean_up(std::move(scene), rig, config, exec, stage);
   std::optional<ConfidenceBeside> confidence;
-  if (matches != nullptr && config.confidence.enabled)
-    confidence.emplace(scene.disparity, *matches, config, exec);
+  if (matches != nullptr) confidence.emplace(scene.disparity, *matches, config, exec);
   if (!by_evidence) regions = regions_by_overlap(of_left, scene, config, exec, stage);
 
   Fusion fusion = stage("fuse", fuse(regions.by_intensity, regions.by_disparity, exec));

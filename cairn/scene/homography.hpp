@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cairn/core/fields.hpp>
+#include <cairn/core/stereo_pair.hpp>
 #include <optional>
 #include <span>
 #include <vector>
