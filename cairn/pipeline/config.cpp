@@ -205,7 +205,7 @@ struct Gone {
 };
 
 constexpr std::array kGone{
-    Gone{"match.evidence", "the checks that are on decide what is kept"},
+    Gone{"match.evidence", "what the checks and the confidence need is kept"},
     Gone{"confidence.enabled", "whatever was matched has a confidence"},
     Gone{"ground.points", "it is a fact of the rig, ground_points in its calibration file (docs/formats.md)"},
     Gone{"ground.height", "it is a fact of the rig, camera_height in its calibration file (docs/formats.md)"},

@@ -130,7 +130,7 @@ TEST_P(MatchEquivalence, HoldsForEveryRowBand) {
   }
 }
 
-TEST_P(MatchEquivalence, HoldsForLessThanFullEvidence) {
+TEST_P(MatchEquivalence, HoldsForFewerMaps) {
   for (const MatchMaps maps : {MatchMaps::winner, MatchMaps::minimum}) {
     for (const int window : {3, 9, 17, 23}) {
       auto less = config(window, 0, 19);

@@ -128,13 +128,13 @@ TEST(GroundFromPoints, TheResidualTellsHowWellThePairsAgree) {
 
 TEST(GroundFromPoints, RefusesWhatDeterminesNoPlaneAndSaysWhy) {
   EXPECT_NE(complaint(pairs(kFloor, 3)).find("found 3"), std::string::npos);
-  EXPECT_NE(complaint({}).find("ground.points"), std::string::npos);
+  EXPECT_NE(complaint({}).find("ground_points"), std::string::npos);
 
   std::vector<PointPair> line;
   line.reserve(6);
   for (int i = 0; i < 5; ++i) line.push_back(pair_at(kFloor, 10 + 40 * i, 100 + 20 * i));
   EXPECT_NE(complaint(line).find("line"), std::string::npos);
-  EXPECT_NE(complaint(std::vector<PointPair>(6, pair_at(kFloor, 50, 200))).find("ground.points"),
+  EXPECT_NE(complaint(std::vector<PointPair>(6, pair_at(kFloor, 50, 200))).find("ground_points"),
             std::string::npos);
 
   auto broken = pairs(kFloor, 5);
