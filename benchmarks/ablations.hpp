@@ -34,29 +34,13 @@ inline constexpr std::array kAblations{
     Ablation{"ground.source=off", "no ground: reflections stay, the floor is a surface like others"},
     Ablation{"ground.label_floor=false", "paper: no floor label"},
     Ablation{"speckle.size=-1", "paper: speckles stay"},
-    Ablation{"evidence.noise_factor=0 evidence.gradient_min=0", "every pixel counts as evidence"},
-    Ablation{"evidence.agreement=100", "evidence need not agree with its neighbours"},
+    Ablation{"evidence.gradient_min=0", "only the noise says what counts as evidence"},
     Ablation{"background.max_walls=0", "the floor is the only background"},
-    Ablation{"background.min_share_square=100", "walls are not looked for by squareness"},
-    Ablation{"background.max_behind=100", "walls may have as much behind them as on them"},
     Ablation{"input=grey", "pictures without their colour"},
-    Ablation{"facets.noise_factor=0", "edges are not measured against the noise"},
-    Ablation{"facets.contrast_share=0", "the limit does not follow the picture's contrast"},
     Ablation{"facets.edge_min=0", "only the noise says what an edge is"},
     Ablation{"figure.margin=0", "figure need not stand clear of the background"},
     Ablation{"figure.agreement=0", "plain stretches are bridged by nothing"},
-    Ablation{"figure.longest_bridge=100", "bridges of any length"},
-    Ablation{"figure.border_weight=1", "what is seen beside a border counts as much as any"},
-    Ablation{"figure.skirting=0", "stretches are bridged along the foot of a wall, too"},
-    Ablation{"figure.smoothness=0", "each facet decides alone"},
-    Ablation{"figure.colour_weight=0", "colour says nothing"},
-    Ablation{"figure.continuation_weight=0", "ground that goes on beside says nothing"},
-    Ablation{"figure.largest_part=0", "parts of an object that pass for ground speak for their colour"},
     Ablation{"group.step=1000", "steps of disparity part no objects"},
-    Ablation{"group.deviation=1000", "planes part no objects"},
-    Ablation{"group.step_share=0 group.deviation_share=0", "the same tolerance near and far"},
-    Ablation{"group.gap_share=100", "facets without evidence connect, too"},
-    Ablation{"group.occluded_gap=0", "what a nearer object parts stays apart"},
     Ablation{"group.min_area=0", "small groups stay by themselves"},
     Ablation{"fusion.method=overlap", "paper: the two segmentations and their overlap"},
     Ablation{"objects.min_confidence=0", "paper: whatever is left is an object"},
@@ -98,9 +82,8 @@ inline std::vector<std::pair<std::string, std::string>> all_ablations() {
   const auto paper = options(Config::paper());
   for (std::size_t i = 0; i < ours.size(); ++i) {
     const std::string& name = ours[i].name;
-    // `default` runs neither of the paper's two segmentations: nothing of theirs would show.
-    const bool runs = !name.starts_with("intensity.") && !name.starts_with("disparity.");
-    if (ours[i].value == paper[i].value || !runs || named.find(" " + name + "=") != std::string::npos)
+    if (ours[i].value == paper[i].value || !ours[i].active ||
+        named.find(" " + name + "=") != std::string::npos)
       continue;
     all.emplace_back(name + "=" + paper[i].value, "paper");
   }

@@ -96,7 +96,7 @@ MatchConfig search(const Scene& scene, MatchConfig config) {
 }
 
 Run winner(const Scene& scene, MatchConfig config, const Exec& exec = one_thread()) {
-  config.evidence = Evidence::winner;
+  config.maps = MatchMaps::winner;
   return [=, &scene] { static_cast<void>(match_windows(scene.pair(), search(scene, config), exec)); };
 }
 
@@ -110,7 +110,7 @@ Config complete_config(const MatchConfig& match, LeftRightMethod method) {
   // StereoBM asks for 15 % more than the least; this is what the least may be of the runner-up.
   config.uniqueness.ratio = 13;
   config.flatness.threshold = -1;
-  config.match.evidence = method == LeftRightMethod::vote ? Evidence::minimum : Evidence::full;
+  config.match.maps = method == LeftRightMethod::vote ? MatchMaps::minimum : MatchMaps::full;
   return config;
 }
 

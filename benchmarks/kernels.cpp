@@ -81,16 +81,16 @@ void add_match(const std::string& case_name, const MatchConfig& config) {
 
 void add_all() {
   for (const auto& [cost_name, cost] : kCosts) {
-    for (const auto& [evidence_name, evidence] : kEvidences) {
-      add_match("match/" + std::string(cost_name) + "/" + std::string(evidence_name),
-                {.cost = cost, .evidence = evidence});
+    for (const auto& [maps_name, maps] : kMatchMaps) {
+      add_match("match/" + std::string(cost_name) + "/" + std::string(maps_name),
+                {.cost = cost, .maps = maps});
     }
   }
   constexpr MatchConfig kFiltered{.cost = Cost::sad, .prefilter = Prefilter::xsobel};
-  for (const auto& [evidence_name, evidence] : kEvidences) {
+  for (const auto& [maps_name, maps] : kMatchMaps) {
     MatchConfig config = kFiltered;
-    config.evidence = evidence;
-    add_match("match/sad on xsobel/" + std::string(evidence_name), config);
+    config.maps = maps;
+    add_match("match/sad on xsobel/" + std::string(maps_name), config);
   }
   add_match("match/semi_global", {.method = MatchMethod::semi_global});
 

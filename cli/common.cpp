@@ -34,6 +34,10 @@ void add_config_options(CLI::App& app, ConfigOptions& options) {
 
 namespace {
 
+std::string_view name_in(std::string_view assignment) {
+  return assignment.substr(0, assignment.find('='));
+}
+
 void set_from_text(Config& config, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -53,9 +57,14 @@ ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrat
     resolved.preset = name;
     return config;
   };
+  const auto set_all = [&](Config& config) {
+    for (const std::string& assignment : options.sets) set_from_text(config, assignment);
+  };
   resolved.config = from_preset(options.preset);
-  if (!options.file.empty()) io::load_config(options.file, resolved.config, from_preset);
-  for (const std::string& assignment : options.sets) set_from_text(resolved.config, assignment);
+  if (!options.file.empty()) io::load_config(options.file, resolved.config, from_preset, set_all);
+  set_all(resolved.config);
+  // Only now: in which order they were set is of no account.
+  for (const std::string& assignment : options.sets) require_active(resolved.config, name_in(assignment));
   return resolved;
 }
 
@@ -192,6 +201,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   if (calibration.of_raw_cameras) frame.raw_calibration = calib;
   ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);
   frame.config = std::move(resolved.config);
+  frame.config.ground.known = std::move(calibration.ground);
   frame.preset = std::move(resolved.preset);
   return frame;
 }

@@ -22,10 +22,12 @@ std::string escaped(std::string_view cell) {
 }
 
 std::string markdown(const Config& config) {
-  std::string all = "| option | default | unit | values | meaning |\n|---|---|---|---|---|\n";
+  std::string all =
+      "| option | default | unit | values | meaning | read while |\n|---|---|---|---|---|---|\n";
   for (const OptionInfo& o : options(config)) {
     all += "| `" + o.name + "` | " + (o.value.empty() ? "" : "`" + escaped(o.value) + "`") + " | " +
-           escaped(o.unit) + " | " + escaped(o.domain) + " | " + escaped(o.help) + " |\n";
+           escaped(o.unit) + " | " + escaped(o.domain) + " | " + escaped(o.help) + " |" +
+           (o.needs.empty() ? "" : " `" + o.needs + "`") + " |\n";
   }
   return all;
 }
@@ -35,8 +37,10 @@ std::string markdown(const Config& config) {
 Work declare_config(CLI::App& app) {
   auto show = std::make_shared<ShowOptions>();
   add_config_options(app, show->config);
-  app.add_flag("--markdown", show->markdown,
-               "a table for the reference page instead of YAML that --config reads");
+  app.add_flag(
+      "--markdown", show->markdown,
+      "a table of all options for the reference page, those without effect as well, instead of YAML that "
+      "--config reads");
   app.add_flag(
          "--changed", show->changed,
          "only the preset's name and the options that differ from it, so that all others keep following "
@@ -44,7 +48,6 @@ Work declare_config(CLI::App& app) {
       ->excludes("--markdown");
   return [show] {
     const ResolvedConfig resolved = resolve(show->config);
-    validate(resolved.config);
     if (show->changed) {
       std::cout << io::changed_config_yaml(resolved.preset, resolved.config);
     } else {

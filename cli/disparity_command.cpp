@@ -35,13 +35,9 @@ void check_output(const std::string& output, const MatchConfig& config) {
   }
 }
 
-void check_confidence(const std::string& output, const Config& config) {
+void check_confidence(const std::string& output) {
   if (std::filesystem::path(output).extension().string() != ".png") {
     throw Error(output + ": the confidence is written as .png");
-  }
-  if (!config.confidence.enabled) throw Error("option confidence.enabled: --confidence needs it");
-  if (config.match.evidence != Evidence::full) {
-    throw Error("option match.evidence: --confidence needs full");
   }
 }
 
@@ -97,7 +93,7 @@ int estimate(const DisparityOptions& options) {
   const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
   std::cerr << remark_on_calibration(loaded);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
-  if (!options.confidence.empty()) check_confidence(options.confidence, loaded.config);
+  if (!options.confidence.empty()) check_confidence(options.confidence);
   if (!options.ply.empty()) check_ply(options.ply, loaded);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(

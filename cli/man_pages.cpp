@@ -129,6 +129,7 @@ std::string options_page() {
     section = stage;
     page += ".TP\n" + bold(option.name) + " = " + italic(option.value.empty() ? "(none)" : option.value) +
             (option.unit.empty() ? "" : " " + roff(option.unit)) + "\n" + roff(option.help) + "\n";
+    if (!option.needs.empty()) page += ".br\n" + roff("read while " + option.needs) + "\n";
     if (!option.domain.empty()) page += ".br\n" + roff("values: " + option.domain) + "\n";
   }
   return page + ".SH SEE ALSO\n" + bold("cairn") + "(1)\n";

@@ -106,9 +106,9 @@ bool names_disparities(const ConfigOptions& options) {
 Task read_task(const TuneOptions& options) {
   Task task;
   task.base = resolve(options.input.config);
-  validate(task.base.config);
   task.names_disparities = names_disparities(options.input.config);
-  (void)tunables(options.patterns);  // a bad name is one whatever the frames hold
+  if (!options.patterns.empty())
+    (void)tunables(options.patterns, task.base.config);  // a bad name is one whatever the frames hold
   task.files = load_tuning_files(options.folders, options.input, options.truth);
   for (const TuningFiles& files : task.files) task.frames.push_back(files.frame());
   return task;

@@ -30,6 +30,7 @@ options_page() {
 
 Every option of every stage, with its value in the presets `default` and `paper` (empty: the same as in `default`).
 Set one with `--set stage.name=value`, several in a file with `--config FILE`; see [formats](formats.md) for the file.
+An option is read only while the last column is so (and what that names is itself read); elsewhere it is refused. `cairn config --preset P` prints what a preset reads.
 TEXT
   # One heading per stage, and the paper's value beside the default.
   awk -F'|' '
@@ -39,7 +40,7 @@ TEXT
       split($2, name, /[`.]/)
       if (name[2] != section) {
         section = name[2]
-        printf "\n## %s\n\n| option | default | paper | unit | values | meaning |\n|---|---|---|---|---|---|\n", section
+        printf "\n## %s\n\n| option | default | paper | unit | values | meaning | read while |\n|---|---|---|---|---|---|---|\n", section
       }
       rest = substr($0, length($2) + length($3) + 3)
       printf "|%s|%s|%s%s\n", $2, $3, paper[$2] == $3 ? " " : paper[$2], rest

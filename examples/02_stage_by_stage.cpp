@@ -123,7 +123,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Objects objects = measure(groups.labels, background_of(groups), disparity, pair.left(),
                                   pair.left_rgb(), noise, rig, config.objects, exec);
   const Image<float> confidence =
-      estimate_confidence(matches, disparity, confidence_model(config.match.method), config.confidence, exec);
+      estimate_confidence(matches, disparity, confidence_model(config.match.method), exec);
   // [/stages_by_evidence]
 
   print_holes(disparity, ground);

@@ -77,6 +77,12 @@ void read_size(const Pairs& pairs, Statement& says) {
   says.ndisp = number_in(pairs, "ndisp");
 }
 
+void read_mounting(const Pairs& pairs, Statement& says) {
+  for (const auto& [key, member] : kMountingKeys) says.*member = number_in(pairs, key);
+  if (const auto points = pairs.find(kGroundPointsKey); points != pairs.end())
+    says.ground_points = finite_numbers(points->second, kGroundPointsKey);
+}
+
 /// [f 0 cx; 0 f cy; 0 0 1]
 std::array<double, 9> camera_matrix(const Pairs& pairs, std::string_view key) {
   const std::string_view text = pairs.find(key)->second;
@@ -154,6 +160,24 @@ float center(const std::optional<double>& value, const char* name) {
               ", expected all of them or no metres");
 }
 
+KnownGround mounting(const Statement& says) {
+  KnownGround known;
+  if (says.camera_height) known.camera_height_m = static_cast<float>(*says.camera_height);
+  known.camera_pitch_deg = static_cast<float>(says.camera_pitch.value_or(0));
+  known.camera_roll_deg = static_cast<float>(says.camera_roll.value_or(0));
+  const std::vector<double>& p = says.ground_points;
+  if (p.size() % 4 != 0) {
+    throw Error(std::string(kGroundPointsKey) + " has " + std::to_string(p.size()) +
+                " numbers, expected x_left,y_left,x_right,y_right of each point");
+  }
+  for (std::size_t i = 0; i < p.size(); i += 4) {
+    known.points.push_back({static_cast<float>(p[i]), static_cast<float>(p[i + 1]),
+                            static_cast<float>(p[i + 2]), static_cast<float>(p[i + 3])});
+  }
+  check_ground(known);
+  return known;
+}
+
 Calibration judged(const Statement& says) {
   check_positive(says.fx, "the focal length (fx)");
   check_positive(says.fy, "the focal length (fy)");
@@ -172,6 +196,7 @@ Calibration judged(const Statement& says) {
   }
   if (says.ndisp) calibration.num_disparities = counted(*says.ndisp, "ndisp", kMostPixelsPerSide);
   calibration.of_raw_cameras = says.has_distortion;
+  calibration.ground = mounting(says);
   return calibration;
 }
 
@@ -274,7 +299,10 @@ Statement read_key_value_lines(std::string_view text) {
   says.baseline_m = number_in(pairs, "baseline");
   says.doffs = number_in(pairs, "doffs");
   read_size(pairs, says);
-  constexpr std::array kKeys = {"fx", "fy", "cx", "cy", "baseline", "doffs", "width", "height", "ndisp"};
+  read_mounting(pairs, says);
+  constexpr std::array kKeys = {"fx",           "fy",    "cx",     "cy",    "baseline",
+                                "doffs",        "width", "height", "ndisp", "ground_points",
+                                "camera_height"};
   if (std::none_of(kKeys.begin(), kKeys.end(), [&](const char* key) { return pairs.contains(key); })) {
     throw Error("has none of the keys fx fy cx cy baseline doffs width height ndisp, expected a calibration");
   }
@@ -298,6 +326,7 @@ Statement read_middlebury(std::string_view text) {
     if (!says.doffs) says.doffs = right[2] - left[2];
   }
   read_size(pairs, says);
+  read_mounting(pairs, says);
   return says;
 }
 
@@ -318,6 +347,7 @@ Statement read_kitti(std::string_view text) {
       const Projection of_left = projection_of(finite_numbers(first->second, first->first), first->first);
       const Projection of_right = projection_of(finite_numbers(second->second, second->first), second->first);
       Statement says = from_projections(of_left, of_right);
+      read_mounting(pairs, says);
       if (const auto size = pairs.find(std::string("S_rect_0") + left); size != pairs.end()) {
         const std::vector<double> sides = finite_numbers(size->second, size->first);
         if (sides.size() != 2)
@@ -366,6 +396,22 @@ void save_calibration(const fs::path& path, const StereoRig& rig, Size image) {
   add("doffs", rig.doffs_px);
   write_file(path, file + "width=" + std::to_string(image.width) +
                        "\nheight=" + std::to_string(image.height) + "\n");
+}
+
+void check_ground(const KnownGround& known) {
+  const auto check = [](double value, const char* key, double lowest, double highest) {
+    if (value >= lowest && value <= highest) return;
+    throw Error(std::string(key) + " is " + written(value) + ", expected " + written(lowest) + " ... " +
+                written(highest));
+  };
+  constexpr double kLeastHeight = 0.01;
+  constexpr double kMostHeight = 100;
+  constexpr double kMostTilt = 89;
+  if (known.camera_height_m)
+    check(double{*known.camera_height_m}, "camera_height", kLeastHeight, kMostHeight);
+  check(double{known.camera_pitch_deg}, "camera_pitch", -kMostTilt, kMostTilt);
+  check(double{known.camera_roll_deg}, "camera_roll", -kMostTilt, kMostTilt);
+  if (!known.points.empty()) (void)ground_from_points(known.points);
 }
 
 void check_size(const Calibration& calibration, Size image, const fs::path& path) {

@@ -15,6 +15,7 @@ struct Calibration {
   std::optional<StereoRig> rig;  // nothing where the file has no focal length or no baseline: no metres then
   std::optional<Size> image_size;      // of the pictures that it was made for
   std::optional<int> num_disparities;  // `ndisp`: the default of match.num_disparities
+  KnownGround ground{};  // `ground_points`, `camera_height`, …: what Config::ground.known takes
   /// The file describes the lenses of the raw cameras as well: `rig` fits pictures that were rectified with
   /// it.
   bool of_raw_cameras = false;
@@ -33,9 +34,10 @@ class ImpossibleCalibration : public Error {
 
 /// Reads a calibration, its form recognised by content (docs/formats.md shows each): our own YAML, Middlebury
 /// calib.txt, KITTI calib_cam_to_cam.txt and calib.txt, OpenCV FileStorage YAML/XML/JSON with P1 and P2 or Q,
-/// ROS camera_info YAML (either file of the pair, one file with both, or their folder), key=value lines.
+/// ROS camera_info YAML (either file of the pair, one file with both, or their folder), key=value lines. Each
+/// may also say how the rig is mounted: ground_points, camera_height, camera_pitch, camera_roll.
 /// Throws Error (one line: file, what was found, what was expected): missing, no known form, a number that is
-/// none, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
+/// none or out of range, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
 Calibration load_calibration(const std::filesystem::path& path);
 
 /// Writes a rectified pair's calibration as key=value lines, whole or not at all. Throws Error.
@@ -43,6 +45,8 @@ void save_calibration(const std::filesystem::path& path, const StereoRig& rig, S
 
 /// Throws Error where the calibration was made for pictures of another size.
 void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);
+/// Throws Error where the height or an angle of the camera is out of range, or points determine no plane.
+void check_ground(const KnownGround& known);
 /// Throws Error where its number of disparities is none that match.num_disparities takes.
 void check_search_range(const Calibration& calibration, const std::filesystem::path& path);
 

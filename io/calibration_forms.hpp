@@ -20,8 +20,20 @@ struct Statement {
   std::optional<double> baseline_m;
   std::optional<double> doffs;  // px
   std::optional<double> width, height, ndisp;
-  bool has_distortion = false;  // of the lenses, besides
+  bool has_distortion = false;          // of the lenses, besides
+  std::vector<double> ground_points{};  // px; x_left, y_left, x_right, y_right of each
+  std::optional<double> camera_height{}, camera_pitch{}, camera_roll{};  // m, degrees
 };
+
+/// How the rig is mounted: the keys that every form may have besides its own.
+inline constexpr const char* kGroundPointsKey = "ground_points";
+struct MountingKey {
+  const char* key;
+  std::optional<double> Statement::*member;
+};
+inline constexpr std::array kMountingKeys{MountingKey{"camera_height", &Statement::camera_height},
+                                          MountingKey{"camera_pitch", &Statement::camera_pitch},
+                                          MountingKey{"camera_roll", &Statement::camera_roll}};
 
 /// The whole of `text` as one finite number; `key` is for the words of the Error.
 double finite_number(std::string_view text, std::string_view key);

@@ -124,6 +124,37 @@ std::optional<std::vector<double>> list_at(const YAML::Node& map, const char* ke
   return numbers_of(node, key);
 }
 
+// ---- how the rig is mounted, from either ----
+
+std::optional<std::vector<double>> points_at(std::string_view xml) {
+  return list_at(xml, kGroundPointsKey);
+}
+/// A list of numbers, a list of points, or a text of them.
+std::optional<std::vector<double>> points_at(const YAML::Node& map) {
+  const YAML::Node node = map[kGroundPointsKey];
+  if (!node) return std::nullopt;
+  if (node.IsScalar()) return finite_numbers(node.Scalar(), kGroundPointsKey);
+  constexpr std::size_t kMostPoints = 4096;
+  if (!node.IsSequence() || node.size() > kMostPoints)
+    throw Error(std::string(kGroundPointsKey) + " is no list of at most 4096 points");
+  std::vector<double> all;
+  for (const YAML::Node& item : node) {
+    if (item.IsScalar()) {
+      all.push_back(finite_number(item.Scalar(), kGroundPointsKey));
+    } else {
+      const std::vector<double> point = numbers_of(item, kGroundPointsKey);
+      all.insert(all.end(), point.begin(), point.end());
+    }
+  }
+  return all;
+}
+
+template <class Document>
+void read_mounting(const Document& document, Statement& says) {
+  for (const auto& [key, member] : kMountingKeys) says.*member = number_at(document, key);
+  says.ground_points = points_at(document).value_or(std::vector<double>{});
+}
+
 // ---- OpenCV, from either ----
 
 void check_shape(const Matrix& matrix, const char* key, int rows, int cols) {
@@ -200,6 +231,7 @@ std::optional<Statement> read_opencv(const Document& document) {
   }
   read_size(document, says);
   if (!says.ndisp) says.ndisp = number_at(document, "ndisp");
+  read_mounting(document, says);
   says.has_distortion = has_distortion(document);
   return says;
 }
@@ -235,6 +267,7 @@ Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
   const bool in_order = (*first)[3] >= (*second)[3];
   Statement says = in_order ? from_projections(*first, *second) : from_projections(*second, *first);
   read_size(one, says);
+  read_mounting(one, says);
   says.has_distortion = ros_distortion(one) || ros_distortion(other);
   return says;
 }
@@ -365,6 +398,9 @@ Statement read_own(const YAML::Node& map) {
     says.*member = number_at(map, name);
     names.emplace_back(name);
   }
+  read_mounting(map, says);
+  names.emplace_back(kGroundPointsKey);
+  for (const MountingKey& mounting : kMountingKeys) names.emplace_back(mounting.key);
   for (const auto& entry : map) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     if (std::find(names.begin(), names.end(), key) != names.end()) continue;

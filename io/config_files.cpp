@@ -14,34 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lists are points ([[x, y, x, y], …]) and short; aliases in YAML could make them endless.
-constexpr std::size_t kMostItems = 4096;
-
 std::string at_line(const YAML::Mark& mark) {
   return mark.is_null() ? "" : "line " + std::to_string(mark.line + 1) + ": ";
 }
 
-std::string joined(const YAML::Node& list, char between, int levels);
-
-std::string text_of(const YAML::Node& node, int levels) {
+std::string text_of(const YAML::Node& node) {
   if (node.IsScalar()) return node.Scalar();
-  if (node.IsSequence() && levels > 0) return joined(node, levels == 2 ? ';' : ',', levels - 1);
   throw Error(at_line(node.Mark()) + "found a " +
               (node.IsMap()    ? "section"
                : node.IsNull() ? "nothing"
                                : "list") +
               " where a value was expected");
-}
-
-std::string joined(const YAML::Node& list, char between, int levels) {
-  if (list.size() > kMostItems) throw Error(at_line(list.Mark()) + "found a list of more than 4096 items");
-  std::string text;
-  for (const YAML::Node& item : list) {
-    if (!text.empty()) text += between;
-    text += text_of(item, levels);
-    if (text.size() > kMostTextBytes) throw Error(at_line(list.Mark()) + "found a list without end");
-  }
-  return text;
 }
 
 std::string key_of(const YAML::Node& key) {
@@ -50,24 +33,28 @@ std::string key_of(const YAML::Node& key) {
   return key.Scalar();
 }
 
-/// One list is one point; a list of lists is many.
-std::string value_of(const YAML::Node& node) {
-  const bool nested = node.IsSequence() && node.size() > 0 && node[0].IsSequence();
-  return text_of(node, nested ? 2 : 1);
-}
+/// An option that the file has set.
+struct SetAt {
+  std::string option;
+  std::string line;
+};
 
-void set_at(Config& config, const std::string& name, const YAML::Node& key, const YAML::Node& value) {
+/// Every option that is gone says so whatever its value was: points were lists.
+void set_at(Config& config, const std::string& name, const YAML::Node& key, const YAML::Node& value,
+            std::vector<SetAt>& options) {
   try {
-    set(config, name, value_of(value));
+    set(config, name, value.IsSequence() ? "a list" : text_of(value));
   } catch (const Error& error) {
     const std::string what = error.what();
     throw Error(what.starts_with("line ") ? what : at_line(key.Mark()) + what);
   }
+  options.push_back({name, at_line(key.Mark())});
 }
 
-void read_section(Config& config, const std::string& section, const YAML::Node& map) {
+void read_section(Config& config, const std::string& section, const YAML::Node& map,
+                  std::vector<SetAt>& options) {
   for (const auto& entry : map) {
-    set_at(config, section + "." + key_of(entry.first), entry.first, entry.second);
+    set_at(config, section + "." + key_of(entry.first), entry.first, entry.second, options);
   }
 }
 
@@ -82,7 +69,8 @@ void read_preset(Config& config, const YAML::Node& value, const FromPreset& from
   }
 }
 
-void read_root(Config& config, const YAML::Node& root, const FromPreset& from_preset) {
+void read_root(Config& config, const YAML::Node& root, const FromPreset& from_preset,
+               std::vector<SetAt>& options) {
   if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments alone: nothing is set
   if (!root.IsMap()) throw Error("is no map of options, expected lines such as 'match.window_size: 9'");
   bool first = true;
@@ -96,33 +84,59 @@ void read_root(Config& config, const YAML::Node& root, const FromPreset& from_pr
     if (key == "preset") {
       read_preset(config, entry.second, from_preset);
     } else if (entry.second.IsMap()) {
-      read_section(config, key, entry.second);
+      read_section(config, key, entry.second, options);
     } else if (entry.second.IsNull() && key.find('.') == std::string::npos) {
       continue;  // a section whose every line is commented out
     } else {
-      set_at(config, key, entry.first, entry.second);
+      set_at(config, key, entry.first, entry.second, options);
     }
   }
 }
 
-/// Words that YAML would read as something else than text are quoted.
-std::string written(const OptionInfo& option) {
-  return option.type == "points" ? "\"" + option.value + "\"" : option.value;
+bool reads(const Config& config, const std::string& option) {
+  try {
+    require_active(config, option);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+/// Of the options that the file has set each must have an effect, in the file's own configuration or in the
+/// final one.
+void require_effects(const std::vector<SetAt>& options, const Config& of_file, const Config& with_all) {
+  for (const auto& [option, line] : options) {
+    if (reads(with_all, option)) continue;
+    try {
+      require_active(of_file, option);
+    } catch (const Error& error) {
+      throw Error(line + error.what());
+    }
+  }
 }
 
 }  // namespace
 
-void load_config(const fs::path& path, Config& config, const FromPreset& from_preset) {
+void load_config(const fs::path& path, Config& config, const FromPreset& from_preset,
+                 const std::function<void(Config&)>& on_top) {
   const std::string text = read_file(path, kMostTextBytes);
   Config read = config;
+  std::vector<SetAt> options;
   try {
     if (text.find('\0') != std::string::npos) throw Error("is no text, expected options in YAML");
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() > 1)
       throw Error("has " + std::to_string(documents.size()) + " documents, expected one");
-    if (!documents.empty()) read_root(read, documents.front(), from_preset);
+    if (!documents.empty()) read_root(read, documents.front(), from_preset, options);
   } catch (const YAML::Exception& exception) {
     throw Error(path.string() + ": " + at_line(exception.mark) + "is no YAML: " + exception.msg);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+  Config with_all = read;
+  if (on_top) on_top(with_all);
+  try {
+    require_effects(options, read, with_all);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
@@ -140,7 +154,7 @@ std::string yaml_of(const std::vector<OptionInfo>& options) {
       section = option.name.substr(0, dot);
       text += section + ":\n";
     }
-    text += "  " + option.name.substr(dot + 1) + ": " + written(option) + "  # ";
+    text += "  " + option.name.substr(dot + 1) + ": " + option.value + "  # ";
     if (!option.unit.empty()) text += option.unit + "; ";
     text += option.domain + "; " + option.help + "\n";
   }
@@ -150,7 +164,7 @@ std::string yaml_of(const std::vector<OptionInfo>& options) {
 }  // namespace
 
 std::string config_yaml(const Config& config) {
-  return yaml_of(options(config));
+  return yaml_of(active_options(config));
 }
 
 std::string changed_config_yaml(std::string_view preset, const Config& config,
@@ -160,7 +174,7 @@ std::string changed_config_yaml(std::string_view preset, const Config& config,
   std::vector<OptionInfo> changed;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool wanted = std::find(also.begin(), also.end(), all[i].name) != also.end();
-    if (wanted || all[i].value != known[i].value) changed.push_back(all[i]);
+    if (all[i].active && (wanted || all[i].value != known[i].value)) changed.push_back(all[i]);
   }
   return "preset: " + std::string(preset) + "\n" + yaml_of(changed);
 }

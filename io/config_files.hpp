@@ -19,13 +19,17 @@ namespace cairn::io {
 ///     window_size: 9
 ///   left_right.max_diff: -1  # or flat
 ///
-/// Throws Error with one line that names file, line, key and the nearest known one, or the range; `config` is
-/// then as it was. `from_preset` makes what a `preset:` line starts from (the command adds there what a
-/// calibration says).
+/// Throws Error with one line that names file, line, key and the nearest known one, or the range, or says
+/// what keeps an option of the file from having any effect; `config` is then as it was. `from_preset` makes
+/// what a `preset:` line starts from (the command adds there what a calibration says). `on_top` sets what
+/// comes on top of the file (--set, keywords): an option that the file itself leaves without effect may get
+/// one from it.
 void load_config(const std::filesystem::path& path, Config& config,
-                 const std::function<Config(std::string_view)>& from_preset = Config::preset);
+                 const std::function<Config(std::string_view)>& from_preset = Config::preset,
+                 const std::function<void(Config&)>& on_top = {});
 
-/// Every option with its value, in the form that load_config() reads, one comment per option.
+/// Every option that `config` reads with its value, in the form that load_config() reads, one comment per
+/// option.
 std::string config_yaml(const Config& config);
 
 /// The same, short: the preset's name and the options in which `config` differs from it; those in `also`

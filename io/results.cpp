@@ -76,17 +76,8 @@ Json json(const EpipolarOffset& epipolar) {
   return j;
 }
 
-Json json(const std::vector<PointPair>& points) {
-  Json all = Json::array();
-  for (const PointPair& p : points) {
-    all.push_back(Json::array({json(p.x_left), json(p.y_left), json(p.x_right), json(p.y_right)}));
-  }
-  return all;
-}
-
-Json option_value(const OptionInfo& option, const Config& config) {
+Json option_value(const OptionInfo& option) {
   if (option.type == "bool") return option.value == "true";
-  if (option.type == "points") return json(config.ground.points);
   if (option.type == "int" || option.type == "float") {
     const char* end = option.value.data() + option.value.size();
     if (std::int64_t whole = 0;
@@ -100,9 +91,9 @@ Json option_value(const OptionInfo& option, const Config& config) {
 
 Json json(const Config& config) {
   Json all = Json::object();
-  for (const OptionInfo& option : options(config)) {
+  for (const OptionInfo& option : active_options(config)) {
     const std::size_t dot = option.name.find('.');
-    all[option.name.substr(0, dot)][option.name.substr(dot + 1)] = option_value(option, config);
+    all[option.name.substr(0, dot)][option.name.substr(dot + 1)] = option_value(option);
   }
   return all;
 }

@@ -24,7 +24,7 @@ struct Provenance {
   bool external_disparity = false;  // the disparity was given, not matched
 };
 
-/// Every option by section, as a JSON object.
+/// Every option that `config` reads by section, as a JSON object.
 std::string config_json(const Config& config);
 
 /// The form of objects.json: a reader of 1.x may rely on all that docs/schema/objects.schema.json says

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <string_view>
-#include <vector>
 
 /// The vocabulary of a config's fields() function. Each stage's header has, beside its config struct,
 ///
@@ -14,7 +13,12 @@
 ///     }
 ///
 /// and everything else that knows about options (command line, config file, validation, reference page,
-/// Python) visits it. Field types: bool, int, float, an enum with choices(), std::vector<PointPair>.
+/// tuning, Python) visits it. Field types: bool, int, float, an enum with choices(). A field that is read
+/// only under a condition says so behind its values:
+///
+///       v("method", c.method, "", "which winner", kLeftRightMethods, unless("left_right.max_diff", "-1"));
+///
+/// A member that fields() does not visit is no option: a constant of the method, or a fact of the input.
 namespace cairn {
 
 /// What values a number may take: [lowest, highest], or −1 where that switches the stage off.
@@ -46,16 +50,20 @@ struct Choice {
   E value;
 };
 
-/// No further limit: for bool, for points.
+/// No further limit: for bool.
 struct Any {};
 
-/// A point of the scene seen in both images, in px; the hand-given evidence for a ground.
-struct PointPair {
-  float x_left = 0;
-  float y_left = 0;
-  float x_right = 0;
-  float y_right = 0;
-  friend bool operator==(const PointPair&, const PointPair&) = default;
+/// An option is read only while another one has a value, or has another value than that, and is itself read.
+struct Condition {
+  std::string_view option{};  // "match.method"; empty: always read
+  std::string_view value{};   // as set() reads it
+  bool equal = true;
 };
+constexpr Condition when(std::string_view option, std::string_view value) {
+  return {option, value, true};
+}
+constexpr Condition unless(std::string_view option, std::string_view value) {
+  return {option, value, false};
+}
 
 }  // namespace cairn

@@ -4,6 +4,7 @@
 
 #include <cairn/core/image.hpp>
 #include <optional>
+#include <vector>
 
 namespace cairn {
 
@@ -42,6 +43,25 @@ struct StereoRig {
   /// The point that pixel (x, y) with this disparity shows, in the left camera's frame (x right, y down, z
   /// forward); nullopt at or beyond infinity: where d + doffs ≤ 0, or z is more than a float holds.
   [[nodiscard]] std::optional<Vec3> point_in_camera_m(float x, float y, float disparity_px) const;
+};
+
+/// A point of the scene seen in both images, in px.
+struct PointPair {
+  float x_left = 0;
+  float y_left = 0;
+  float x_right = 0;
+  float y_right = 0;
+  friend bool operator==(const PointPair&, const PointPair&) = default;
+};
+
+/// What is known of the floor before any picture is taken: facts of how the rig is mounted, which stand in
+/// its calibration file.
+struct KnownGround {
+  std::vector<PointPair> points;         // on the floor: none, or four and more, not all on one line
+  std::optional<float> camera_height_m;  // of the left camera above the floor
+  float camera_pitch_deg = 0;            // positive looks down
+  float camera_roll_deg = 0;             // positive lowers the camera's right side
+  friend bool operator==(const KnownGround&, const KnownGround&) = default;
 };
 
 }  // namespace cairn

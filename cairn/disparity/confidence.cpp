@@ -88,9 +88,8 @@ class WindowCounts {
 }  // namespace
 
 Image<float> estimate_confidence(const Matches& matches, const DisparityMap& disparity,
-                                 const ConfidenceModel& model, const ConfidenceConfig& config,
-                                 const Exec& exec) {
-  if (!config.enabled || matches.runner_up.empty() || matches.mean_cost.empty()) return {};
+                                 const ConfidenceModel& model, const Exec& exec) {
+  if (matches.runner_up.empty() || matches.mean_cost.empty()) return {};
   const View<const float> disparity_px = disparity.disparity_px;
   const Size size = disparity_px.size();
   assert(matches.runner_up.size() == size && matches.mean_cost.size() == size);

@@ -3,19 +3,10 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/core/fields.hpp>
 #include <cairn/disparity/disparity_map.hpp>
 #include <cairn/matching/match.hpp>
 
 namespace cairn {
-
-struct ConfidenceConfig {
-  bool enabled = true;
-};
-template <class V>
-void fields(ConfidenceConfig& c, V&& v) {
-  v("enabled", c.enabled, "", "say of each disparity how likely it is right; changes nothing else", Any{});
-}
 
 /// What each sign of a good or bad match counts: the logarithm of the odds that a disparity is within 1 px of
 /// the truth is bias + Σ weight · sign.
@@ -46,10 +37,9 @@ inline constexpr int kConfidenceWindow = 13;
 /// How likely each disparity is within 1 px of the truth, 0 … 1; 0 where there is none. It is a logistic
 /// function of four signs (ConfidenceModel) which the matching and the checks leave behind: no cost is
 /// computed anew. A pixel is a jump where its disparity and that of the pixel to the right or below differ by
-/// more than 1 px. Empty where it is switched off, and where `matches` lacks runner-up or mean
-/// (Evidence::full has both). (beyond the paper)
+/// more than 1 px. Empty where `matches` lacks runner-up or mean (MatchMaps::full has both). (beyond the
+/// paper)
 Image<float> estimate_confidence(const Matches& matches, const DisparityMap& disparity,
-                                 const ConfidenceModel& model, const ConfidenceConfig& config,
-                                 const Exec& exec);
+                                 const ConfidenceModel& model, const Exec& exec);
 
 }  // namespace cairn

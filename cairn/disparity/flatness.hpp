@@ -8,7 +8,7 @@
 namespace cairn {
 
 struct FlatnessConfig {
-  float threshold = 0.1F;  // share; −1 = off
+  float threshold = 0.1F;  // share, 0 … 1, −1 = off; more refuses more of what is plain
 };
 template <class V>
 void fields(FlatnessConfig& c, V&& v) {

@@ -13,8 +13,8 @@ inline constexpr std::array kLeftRightMethods{Choice<LeftRightMethod>{"true", Le
                                               Choice<LeftRightMethod>{"vote", LeftRightMethod::vote}};
 
 struct LeftRightConfig {
-  float max_diff = 1.0F;  // px; −1 = off
-  LeftRightMethod method = LeftRightMethod::true_;
+  float max_diff = 1.0F;  // px, 0 … 64, −1 = off; more keeps slanted surfaces, less clears rims
+  LeftRightMethod method = LeftRightMethod::true_;  // vote: OpenCV's results
 };
 template <class V>
 void fields(LeftRightConfig& c, V&& v) {
@@ -22,7 +22,7 @@ void fields(LeftRightConfig& c, V&& v) {
   v("method", c.method, "",
     "true: the right image's own winner over all candidates; vote: the right pixel takes the best left "
     "winner (OpenCV)",
-    kLeftRightMethods);
+    kLeftRightMethods, unless("left_right.max_diff", "-1"));
 }
 
 /// Marks pixels whose match, followed back from the right image, does not return to them: mostly

@@ -8,7 +8,7 @@
 namespace cairn {
 
 struct UniquenessConfig {
-  float ratio = 10.0F;  // percent; −1 = off
+  float ratio = 10.0F;  // %, 0 … 100, −1 = off; more refuses more of what repeats
 };
 template <class V>
 void fields(UniquenessConfig& c, V&& v) {

@@ -9,18 +9,18 @@
 namespace cairn {
 
 struct EvidenceConfig {
+  // No option, a constant: σ of the noise; least horizontal gradient of evidence is this many deviations …
   float noise_factor = 1.0F;
-  float gradient_min = 0.65F;
+  float gradient_min =
+      0.65F;  // grey levels, 0 … 255; … plus this; more trusts fewer pixels: for dim pictures
+  // No option, a constant: ‰ of the width; how far the disparities of neighbouring evidence may lie apart.
   float agreement = 2.5F;
 };
 template <class V>
 void fields(EvidenceConfig& c, V&& v) {
-  v("noise_factor", c.noise_factor, "σ of the noise",
-    "least horizontal gradient of a pixel that counts as evidence: this many deviations of the image noise …",
-    range(0.0F, 100.0F));
-  v("gradient_min", c.gradient_min, "grey levels", "… plus this", range(0.0F, 255.0F));
-  v("agreement", c.agreement, "‰ of the width",
-    "how far the disparities of neighbouring evidence may lie apart", range(0.0F, 100.0F));
+  v("gradient_min", c.gradient_min, "grey levels",
+    "how far a pixel's horizontal gradient must exceed the image's noise to count as evidence",
+    range(0.0F, 255.0F), when("fusion.method", "evidence"));
 }
 
 /// The disparities that rest on the pixel's own texture, NaN elsewhere: valid ones where the horizontal

@@ -14,20 +14,19 @@
 namespace cairn {
 
 struct FacetsConfig {
-  float smoothing_sigma = 0.7F;
-  float edge_min = 2.0F;
-  float noise_factor = 1.0F;
-  float contrast_share = 14.0F;
+  float smoothing_sigma = 0.7F;  // no option, a constant: px; Gaussian smoothing before the edges
+  float edge_min = 2.0F;         // grey levels, 0 … 255; basins fuse across borders weaker than this …
+                                 // less keeps faint outlines, more makes larger facets
+  // No options, constants:
+  float noise_factor = 1.0F;     // σ of the noise; … plus this many deviations of it …
+  float contrast_share = 14.0F;  // %; … plus this share of the edge that 2 % of the pixels exceed
 };
 template <class V>
 void fields(FacetsConfig& c, V&& v) {
-  v("smoothing_sigma", c.smoothing_sigma, "px", "Gaussian smoothing before the edges", range(0.0F, 5.0F));
-  v("edge_min", c.edge_min, "grey levels", "basins fuse across borders whose mean edge is weaker than this …",
-    range(0.0F, 255.0F));
-  v("noise_factor", c.noise_factor, "σ of the noise", "… plus this many deviations of the image noise …",
-    range(0.0F, 100.0F));
-  v("contrast_share", c.contrast_share, "% of a clear edge",
-    "… plus this share of the edge that 2 % of the pixels exceed", range(0.0F, 100.0F));
+  v("edge_min", c.edge_min, "grey levels",
+    "basins fuse across borders whose mean edge is weaker than this, the image's noise and a share of its "
+    "clear edges together",
+    range(0.0F, 255.0F), when("fusion.method", "evidence"));
 }
 
 /// The common border of two facets, a < b. Positions are those of the pixel pairs' midpoints, summed in half

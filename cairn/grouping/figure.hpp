@@ -12,47 +12,33 @@
 namespace cairn {
 
 struct FigureConfig {
-  float margin = 1.6F;
-  float agreement = 4.7F;
-  float longest_bridge = 30.0F;
-  float border_weight = 0.4F;
-  float skirting = 2.5F;
-  float smoothness = 2.0F;
-  float colour_weight = 0.4F;
-  float continuation_weight = 0.5F;
-  float largest_part = 2.0F;
+  float margin = 1.6F;  // ‰ of the width, 0 … 100; less finds flatter things, more bears inexact matches
+  float agreement = 4.7F;  // ‰ of the width, 0 … 100; more bridges plain stretches of slanted surfaces
+  // No options, constants:
+  float longest_bridge = 30.0F;  // % of the width; plain stretches longer than this hardly count
+  float border_weight = 0.4F;    // px of evidence; what a pixel beside a facet's border counts that is seen
+                                 // before the background: the matcher gives the nearer surface's disparity
+                                 // to both sides of its edge; 1 = as much as any
+  float skirting = 2.5F;         // % of the width; a plain facet within this above the foot of a wall is
+                                 // figure only where that is seen; 0 = anywhere
+  float smoothness = 2.0F;       // px of evidence; what it costs, for each pixel of a border without an edge,
+                                 // to part figure and ground there
+  float colour_weight = 0.4F;    // px of evidence; what a plain pixel's colour says, when it is e times as
+                                 // common in the figure as in the ground; 0 = nothing
+  float continuation_weight = 0.5F;  // px of evidence; what it says for ground that ground of its colour goes
+                                     // on beside it; 0 = nothing
+  float largest_part = 2.0F;  // % of the image; ground that touches figure speaks for its colour only with
+                              // what it is larger than this: it may be a part of an object without evidence
 };
 template <class V>
 void fields(FigureConfig& c, V&& v) {
+  constexpr Condition kByEvidence = when("fusion.method", "evidence");
   v("margin", c.margin, "‰ of the width", "how far a disparity must stand before the background to be figure",
-    range(0.0F, 100.0F));
+    range(0.0F, 100.0F), kByEvidence);
   v("agreement", c.agreement, "‰ of the width",
     "largest difference of the disparities on both sides of a plain stretch that still belongs to one "
     "surface",
-    range(0.0F, 100.0F));
-  v("longest_bridge", c.longest_bridge, "% of the width", "plain stretches longer than this hardly count",
-    range(0.0F, 100.0F));
-  v("border_weight", c.border_weight, "px of evidence",
-    "what a pixel beside a facet's border counts that is seen before the background: the matcher gives the "
-    "nearer surface's disparity to both sides of its edge; 1 = as much as any",
-    range(0.0F, 1.0F));
-  v("skirting", c.skirting, "% of the width",
-    "a plain facet within this above the foot of a wall is figure only where that is seen; 0 = anywhere",
-    range(0.0F, 100.0F));
-  v("smoothness", c.smoothness, "px of evidence",
-    "what it costs, for each pixel of a border without an edge, to part figure and ground there",
-    range(0.0F, 100.0F));
-  v("colour_weight", c.colour_weight, "px of evidence",
-    "what a plain pixel's colour says, when it is e times as common in the figure as in the ground; 0 = "
-    "nothing",
-    range(0.0F, 10.0F));
-  v("continuation_weight", c.continuation_weight, "px of evidence",
-    "what it says for ground that ground of its colour goes on beside it; 0 = nothing", range(0.0F, 10.0F));
-  v("largest_part", c.largest_part, "% of the image",
-    "ground that touches figure speaks for its colour only with what it is larger than this: it may be a "
-    "part "
-    "of an object without evidence; 0 = with all",
-    range(0.0F, 100.0F));
+    range(0.0F, 100.0F), kByEvidence);
 }
 
 /// For each facet: is it figure (1: before the background) or ground (0)?

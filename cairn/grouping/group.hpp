@@ -11,31 +11,24 @@
 namespace cairn {
 
 struct GroupConfig {
-  float step = 2.0F;
-  float step_share = 6.0F;
-  float deviation = 4.0F;
-  float deviation_share = 12.0F;
-  float gap_share = 50.0F;
-  float min_area = 0.6F;
-  float occluded_gap = 10.0F;
+  float step = 2.0F;  // ‰ of the width, 0 … 1000; less parts what touches, more holds slanted things together
+  // No options, constants:
+  float step_share = 6.0F;        // % of the disparity; … or this share of it, if that is more
+  float deviation = 4.0F;         // ‰ of the width; how far a facet may lie off its object's plane …
+  float deviation_share = 12.0F;  // % of the disparity; … or this share of it, if that is more
+  float gap_share = 50.0F;        // % of its border; a facet without evidence that has more ground around it
+                                  // than this connects nothing
+  float min_area = 0.6F;       // % of the image, 0 … 100; an option: less keeps small parts for themselves
+  float occluded_gap = 10.0F;  // % of the width; a constant: groups of one depth this close to each other
+                               // behind a common nearer one are one object; 0 = never
 };
 template <class V>
 void fields(GroupConfig& c, V&& v) {
-  v("step", c.step, "‰ of the width", "largest step of disparity across a border within one object …",
-    range(0.0F, 1000.0F));
-  v("step_share", c.step_share, "% of the disparity", "… or this share of the disparity, if that is more",
-    range(0.0F, 100.0F));
-  v("deviation", c.deviation, "‰ of the width",
-    "how far a facet may lie off the plane of the object that it joins …", range(0.0F, 1000.0F));
-  v("deviation_share", c.deviation_share, "% of the disparity",
-    "… or this share of the disparity, if that is more", range(0.0F, 100.0F));
-  v("gap_share", c.gap_share, "% of its border",
-    "a facet without evidence that has more ground around it than this connects nothing",
-    range(0.0F, 100.0F));
-  v("min_area", c.min_area, "% of the image", "smaller groups join a neighbour", range(0.0F, 100.0F));
-  v("occluded_gap", c.occluded_gap, "% of the width",
-    "groups of one depth this close to each other behind a common nearer one are one object; 0 = never",
-    range(0.0F, 100.0F));
+  constexpr Condition kByEvidence = when("fusion.method", "evidence");
+  v("step", c.step, "‰ of the width", "largest step of disparity across a border within one object",
+    range(0.0F, 1000.0F), kByEvidence);
+  v("min_area", c.min_area, "% of the image", "smaller groups join a neighbour", range(0.0F, 100.0F),
+    kByEvidence);
 }
 
 /// Groups figure facets to objects: the paper's growing from near to far, on facets and with planes instead

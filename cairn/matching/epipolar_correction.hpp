@@ -12,7 +12,7 @@
 namespace cairn {
 
 struct EpipolarCorrectionConfig {
-  float max_rows = -1;  // rows; −1 = off; the largest misalignment looked for
+  float max_rows = -1;  // rows, 0.5 … 8, −1 = off; the largest misalignment looked for: more for a shaky rig
 };
 template <class V>
 void fields(EpipolarCorrectionConfig& c, V&& v) {

@@ -11,8 +11,8 @@ namespace {
 
 Matches make_matches(Size size, const MatchConfig& config, const Pool& pool) {
   const Size band = config.row_band > 0 ? size : Size{};
-  const Size minimum = config.evidence != Evidence::winner ? size : Size{};
-  const Size full = config.evidence == Evidence::full ? size : Size{};
+  const Size minimum = config.maps != MatchMaps::winner ? size : Size{};
+  const Size full = config.maps == MatchMaps::full ? size : Size{};
   return {Image<std::int16_t>(size, pool), Image<std::int16_t>(full, pool), Image<std::int8_t>(band, pool),
           Image<float>(size, pool),        Image<float>(minimum, pool),     Image<float>(full, pool),
           Image<float>(minimum, pool),     Image<float>(minimum, pool)};

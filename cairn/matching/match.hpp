@@ -19,7 +19,7 @@ enum class Cost : std::uint8_t { sad, ssd, zsad, zssd, nssd, zncc };
 enum class Prefilter : std::uint8_t { none, xsobel };
 /// Which maps of Matches are wanted and paid for. winner: best and cost; minimum: also what lies around them;
 /// full: also the mean and the right image's winners.
-enum class Evidence : std::uint8_t { winner, minimum, full };
+enum class MatchMaps : std::uint8_t { winner, minimum, full };
 
 inline constexpr std::array kMatchMethods{Choice<MatchMethod>{"window", MatchMethod::window},
                                           Choice<MatchMethod>{"semi_global", MatchMethod::semi_global}};
@@ -28,38 +28,37 @@ inline constexpr std::array kCosts{Choice<Cost>{"sad", Cost::sad},   Choice<Cost
                                    Choice<Cost>{"nssd", Cost::nssd}, Choice<Cost>{"zncc", Cost::zncc}};
 inline constexpr std::array kPrefilters{Choice<Prefilter>{"none", Prefilter::none},
                                         Choice<Prefilter>{"xsobel", Prefilter::xsobel}};
-inline constexpr std::array kEvidences{Choice<Evidence>{"winner", Evidence::winner},
-                                       Choice<Evidence>{"minimum", Evidence::minimum},
-                                       Choice<Evidence>{"full", Evidence::full}};
+inline constexpr std::array kMatchMaps{Choice<MatchMaps>{"winner", MatchMaps::winner},
+                                       Choice<MatchMaps>{"minimum", MatchMaps::minimum},
+                                       Choice<MatchMaps>{"full", MatchMaps::full}};
 
 struct MatchConfig {
-  MatchMethod method = MatchMethod::window;
-  Cost cost = Cost::zncc;
-  int window_size = 9;       // px; odd; the window is clipped at the image's border
-  int min_disparity = 0;     // px
-  int num_disparities = 64;  // candidates min_disparity … min_disparity + num_disparities - 1
-  int row_band = 0;          // rows; also tries rows y−k … y+k of the right image
-  Prefilter prefilter = Prefilter::none;
-  int prefilter_cap = 31;  // grey levels; x-Sobel responses are clipped to ±cap
-  Evidence evidence = Evidence::full;
+  MatchMethod method = MatchMethod::window;  // semi_global where surfaces are plain, window for exact costs
+  Cost cost = Cost::zncc;                    // zncc, zsad, zssd bear unlike exposures; sad and ssd do not
+  int window_size = 9;    // px, odd, 3 … 31; larger bears noise, smaller keeps rims; clipped at the border
+  int min_disparity = 0;  // px, −1024 … 1023; below 0 where the cameras converge
+  int num_disparities = 64;  // px, 1 … 1024; candidates are min_disparity … min_disparity + this − 1: nearer
+  int row_band = 0;  // rows, 0 … 8; also tries rows y−k … y+k: for rows that are off within a frame
+  Prefilter prefilter = Prefilter::none;  // xsobel: for sad and ssd on unlike exposures
+  int prefilter_cap = 31;  // grey levels, 1 … 63; lower: weak edges count as much as strong ones
+  /// No option: what the caller wants of match() itself. The whole method needs all of them.
+  MatchMaps maps = MatchMaps::full;
 };
 template <class V>
 void fields(MatchConfig& c, V&& v) {
   v("method", c.method, "", "window: correlation alone; semi_global: neighbours agree along paths",
     kMatchMethods);
-  v("cost", c.cost, "", "correlation operator", kCosts);
-  v("window_size", c.window_size, "px", "side of the square correlation window, odd", odd_range(3, 31));
+  constexpr Condition kWindows = when("match.method", "window");
+  v("cost", c.cost, "", "correlation operator", kCosts, kWindows);
+  v("window_size", c.window_size, "px", "side of the square correlation window, odd", odd_range(3, 31),
+    kWindows);
   v("min_disparity", c.min_disparity, "px", "first disparity tried; may be negative", range(-1024, 1023));
   v("num_disparities", c.num_disparities, "px",
     "how many disparities are tried; a calibration's ndisp replaces the default", range(1, 1024));
-  v("row_band", c.row_band, "rows", "also search k rows above and below (vibration)", range(0, 8));
-  v("prefilter", c.prefilter, "", "filter both images before matching", kPrefilters);
-  v("prefilter_cap", c.prefilter_cap, "grey levels", "clip the x-Sobel response to ±cap", range(1, 63));
-  v("evidence", c.evidence, "",
-    "winner: best and cost only; minimum: also its neighbours and the runner-up, all that sub-pixel, "
-    "uniqueness "
-    "and left_right.method=vote need; full: all that the checks need",
-    kEvidences);
+  v("row_band", c.row_band, "rows", "also search k rows above and below (vibration)", range(0, 8), kWindows);
+  v("prefilter", c.prefilter, "", "filter both images before matching", kPrefilters, kWindows);
+  v("prefilter_cap", c.prefilter_cap, "grey levels", "clip the x-Sobel response to ±cap", range(1, 63),
+    when("match.prefilter", "xsobel"));
 }
 
 /// In Matches::best: no candidate lay inside the right image.
@@ -69,8 +68,8 @@ inline constexpr std::int16_t kNoMatch = std::numeric_limits<std::int16_t>::min(
 inline constexpr float kNoCost = std::numeric_limits<float>::infinity();
 
 /// The outcome of correlation, per left pixel (best_right: per right pixel).
-/// With Evidence::winner only best, row_offset and cost are there, with Evidence::minimum all but best_right
-/// and mean_cost; the other images are empty.
+/// With MatchMaps::winner only best, row_offset and cost are there, with MatchMaps::minimum all but
+/// best_right and mean_cost; the other images are empty.
 struct Matches {
   Image<std::int16_t> best;  // disparity of least cost in px, kNoMatch = none; ties: the smallest disparity
   Image<std::int16_t> best_right;  // the same seen from the right image, out of the same costs

@@ -33,9 +33,9 @@ SemiGlobalPenalties table_of(const SemiGlobalConfig& config) {
   return penalties;
 }
 
-Matches make_matches(Size size, Evidence evidence, const Pool& pool) {
-  const Size minimum = evidence != Evidence::winner ? size : Size{};
-  const Size full = evidence == Evidence::full ? size : Size{};
+Matches make_matches(Size size, MatchMaps maps, const Pool& pool) {
+  const Size minimum = maps != MatchMaps::winner ? size : Size{};
+  const Size full = maps == MatchMaps::full ? size : Size{};
   return {Image<std::int16_t>(size, pool), Image<std::int16_t>(full, pool), Image<std::int8_t>(),
           Image<float>(size, pool),        Image<float>(minimum, pool),     Image<float>(full, pool),
           Image<float>(minimum, pool),     Image<float>(minimum, pool)};
@@ -78,7 +78,7 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   const Size size = pair.size();
   const SearchLayout layout{size.width, size.height, config.min_disparity, config.num_disparities,
                             run.lanes(config.num_disparities)};
-  Matches matches = make_matches(size, config.evidence, exec.pool);
+  Matches matches = make_matches(size, config.maps, exec.pool);
   const Size volume{size.width * layout.lanes, size.height};
   Image<Gray> smooth(size, exec.pool);
   Image<std::uint8_t> left_bits({3 * kernels::round_up(size.width, 64), size.height}, exec.pool);
@@ -88,13 +88,13 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   Image<std::uint8_t> steps(volume, exec.pool);
   Image<std::uint8_t> along({volume.width, 1}, 0, exec.pool);
   Image<std::uint8_t> least({size.width, 1}, 0, exec.pool);
-  const SemiGlobalTask task{layout,          table_of(penalties),
-                            config.evidence, pair.left(),
-                            pair.right(),    smooth,
-                            left_bits,       right_bits,
-                            inside,          costs,
-                            steps,           along,
-                            least,           matches};
+  const SemiGlobalTask task{layout,       table_of(penalties),
+                            config.maps,  pair.left(),
+                            pair.right(), smooth,
+                            left_bits,    right_bits,
+                            inside,       costs,
+                            steps,        along,
+                            least,        matches};
   follow_paths(task, run, exec);
   return matches;
 }

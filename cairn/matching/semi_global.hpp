@@ -9,17 +9,20 @@ namespace cairn {
 /// What it costs a path when the disparity changes, in units of the greatest cost that one pixel's match can
 /// have.
 struct SemiGlobalConfig {
-  float penalty_small = 0.6F;  // by one pixel: slanted and curved surfaces
-  float penalty_large = 2.2F;  // by more: the rim of an object
-  float penalty_edge = 0.15F;  // per grey level; how fast the large penalty falls with the intensity's step
+  float penalty_small = 0.6F;  // greatest costs, 0 … 2.3; by one pixel: less for slanted and curved surfaces
+  float penalty_large = 2.2F;  // greatest costs, 0 … 2.3; by more: less for thin objects, more for noise
+  float penalty_edge = 0.15F;  // 1/grey level, 0 … 10; how fast the large penalty falls with the intensity's
+                               // step: more where objects stand out by their grey level
 };
 template <class V>
 void fields(SemiGlobalConfig& c, V&& v) {
+  constexpr Condition kSemiGlobal = when("match.method", "semi_global");
   v("penalty_small", c.penalty_small, "greatest cost", "for a change of disparity by one pixel",
-    range(0.0F, 2.3F));
-  v("penalty_large", c.penalty_large, "greatest cost", "for a larger change of disparity", range(0.0F, 2.3F));
+    range(0.0F, 2.3F), kSemiGlobal);
+  v("penalty_large", c.penalty_large, "greatest cost", "for a larger change of disparity", range(0.0F, 2.3F),
+    kSemiGlobal);
   v("penalty_edge", c.penalty_edge, "1/grey level",
-    "how fast the large penalty falls where the intensity changes", range(0.0F, 10.0F));
+    "how fast the large penalty falls where the intensity changes", range(0.0F, 10.0F), kSemiGlobal);
 }
 
 /// Matches single pixels and lets the disparities of neighbours vote on each other: where a window sees no
@@ -44,7 +47,7 @@ void fields(SemiGlobalConfig& c, V&& v) {
 ///    right image have none and never win. Ties and best_right as with match_windows().
 ///
 /// All of it is integer, so that every instruction set gets the same bits. Of `config` only min_disparity,
-/// num_disparities and evidence count; row_offset stays empty. Unlike a window's, this takes memory for all
+/// num_disparities and maps count; row_offset stays empty. Unlike a window's, this takes memory for all
 /// candidates of all pixels: 2 bytes for each.
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec);

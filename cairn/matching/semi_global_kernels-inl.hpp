@@ -371,7 +371,7 @@ class Crossing {
         along_(kRowsAbreast * g_.lanes),
         sums_(kRowsAbreast * kBlock * stride_ + kBlockMargin),
         candidates_(g_.width),
-        right_length_(task.evidence == Evidence::full ? g_.length() : 0),
+        right_length_(task.maps == MatchMaps::full ? g_.length() : 0),
         right_sum_(kRowsAbreast * right_length_),
         right_lane_(kRowsAbreast * right_length_) {
     std::fill_n(sums_.data(), sums_.size(), kNoSum);
@@ -461,11 +461,11 @@ class Crossing {
     auto paths = paths_of<kRows>(y);
     for (int x_first = 0; x_first < width; x_first += kBlock) {
       const int pixels = std::min(kBlock, width - x_first);
-      for (int row = 0; row < kRows; ++row) expect_evidence(x_first, y + row);
+      for (int row = 0; row < kRows; ++row) expect_maps(x_first, y + row);
       sum_up<kRows>(paths, y, x_first, pixels);
       for (int row = 0; row < kRows; ++row) settle(row, x_first, pixels, y + row);
     }
-    for (int row = 0; row < kRows && task_.evidence == Evidence::full; ++row) settle_right(y, row);
+    for (int row = 0; row < kRows && task_.maps == MatchMaps::full; ++row) settle_right(y, row);
   }
 
   template <int kRows>
@@ -495,14 +495,14 @@ class Crossing {
   }
 
   /// Asks for the memory that a block's maps are written to.
-  CAIRN_LANES_INLINE void expect_evidence(int x_first, int y) const {
+  CAIRN_LANES_INLINE void expect_maps(int x_first, int y) const {
     const Matches& out = task_.out;
     expect_writes(out.best.row(y) + x_first, kBlock);
     expect_writes(out.cost.row(y) + x_first, kBlock);
-    if (task_.evidence == Evidence::winner) return;
+    if (task_.maps == MatchMaps::winner) return;
     for (const Image<float>* map : {&out.cost_before, &out.cost_after, &out.runner_up})
       expect_writes(map->row(y) + x_first, kBlock);
-    if (task_.evidence == Evidence::full) expect_writes(out.mean_cost.row(y) + x_first, kBlock);
+    if (task_.maps == MatchMaps::full) expect_writes(out.mean_cost.row(y) + x_first, kBlock);
   }
 
   [[nodiscard]] std::uint8_t* back_of(int row) const { return back_.data() + row * g_.width * g_.lanes; }
@@ -514,9 +514,9 @@ class Crossing {
   template <class T>
   using OfBlock = std::array<T, kBlock>;
 
-  /// Writes a block's evidence. One question after the other for all its pixels, so that no pixel waits for
-  /// its own answer. All of the block are asked, also where the row ends before. `row`: of those side by
-  /// side.
+  /// Writes a block's part of the maps. One question after the other for all its pixels, so that no pixel
+  /// waits for its own answer. All of the block are asked, also where the row ends before. `row`: of those
+  /// side by side.
   void settle(int row, int x_first, int pixels, int y) {
     const std::int32_t* const candidates = candidates_.data() + x_first;
     if (std::min(candidates[0], candidates[pixels - 1]) < g_.lanes) hide_missing(row, x_first, pixels);
@@ -529,8 +529,8 @@ class Crossing {
       best[i] = least[index] < kNoSum ? static_cast<std::int16_t>(g_.first_d + lane[index]) : kNoMatch;
     }
     write_costs(least, pixels, task_.out.cost.row(y) + x_first);
-    if (task_.evidence == Evidence::winner) return;
-    if (task_.evidence == Evidence::full) {
+    if (task_.maps == MatchMaps::winner) return;
+    if (task_.maps == MatchMaps::full) {
       write_means(row, x_first, pixels, task_.out.mean_cost.row(y) + x_first);
       update_right(row, x_first, pixels);
     }

@@ -51,7 +51,7 @@ struct SearchLayout {
 struct SemiGlobalTask {
   SearchLayout layout;
   SemiGlobalPenalties penalties;
-  Evidence evidence;
+  MatchMaps maps;
   View<const Gray> left;
   View<const Gray> right;
   View<Gray> smooth;                // the left image, smoothed

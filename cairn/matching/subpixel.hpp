@@ -18,14 +18,14 @@ inline constexpr std::array kSubpixelMethods{
     Choice<SubpixelMethod>{"equiangular", SubpixelMethod::equiangular}};
 
 struct SubpixelConfig {
-  bool enabled = true;
-  SubpixelMethod method = SubpixelMethod::parabola;
+  bool enabled = true;                               // off: whole px
+  SubpixelMethod method = SubpixelMethod::parabola;  // as the costs are shaped: see above
 };
 template <class V>
 void fields(SubpixelConfig& c, V&& v) {
   v("enabled", c.enabled, "", "refine each winner by a curve through its cost and its neighbours'", Any{});
   v("method", c.method, "", "the curve: round for squares, pointed for absolute differences and semi_global",
-    kSubpixelMethods);
+    kSubpixelMethods, when("subpixel.enabled", "true"));
 }
 
 /// Where the curve through the costs a, m, c at best − 1, best, best + 1 is lowest:

@@ -28,8 +28,8 @@ class Band {
   Band(const MatchTask& task, int first, int last)
       : task_(task),
         g_(task),
-        full_(task.config.evidence == Evidence::full),
-        keeps_costs_(task.config.evidence != Evidence::winner),
+        full_(task.config.maps == MatchMaps::full),
+        keeps_costs_(task.config.maps != MatchMaps::winner),
         radius_(task.config.row_band),
         first_(first),
         last_(last),
@@ -39,7 +39,7 @@ class Band {
         exists_(g_),
         zeros_(std::max(g_.length, g_.width)),
         step_(keeps_costs_ ? kBlock : round_up(g_.width, kBlock)),
-        block_(g_, step_, task.config.evidence),
+        block_(g_, step_, task.config.maps),
         least_(keeps_costs_ && radius_ > 0 ? g_.lanes : 0),
         candidates_(round_up(g_.width, kBlock)),
         winners_(round_up(g_.width, kBlock)) {
@@ -173,7 +173,7 @@ class Band {
         fill(work);
         look_at(work, y);
       }
-      if (keeps_costs_ && mine(y + 1)) expect_evidence(x, y + 1);
+      if (keeps_costs_ && mine(y + 1)) expect_maps(x, y + 1);
     }
   }
 
@@ -225,7 +225,7 @@ class Band {
       if (begins) least_.clear();
       keep_lesser<Width>(block_.costs, x_last - x_first, g_.lanes, least_);
     }
-    if (ends) settle_evidence(radius_ > 0 ? least_ : block_.costs, x_first, x_last - x_first, y);
+    if (ends) settle_maps(radius_ > 0 ? least_ : block_.costs, x_first, x_last - x_first, y);
   }
 
   // -- results --------------------------------------------------------------------------------------------
@@ -256,7 +256,7 @@ class Band {
   /// Writes what a block's costs tell beside the winners. One question after the other for all its pixels, so
   /// that no pixel waits for its own answer. All of the block are asked, also where the row ends before;
   /// written are whole vectors, to which rows of images are padded.
-  void settle_evidence(const CostBlock& block, int x_first, int pixels, int y) {
+  void settle_maps(const CostBlock& block, int x_first, int pixels, int y) {
     if (full_) settle_mean(block, x_first, pixels, y);
     const std::int32_t* const best = winners_.lane.data() + x_first;
     alignas(64) std::array<Lane, 4 * kBlock> around;
@@ -287,7 +287,7 @@ class Band {
 
   /// Asks for the memory that a block's maps are written to, a row before: more of them are written than a
   /// processor looks ahead for.
-  CAIRN_LANES_INLINE void expect_evidence(int x_first, int y) const {
+  CAIRN_LANES_INLINE void expect_maps(int x_first, int y) const {
     const Matches& out = task_.out;
     expect_writes(out.cost.row(y) + x_first, kBlock);
     expect_writes(out.best.row(y) + x_first, kBlock);

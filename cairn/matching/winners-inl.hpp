@@ -433,8 +433,8 @@ struct Block {
   CostBlock<typename Width::Cost> costs;  // empty where nobody asks for them
   std::vector<TileWinners<Width>> winners;
   bool equal_tags;  // of all costs
-  Block(const Geometry& g, int pixels, Evidence evidence)
-      : costs(evidence == Evidence::winner ? 0 : g.lanes), equal_tags(evidence == Evidence::full) {
+  Block(const Geometry& g, int pixels, MatchMaps maps)
+      : costs(maps == MatchMaps::winner ? 0 : g.lanes), equal_tags(maps == MatchMaps::full) {
     for (int first = 0; first < g.lanes; first += kTile) winners.emplace_back(pixels);
   }
 };

@@ -17,7 +17,7 @@ inline constexpr std::array kFusionMethods{Choice<FusionMethod>{"overlap", Fusio
                                            Choice<FusionMethod>{"evidence", FusionMethod::evidence}};
 
 struct FusionConfig {
-  FusionMethod method = FusionMethod::overlap;
+  FusionMethod method = FusionMethod::overlap;  // overlap: what the paper describes
 };
 template <class V>
 void fields(FusionConfig& c, V&& v) {

@@ -12,9 +12,9 @@
 namespace cairn {
 
 struct ObjectsConfig {
-  float min_area = 0.1F;
-  float max_area = 30.0F;
-  float min_confidence = 0.0F;
+  float min_area = 0.1F;   // % of the image, 0 … 100; less finds smaller objects, and more that are none
+  float max_area = 30.0F;  // % of the image, 0 … 100; more for objects close to the camera
+  float min_confidence = 0.0F;  // 0 … 1; more: fewer objects, of which more are right
 };
 template <class V>
 void fields(ObjectsConfig& c, V&& v) {

@@ -25,15 +25,6 @@ requires std::is_arithmetic_v<Number> std::string write(Number value) {
   return {buffer.data(), end};
 }
 
-std::string write(const std::vector<PointPair>& points) {
-  std::string text;
-  for (const PointPair& p : points) {
-    if (!text.empty()) text += ';';
-    text += write(p.x_left) + ',' + write(p.y_left) + ',' + write(p.x_right) + ',' + write(p.y_right);
-  }
-  return text;
-}
-
 template <class E, std::size_t N>
 std::string write(E value, const std::array<Choice<E>, N>& choices) {
   const auto found =
@@ -70,9 +61,6 @@ std::string type_name(int) {
 std::string type_name(float) {
   return "float";
 }
-std::string type_name(const std::vector<PointPair>&) {
-  return "points";
-}
 template <class E>
 requires std::is_enum_v<E> std::string type_name(E) {
   return "choice";
@@ -81,10 +69,6 @@ requires std::is_enum_v<E> std::string type_name(E) {
 std::string describe_any(bool) {
   return "true|false";
 }
-std::string describe_any(const std::vector<PointPair>&) {
-  return "x_left,y_left,x_right,y_right;…";
-}
-
 template <class T, class Domain>
 std::string domain_of(const T& value, const Domain& domain) {
   if constexpr (std::is_same_v<Domain, Any>) {
@@ -118,13 +102,6 @@ void check(const std::string& option, T value, const Range<T>& range) {
   if (!off && !(inside && parity)) refuse(option, write(value), describe(range));
 }
 void check(const std::string&, bool, Any) {}
-void check(const std::string& option, const std::vector<PointPair>& points, Any) {
-  for (const PointPair& p : points) {
-    if (!std::isfinite(p.x_left + p.y_left + p.x_right + p.y_right)) {
-      refuse(option, write(points), "finite coordinates");
-    }
-  }
-}
 template <class E, std::size_t N>
 void check(const std::string& option, E value, const std::array<Choice<E>, N>& choices) {
   const bool known =
@@ -161,79 +138,151 @@ void read(const std::string& option, std::string_view text, E& value,
   value = found->value;
 }
 
-PointPair read_pair(const std::string& option, std::string_view text) {
-  std::array<float, 4> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const std::size_t comma = i + 1 < numbers.size() ? text.find(',') : text.size();
-    if (comma == std::string_view::npos || !parse_number(text.substr(0, comma), numbers[i])) {
-      refuse(option, text, "x_left,y_left,x_right,y_right");
-    }
-    text.remove_prefix(std::min(text.size(), comma + 1));
-  }
-  return {numbers[0], numbers[1], numbers[2], numbers[3]};
-}
-
-void read(const std::string& option, std::string_view text, std::vector<PointPair>& value, Any) {
-  std::vector<PointPair> points;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(';'), text.size());
-    points.push_back(read_pair(option, text.substr(0, end)));
-    text.remove_prefix(std::min(text.size(), end + 1));
-  }
-  value = std::move(points);
-}
-
 // ---- walking the options ----
 
-/// Calls visit(full name, value, unit, help, domain) for every option.
+/// Calls visit(full name, value, unit, help, domain, condition) for every option.
 template <class C, class F>
 void for_each_option(C& config, F&& visit) {
   for_each_section(config, [&](std::string_view section, auto& stage) {
     fields(stage, [&](std::string_view name, auto& value, std::string_view unit, std::string_view help,
-                      const auto& domain) {
-      visit(std::string(section) + '.' + std::string(name), value, unit, help, domain);
+                      const auto& domain, const Condition& condition = {}) {
+      visit(std::string(section) + '.' + std::string(name), value, unit, help, domain, condition);
     });
   });
 }
 
-void require_evidence(const Config& c) {
-  const auto refuse_if = [&](bool needed, Evidence least, const char* option) {
-    if (!needed || c.match.evidence >= least) return;
-    throw Error("option match.evidence: " + write(c.match.evidence, kEvidences) + " keeps too little for " +
-                option + "; set match.evidence=" + write(least, kEvidences) + ", or " + option + "=-1");
-  };
-  refuse_if(c.uniqueness.ratio >= 0, Evidence::minimum, "uniqueness.ratio");
-  refuse_if(c.flatness.threshold >= 0, Evidence::full, "flatness.threshold");
-  if (c.match.evidence < Evidence::full && c.left_right.max_diff >= 0 &&
-      c.left_right.method == LeftRightMethod::true_) {
-    throw Error("option match.evidence: " + write(c.match.evidence, kEvidences) +
-                " keeps no right image's winners for left_right.method=true; set match.evidence=full, "
-                "left_right.method=vote, or left_right.max_diff=-1");
+// ---- which options are read ----
+
+/// What decides it: an option's value, and under which condition it is read itself.
+struct Read {
+  std::string option;
+  std::string value;
+  Condition condition;
+};
+
+std::vector<Read> reads_of(const Config& config) {
+  std::vector<Read> all;
+  Config copy = config;  // fields() takes its struct by reference to non-const
+  for_each_option(copy, [&](std::string name, const auto& value, std::string_view, std::string_view,
+                            const auto& domain, const Condition& condition) {
+    all.push_back({std::move(name), write(value, domain), condition});
+  });
+  return all;
+}
+
+const Read& find(const std::vector<Read>& all, std::string_view option) {
+  return *std::find_if(all.begin(), all.end(), [&](const Read& read) { return read.option == option; });
+}
+
+std::string_view section_of(std::string_view option) {
+  return option.substr(0, option.find('.'));
+}
+
+/// The condition that keeps the option from being read, the one to be met first; nullptr where none does.
+/// Conditions upon options outside of `sections` are passed over (none: no section is outside).
+const Condition* unmet(const std::vector<Read>& all, const Read& option,
+                       const std::vector<std::string>& sections) {
+  const Condition& condition = option.condition;
+  if (condition.option.empty()) return nullptr;
+  if (!sections.empty() &&
+      std::find(sections.begin(), sections.end(), section_of(condition.option)) == sections.end())
+    return nullptr;
+  const Read& asked = find(all, condition.option);
+  if (const Condition* before = unmet(all, asked, sections)) return before;
+  return (asked.value == condition.value) == condition.equal ? nullptr : &condition;
+}
+
+std::string describe(const Condition& condition) {
+  if (condition.option.empty()) return {};
+  return std::string(condition.option) + (condition.equal ? "=" : "!=") + std::string(condition.value);
+}
+
+// ---- options of earlier versions ----
+
+struct Gone {
+  std::string_view option;
+  std::string_view where;
+};
+
+constexpr std::array kGone{
+    Gone{"match.evidence", "what the checks and the confidence need is kept"},
+    Gone{"confidence.enabled", "whatever was matched has a confidence"},
+    Gone{"ground.points", "it is a fact of the rig, ground_points in its calibration file (docs/formats.md)"},
+    Gone{"ground.height", "it is a fact of the rig, camera_height in its calibration file (docs/formats.md)"},
+    Gone{"ground.pitch", "it is a fact of the rig, camera_pitch in its calibration file (docs/formats.md)"},
+    Gone{"ground.roll", "it is a fact of the rig, camera_roll in its calibration file (docs/formats.md)"}};
+
+constexpr std::array<std::string_view, 21> kConstants{"evidence.noise_factor",
+                                                      "evidence.agreement",
+                                                      "background.tolerance",
+                                                      "background.min_share",
+                                                      "background.min_share_square",
+                                                      "background.max_behind",
+                                                      "facets.smoothing_sigma",
+                                                      "facets.noise_factor",
+                                                      "facets.contrast_share",
+                                                      "figure.longest_bridge",
+                                                      "figure.border_weight",
+                                                      "figure.skirting",
+                                                      "figure.smoothness",
+                                                      "figure.colour_weight",
+                                                      "figure.continuation_weight",
+                                                      "figure.largest_part",
+                                                      "group.step_share",
+                                                      "group.deviation",
+                                                      "group.deviation_share",
+                                                      "group.gap_share",
+                                                      "group.occluded_gap"};
+
+void refuse_what_is_gone(std::string_view name) {
+  for (const auto& [option, where] : kGone) {
+    if (option == name) throw Error("option " + std::string(name) + " is gone: " + std::string(where));
   }
+  if (std::find(kConstants.begin(), kConstants.end(), name) != kConstants.end())
+    throw Error("option " + std::string(name) + " is gone: it is a constant of its stage");
 }
 
 }  // namespace
 
 std::vector<OptionInfo> options(const Config& config) {
   std::vector<OptionInfo> all;
+  const std::vector<Read> reads = reads_of(config);
   Config copy = config;  // fields() takes its struct by reference to non-const
   for_each_option(copy, [&](std::string name, const auto& value, std::string_view unit, std::string_view help,
-                            const auto& domain) {
+                            const auto& domain, const Condition& condition) {
+    const bool active = unmet(reads, reads[all.size()], {}) == nullptr;
     all.push_back({std::move(name), type_name(value), write(value, domain), std::string(unit),
-                   domain_of(value, domain), std::string(help)});
+                   domain_of(value, domain), std::string(help), describe(condition), active});
   });
   return all;
+}
+
+std::vector<OptionInfo> active_options(const Config& config) {
+  std::vector<OptionInfo> all = options(config);
+  std::erase_if(all, [](const OptionInfo& option) { return !option.active; });
+  return all;
+}
+
+void require_active(const Config& config, std::string_view name, const std::vector<std::string>& sections) {
+  const std::vector<Read> reads = reads_of(config);
+  const Condition* const condition = unmet(reads, find(reads, name), sections);
+  if (condition == nullptr) return;
+  const std::string option(condition->option);
+  const std::string wanted = condition->equal ? option + "=" + std::string(condition->value) : option;
+  throw Error(std::string(name) + " has no effect with " + option + "=" +
+              find(reads, condition->option).value + "; set " + wanted + " first");
 }
 
 void set(Config& config, std::string_view name, std::string_view value) {
   bool found = false;
   for_each_option(config, [&](const std::string& option, auto& current, std::string_view, std::string_view,
-                              const auto& domain) {
+                              const auto& domain, const Condition&) {
     if (option != name) return;
     found = true;
     read(option, value, current, domain);
   });
   if (found) return;
+  refuse_what_is_gone(name);
   std::vector<std::string> names;
   for (const OptionInfo& option : options(config)) names.push_back(option.name);
   const std::string close = nearest(name, names);
@@ -273,16 +322,23 @@ Config Config::paper() {
 void validate(const Config& config) {
   Config copy = config;
   for_each_option(copy, [](const std::string& name, const auto& value, std::string_view, std::string_view,
-                           const auto& domain) { check(name, value, domain); });
-  require_evidence(config);
-  if (config.ground.source == GroundSource::points) (void)ground_from_points(config.ground.points);
+                           const auto& domain, const Condition&) { check(name, value, domain); });
+  if (config.match.maps != MatchMaps::full)
+    throw Error("match.maps: less than full is for match() alone, the method needs full");
+  validate(config.ground, true);
 }
 
 void validate(const Config& config, Size image, bool has_rig) {
   validate(config);
   const int window = config.match.window_size;
-  if (window > image.width || window > image.height) {
+  const bool has_window = config.match.method == MatchMethod::window;
+  if (has_window && (window > image.width || window > image.height)) {
     throw Error("option match.window_size: a window of " + write(window) + " px does not fit an image of " +
+                text(image));
+  }
+  constexpr int kLeast = 3;  // px
+  if (!has_window && (image.width < kLeast || image.height < kLeast)) {
+    throw Error("option match.method: semi_global needs an image of at least 3x3, found one of " +
                 text(image));
   }
   const int first = config.match.min_disparity;
@@ -295,10 +351,7 @@ void validate(const Config& config, Size image, bool has_rig) {
     throw Error("option match.min_disparity: disparities " + write(first) + " … " + write(last) +
                 " lie outside an image " + write(image.width) + " px wide");
   }
-  if (config.ground.source == GroundSource::pose && !has_rig) {
-    throw Error(
-        "option ground.source: a ground from the camera's pose needs a calibration; give one (--calib)");
-  }
+  validate(config.ground, has_rig);
 }
 
 }  // namespace cairn

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/confidence.hpp>
 #include <cairn/disparity/flatness.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/disparity/speckle.hpp>
@@ -41,7 +40,6 @@ struct Config {
   TextureConfig texture{.threshold = -1.0F};
   GroundConfig ground;
   SpeckleConfig speckle;
-  ConfidenceConfig confidence;
   EvidenceConfig evidence;
   BackgroundConfig background;
   IntensityConfig intensity;
@@ -71,7 +69,6 @@ void for_each_section(C& c, F&& visit) {
   visit("texture", c.texture);
   visit("ground", c.ground);
   visit("speckle", c.speckle);
-  visit("confidence", c.confidence);
   visit("evidence", c.evidence);
   visit("background", c.background);
   visit("intensity", c.intensity);
@@ -86,25 +83,35 @@ void for_each_section(C& c, F&& visit) {
 /// One option as the reference page, the command line and bindings present it.
 struct OptionInfo {
   std::string name;    // "match.window_size"
-  std::string type;    // "int", "float", "bool", "choice", "points"
+  std::string type;    // "int", "float", "bool", "choice"
   std::string value;   // as set() would read it
   std::string unit;    // may be empty
   std::string domain;  // "3 … 31, odd", "−1 = off, 0 … 64", "sad|ssd|…"
   std::string help;
+  std::string needs;   // "match.method=window", "speckle.size!=-1": read only while so; empty: always
+  bool active = true;  // whether `config` reads it: what it needs is so, and is itself read
 };
 
 /// Every option of `config`, in order.
 std::vector<OptionInfo> options(const Config& config);
-/// Sets one option from its text. Throws Error: unknown name (names the nearest known one), not of its type,
-/// out of range (names the range).
+/// Those of them that it reads.
+std::vector<OptionInfo> active_options(const Config& config);
+/// Sets one option from its text. Throws Error: unknown name (names the nearest known one), one that is gone
+/// (says where it went), not of its type, out of range (names the range). Sets an option that is not read as
+/// well, since what it needs may be set later: who has set all asks require_active().
 void set(Config& config, std::string_view name, std::string_view value);
+/// Throws Error where `config` does not read the option, in one line that says what to set first. With
+/// `sections` only what options of these sections ask for counts: for a stage by itself.
+void require_active(const Config& config, std::string_view name,
+                    const std::vector<std::string>& sections = {});
 /// The names of the presets.
 std::vector<std::string> preset_names();
-/// Throws Error where a value lies outside its range or options contradict each other (a check that needs
-/// evidence which match.evidence does not keep; a ground from fewer than four points or from points on
-/// a line).
+/// Throws Error where a value lies outside its range, where match.maps leaves out what the method needs, or
+/// where the ground's source is something that is not known (fewer than four points, points on a line, no
+/// height of the camera).
 void validate(const Config& config);
-/// The same, and against an image: the window must fit, a disparity must be possible, a pose needs a rig.
+/// The same, and against an image: the window, or 3x3 pixels, must fit, a disparity must be possible, a pose
+/// needs a rig.
 void validate(const Config& config, Size image, bool has_rig);
 
 }  // namespace cairn

@@ -49,7 +49,7 @@ Frame segment_by_evidence(Given given, const std::optional<StereoRig>& rig, cons
   frame.floor = stage("label_floor", label_floor(frame.disparity, frame.ground, rig, config.ground, exec));
   Later<Image<float>> confidence(exec, [&](const Exec& beside) {
     return estimate_confidence(matched.matches, frame.disparity, confidence_model(config.match.method),
-                               config.confidence, beside);
+                               beside);
   });
 
   // Which of the groups are objects, and where.

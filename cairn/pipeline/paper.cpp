@@ -34,7 +34,7 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   // (The first pool beside may still be that of the left image's regions.)
   Later<Image<float>> confidence(exec.beside(), [&](const Exec& beside) {
     return estimate_confidence(matched.matches, frame.disparity, confidence_model(config.match.method),
-                               config.confidence, beside);
+                               beside);
   });
 
   // Two segmentations, united.

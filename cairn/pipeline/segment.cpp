@@ -47,9 +47,9 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
   scene.disparity =
       stage("reject_speckles", reject_speckles(std::move(scene.disparity), config.speckle, exec));
   scene.floor = stage("label_floor", label_floor(scene.disparity, scene.ground, rig, config.ground, exec));
-  scene.confidence = stage("estimate_confidence", estimate_confidence(matched.matches, scene.disparity,
-                                                                      confidence_model(config.match.method),
-                                                                      config.confidence, exec));
+  scene.confidence = stage(
+      "estimate_confidence",
+      estimate_confidence(matched.matches, scene.disparity, confidence_model(config.match.method), exec));
   return scene;
 }
 

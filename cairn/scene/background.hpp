@@ -9,22 +9,17 @@
 namespace cairn {
 
 struct BackgroundConfig {
-  int max_walls = 3;
-  float tolerance = 2.3F;
-  float min_share = 1.5F;
-  float min_share_square = 0.4F;
-  float max_behind = 33.0F;
+  int max_walls = 3;  // 0 … 8; 0 outdoors, where only the floor bounds the scene
+  // No options, constants:
+  float tolerance = 2.3F;         // ‰ of the width; how far a disparity may lie from the wall it supports
+  float min_share = 1.5F;         // % of the evidence; least support of a wall
+  float min_share_square = 0.4F;  // % of the evidence; the same of a wall square on the first one
+  float max_behind = 33.0F;       // % of the support; most evidence that may lie behind a wall
 };
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
-  v("max_walls", c.max_walls, "", "how many walls are looked for besides the floor", range(0, 8));
-  v("tolerance", c.tolerance, "‰ of the width",
-    "how far a disparity may lie from a wall's and still support it", range(0.0F, 100.0F));
-  v("min_share", c.min_share, "% of the evidence", "least support of a wall", range(0.0F, 100.0F));
-  v("min_share_square", c.min_share_square, "% of the evidence", "the same of a wall square on the first one",
-    range(0.0F, 100.0F));
-  v("max_behind", c.max_behind, "% of the support", "most evidence that may lie behind a wall",
-    range(0.0F, 100.0F));
+  v("max_walls", c.max_walls, "", "how many walls are looked for besides the floor", range(0, 8),
+    when("fusion.method", "evidence"));
 }
 
 /// The planes that bound the scene from behind: the floor, if there is one, and walls. A room seen from

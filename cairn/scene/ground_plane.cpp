@@ -17,11 +17,11 @@ namespace {
 /// The floor seen by a camera at `height` over it. With n = (sin r·cos p, cos r·cos p, sin p), the direction
 /// of gravity in the camera's frame for pitch p and roll r, a floor point X has n·X = height. Put into d +
 /// doffs = focal·baseline / Z and X = Z·((x − cx)/focal, (y − cy)/focal, 1) that is linear in x and y.
-GroundPlane ground_from_pose(const StereoRig& rig, const GroundConfig& config) {
-  const double pitch = double{config.pitch} * std::numbers::pi / 180;
-  const double roll = double{config.roll} * std::numbers::pi / 180;
+GroundPlane ground_from_pose(const StereoRig& rig, const KnownGround& known) {
+  const double pitch = double{known.camera_pitch_deg} * std::numbers::pi / 180;
+  const double roll = double{known.camera_roll_deg} * std::numbers::pi / 180;
   const std::array down{std::sin(roll) * std::cos(pitch), std::cos(roll) * std::cos(pitch), std::sin(pitch)};
-  const double scale = double{rig.baseline_m} / double{config.height};
+  const double scale = double{rig.baseline_m} / double{*known.camera_height_m};
   const double c =
       scale * (double{rig.focal_px} * down[2] - double{rig.cx_px} * down[0] - double{rig.cy_px} * down[1]) -
       double{rig.doffs_px};
@@ -34,16 +34,15 @@ kernels::FloorRow floor_row(const Ground& ground, const std::optional<StereoRig>
 }
 
 void require_sound(const std::vector<PointPair>& points) {
-  constexpr const char* kOption = "ground.points: ";
+  constexpr const char* kKey = "ground_points: ";
   if (points.size() < 4) {
-    throw Error(kOption + std::string("found ") + std::to_string(points.size()) +
-                " pairs, expected at least 4");
+    throw Error(kKey + std::string("found ") + std::to_string(points.size()) + " pairs, expected at least 4");
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& p = points[i];
     for (const float value : {p.x_left, p.y_left, p.x_right, p.y_right}) {
       if (std::isfinite(value)) continue;
-      throw Error(kOption + std::string("found a coordinate that is not finite in pair ") +
+      throw Error(kKey + std::string("found a coordinate that is not finite in pair ") +
                   std::to_string(i + 1) + ", expected px");
     }
   }
@@ -55,7 +54,7 @@ Ground ground_from_points(const std::vector<PointPair>& points) {
   require_sound(points);
   const auto found = plane_through(points);
   if (!found) {
-    throw Error("ground.points: found " + std::to_string(points.size()) +
+    throw Error("ground_points: found " + std::to_string(points.size()) +
                 " pairs that determine no plane, expected some that do not all lie on a line");
   }
   double sum = 0;
@@ -65,6 +64,20 @@ Ground ground_from_points(const std::vector<PointPair>& points) {
   }
   const double residual = std::sqrt(sum / static_cast<double>(found->pairs.size()));
   return {found->plane, 1.0F, static_cast<float>(residual), Refusal::none};
+}
+
+void validate(const GroundConfig& config, bool has_rig) {
+  if (config.source == GroundSource::points) {
+    if (config.known.points.empty()) {
+      throw Error("option ground.source: a ground from points needs ground_points in the calibration");
+    }
+    (void)ground_from_points(config.known.points);
+  }
+  if (config.source == GroundSource::pose && !(has_rig && config.known.camera_height_m)) {
+    throw Error(
+        "option ground.source: a ground from the camera's pose needs a calibration with camera_height; give "
+        "one (--calib)");
+  }
 }
 
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
@@ -78,10 +91,10 @@ Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>
     case GroundSource::automatic:
       return find_floor(disparity_px, rig, exec);
     case GroundSource::points:
-      return ground_from_points(config.points);
+      return ground_from_points(config.known.points);
     case GroundSource::pose:
-      if (!rig) return {std::nullopt, 0.0F, 0.0F, Refusal::no_rig};
-      return {ground_from_pose(*rig, config), 1.0F, 0.0F, Refusal::none};
+      if (!rig || !config.known.camera_height_m) return {std::nullopt, 0.0F, 0.0F, Refusal::no_rig};
+      return {ground_from_pose(*rig, config.known), 1.0F, 0.0F, Refusal::none};
     case GroundSource::off:
       break;
   }

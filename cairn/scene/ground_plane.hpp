@@ -18,28 +18,20 @@ inline constexpr std::array kGroundSources{Choice<GroundSource>{"off", GroundSou
                                            Choice<GroundSource>{"pose", GroundSource::pose}};
 
 struct GroundConfig {
-  GroundSource source = GroundSource::automatic;
-  std::vector<PointPair> points;  // ≥ 4, not all on a line
-  float height = 1.0F;            // m, of the left camera above the floor
-  float pitch = 0.0F;             // degrees, positive looks down
-  float roll = 0.0F;              // degrees, positive tilts the camera's right side down
-  float margin = 1.0F;            // px of disparity
-  bool label_floor = true;
+  GroundSource source = GroundSource::automatic;  // points, pose: for a rig that does not move
+  float margin = 1.0F;      // px of disparity, 0 … 64; more for an uneven floor or inexact matches
+  bool label_floor = true;  // off: the floor is a surface like others
+  KnownGround known;        // no option: what the rig's calibration says, for the sources points and pose
 };
 template <class V>
 void fields(GroundConfig& c, V&& v) {
   v("source", c.source, "",
-    "where the floor comes from: fitted to each frame, hand-given points, the camera's pose, nowhere",
+    "where the floor comes from: fitted to each frame, the calibration's points or pose, nowhere",
     kGroundSources);
-  v("points", c.points, "px", "floor points as x_left,y_left,x_right,y_right; at least four, separated by ;",
-    Any{});
-  v("height", c.height, "m", "height of the left camera above the floor (source pose)", range(0.01F, 100.0F));
-  v("pitch", c.pitch, "degrees", "camera pitch, positive looks down (source pose)", range(-89.0F, 89.0F));
-  v("roll", c.roll, "degrees", "camera roll, positive lowers the camera's right side (source pose)",
-    range(-89.0F, 89.0F));
+  constexpr Condition kGround = unless("ground.source", "off");
   v("margin", c.margin, "px", "how far a disparity may lie from the floor's and still be floor",
-    range(0.0F, 64.0F));
-  v("label_floor", c.label_floor, "", "label matches on the floor; the floor is no object", Any{});
+    range(0.0F, 64.0F), kGround);
+  v("label_floor", c.label_floor, "", "label matches on the floor; the floor is no object", Any{}, kGround);
 }
 
 /// The floor as the left image's disparity: d = a·x + b·y + c, pixels in px. (docs/stages/ground.md)
@@ -71,7 +63,7 @@ struct Ground {
 
 /// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
 /// when no plane has enough support. points: the plane of least squares through the pairs (RANSAC beyond
-/// four). pose: from height, pitch and roll; needs a rig. (docs/stages/ground.md; paper, "ground plane")
+/// four). pose: from height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper, "ground plane")
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 
@@ -82,6 +74,9 @@ Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>
 /// The plane through hand-given pairs. Throws Error for fewer than four, or where all lie on one line.
 /// Called by validate(Config), so that fit_ground cannot fail.
 Ground ground_from_points(const std::vector<PointPair>& points);
+
+/// Throws Error where `source` is points or pose and `known` does not say it, or not soundly.
+void validate(const GroundConfig& config, bool has_rig);
 
 /// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground.
 /// Nothing is above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground:

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/core/fields.hpp>
+#include <cairn/core/stereo_pair.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <optional>
 #include <span>

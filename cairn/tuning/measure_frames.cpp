@@ -99,8 +99,7 @@ Outcome judge_consistency(const TuningFrame& frame, const Config& config, const 
 
 Outcome judge(const TuningFrame& frame, const std::vector<Setting>& settings, TuningGoal goal,
               MatchedOnce& matched, const Exec& exec) {
-  Config config = with_settings(frame.config, settings);
-  config.confidence.enabled = false;  // changes nothing else
+  const Config config = with_settings(frame.config, settings);
   switch (goal) {
     case TuningGoal::objects:
       return judge_objects(frame, config, matched, exec);

@@ -95,6 +95,7 @@ class Searcher {
   }
 
   bool try_option(std::size_t i, double step) {
+    if (config_.is_read && !config_.is_read(result_.best, i)) return false;
     tried_ = 0;
     changed_ = 0;
     bool better = false;

@@ -54,6 +54,8 @@ struct SearchConfig {
   double last_step = 1.1;
   Margin margin{};         // a gain below is none
   std::uint32_t seed = 1;  // decides in which order options are tried
+  /// Whether an option, by its index, is read with these settings; empty: all are. What is not is not tried.
+  std::function<bool(const std::vector<Setting>&, std::size_t)> is_read{};
 };
 
 enum class SearchEnd : std::uint8_t {

@@ -59,6 +59,24 @@ bool fits(std::string_view name, std::string_view pattern) {
                              : ", did you mean '" + close + "'?"));
 }
 
+const OptionInfo& option_named(const std::vector<OptionInfo>& all, std::string_view name) {
+  return *std::find_if(all.begin(), all.end(), [&](const OptionInfo& option) { return option.name == name; });
+}
+
+/// Whether the option is read, or is once one of `varied` has another value.
+bool may_be_read(std::string_view name, const std::vector<Tunable>& varied,
+                 const std::vector<OptionInfo>& all) {
+  const OptionInfo& option = option_named(all, name);
+  if (option.active) return true;
+  const std::size_t end = option.needs.find_first_of("!=");
+  const std::string asked = option.needs.substr(0, end);
+  const bool varies =
+      std::any_of(varied.begin(), varied.end(), [&](const Tunable& t) { return t.name == asked; });
+  const bool differs = option.needs[end] == '!';
+  const bool same = option.needs.substr(end + (differs ? 2 : 1)) == option_named(all, asked).value;
+  return (varies || same != differs) && may_be_read(asked, varied, all);
+}
+
 double number_of(const std::string& text) {
   double value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -111,17 +129,14 @@ std::vector<Tunable> tunables() {
   std::vector<Tunable> all;
   Config config;  // fields() takes its struct by reference to non-const
   for_each_section(config, [&](std::string_view section, auto& stage) {
-    fields(stage,
-           [&](std::string_view name, auto& value, std::string_view, std::string_view, const auto& domain) {
-             if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(value)>, std::vector<PointPair>>) {
-               Tunable tunable;
-               tunable.name = std::string(section) + '.' + std::string(name);
-               if (tunable.name == "match.evidence" || tunable.name == "confidence.enabled") return;
-               describe(tunable, value, domain);
-               tunable.of_presets = preset_values(tunable.name);
-               all.push_back(std::move(tunable));
-             }
-           });
+    fields(stage, [&](std::string_view name, auto& value, std::string_view, std::string_view,
+                      const auto& domain, const Condition& = {}) {
+      Tunable tunable;
+      tunable.name = std::string(section) + '.' + std::string(name);
+      describe(tunable, value, domain);
+      tunable.of_presets = preset_values(tunable.name);
+      all.push_back(std::move(tunable));
+    });
   });
   return all;
 }
@@ -140,6 +155,19 @@ std::vector<Tunable> tunables(const std::vector<std::string>& patterns) {
   return chosen;
 }
 
+std::vector<Tunable> tunables(const std::vector<std::string>& patterns, const Config& config) {
+  std::vector<Tunable> chosen = tunables(patterns);
+  const std::vector<Tunable> named = chosen;
+  const std::vector<OptionInfo> all = options(config);
+  std::erase_if(chosen, [&](const Tunable& tunable) { return !may_be_read(tunable.name, named, all); });
+  for (const std::string& pattern : patterns) {
+    const auto fits_pattern = [&](const Tunable& tunable) { return fits(tunable.name, pattern); };
+    if (std::any_of(chosen.begin(), chosen.end(), fits_pattern)) continue;
+    require_active(config, std::find_if(named.begin(), named.end(), fits_pattern)->name);
+  }
+  return chosen;
+}
+
 std::vector<std::string> usual_tunables(const Config& config, bool objects) {
   std::vector<std::string> patterns{"left_right.max_diff", "uniqueness.ratio", "speckle.size"};
   const auto add = [&](std::initializer_list<const char*> more) {
@@ -151,9 +179,10 @@ std::vector<std::string> usual_tunables(const Config& config, bool objects) {
     add({"match.cost", "match.window_size", "flatness.threshold", "texture.threshold"});
   }
   if (!objects) return patterns;
-  add({"ground.margin", "objects.min_area", "objects.min_confidence"});
+  if (config.ground.source != GroundSource::off) add({"ground.margin"});
+  add({"objects.min_area", "objects.min_confidence"});
   if (config.fusion.method == FusionMethod::evidence) {
-    add({"evidence.*", "background.tolerance", "background.min_share", "facets.*", "figure.*", "group.*"});
+    add({"evidence.*", "facets.*", "figure.*", "group.*"});
   } else {
     add({"intensity.*", "disparity.*"});
   }

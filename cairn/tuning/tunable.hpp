@@ -23,16 +23,17 @@ struct Tunable {
   std::vector<std::string> of_presets;  // what the presets give it, each value once
 };
 
-/// Every option that can be searched: all but lists of points and those that say what is kept, not what is
-/// found (match.evidence, confidence.enabled).
+/// Every option.
 std::vector<Tunable> tunables();
 /// Those that `patterns` name, in the order of the options, each once. A pattern is an option's name or its
 /// beginning with a * behind it: "match.*", "*". Throws Error for a pattern that names none.
 std::vector<Tunable> tunables(const std::vector<std::string>& patterns);
+/// Of those the ones that `config` reads, or would read with another value of one of them. Throws Error for a
+/// pattern that names none such.
+std::vector<Tunable> tunables(const std::vector<std::string>& patterns, const Config& config);
 
-/// The patterns of the options that are searched where nobody chooses: numbers that take part in what
-/// `config` computes and that no calibration knows better. `objects`: also those that only the objects depend
-/// on, not the disparities.
+/// The patterns of the options that are searched where nobody chooses: numbers that `config` reads and that
+/// no calibration knows better. `objects`: also those that only the objects depend on, not the disparities.
 std::vector<std::string> usual_tunables(const Config& config, bool objects);
 /// Whether the disparities depend on the option, and not only the objects.
 bool changes_disparities(std::string_view option);

@@ -49,7 +49,7 @@ void choose_tunables(const std::vector<std::string>& wanted, const Config& start
   std::vector<std::string> patterns = wanted.empty() ? usual_tunables(start, objects) : wanted;
   // Islands agree with the right image: contradictions would let them all pass.
   if (wanted.empty() && tuning.goal == TuningGoal::consistency) std::erase(patterns, "speckle.size");
-  tuning.tunables = tunables(patterns);
+  tuning.tunables = tunables(patterns, start);
   if (objects) return;
   const auto judged = std::stable_partition(tuning.tunables.begin(), tuning.tunables.end(),
                                             [](const Tunable& t) { return changes_disparities(t.name); });
@@ -85,10 +85,6 @@ Tuning prepared(const std::vector<TuningFrame>& frames, const TuneConfig& config
   const Config& start = frames.front().config;
   Tuning tuning;
   tuning.goal = goal_of(frames);
-  if (tuning.goal == TuningGoal::consistency && start.match.evidence != Evidence::full) {
-    throw Error(
-        "option match.evidence: without truth the right image's winners judge the left one's; expected full");
-  }
   tuning.sequence = mostly_sequence(frames);
   tuning.held_out = frames_held_out(frames, config, tuning.sequence);
   choose_tunables(config.options, start, tuning);
@@ -131,6 +127,9 @@ class TuningRun {
     SearchConfig search_config;
     search_config.seed = config_.seed;
     if (config_.evaluations > 0) search_config.evaluations = config_.evaluations;
+    search_config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
+      return is_read(settings, tuning_.tunables[i].name);
+    };
     // What a calibration says of a frame is the frame's: the search starts from what all have in common.
     const std::vector<Setting> start = settings_of(frames_.front().config, tuning_.tunables);
     tuning_.search = search(
@@ -143,6 +142,11 @@ class TuningRun {
   }
 
  private:
+  [[nodiscard]] bool is_read(const std::vector<Setting>& settings, const std::string& name) const {
+    const std::vector<OptionInfo> read = active_options(with_settings(frames_.front().config, settings));
+    return std::any_of(read.begin(), read.end(),
+                       [&](const OptionInfo& option) { return option.name == name; });
+  }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(Clock::now() - start_time_).count();
   }

@@ -144,7 +144,7 @@ std::vector<Finding> diagnose_pair(const PairMeasures& measures, const RigArgume
   wanted.range_given = options.contains("num_disparities") ||
                        (!config.is_none() && config.cast<const PyConfig&>().range_given);
   set_flat(wanted.config, {"match"}, options);
-  const Config ranged = wanted.with_range(known.calibration.num_disparities);
+  const Config ranged = wanted.suited(known.calibration);
   return diagnose(measures, known.calibration.rig, ranged.match, limits_of(limits));
 }
 

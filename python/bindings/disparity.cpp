@@ -24,29 +24,15 @@
 namespace cairn::python {
 namespace {
 
-/// The checks' needs; segment() learns of them from validate().
-void need(bool there, const char* stage, const char* map, const char* evidence) {
-  if (there) return;
-  throw Error(std::string("matches: hold no ") + map + ", which " + stage + " needs; match with evidence='" +
-              evidence + "'");
-}
-
 ArrayOf<Reject> inconsistent(const Config& config, const Exec& exec, const Matches& matches) {
-  const LeftRightConfig& check = config.left_right;
-  if (check.max_diff >= 0 && check.method == LeftRightMethod::true_) {
-    need(!matches.best_right.empty(), "reject_inconsistent with method='true'", "best_right", "full");
-  }
-  return array_from(released([&] { return reject_inconsistent(matches, check, exec); }));
+  return array_from(released([&] { return reject_inconsistent(matches, config.left_right, exec); }));
 }
 
 ArrayOf<Reject> ambiguous(const Config& config, const Exec& exec, const Matches& matches) {
-  if (config.uniqueness.ratio >= 0)
-    need(!matches.runner_up.empty(), "reject_ambiguous", "runner_up", "minimum");
   return array_from(released([&] { return reject_ambiguous(matches, config.uniqueness, exec); }));
 }
 
 ArrayOf<Reject> flat(const Config& config, const Exec& exec, const Matches& matches) {
-  if (config.flatness.threshold >= 0) need(!matches.mean_cost.empty(), "reject_flat", "mean_cost", "full");
   return array_from(released([&] { return reject_flat(matches, config.flatness, exec); }));
 }
 
@@ -105,14 +91,12 @@ DisparityMap without_speckles(const Config& config, const Exec& exec, const Disp
   return released([&] { return reject_speckles(map.taken(exec), config.speckle, exec); });
 }
 
-std::optional<ArrayOf<float>> confidence(const Config& config, const Exec& exec, const Matches& matches,
-                                         const DisparityArgument& disparity) {
+ArrayOf<float> confidence(const Config& config, const Exec& exec, const Matches& matches,
+                          const DisparityArgument& disparity) {
   const DisparityInput map(disparity, "disparity", exec);
   expect_size(map.size(), "disparity", matches.best.size(), "matches");
-  return array_or_none(released([&] {
-    return estimate_confidence(matches, map.map(), confidence_model(config.match.method), config.confidence,
-                               exec);
-  }));
+  return array_from(released(
+      [&] { return estimate_confidence(matches, map.map(), confidence_model(config.match.method), exec); }));
 }
 
 /// enum.IntFlag: names the bits of an array of reasons, and of a union of them.
@@ -210,12 +194,9 @@ void bind_disparity(py::module_& m) {
             &evidence, "left"_a, "disparity"_a, "noise_sigma"_a, py::kw_only(), "bgr"_a = false);
   def_stage(m, "reject_speckles", {"speckle"}, "Rejects small islands of disparity.", &without_speckles,
             "disparity"_a, py::kw_only());
-  def_stage(m, "estimate_confidence", {"confidence", "match"},
+  def_stage(m, "estimate_confidence", {"match"},
             "How likely each disparity is within 1 px of the truth: (H, W) float32, 0 to 1; 0 where there is "
-            "none. None "
-            "where it is off, or where `matches` lacks runner_up or mean_cost. Of the group match only "
-            "`method` counts: how "
-            "`matches` was made.",
+            "none. Of the group match only `method` counts: how `matches` was made.",
             &confidence, "matches"_a, "disparity"_a, py::kw_only());
 }
 

@@ -51,7 +51,7 @@ struct Recipe {
   [[nodiscard]] Config for_size(Size size) const {
     io::check_size(calibration.calibration, size, calibration.path);
     io::check_search_range(calibration.calibration, calibration.path);
-    return config.with_range(calibration.calibration.num_disparities);
+    return config.suited(calibration.calibration);
   }
 };
 
@@ -117,11 +117,13 @@ class PySegmenter {
   PySegmenter(const RigArgument& rig, const std::string& preset, const py::object& config,
               const py::object& exec, const py::kwargs& options)
       : recipe_{config_of(config, preset, options), calibration_of(rig)},
-        segmenter_(recipe_.config.config, recipe_.calibration.calibration.rig, exec_of(exec)) {}
+        segmenter_(recipe_.config.suited(recipe_.calibration.calibration),
+                   recipe_.calibration.calibration.rig, exec_of(exec)) {}
 
   PySegmenter(Recipe recipe, Exec exec)
       : recipe_(std::move(recipe)),
-        segmenter_(recipe_.config.config, recipe_.calibration.calibration.rig, std::move(exec)) {}
+        segmenter_(recipe_.config.suited(recipe_.calibration.calibration),
+                   recipe_.calibration.calibration.rig, std::move(exec)) {}
 
   [[nodiscard]] std::unique_ptr<PyFrame> segment(const ImageArgument& left, const ImageArgument& right,
                                                  bool bgr) const {
@@ -238,7 +240,7 @@ void bind_frame_class(py::module_& m) {
       .def_property_readonly(
           "confidence", image_of_some<float>([](const PyFrame& f) -> auto& { return f.frame.confidence; }),
           "float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where "
-          "nothing was matched or the option is off")
+          "nothing was matched")
       .def_property_readonly(
           "floor", image_of_some<std::uint8_t>([](const PyFrame& f) -> auto& { return f.frame.floor; }),
           "uint8, 255 = floor, else 0; None where no floor was labelled")

@@ -15,14 +15,16 @@ namespace {
 
 Ground fit(const Config& config, const Exec& exec, const DisparityArgument& disparity,
            const RigArgument& rig) {
-  if (config.ground.source == GroundSource::points) (void)ground_from_points(config.ground.points);
-  const auto known = rig_of(rig);
+  const io::Calibration calibration = calibration_of(rig).calibration;
+  GroundConfig ground = config.ground;
+  ground.known = calibration.ground;
+  validate(ground, calibration.rig.has_value());
   if (py::isinstance<DisparityMap>(disparity)) {
     const auto& map = disparity.cast<const DisparityMap&>();
-    return released([&] { return fit_ground(map, known, config.ground, exec); });
+    return released([&] { return fit_ground(map, calibration.rig, ground, exec); });
   }
   const BorrowedDisparities in(disparity, "disparity");
-  return released([&] { return fit_ground(in.view(), known, config.ground, exec); });
+  return released([&] { return fit_ground(in.view(), calibration.rig, ground, exec); });
 }
 
 DisparityMap without_reflections(const Config& config, const Exec& exec, const DisparityArgument& disparity,

@@ -13,7 +13,7 @@
 namespace cairn::python {
 namespace {
 
-/// Two pictures of one size. What the evidence must hold is the checks' affair.
+/// Two pictures of one size. Where the ground comes from is no affair of theirs.
 struct Pair {
   Picture left;
   Picture right;
@@ -23,9 +23,9 @@ struct Pair {
       : left(l, "left", bgr, exec.pool),
         right(r, "right", bgr, exec.pool),
         pair(StereoPair::from(left.gray(), right.gray(), left.rgb())) {
-    Config any_evidence = config;
-    any_evidence.match.evidence = Evidence::full;
-    validate(any_evidence, pair.size(), true);
+    Config any_ground = config;
+    any_ground.ground = {};
+    validate(any_ground, pair.size(), true);
   }
 };
 
@@ -123,7 +123,7 @@ void bind_matching(py::module_& m) {
   py::class_<Matches>(m, "Matches",
                       "The outcome of correlation for each pixel of the left picture (best_right: of the "
                       "right one). Arrays (H, W), "
-                      "read-only; None where match.evidence or match.row_band left them out.")
+                      "read-only; row_offset is None without match.row_band.")
       .def_property_readonly("best", always_shown(&Matches::best),
                              "int16, disparity of least cost in px; NO_MATCH = none")
       .def_property_readonly("best_right", shown(&Matches::best_right),
@@ -168,8 +168,9 @@ void bind_matching(py::module_& m) {
             &match_by_windows, "left"_a, "right"_a, py::kw_only(), "bgr"_a = false);
   def_stage(
       m, "match_semi_global", {"match", "semi_global"},
+      +[](Config& config) { config.match.method = MatchMethod::semi_global; },
       "match() with method='semi_global', whatever the configuration says: neighbours vote along four paths "
-      "(Hirschmueller 2008). Of the group match only min_disparity, num_disparities and evidence count.",
+      "(Hirschmueller 2008). Of the group match only min_disparity and num_disparities count.",
       &match_along_paths, "left"_a, "right"_a, py::kw_only(), "bgr"_a = false);
   def_stage(m, "refine_subpixel", {"subpixel"},
             "Where the curve through each winner's cost and its neighbours' is lowest: (H, W) float32, px; "

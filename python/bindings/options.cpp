@@ -7,7 +7,6 @@
 #include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
 #include <io/config_files.hpp>
-#include <sstream>
 
 #include "bindings.hpp"
 #include "pickling.hpp"
@@ -28,14 +27,7 @@ std::string option_text(const py::handle& value) {
     if (is_whole(number) && std::abs(number) <= kMostExact)
       return std::to_string(static_cast<std::int64_t>(number));
   }
-  if (!py::isinstance<py::sequence>(value)) return py::str(value).cast<std::string>();
-  std::string text;  // points: [(x_left, y_left, x_right, y_right), …]
-  for (const py::handle& entry : value) {
-    const bool nested = py::isinstance<py::sequence>(entry) && !py::isinstance<py::str>(entry);
-    if (!text.empty()) text += nested ? ';' : ',';
-    text += option_text(entry);
-  }
-  return text;
+  return py::str(value).cast<std::string>();
 }
 
 /// An option's text as a Python value of its type.
@@ -43,16 +35,7 @@ py::object option_value(const OptionInfo& option) {
   if (option.type == "bool") return py::bool_(option.value == "true");
   if (option.type == "int") return py::int_(py::str(option.value));
   if (option.type == "float") return py::float_(py::str(option.value));
-  if (option.type != "points") return py::str(option.value);
-  py::list points;
-  std::istringstream pairs(option.value);
-  for (std::string pair; std::getline(pairs, pair, ';');) {
-    py::list numbers;
-    std::istringstream cells(pair);
-    for (std::string cell; std::getline(cells, cell, ',');) numbers.append(py::float_(py::str(cell)));
-    points.append(py::tuple(numbers));
-  }
-  return points;
+  return py::str(option.value);
 }
 
 std::string file_name(const py::object& value, const char* name, const char* expected) {
@@ -103,6 +86,14 @@ void set_groups(Config& config, const py::kwargs& groups) {
   }
 }
 
+/// Only once all are set: in which order they were is of no account.
+void require_effects(const Config& config, const py::kwargs& groups) {
+  for (const auto& [key, value] : groups) {
+    for (const auto& [name, setting] : py::reinterpret_borrow<py::dict>(value))
+      require_active(config, key.cast<std::string>() + "." + py::str(name).cast<std::string>());
+  }
+}
+
 PyConfig built(const std::string& preset, const std::optional<std::string>& file, const py::kwargs& groups,
                std::optional<int> range) {
   PyConfig made;
@@ -113,14 +104,16 @@ PyConfig built(const std::string& preset, const std::optional<std::string>& file
     return config;
   };
   made.config = from_preset(preset);
-  if (file) io::load_config(*file, made.config, from_preset);
-  set_groups(made.config, groups);
+  const auto keywords = [&](Config& config) { set_groups(config, groups); };
+  if (file) io::load_config(*file, made.config, from_preset, keywords);
+  keywords(made.config);
+  require_effects(made.config, groups);
   return made;
 }
 
 py::dict as_dict(const PyConfig& self) {
   py::dict groups;
-  for (const OptionInfo& option : options(self.config)) {
+  for (const OptionInfo& option : active_options(self.config)) {
     const py::str group(group_of(option));
     if (!groups.contains(group)) groups[group] = py::dict();
     groups[group][py::str(name_in_group(option))] = option_value(option);
@@ -134,7 +127,7 @@ std::string config_repr(const PyConfig& self) {
   const std::vector<OptionInfo> mine = options(self.config);
   py::dict groups;
   for (std::size_t i = 0; i < mine.size(); ++i) {
-    if (mine[i].value == base[i].value) continue;
+    if (!mine[i].active || mine[i].value == base[i].value) continue;
     const py::str group(group_of(mine[i]));
     if (!groups.contains(group)) groups[group] = py::dict();
     groups[group][py::str(name_in_group(mine[i]))] = option_value(mine[i]);
@@ -148,7 +141,7 @@ std::string config_repr(const PyConfig& self) {
 
 std::string option_repr(const OptionInfo& o) {
   return "<cairn.Option " + o.name + " = " + o.value + (o.unit.empty() ? "" : " " + o.unit) + " (" +
-         o.domain + "): " + o.help + ">";
+         o.domain + (o.needs.empty() ? "" : ", read while " + o.needs) + "): " + o.help + ">";
 }
 
 std::string exec_repr(const Exec& exec) {
@@ -186,9 +179,11 @@ py::object option_of(const PyConfig& self, const std::string& name) {
   return py::none();
 }
 
-Config PyConfig::with_range(std::optional<int> num_disparities) const {
+Config PyConfig::suited(const io::Calibration& calibration) const {
   Config wanted = config;
-  if (num_disparities && !range_given) set(wanted, "match.num_disparities", std::to_string(*num_disparities));
+  if (calibration.num_disparities && !range_given)
+    set(wanted, "match.num_disparities", std::to_string(*calibration.num_disparities));
+  wanted.ground.known = calibration.ground;
   return wanted;
 }
 
@@ -213,6 +208,7 @@ PyConfig config_of(const py::object& config, const std::string& preset, const py
                 "', expected one of the two");
   }
   set_groups(made.config, groups);
+  require_effects(made.config, groups);
   if (groups.contains("match") && py::dict(groups["match"]).contains("num_disparities"))
     made.range_given = true;
   return made;
@@ -220,6 +216,7 @@ PyConfig config_of(const py::object& config, const std::string& preset, const py
 
 void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) {
   const std::vector<OptionInfo> all = options(config);
+  std::vector<std::string> names;
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const std::string& candidate) {
@@ -229,8 +226,11 @@ void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords) 
     });
     if (group == groups.end() && groups.empty())
       throw ArgumentError("there is no keyword argument '" + name + "'");
-    set(config, (group == groups.end() ? groups.front() : *group) + "." + name, option_text(value));
+    names.push_back((group == groups.end() ? groups.front() : *group) + "." + name);
+    set(config, names.back(), option_text(value));
   }
+  // A stage by itself is done, whatever the other groups say.
+  for (const std::string& name : names) require_active(config, name, groups);
 }
 
 Exec exec_of(const py::object& exec) {
@@ -257,7 +257,8 @@ std::string with_options(const std::string& doc, const Groups& groups, bool grou
     for (const OptionInfo& o : options(Config{})) {
       if (group_of(o) != group) continue;
       text += (grouped ? "        " : "    ") + name_in_group(o) + " = " + o.value +
-              (o.unit.empty() ? "" : " " + o.unit) + " (" + o.domain + "): " + o.help + "\n";
+              (o.unit.empty() ? "" : " " + o.unit) + " (" + o.domain +
+              (o.needs.empty() ? "" : ", read while " + o.needs) + "): " + o.help + "\n";
     }
   }
   return text +
@@ -276,13 +277,17 @@ void bind_options(py::module_& m) {
       .def_property_readonly(
           "group", [](const OptionInfo& self) { return group_of(self); },
           "the stage that it belongs to, 'match'")
-      .def_readonly("type", &OptionInfo::type, "'int', 'float', 'bool', 'choice' or 'points'")
+      .def_readonly("type", &OptionInfo::type, "'int', 'float', 'bool' or 'choice'")
       .def_property_readonly(
           "default", [](const OptionInfo& self) { return option_value(self); },
           "value in the preset asked for")
       .def_readonly("unit", &OptionInfo::unit, "may be empty")
       .def_readonly("range", &OptionInfo::domain, "'3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'")
       .def_readonly("help", &OptionInfo::help, "what it does")
+      .def_readonly(
+          "needs", &OptionInfo::needs,
+          "'match.method=window', 'ground.source!=off': it is read only while that is so; '' = always")
+      .def_readonly("active", &OptionInfo::active, "whether the preset asked for reads it")
       .def("__repr__", &option_repr)
       .def(pickled<OptionInfo>());
   m.def(
@@ -295,7 +300,8 @@ void bind_options(py::module_& m) {
       "What is computed: every option's value. Made from a preset, then a file (as `cairn config` "
       "prints it), then keywords; later ones win:\n"
       "    cairn.Config('paper', match={'window_size': 11})\n"
-      "Raises cairn.Error for an unknown name or a value out of range.")
+      "Raises cairn.Error for an unknown name, a value out of range, and an option that would have no "
+      "effect.")
       .def(py::init([](const std::string& preset, const py::object& file, const py::kwargs& groups) {
              std::optional<std::string> path;
              if (!file.is_none()) path = file_name(file, "file", "the name of a file or None");
@@ -308,10 +314,11 @@ void bind_options(py::module_& m) {
       .def("__getitem__", &option_of, py::arg("name"),
            "The value of an option by its full name, 'match.window_size'.")
       .def("as_dict", &as_dict,
-           "All values: a dict of the groups' dicts. Config(**config.as_dict()) is its equal.")
+           "The values of all options that it reads: a dict of the groups' dicts. Config(**config.as_dict()) "
+           "is its equal.")
       .def(
           "yaml", [](const PyConfig& self) { return io::config_yaml(self.config); },
-          "The text of a configuration file, one comment for each option.")
+          "The text of a configuration file: the options that it reads, one comment for each.")
       .def(
           "__eq__",
           [](const PyConfig& self, const PyConfig& other) {

@@ -6,6 +6,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <io/calibration_files.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,8 +24,9 @@ struct PyConfig {
   Config config;
   bool range_given = false;  // match.num_disparities was set, not left to the preset
 
-  /// The configuration where a calibration names the number of disparities that is its default.
-  [[nodiscard]] Config with_range(std::optional<int> num_disparities) const;
+  /// The configuration of frames that were taken with this calibration: its number of disparities is the
+  /// default, and what it knows of the ground is known.
+  [[nodiscard]] Config suited(const io::Calibration& calibration) const;
 };
 
 /// Preset, then a file, then keywords such as match={"num_disparities": 64}; later ones win, as in the
@@ -37,7 +39,8 @@ PyConfig config_of(const py::object& config, const std::string& preset, const py
 /// The value of an option by its full name. Throws Error, with the nearest name, where there is none.
 pybind11::object option_of(const PyConfig& self, const std::string& name);
 
-/// The options of one or more groups as keywords without the group's name.
+/// The options of one or more groups as keywords without the group's name. Throws Error where one has no
+/// effect, as far as these groups say.
 using Groups = std::vector<std::string>;
 void set_flat(Config& config, const Groups& groups, const py::kwargs& keywords);
 
@@ -56,20 +59,28 @@ std::string with_options(const std::string& doc, const Groups& groups, bool grou
 void note_groups(const py::module_& module, const char* function, const Groups& groups, bool grouped);
 
 /// A stage: `stage(config, exec, arguments…)` becomes a function of its C++ name whose options are keywords.
+/// `settle` sets beforehand what the stage does whatever the configuration says.
 template <class R, class... A, class... Extra>
-void def_stage(py::module_& module, const char* name, const Groups& groups, const char* doc,
-               R (*stage)(const Config&, const Exec&, A...), const Extra&... extra) {
+void def_stage(py::module_& module, const char* name, const Groups& groups, void (*settle)(Config&),
+               const char* doc, R (*stage)(const Config&, const Exec&, A...), const Extra&... extra) {
   const std::string all = with_options(doc, groups, false);
   module.def(
       name,
-      [stage, groups](A... arguments, const py::object& config, const py::object& exec,
-                      const py::kwargs& options) -> R {
+      [stage, groups, settle](A... arguments, const py::object& config, const py::object& exec,
+                              const py::kwargs& options) -> R {
         Config wanted = stage_config(config);
+        settle(wanted);
         set_flat(wanted, groups, options);
         return stage(wanted, exec_of(exec), std::forward<A>(arguments)...);
       },
       extra..., py::arg("config") = py::none(), py::arg("exec") = py::none(), all.c_str());
   note_groups(module, name, groups, false);
+}
+template <class R, class... A, class... Extra>
+void def_stage(py::module_& module, const char* name, const Groups& groups, const char* doc,
+               R (*stage)(const Config&, const Exec&, A...), const Extra&... extra) {
+  constexpr auto kNothing = +[](Config&) {};
+  def_stage(module, name, groups, kNothing, doc, stage, extra...);
 }
 
 }  // namespace cairn::python

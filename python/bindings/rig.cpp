@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "pickling.hpp"
 #include "refusals.hpp"
+#include "whole.hpp"
 
 namespace cairn::python {
 namespace {
@@ -43,6 +44,35 @@ bool equal(const StereoRig& a, const StereoRig& b) {
          a.baseline_m == b.baseline_m && a.doffs_px == b.doffs_px;
 }
 
+using Points = std::vector<std::tuple<float, float, float, float>>;
+
+PyCalibration make_calibration(const std::optional<StereoRig>& rig,
+                               const std::optional<std::pair<int, int>>& image_size,
+                               std::optional<Whole> num_disparities, const Points& ground_points,
+                               std::optional<float> camera_height_m, float camera_pitch_deg,
+                               float camera_roll_deg) {
+  PyCalibration made;
+  made.path = "Calibration()";
+  io::Calibration& c = made.calibration;
+  c.rig = rig;
+  if (image_size) c.image_size = Size{image_size->first, image_size->second};
+  if (num_disparities) c.num_disparities = num_disparities->value;
+  for (const auto& [x_left, y_left, x_right, y_right] : ground_points)
+    c.ground.points.push_back({x_left, y_left, x_right, y_right});
+  c.ground.camera_height_m = camera_height_m;
+  c.ground.camera_pitch_deg = camera_pitch_deg;
+  c.ground.camera_roll_deg = camera_roll_deg;
+  io::check_ground(c.ground);
+  return made;
+}
+
+Points ground_points(const PyCalibration& self) {
+  Points all;
+  for (const PointPair& p : self.calibration.ground.points)
+    all.emplace_back(p.x_left, p.y_left, p.x_right, p.y_right);
+  return all;
+}
+
 std::optional<std::pair<int, int>> image_size(const PyCalibration& self) {
   if (!self.calibration.image_size) return std::nullopt;
   return std::pair{self.calibration.image_size->width, self.calibration.image_size->height};
@@ -60,7 +90,7 @@ std::string calibration_repr(const PyCalibration& self) {
 PyCalibration calibration_of(const RigArgument& rig) {
   if (rig.is_none()) return {};
   if (py::isinstance<PyCalibration>(rig)) return rig.cast<PyCalibration>();
-  if (py::isinstance<StereoRig>(rig)) return {{rig.cast<StereoRig>(), {}, {}}, {}};
+  if (py::isinstance<StereoRig>(rig)) return {{rig.cast<StereoRig>(), {}, {}, {}}, {}};
   throw ArgumentError("rig: found " + shown(rig) + ", expected a cairn.Rig, a cairn.Calibration or None");
 }
 
@@ -100,6 +130,13 @@ void bind_rig(py::module_& m) {
       m, "Calibration",
       "What a calibration file says of a rectified pair. Stands wherever a Rig does; segment() "
       "then also checks the pictures' size and takes the file's number of disparities as default.")
+      .def(py::init(&make_calibration), py::arg("rig") = py::none(), py::arg("image_size") = py::none(),
+           py::arg("num_disparities") = py::none(), py::arg("ground_points") = Points{},
+           py::arg("camera_height_m") = py::none(), py::arg("camera_pitch_deg") = 0.0F,
+           py::arg("camera_roll_deg") = 0.0F,
+           "What a file would say, see load_calibration(). ground_points: (x_left, y_left, x_right, y_right) "
+           "in px of four and more points of the floor, for ground={'source': 'points'}. camera_height_m: of "
+           "the left camera above the floor, for 'pose'. Raises cairn.Error.")
       .def_property_readonly(
           "rig", [](const PyCalibration& self) { return self.calibration.rig; },
           "None where the file has no focal length or no baseline")
@@ -108,6 +145,20 @@ void bind_rig(py::module_& m) {
       .def_property_readonly(
           "num_disparities", [](const PyCalibration& self) { return self.calibration.num_disparities; },
           "the default of match.num_disparities, or None")
+      .def_property_readonly("ground_points", &ground_points,
+                             "points of the floor: (x_left, y_left, x_right, y_right) in px")
+      .def_property_readonly(
+          "camera_height_m",
+          [](const PyCalibration& self) { return self.calibration.ground.camera_height_m; },
+          "of the left camera above the floor, m, or None")
+      .def_property_readonly(
+          "camera_pitch_deg",
+          [](const PyCalibration& self) { return self.calibration.ground.camera_pitch_deg; },
+          "degrees; positive looks down")
+      .def_property_readonly(
+          "camera_roll_deg",
+          [](const PyCalibration& self) { return self.calibration.ground.camera_roll_deg; },
+          "degrees; positive lowers the camera's right side")
       .def_property_readonly(
           "of_raw_cameras", [](const PyCalibration& self) { return self.calibration.of_raw_cameras; },
           "whether the file describes the lenses of the raw cameras as well: the rig fits pictures that were "

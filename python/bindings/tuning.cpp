@@ -42,7 +42,7 @@ struct PyTuningFrame {
     io::check_size(calibration.calibration, left.size(), calibration.path);
     io::check_search_range(calibration.calibration, calibration.path);
     TuningFrame made{std::move(shown_name), StereoPair::from(left.gray(), right.gray(), left.rgb()),
-                     calibration.calibration.rig, config.with_range(calibration.calibration.num_disparities)};
+                     calibration.calibration.rig, config.suited(calibration.calibration)};
     if (objects) {
       const View<const std::int32_t> ids = objects->view();
       made.objects = {reinterpret_cast<const TruthId*>(ids.data()), ids.size(), ids.stride()};

@@ -123,11 +123,12 @@ def test_nothing_is_read_beyond_a_pictures_last_pixel():
 @pytest.mark.parametrize("height, width", [(1, 1), (1, 40), (40, 1), (9, 9), (17, 33)])
 def test_any_size_that_the_window_fits_is_taken_and_others_are_refused_by_name(height, width):
     picture = np.zeros((height, width), np.uint8)
-    if min(height, width) >= 9:
-        assert cairn.segment(picture, picture, match={"num_disparities": 5}).shape == (height, width)
-        return
-    with pytest.raises(cairn.Error, match="option match.window_size"):
-        cairn.segment(picture, picture, match={"num_disparities": 1})
+    for preset, option in (("default", "match.method"), ("paper", "match.window_size")):
+        if min(height, width) >= 9:
+            assert cairn.segment(picture, picture, preset=preset, match={"num_disparities": 5}).shape == (height, width)
+            continue
+        with pytest.raises(cairn.Error, match=f"option {option}"):
+            cairn.segment(picture, picture, preset=preset, match={"num_disparities": 1})
 
 
 BAD_PICTURES = [

@@ -62,7 +62,7 @@ def test_the_range_is_the_calibrations_unless_it_is_given(sample, measures):
 
     assert kinds(sample.calibration, num_disparities=2) == ["disparity range too small"]
     assert kinds(sample.calibration, config=cairn.Config(match={"num_disparities": 2})) == ["disparity range too small"]
-    assert kinds(sample.calibration, config=cairn.Config(match={"window_size": 7})) == []
+    assert kinds(sample.calibration, config=cairn.Config("paper", match={"window_size": 7})) == []
     assert kinds(num_disparities=320) == ["disparity range too large"]
 
 

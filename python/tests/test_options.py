@@ -14,11 +14,11 @@ from conftest import same_frame
 
 def test_options_are_those_of_the_commands_reference(command):
     table = subprocess.run([command, "config", "--markdown"], capture_output=True, text=True, check=True).stdout
-    listed = re.findall(r"^\| `(.*?)` \| (?:`(.*?)`)? ?\| (.*?) \| (.*?) \| (.*?) \|$", table.replace(r"\|", "¦"), re.M)
+    listed = re.findall(r"^\| `(.*?)` \| (?:`(.*?)`)? ?\| (.*?) \| (.*?) \| (.*?) \|(?: `(.*?)`)? \|$", table.replace(r"\|", "¦"), re.M)
     options = cairn.options()
     assert [row[0] for row in listed] == [o.name for o in options]
-    assert [(row[2], row[3].replace("¦", "|"), row[4].replace("¦", "|")) for row in listed] == [
-        (o.unit, o.range, o.help) for o in options
+    assert [(row[2], row[3].replace("¦", "|"), row[4].replace("¦", "|"), row[5]) for row in listed] == [
+        (o.unit, o.range, o.help, o.needs) for o in options
     ]
     by_name = {o.name: o for o in options}
     assert by_name["match.num_disparities"].default == 64
@@ -34,7 +34,7 @@ def test_docstrings_list_the_options():
     for option in cairn.options():
         line = f"{option.name.split('.')[1]} = "
         assert line in cairn.segment.__doc__ and option.help in cairn.segment.__doc__
-    assert "window_size = 9 px (3 … 31, odd)" in cairn.match.__doc__
+    assert "window_size = 9 px (3 … 31, odd, read while match.method=window)" in cairn.match.__doc__
     assert "speckle" not in cairn.match.__doc__
 
 
@@ -54,16 +54,35 @@ def test_a_config_is_preset_then_file_then_keywords(tmp_path):
 
 
 def test_values_may_be_of_any_fitting_type():
-    points = [(10, 20.5, 5, 20), (300, 20, 290, 20), (10, 200, 1, 200), (300, 210, 280, 210)]
     config = cairn.Config(
-        match={"window_size": np.int64(11), "cost": "sad"},
+        match={"window_size": np.int64(11), "cost": "sad", "method": "window"},
         left_right={"max_diff": np.float32(0.1)},
         subpixel={"enabled": np.bool_(False)},
-        ground={"source": "points", "points": np.array(points)},
     )
     assert config["match.window_size"] == 11 and config["match.cost"] == "sad"
     assert config["left_right.max_diff"] == 0.1 and config["subpixel.enabled"] is False
-    assert config["ground.points"] == points
+
+
+@pytest.mark.parametrize("preset", cairn.preset_names())
+def test_an_option_without_effect_is_refused(preset, tmp_path):
+    options = cairn.options(preset)
+    active = [o for o in options if o.active]
+    assert len(active) <= 40 and len({o.unit for o in active if o.unit}) <= 10
+    as_dict = cairn.Config(preset).as_dict()
+    assert [f"{group}.{name}" for group, values in as_dict.items() for name in values] == [o.name for o in active]
+    for option in options:
+        name = option.name.split(".")[1]
+        if option.active:
+            cairn.Config(preset, **{option.group: {name: option.default}})
+            continue
+        assert option.needs and f"read while {option.needs}" in repr(option)
+        with pytest.raises(cairn.Error, match=f"^{option.name} has no effect with .*; set .* first$"):
+            cairn.Config(preset, **{option.group: {name: option.default}})
+    file = tmp_path / "config.yaml"
+    file.write_text("match.cost: sad\n")
+    assert cairn.Config("default", file, match={"method": "window"})["match.cost"] == "sad"
+    with pytest.raises(cairn.Error, match="line 1: match.cost has no effect"):
+        cairn.Config("default", file)
 
 
 def test_a_calibrations_search_range_is_a_default(sample):

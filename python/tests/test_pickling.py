@@ -62,6 +62,9 @@ def test_a_frame_without_colour_rig_and_matching_comes_back(sample):
     assert same(copy.deepcopy(swapped).overlay(), swapped.overlay())
 
 
+FLOOR = [(10, 200, 4, 200), (300, 210, 293, 210), (20, 230, 12, 230), (280, 190, 275, 190)]
+
+
 def one_of_each(sample):
     left, right = sample.left, sample.right
     matches = cairn.match(left, right, num_disparities=32)
@@ -95,7 +98,8 @@ def one_of_each(sample):
         cairn.measure_synchrony([(left, right)] * 8),
         sample.calibration,
         sample.calibration.rig,
-        cairn.Config("paper", match={"window_size": 11}, ground={"points": [(1, 2, 0, 2)] * 4}),
+        cairn.Config("paper", match={"window_size": 11}, ground={"source": "points"}),
+        cairn.Calibration(sample.calibration.rig, ground_points=FLOOR, camera_height_m=0.5, camera_pitch_deg=10),
         cairn.options()[0],
         cairn.Exec(2, "scalar"),
         cairn.Segmenter(sample.calibration, preset="paper"),

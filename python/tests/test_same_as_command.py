@@ -100,6 +100,8 @@ REFUSED = [
     ("match.cost=sda", {"match": {"cost": "sda"}}),
     ("speckle.range=nan", {"speckle": {"range": float("nan")}}),
     ("subpixel.enabled=maybe", {"subpixel": {"enabled": "maybe"}}),
+    ("match.cost=sad", {"match": {"cost": "sad"}}),
+    ("texture.window_size=9", {"texture": {"window_size": 9}}),
     ("match.evidence=winner", {"match": {"evidence": "winner"}}),
     ("ground.points=1,2,3", {"ground": {"points": [(1, 2, 3)]}}),
 ]

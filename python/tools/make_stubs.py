@@ -82,7 +82,7 @@ def typed(text):
 def option_type(option):
     if option.type == "choice":
         return "Literal[" + ", ".join(f'"{choice}"' for choice in option.range.split("|")) + "]"
-    return {"points": "Points"}.get(option.type, option.type)
+    return option.type
 
 
 def group_class(group):
@@ -120,6 +120,8 @@ def argument(text, function):
         kind = ARGUMENTS.get(name, "object")
         if name == "config" and not _cairn._options_of.get(function, (False,))[0]:
             kind = "Optional[Config]"
+    elif name == "ground_points":
+        kind = "Points"
     elif default == "None" and kind not in ("RigLike", "MaskLike") and not kind.startswith("Optional"):
         kind = f"Optional[{kind}]"
     return f"{name}: {kind}" + (f" = {default}" if equals else "")
@@ -197,7 +199,8 @@ def options_stub(group):
     for o in cairn.options():
         if o.group == group:
             unit = f"{o.unit}, " if o.unit else ""
-            lines.append(f"    {o.name.split('.')[1]}: {option_type(o)}  # {unit}{o.range}: {o.help}")
+            needs = f", read while {o.needs}" if o.needs else ""
+            lines.append(f"    {o.name.split('.')[1]}: {option_type(o)}  # {unit}{o.range}{needs}: {o.help}")
     return "\n".join(lines)
 
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // Every bad input ends with exit code 2 and one line on stderr that names file or option, and writes nothing.
+#include <cairn/pipeline/config.hpp>
 #include <limits>
 
 #include "command.hpp"
@@ -49,9 +50,10 @@ TEST_F(BadInput, ImagesThatTheMethodDoesNotFit) {
   const auto one = pair_in("one", {1, 1});
   const auto small = pair_in("small", {8, 8});
   const auto narrow = pair_in("narrow", {40, 40});
-  refuses(with("segment", one), {"match.window_size", "1x1"});
-  refuses(with("disparity", one), {"match.window_size", "1x1"});
-  refuses(with("segment", small, {"--set", "match.window_size=9"}), {"match.window_size", "8x8"});
+  refuses(with("segment", one), {"match.method", "3x3", "1x1"});
+  refuses(with("disparity", one, {"--preset", "paper"}), {"match.window_size", "1x1"});
+  refuses(with("segment", small, {"--preset", "paper", "--set", "match.window_size=9"}),
+          {"match.window_size", "8x8"});
   refuses(with("segment", narrow, {"--set", "match.num_disparities=41"}), {"match.num_disparities", "40"});
   refuses(with("segment", narrow, {"--set", "match.min_disparity=40", "--set", "match.num_disparities=10"}),
           {"match.min_disparity"});
@@ -90,6 +92,36 @@ TEST_F(BadInput, OptionsThatAreUnknownOrOutOfRange) {
   refuses({"--no-such-option"}, {"--no-such-option"});
 }
 
+TEST_F(BadInput, OptionsWithoutEffect) {
+  const auto pair = pair_in("pair");
+  const Outcome outcome = run(with("segment", pair, {"--set", "match.cost=sad"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "cairn: match.cost has no effect with match.method=semi_global; set match.method=window first\n");
+  for (const std::string& preset : preset_names()) {
+    for (const OptionInfo& option : options(Config::preset(preset))) {
+      if (option.active) continue;
+      // Its own value, too: who sets it believes that it counts.
+      refuses({"config", "--preset", preset, "--set", option.name + "=" + option.value},
+              {option.name + " has no effect with ", "; set ", " first"});
+      write(at("dead.yaml"), option.name + ": " + option.value + "\n");
+      refuses({"config", "--preset", preset, "--config", path("dead.yaml")},
+              {"dead.yaml: line 1: " + option.name + " has no effect with "});
+    }
+  }
+  refuses({"config", "--preset", "paper", "--set", "match.method=semi_global", "--set", "match.row_band=2"},
+          {"match.row_band has no effect with match.method=semi_global"});
+}
+
+TEST_F(BadInput, OptionsThatAreGone) {
+  for (const std::string name : {"points", "height", "pitch", "roll"})
+    refuses({"config", "--set", "ground." + name + "=1"},
+            {"ground." + name + " is gone", "calibration file"});
+  refuses({"config", "--set", "match.evidence=full"}, {"match.evidence is gone"});
+  refuses({"config", "--set", "confidence.enabled=true"}, {"confidence.enabled is gone"});
+  refuses({"config", "--set", "group.gap_share=3"}, {"group.gap_share is gone", "constant"});
+}
+
 TEST_F(BadInput, TheEnvironmentsTargetIsCheckedLikeTheOption) {
   const auto pair = pair_in("pair");
   setenv("CAIRN_TARGET", "sse5", 1);
@@ -126,15 +158,18 @@ TEST_F(BadInput, CalibrationsThatAreNone) {
 TEST_F(BadInput, GroundsFromTooFewPointsOrPointsOnALine) {
   const auto pair = pair_in("pair");
   const auto refuses_points = [&](const std::string& points) {
-    refuses(with("segment", pair, {"--set", "ground.source=points", "--set", "ground.points=" + points}),
-            {"point"});
+    write(at("points.txt"), "ground_points=" + points + "\n");
+    refuses(with("segment", pair, {"--calib", path("points.txt"), "--set", "ground.source=points"}),
+            {"ground_points"});
   };
   refuses_points("");
+  refuses(with("segment", pair, {"--set", "ground.source=points"}), {"ground.source", "ground_points"});
   refuses_points("10,60,5,60;80,60,75,60;40,70,30,70");
   refuses_points("10,60,5,60;20,60,15,60;30,60,25,60;40,60,35,60");
   refuses_points("10,10,5,10;20,20,15,20;30,30,25,30;40,40,35,40;50,50,45,50");
   refuses_points("10,60,5");
-  refuses(with("segment", pair, {"--set", "ground.source=pose"}), {"ground.source", "calib"});
+  refuses(with("segment", pair, {"--set", "ground.source=pose"}),
+          {"ground.source", "camera_height", "calib"});
 }
 
 TEST_F(BadInput, DisparityMapsThatAreNone) {

@@ -52,6 +52,33 @@ TEST_F(Command, ConfigPrintsWhatItReadsBack) {
   EXPECT_NE(markdown.out.find("| `match.window_size` |"), std::string::npos) << markdown.out;
 }
 
+TEST_F(Command, ConfigPrintsOnlyWhatThePresetReads) {
+  const std::string ours = run({"config"}).out;
+  EXPECT_NE(ours.find("penalty_small"), std::string::npos) << ours;
+  EXPECT_EQ(ours.find("window_size"), std::string::npos) << ours;
+  const std::string paper = run({"config", "--preset", "paper"}).out;
+  EXPECT_EQ(paper.find("penalty_small"), std::string::npos) << paper;
+  EXPECT_NE(paper.find("row_band"), std::string::npos) << paper;
+  for (const std::string& text : {ours, paper}) {
+    write(at("options.yaml"), text);
+    for (const char* preset : {"default", "paper"}) {
+      const Outcome outcome = run({"config", "--preset", preset, "--config", path("options.yaml")});
+      EXPECT_EQ(outcome.out, text) << outcome.err;
+    }
+  }
+}
+
+TEST_F(Command, TheOrderOfSettingsIsOfNoAccount) {
+  const std::string cost = "match.cost=sad";
+  const std::string method = "match.method=window";
+  const std::string one = run({"config", "--set", cost, "--set", method}).out;
+  EXPECT_NE(one.find("cost: sad"), std::string::npos) << one;
+  EXPECT_EQ(run({"config", "--set", method, "--set", cost}).out, one);
+  write(at("cost.yaml"), "match.cost: sad\n");
+  EXPECT_EQ(run({"config", "--config", path("cost.yaml"), "--set", method}).out, one);
+  EXPECT_EQ(run({"config", "--preset", "paper", "--config", path("cost.yaml")}).code, 0);
+}
+
 TEST_F(Command, ConfigPrintsWhatIsChangedAlone) {
   const std::vector<std::string> asked{
       "config", "--changed", "--preset", "paper", "--set", "match.window_size=11", "--set", "match.cost=sad"};
@@ -112,7 +139,7 @@ TEST_F(Command, SegmentWritesAResultThatEvaluateReads) {
       << outcome.out;
 }
 
-TEST_F(Command, DisparityWritesItsConfidenceOnlyWhereItIsKnown) {
+TEST_F(Command, DisparityWritesItsConfidence) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("disparity", pair, {"--confidence", path("c.png")})).code, 0);
   const io::Labels confidence = io::load_labels(at("c.png"));
@@ -121,14 +148,6 @@ TEST_F(Command, DisparityWritesItsConfidenceOnlyWhereItIsKnown) {
   EXPECT_EQ(confidence.ids(0, 36), 0);
   EXPECT_NE(run(with("disparity", pair, {"--confidence", path("c.pfm")})).err.find(".png"),
             std::string::npos);
-  for (const char* setting : {"confidence.enabled=false", "match.evidence=winner"}) {
-    const Outcome outcome =
-        run(with("disparity", pair,
-                 {"--confidence", path("none.png"), "--set", setting, "--set", "left_right.method=vote"}));
-    EXPECT_NE(outcome.code, 0) << setting;
-    EXPECT_NE(outcome.err.find("--confidence"), std::string::npos) << outcome.err;
-    EXPECT_FALSE(fs::exists(at("none.png")));
-  }
 }
 
 TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {

@@ -49,10 +49,12 @@ def documents():
             yield f"{folder.name}, {preset}", written(folder, "--preset", preset)
     folder = samples[0]
     yield "given disparity", written(folder, "--disparity", folder / "disp_left.png")
-    yield "no correction, given ground", written(
-        folder, "--set", "epipolar_correction.max_rows=-1", "--set", "ground.source=points", "--set",
-        "ground.points=10,200,4,200;300,210,293,210;20,230,12,230;280,190,275,190")
     with tempfile.TemporaryDirectory() as lonely:
+        calib = pathlib.Path(lonely) / "mounted.txt"
+        calib.write_text((folder / "calib.txt").read_text() +
+                         "\nground_points=10,200,4,200;300,210,293,210;20,230,12,230;280,190,275,190\n")
+        yield "no correction, given ground", written(
+            folder, "--calib", calib, "--set", "epipolar_correction.max_rows=-1", "--set", "ground.source=points")
         for name in ("left.png", "right.png"):
             (pathlib.Path(lonely) / name).write_bytes((folder / name).read_bytes())
         yield "no calibration", written(lonely)

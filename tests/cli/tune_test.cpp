@@ -193,9 +193,8 @@ TEST_F(Tune, RefusesWhatDoesNotGoTogether) {
   refuses({"tune", frames, "-o", frames}, {frames, "is a folder"});
   refuses({"tune", frames, "--json", path("no/found.json")}, {"found.json"});
   refuses({"tune", frames, "--set", "match.num_disparities=1000"}, {"frame a", "match.num_disparities"});
-  refuses({"tune", frames, "--set", "match.num_disparities=16", "--set", "match.evidence=minimum", "--set",
-           "left_right.method=vote"},
-          {"match.evidence", "full"});
+  refuses({"tune", frames, "--options", "match.window_size"},
+          {"match.window_size has no effect with match.method=semi_global"});
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Case random_case(Size size, std::uint32_t seed) {
 void expect_equal_to_reference(Size size, std::uint32_t seed, const ConfidenceModel& model) {
   const Case c = random_case(size, seed);
   const Image<float> expected = reference::estimate_confidence(c.matches, c.disparity, model);
-  const Image<float> got = estimate_confidence(c.matches, c.disparity, model, {}, {});
+  const Image<float> got = estimate_confidence(c.matches, c.disparity, model, {});
   ASSERT_EQ(got.size(), size);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
@@ -76,10 +76,10 @@ TEST(ConfidenceEquivalence, HoldsForEverySignOnItsOwnAndForBothMethods) {
 TEST(ConfidenceEquivalence, NumberOfThreadsChangesNoBit) {
   const Case c = random_case({61, 311}, 4);
   const ConfidenceModel model = confidence_model(MatchMethod::window);
-  const Image<float> alone = estimate_confidence(c.matches, c.disparity, model, {}, {});
+  const Image<float> alone = estimate_confidence(c.matches, c.disparity, model, {});
   for (const int threads : {2, 3, 7}) {
     EXPECT_EQ(first_difference(
-                  alone, estimate_confidence(c.matches, c.disparity, model, {}, Exec::with_threads(threads))),
+                  alone, estimate_confidence(c.matches, c.disparity, model, Exec::with_threads(threads))),
               "");
   }
 }

@@ -123,24 +123,24 @@ TEST_P(MatchEquivalence, HoldsForEveryRowBand) {
     banded.row_band = band;
     expect_equal_to_reference({29, 9}, banded);
     expect_equal_to_reference({19, 2}, banded);
-    for (const Evidence evidence : {Evidence::winner, Evidence::minimum}) {
-      banded.evidence = evidence;
+    for (const MatchMaps maps : {MatchMaps::winner, MatchMaps::minimum}) {
+      banded.maps = maps;
       expect_equal_to_reference({29, 9}, banded);
     }
   }
 }
 
-TEST_P(MatchEquivalence, HoldsForLessThanFullEvidence) {
-  for (const Evidence evidence : {Evidence::winner, Evidence::minimum}) {
+TEST_P(MatchEquivalence, HoldsForFewerMaps) {
+  for (const MatchMaps maps : {MatchMaps::winner, MatchMaps::minimum}) {
     for (const int window : {3, 9, 17, 23}) {
       auto less = config(window, 0, 19);
-      less.evidence = evidence;
+      less.maps = maps;
       expect_equal_to_reference({41, 8}, less);
     }
     // More candidates than are held at a time, to the left and to the right.
     for (const int first : {-110, 0}) {
       auto less = config(5, first, 100);
-      less.evidence = evidence;
+      less.maps = maps;
       expect_equal_to_reference({170, 4}, less);
     }
   }
@@ -205,7 +205,7 @@ TEST_P(MatchEquivalence, HoldsWhereSeveralCandidatesMatchPerfectly) {
   for (const int window : {3, 9, 13}) {
     auto repeating = config(window, -20, 100);
     expect_equal_to_reference(StereoPair::from(pattern, alternating), repeating);
-    repeating.evidence = Evidence::winner;
+    repeating.maps = MatchMaps::winner;
     expect_equal_to_reference(StereoPair::from(pattern, alternating), repeating);
   }
 }
@@ -260,14 +260,10 @@ TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
 TEST(SubpixelEquivalence, RefinementMeetsItsDefinition) {
   for (const Size size : {Size{1, 1}, Size{5, 3}, Size{70, 9}}) {
     const Pictures pictures(size, 7);
-    for (const Evidence evidence : {Evidence::winner, Evidence::full}) {
-      const Matches matches = match_windows(pictures.pair(),
-                                            {.cost = Cost::sad,
-                                             .window_size = 3,
-                                             .min_disparity = 2,
-                                             .num_disparities = 9,
-                                             .evidence = evidence},
-                                            {});
+    for (const MatchMaps maps : {MatchMaps::winner, MatchMaps::full}) {
+      const Matches matches = match_windows(
+          pictures.pair(),
+          {.cost = Cost::sad, .window_size = 3, .min_disparity = 2, .num_disparities = 9, .maps = maps}, {});
       for (const auto& [method_name, method] : kSubpixelMethods) {
         for (const bool enabled : {false, true}) {
           const SubpixelConfig config{enabled, method};

@@ -53,11 +53,8 @@ struct Pictures {
   }
 };
 
-MatchConfig search(int first, int count, Evidence evidence = Evidence::full) {
-  return {.method = MatchMethod::semi_global,
-          .min_disparity = first,
-          .num_disparities = count,
-          .evidence = evidence};
+MatchConfig search(int first, int count, MatchMaps maps = MatchMaps::full) {
+  return {.method = MatchMethod::semi_global, .min_disparity = first, .num_disparities = count, .maps = maps};
 }
 
 void expect_equal_to_reference(Size size, const MatchConfig& config, const SemiGlobalConfig& penalties = {},
@@ -119,9 +116,9 @@ TEST(SemiGlobalEquivalence, HoldsForEveryPenalty) {
 }
 
 TEST(SemiGlobalEquivalence, HoldsForTheWinnerAlone) {
-  expect_equal_to_reference({41, 8}, search(0, 19, Evidence::winner));
-  expect_equal_to_reference({70, 8}, search(0, 64, Evidence::winner));
-  expect_equal_to_reference({41, 8}, search(-3, 19, Evidence::minimum));
+  expect_equal_to_reference({41, 8}, search(0, 19, MatchMaps::winner));
+  expect_equal_to_reference({70, 8}, search(0, 64, MatchMaps::winner));
+  expect_equal_to_reference({41, 8}, search(-3, 19, MatchMaps::minimum));
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST_P(MatchProperty, RecoversARandomDotStereogramExactly) {
 TEST_P(MatchProperty, TheWinnerIsTheSameWithAndWithoutFullEvidence) {
   const auto scene = synthetic::box_before_wall();
   auto winner = config();
-  winner.evidence = Evidence::winner;
+  winner.maps = MatchMaps::winner;
   const Matches full = match_windows(scene.pair(), config(), {});
   const Matches alone = match_windows(scene.pair(), winner, {});
   for (int y = 0; y < 64; ++y) {

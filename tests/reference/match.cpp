@@ -91,14 +91,14 @@ void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Ma
     out.row_offset(x, y) = static_cast<std::int8_t>(
         count > 0 ? cost_in_band(in, config, x, y, config.min_disparity + best).second : 0);
   }
-  if (config.evidence == Evidence::winner) return;
+  if (config.maps == MatchMaps::winner) return;
   out.runner_up(x, y) = kNoCost;
   for (int i = 0; i < config.num_disparities; ++i) {
     if (std::abs(i - best) > 1) out.runner_up(x, y) = std::min(out.runner_up(x, y), cost_at(i));
   }
   out.cost_before(x, y) = count > 0 ? cost_at(best - 1) : kNoCost;
   out.cost_after(x, y) = count > 0 ? cost_at(best + 1) : kNoCost;
-  if (config.evidence == Evidence::minimum) return;
+  if (config.maps == MatchMaps::minimum) return;
   out.mean_cost(x, y) =
       count > 0 ? pixel_math::sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
 }
@@ -173,8 +173,8 @@ Matches match(const StereoPair& pair, const MatchConfig& config) {
   const Pictures in{picture(pair.left(), config), picture(pair.right(), config)};
   const Size size = pair.size();
   const Size band = config.row_band > 0 ? size : Size{};
-  const Size minimum = config.evidence != Evidence::winner ? size : Size{};
-  const Size full = config.evidence == Evidence::full ? size : Size{};
+  const Size minimum = config.maps != MatchMaps::winner ? size : Size{};
+  const Size full = config.maps == MatchMaps::full ? size : Size{};
   Matches out{Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(band),
               Image<float>(size),        Image<float>(minimum),     Image<float>(full),
               Image<float>(minimum),     Image<float>(minimum)};

@@ -129,9 +129,9 @@ void add_paths(Volume& costs, const Image<Gray>& smooth, const SemiGlobalConfig&
   }
 }
 
-Matches make_matches(Size size, Evidence evidence) {
-  const Size minimum = evidence != Evidence::winner ? size : Size{};
-  const Size full = evidence == Evidence::full ? size : Size{};
+Matches make_matches(Size size, MatchMaps maps) {
+  const Size minimum = maps != MatchMaps::winner ? size : Size{};
+  const Size full = maps == MatchMaps::full ? size : Size{};
   return {Image<std::int16_t>(size), Image<std::int16_t>(full), Image<std::int8_t>(),  Image<float>(size),
           Image<float>(minimum),     Image<float>(full),        Image<float>(minimum), Image<float>(minimum)};
 }
@@ -178,7 +178,7 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   add_paths(costs, smooth, penalties, -1, 0, sums);
   add_paths(costs, smooth, penalties, 0, 1, sums);
   add_paths(costs, smooth, penalties, 0, -1, sums);
-  Matches out = make_matches(size, config.evidence);
+  Matches out = make_matches(size, config.maps);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) settle_pixel(sums, x, y, out);
   }

@@ -352,5 +352,44 @@ TEST_F(CalibrationFiles, ACalibrationForOtherPicturesIsRefused) {
             "calib.txt: the calibration is for 640x480, the images are 320x240");
 }
 
+constexpr std::string_view kPoints = "10,200,4,200;300,210,293,210;20,230,12,230;280,190,275,190";
+
+TEST_F(CalibrationFiles, EveryFormMaySayHowTheRigIsMounted) {
+  const std::string lines =
+      "ground_points=" + std::string(kPoints) + "\ncamera_height=0.5\ncamera_pitch=12\n";
+  const std::string yaml =
+      "ground_points: [[10, 200, 4, 200], [300, 210, 293, 210], [20, 230, 12, 230], [280, "
+      "190, 275, 190]]\ncamera_height: 0.5\ncamera_pitch: 12\n";
+  std::string xml(kOpenCvXml);
+  xml.insert(xml.find("<imageSize>"), "<ground_points>" + std::string(kPoints) +
+                                          "</ground_points><camera_height>0.5</camera_height>"
+                                          "<camera_pitch>12</camera_pitch>");
+  std::string kitti(kKittiRaw);
+  kitti += "ground_points: " + std::string(kPoints) + "\ncamera_height: 0.5\ncamera_pitch: 12\n";
+  for (const std::string& text :
+       {lines, std::string(kKeyValue) + lines, std::string(kMiddlebury) + lines,
+        std::string(kOpenCvYaml) + yaml, "focal_px: 500\ncx_px: 1\ncy_px: 2\nbaseline_m: 0.1\n" + yaml, xml,
+        kitti}) {
+    const io::Calibration calibration = read(text);
+    ASSERT_EQ(calibration.ground.points.size(), 4U) << text;
+    EXPECT_EQ(calibration.ground.points[1], (PointPair{300, 210, 293, 210}));
+    EXPECT_EQ(calibration.ground.camera_height_m, 0.5F);
+    EXPECT_EQ(calibration.ground.camera_pitch_deg, 12.0F);
+    EXPECT_EQ(calibration.ground.camera_roll_deg, 0.0F);
+  }
+  EXPECT_EQ(read(kKeyValue).ground, KnownGround{});
+}
+
+TEST_F(CalibrationFiles, AMountingThatCannotBeIsRefused) {
+  EXPECT_TRUE(has(refused("ground_points=1,2,3\n"), {"ground_points", "3 numbers"}));
+  EXPECT_TRUE(has(refused("ground_points=1,2,3,4;5,6,7,8\n"), {"ground_points", "at least 4"}));
+  EXPECT_TRUE(has(refused("ground_points=10,60,5,60;20,60,15,60;30,60,25,60;40,60,35,60\n"),
+                  {"ground_points", "no plane"}));
+  EXPECT_TRUE(has(refused("ground_points=1,2,3,inf\n"), {"ground_points", "finite"}));
+  EXPECT_TRUE(has(refused("camera_height=0\n"), {"camera_height is 0, expected 0.01 ... 100"}));
+  EXPECT_TRUE(has(refused("fx=1\ncamera_pitch=90\n"), {"camera_pitch"}));
+  EXPECT_TRUE(has(refused("fx=1\ncamera_roll=-90\n"), {"camera_roll"}));
+}
+
 }  // namespace
 }  // namespace cairn

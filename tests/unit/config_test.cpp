@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <set>
@@ -32,13 +33,10 @@ TEST(Options, AreSetByTheirFullName) {
   set(config, "match.cost", "sad");
   set(config, "uniqueness.ratio", "-1");
   set(config, "subpixel.enabled", "false");
-  set(config, "ground.points", "1,2,3,4;5,6,7,8.5");
   EXPECT_EQ(config.match.window_size, 15);
   EXPECT_EQ(config.match.cost, Cost::sad);
   EXPECT_EQ(config.uniqueness.ratio, -1);
   EXPECT_FALSE(config.subpixel.enabled);
-  ASSERT_EQ(config.ground.points.size(), 2U);
-  EXPECT_EQ(config.ground.points[1], (PointPair{5, 6, 7, 8.5F}));
 }
 
 TEST(Options, ReadBackWhatTheyWrite) {
@@ -73,8 +71,6 @@ TEST(Options, RefuseWhatIsOutOfRangeAndNameTheRange) {
   EXPECT_NE(refusal("match.window_size", "").find("a whole number"), std::string::npos);
   EXPECT_NE(refusal("match.cost", "ncc").find("sad|ssd|zsad|"), std::string::npos);
   EXPECT_NE(refusal("subpixel.enabled", "maybe").find("true or false"), std::string::npos);
-  EXPECT_NE(refusal("ground.points", "1,2,3").find("x_left,y_left,x_right,y_right"), std::string::npos);
-  EXPECT_NE(refusal("ground.points", "1,2,3,inf").find("x_left"), std::string::npos);
 }
 
 TEST(Options, NameTheNearestKnownOneForAnUnknown) {
@@ -86,6 +82,81 @@ TEST(Options, KeepTheirValueWhenTheNewOneIsRefused) {
   Config config;
   EXPECT_THROW(set(config, "match.window_size", "10"), Error);
   EXPECT_EQ(config.match.window_size, Config{}.match.window_size);
+}
+
+// ---- which options are read ----
+
+const OptionInfo& named(const std::vector<OptionInfo>& all, std::string_view name) {
+  return *std::find_if(all.begin(), all.end(), [&](const OptionInfo& option) { return option.name == name; });
+}
+
+TEST(ActiveOptions, AreAtMostFortyInAtMostTenUnits) {
+  for (const std::string& preset : preset_names()) {
+    std::set<std::string> units;
+    const std::vector<OptionInfo> active = active_options(Config::preset(preset));
+    for (const OptionInfo& option : active) {
+      if (!option.unit.empty()) units.insert(option.unit);
+    }
+    EXPECT_LE(active.size(), 40U) << preset;
+    EXPECT_LE(units.size(), 10U) << preset;
+    RecordProperty(preset + " options", static_cast<int>(active.size()));
+    RecordProperty(preset + " units", static_cast<int>(units.size()));
+  }
+}
+
+TEST(ActiveOptions, NeedWhatIsAnOptionAndMayHaveTheValue) {
+  for (const OptionInfo& option : options(Config{})) {
+    if (option.needs.empty()) continue;
+    const std::size_t end = option.needs.find_first_of("!=");
+    const std::string value = option.needs.substr(option.needs.find('=') + 1);
+    Config config;
+    EXPECT_NO_THROW(set(config, option.needs.substr(0, end), value)) << option.name << ": " << option.needs;
+  }
+}
+
+TEST(ActiveOptions, EachOtherOneIsRefusedInALineThatSaysWhatToSetFirst) {
+  for (const std::string& preset : preset_names()) {
+    const Config config = Config::preset(preset);
+    const std::vector<OptionInfo> all = options(config);
+    int refused = 0;
+    for (const OptionInfo& option : all) {
+      const std::string message = message_of([&] { require_active(config, option.name); });
+      EXPECT_EQ(message == "no error", option.active) << option.name << ": " << message;
+      if (option.active) continue;
+      ++refused;
+      EXPECT_EQ(message.find(option.name + " has no effect with "), 0U) << message;
+      // What it says to set is read itself, and was what it says.
+      const std::string with = message.substr(message.find(" with ") + 6);
+      const std::string asked = with.substr(0, with.find('='));
+      EXPECT_EQ(with.substr(0, with.find(';')), asked + "=" + named(all, asked).value) << message;
+      EXPECT_NE(with.find("; set " + asked), std::string::npos) << message;
+      EXPECT_TRUE(named(all, asked).active) << message;
+    }
+    EXPECT_GT(refused, 5) << preset;
+  }
+  EXPECT_EQ(message_of([] { require_active({}, "match.cost"); }),
+            "match.cost has no effect with match.method=semi_global; set match.method=window first");
+  EXPECT_EQ(message_of([] { require_active({}, "match.prefilter_cap"); }),
+            "match.prefilter_cap has no effect with match.method=semi_global; set match.method=window first");
+  EXPECT_EQ(message_of([] { require_active({}, "texture.window_size"); }),
+            "texture.window_size has no effect with texture.threshold=-1; set texture.threshold first");
+  EXPECT_EQ(message_of([] { require_active(Config::paper(), "figure.margin"); }),
+            "figure.margin has no effect with fusion.method=overlap; set fusion.method=evidence first");
+}
+
+TEST(ActiveOptions, OfAStageByItselfOnlyItsOwnSectionsCount) {
+  EXPECT_NO_THROW(require_active({}, "intensity.sigma_min", {"intensity"}));
+  EXPECT_THROW(require_active({}, "texture.window_size", {"texture"}), Error);
+  EXPECT_THROW(require_active({}, "match.cost", {"match", "semi_global"}), Error);
+}
+
+TEST(GoneOptions, SayWhereTheyWent) {
+  EXPECT_EQ(refusal("ground.height", "1.5"),
+            "option ground.height is gone: it is a fact of the rig, camera_height in its calibration file "
+            "(docs/formats.md)");
+  EXPECT_NE(refusal("ground.points", "1,2,3,4").find("ground_points in its calibration"), std::string::npos);
+  EXPECT_NE(refusal("match.evidence", "full").find("is gone"), std::string::npos);
+  EXPECT_NE(refusal("figure.skirting", "1").find("a constant of its stage"), std::string::npos);
 }
 
 TEST(Validate, AcceptsThePresets) {
@@ -102,31 +173,19 @@ TEST(Validate, RefusesValuesThatCodeHasSetOutOfRange) {
   EXPECT_THROW(validate(config), Error);
 }
 
-TEST(Validate, RefusesChecksThatTheKeptEvidenceCannotFeed) {
+TEST(Validate, RefusesToLeaveOutWhatTheMethodNeeds) {
   Config config = Config::paper();
-  config.match.evidence = Evidence::winner;
-  EXPECT_NE(message_of([&] { validate(config); }).find("match.evidence"), std::string::npos);
-  config.uniqueness.ratio = -1;
-  config.flatness.threshold = -1;
-  config.left_right.method = LeftRightMethod::vote;
-  EXPECT_NO_THROW(validate(config));
-}
-
-TEST(Validate, TakesUniquenessButNotFlatnessWithTheMinimumsEvidence) {
-  Config config = Config::paper();
-  config.match.evidence = Evidence::minimum;
-  config.left_right.method = LeftRightMethod::vote;
-  EXPECT_NE(message_of([&] { validate(config); }).find("flatness.threshold"), std::string::npos);
-  config.flatness.threshold = -1;
-  EXPECT_NO_THROW(validate(config));
-  config.left_right.method = LeftRightMethod::true_;
-  EXPECT_NE(message_of([&] { validate(config); }).find("left_right.method"), std::string::npos);
+  config.match.maps = MatchMaps::winner;
+  EXPECT_NE(message_of([&] { validate(config); }).find("match.maps"), std::string::npos);
 }
 
 TEST(Validate, RefusesWhatDoesNotFitTheImage) {
   Config config;
   EXPECT_NO_THROW(validate(config, {320, 240}, false));
-  EXPECT_NE(message_of([&] { validate(config, {8, 240}, false); }).find("window"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              validate(Config::paper(), {8, 240}, false);
+            }).find("window"),
+            std::string::npos);
   EXPECT_NE(message_of([&] {
               validate(config, {32, 32}, false);
             }).find("num_disparities"),
@@ -138,6 +197,7 @@ TEST(Validate, RefusesWhatDoesNotFitTheImage) {
             std::string::npos);
   config = {};
   config.ground.source = GroundSource::pose;
+  config.ground.known.camera_height_m = 0.5F;
   EXPECT_NE(message_of([&] { validate(config, {320, 240}, false); }).find("calibration"), std::string::npos);
   EXPECT_NO_THROW(validate(config, {320, 240}, true));
 }
@@ -145,8 +205,9 @@ TEST(Validate, RefusesWhatDoesNotFitTheImage) {
 TEST(Validate, RefusesAGroundFromTooFewPoints) {
   Config config;
   config.ground.source = GroundSource::points;
-  set(config, "ground.points", "0,0,0,0;10,0,9,0;0,10,0,10");
-  EXPECT_NE(message_of([&] { validate(config); }).find("ground.points"), std::string::npos);
+  EXPECT_NE(message_of([&] { validate(config); }).find("ground_points"), std::string::npos);
+  config.ground.known.points = {{0, 0, 0, 0}, {10, 0, 9, 0}, {0, 10, 0, 10}};
+  EXPECT_NE(message_of([&] { validate(config); }).find("ground_points"), std::string::npos);
 }
 
 }  // namespace

@@ -293,9 +293,7 @@ TEST(GroundAutomatic, DisparitiesMayBeCountedFromAnotherOrigin) {
 GroundConfig pose(float height, float pitch, float roll) {
   GroundConfig config;
   config.source = GroundSource::pose;
-  config.height = height;
-  config.pitch = pitch;
-  config.roll = roll;
+  config.known = {{}, height, pitch, roll};
   return config;
 }
 
@@ -326,6 +324,16 @@ TEST(GroundFromPose, NeedsACalibration) {
   const Ground ground = fit_ground(DisparityMap{}, std::nullopt, pose(1, 0, 0), {});
   EXPECT_EQ(ground.refusal, Refusal::no_rig);
   EXPECT_FALSE(ground.plane);
+  EXPECT_THROW(validate(pose(1, 0, 0), false), Error);
+  EXPECT_NO_THROW(validate(pose(1, 0, 0), true));
+}
+
+TEST(GroundFromPose, NeedsAHeight) {
+  GroundConfig config = pose(1, 0, 0);
+  config.known.camera_height_m.reset();
+  EXPECT_THROW(validate(config, true), Error);
+  const StereoRig rig{250, 160, 120, 0.2F, 0};
+  EXPECT_FALSE(fit_ground(DisparityMap{}, rig, config, {}).plane);
 }
 
 /// A rendered frame's truth, where the data is there.
@@ -380,7 +388,7 @@ TEST(GroundSourceOff, SaysSo) {
 TEST(GroundSourcePoints, NeedsNoDisparity) {
   GroundConfig config;
   config.source = GroundSource::points;
-  config.points = {{0, 0, 0, 0}, {100, 0, 100, 0}, {0, 100, -10, 100}, {100, 100, 90, 100}};
+  config.known.points = {{0, 0, 0, 0}, {100, 0, 100, 0}, {0, 100, -10, 100}, {100, 100, 90, 100}};
   const Ground ground = fit_ground(DisparityMap{}, std::nullopt, config, {});
   EXPECT_NEAR(ground.plane->b, 0.1F, 1e-6);
 }

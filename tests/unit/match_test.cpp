@@ -91,7 +91,7 @@ TEST(Match, TakesNoVarianceForNoLikenessAndNoEnergyForTheWorst) {
 
 TEST(Match, PaysOnlyForTheEvidenceThatIsAskedFor) {
   const auto dots = synthetic::random_dots({12, 5}, 1);
-  const Matches matches = match_windows(StereoPair::from(dots, dots), {.evidence = Evidence::winner}, {});
+  const Matches matches = match_windows(StereoPair::from(dots, dots), {.maps = MatchMaps::winner}, {});
   EXPECT_EQ(matches.best.size(), (Size{12, 5}));
   EXPECT_EQ(matches.cost.size(), (Size{12, 5}));
   EXPECT_TRUE(matches.best_right.empty());

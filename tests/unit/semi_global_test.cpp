@@ -22,7 +22,7 @@ Matches matched(const StereoPair& pair, int count, const SemiGlobalConfig& penal
 }
 
 /// Everything that a test may compare at once.
-std::vector<std::vector<std::vector<std::int64_t>>> evidence(const Matches& m) {
+std::vector<std::vector<std::vector<std::int64_t>>> costs_and_winners(const Matches& m) {
   return {numbers(m.best), numbers(m.best_right), numbers(m.cost), numbers(m.mean_cost)};
 }
 
@@ -110,8 +110,8 @@ TEST(SemiGlobal, IsBlindToTheRightCamerasGainAndOffset) {
       brighter(x, y) = static_cast<Gray>(2 * right(x, y) + 40);
     }
   }
-  EXPECT_EQ(evidence(matched(StereoPair::from(left, brighter), 16)),
-            evidence(matched(StereoPair::from(left, right), 16)));
+  EXPECT_EQ(costs_and_winners(matched(StereoPair::from(left, brighter), 16)),
+            costs_and_winners(matched(StereoPair::from(left, right), 16)));
 }
 
 TEST(SemiGlobal, KeepsLargeStepsToWhereTheIntensityChanges) {
@@ -159,7 +159,7 @@ TEST(SemiGlobal, MatchesTowardBothSides) {
 TEST(SemiGlobal, KeepsOnlyTheWinnerIfThatIsWanted) {
   const auto scene = synthetic::make_scene({.size = {50, 20}});
   auto config = search(0, 12);
-  config.evidence = Evidence::winner;
+  config.maps = MatchMaps::winner;
   const Matches winner = match_semi_global(scene.pair(), config, {}, {});
   const Matches full = matched(scene.pair(), 12);
   EXPECT_EQ(numbers(winner.best), numbers(full.best));
@@ -172,19 +172,22 @@ TEST(SemiGlobal, IsWhatMatchDoesByThatMethod) {
   const auto scene = synthetic::make_scene({.size = {50, 20}});
   auto config = search(0, 12);
   const SemiGlobalConfig penalties{.penalty_small = 0.2F, .penalty_large = 1.0F};
-  EXPECT_EQ(evidence(match(scene.pair(), config, {}, {})), evidence(matched(scene.pair(), 12)));
-  EXPECT_EQ(evidence(match(scene.pair(), config, penalties, {})),
-            evidence(matched(scene.pair(), 12, penalties)));
-  EXPECT_NE(evidence(matched(scene.pair(), 12, penalties)), evidence(matched(scene.pair(), 12)));
+  EXPECT_EQ(costs_and_winners(match(scene.pair(), config, {}, {})),
+            costs_and_winners(matched(scene.pair(), 12)));
+  EXPECT_EQ(costs_and_winners(match(scene.pair(), config, penalties, {})),
+            costs_and_winners(matched(scene.pair(), 12, penalties)));
+  EXPECT_NE(costs_and_winners(matched(scene.pair(), 12, penalties)),
+            costs_and_winners(matched(scene.pair(), 12)));
   // The window's options have no part in it.
   config.cost = Cost::sad;
   config.window_size = 21;
   config.row_band = 2;
   config.prefilter = Prefilter::xsobel;
-  EXPECT_EQ(evidence(match(scene.pair(), config, {}, {})), evidence(matched(scene.pair(), 12)));
+  EXPECT_EQ(costs_and_winners(match(scene.pair(), config, {}, {})),
+            costs_and_winners(matched(scene.pair(), 12)));
   config = {.cost = Cost::sad, .window_size = 5, .num_disparities = 12};
-  EXPECT_EQ(evidence(match(scene.pair(), config, penalties, {})),
-            evidence(match_windows(scene.pair(), config, {})));
+  EXPECT_EQ(costs_and_winners(match(scene.pair(), config, penalties, {})),
+            costs_and_winners(match_windows(scene.pair(), config, {})));
 }
 
 }  // namespace

@@ -45,12 +45,34 @@ TEST(Tunable, TakesItsLimitsFromTheFieldsOfItsStage) {
   EXPECT_EQ(named("subpixel.enabled").choices, (Strings{"false", "true"}));
 }
 
-TEST(Tunable, EveryOptionIsOneButPointsAndWhatOnlySaysWhatIsKept) {
+TEST(Tunable, EveryOptionIsOne) {
   const Strings names = names_of(tunables());
-  for (const OptionInfo& option : options(Config{})) {
-    const bool none =
-        option.type == "points" || option.name == "match.evidence" || option.name == "confidence.enabled";
-    EXPECT_EQ(has(names, option.name), !none) << option.name;
+  for (const OptionInfo& option : options(Config{})) EXPECT_TRUE(has(names, option.name)) << option.name;
+}
+
+TEST(Tunable, OnlyWhatTheConfigReadsIsVaried) {
+  for (const std::string& preset : preset_names()) {
+    const Config config = Config::preset(preset);
+    for (const std::string& name : names_of(tunables(usual_tunables(config, true), config)))
+      EXPECT_NO_THROW(require_active(config, name)) << preset << ", " << name;
+  }
+  const Strings of_match = names_of(tunables({"match.min_disparity", "semi_global.*"}, Config{}));
+  EXPECT_EQ(of_match, (Strings{"match.min_disparity", "semi_global.penalty_small",
+                               "semi_global.penalty_large", "semi_global.penalty_edge"}));
+}
+
+TEST(Tunable, WhatHasNoEffectIsVariedOnlyBesideWhatMayGiveItOne) {
+  EXPECT_FALSE(has(names_of(tunables({"texture.*"}, Config::paper())), "match.cost"));
+  const Strings all = names_of(tunables({"match.*"}, Config{}));
+  EXPECT_TRUE(has(all, "match.cost"));           // with match.method=window, which is among them
+  EXPECT_TRUE(has(all, "match.prefilter_cap"));  // and with match.prefilter=xsobel
+  for (const Strings& patterns : {Strings{"match.cost"}, Strings{"left_right.*", "intensity.*"}}) {
+    try {
+      (void)tunables(patterns, Config{});
+      ADD_FAILURE() << patterns.back() << " is accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("has no effect with"), std::string::npos) << error.what();
+    }
   }
 }
 
