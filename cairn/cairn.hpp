@@ -32,9 +32,9 @@
 #include <cairn/regions/grow_near_to_far.hpp>    // grow_near_to_far
 #include <cairn/regions/segment_intensity.hpp>   // segment_intensity
 #include <cairn/regions/segment_disparity.hpp>   // segment_disparity
-#include <cairn/grouping/facets.hpp>              // segment_facets, as_segmentation
-#include <cairn/grouping/figure.hpp>              // separate_figure
-#include <cairn/grouping/group.hpp>               // group_facets
+#include <cairn/grouping/superpixels.hpp>       // cut_superpixels
+#include <cairn/grouping/merge_tree.hpp>        // grow_merge_tree
+#include <cairn/grouping/choose_objects.hpp>    // choose_objects, groups_of
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/pipeline/config.hpp>             // Config, presets, options

@@ -21,8 +21,7 @@ set(private_headers
   diagnosis/robust_fit scene/floor_search scene/plane_fit scene/plane_through_pairs
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
   image/gaussian image/sparse_points image/texture
-  grouping/colour_model grouping/like_facets grouping/looks grouping/ranks
-  regions/growing_regions regions/label_kernels_plain grouping/minimum_cut regions/percent regions/runs
+  regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
   regions/split_floor
   [a-z]+/[a-z_]+_kernels
   io/calibration_forms io/raster io/read_file page/html_template)

@@ -18,7 +18,9 @@ struct Matches;
 struct DisparityMap;
 struct Ground;
 struct Background;
-struct Facets;
+struct Superpixels;
+struct MergeTree;
+struct ChosenObjects;
 struct Segmentation;
 struct Fusion;
 struct Objects;
@@ -26,8 +28,8 @@ struct Objects;
 /// What a stage made, as an observer sees it: borrowed, valid during the call only.
 using Artifact =
     std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
-                 const Ground*, const Image<std::uint8_t>*, const Background*, const Facets*,
-                 const std::vector<std::int32_t>*, const Segmentation*, const Fusion*, const Objects*>;
+                 const Ground*, const Image<std::uint8_t>*, const Background*, const Superpixels*,
+                 const MergeTree*, const ChosenObjects*, const Segmentation*, const Fusion*, const Objects*>;
 
 /// Called after each stage on the calling thread: the stage's name (as the function's), its result, its time.
 using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;

@@ -20,7 +20,7 @@ template <class V>
 void fields(EvidenceConfig& c, V&& v) {
   v("gradient_min", c.gradient_min, "grey levels",
     "how far a pixel's horizontal gradient must exceed the image's noise to count as evidence",
-    range(0.0F, 255.0F), when("fusion.method", "evidence"));
+    range(0.0F, 255.0F), when("fusion.method", "hierarchy"));
 }
 
 /// The disparities that rest on the pixel's own texture, NaN elsewhere: valid ones where the horizontal

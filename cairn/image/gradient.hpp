@@ -13,7 +13,7 @@ namespace cairn {
 /// centre takes what is missing to 256; border replicated; s is rounded to 1/16 grey level. σ = 0: none.
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma, const Exec& exec);
 
-/// The same for edges between facets: central differences ((s(x+1) − s(x−1))/2), in 1/4 grey level, not
+/// The same for edges between superpixels: central differences ((s(x+1) − s(x−1))/2), in 1/4 grey level, not
 /// capped; with colour (`rgb` not empty) the largest of the three channels' magnitudes, so that edges of
 /// equal grey count. (beyond the paper)
 Image<std::uint16_t> edge_strength(View<const Gray> gray, View<const Rgb> rgb, float smoothing_sigma,

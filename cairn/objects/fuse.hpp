@@ -10,11 +10,11 @@
 namespace cairn {
 
 /// How regions become objects. overlap: the paper's, intensity regions by the disparity region that they
-/// overlap most. evidence: facets, parted into figure and ground by what texture proves, then grouped from
-/// near to far.
-enum class FusionMethod : std::uint8_t { overlap, evidence };
+/// overlap most. hierarchy: superpixels fuse to a tree of regions, and the likeliest objects in it are
+/// chosen.
+enum class FusionMethod : std::uint8_t { overlap, hierarchy };
 inline constexpr std::array kFusionMethods{Choice<FusionMethod>{"overlap", FusionMethod::overlap},
-                                           Choice<FusionMethod>{"evidence", FusionMethod::evidence}};
+                                           Choice<FusionMethod>{"hierarchy", FusionMethod::hierarchy}};
 
 struct FusionConfig {
   FusionMethod method = FusionMethod::overlap;  // overlap: what the paper describes
@@ -22,7 +22,8 @@ struct FusionConfig {
 template <class V>
 void fields(FusionConfig& c, V&& v) {
   v("method", c.method, "",
-    "overlap: the paper's two segmentations; evidence: facets that texture vouches for", kFusionMethods);
+    "overlap: the paper's two segmentations; hierarchy: the likeliest objects in a tree of regions",
+    kFusionMethods);
 }
 
 /// Which intensity regions make up each fused region: the candidates for objects.

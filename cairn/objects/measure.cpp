@@ -4,9 +4,9 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/grouping/ranks.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/measure_kernels.hpp>
+#include <cairn/objects/ranks.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cmath>
@@ -293,6 +293,10 @@ void place(Object& object, const std::array<std::span<float>, 3>& points, const 
       Vec3{span_without_tails(x, exec), span_without_tails(y, exec), span_without_tails(z, exec)};
 }
 
+int weakest_edge(float noise_sigma) {
+  return static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma);
+}
+
 float confidence_of(const Object& object, Size image) {
   const double size = std::log(static_cast<double>(object.pixel_count) / static_cast<double>(image.area()));
   const double sum = 1.53 * size + 11.72 * object.edge_share - 4.72 * object.cut_share - 2.41;
@@ -372,28 +376,17 @@ std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const 
   return begins;
 }
 
-}  // namespace
-
-std::vector<bool> background_of(const Segmentation& groups) {
-  std::vector<bool> is_background;
-  for (const Region& region : groups.regions) is_background.push_back(region.is_background);
-  return is_background;
-}
-
-Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
-                const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
-                float noise_sigma, const std::optional<StereoRig>& rig, const ObjectsConfig& config,
-                const Exec& exec) {
-  const auto edge_min = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma);
-  const Inputs in{candidates, is_background.size(), disparity.disparity_px, left, left_rgb, rig, edge_min};
-  const Size size = candidates.size();
+/// Measures the regions that may_be() objects, and keeps those of them that is() holds for, nearest first.
+template <class MayBe, class Is>
+Objects measure_those(const Inputs& in, MayBe may_be, Is is, const Exec& exec) {
+  const Size size = in.candidates.size();
   std::vector<Survey> bands = survey(in, exec);
   const std::vector<Outline>& outline = outlines_of(bands);
 
   std::vector<Candidate> found;
   std::size_t room = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    if (is_background[i] || !may_be_object(outline[i], size, config)) continue;
+    if (!may_be(i, outline[i])) continue;
     found.push_back({i, room});
     room += Gathered::room_for(in, pixels_of(found.back(), outline));
   }
@@ -405,9 +398,7 @@ Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_bac
                     lists.data(), exec);
     }
   });
-  std::erase_if(found, [&](const Candidate& candidate) {
-    return !candidate.object || candidate.object->confidence < config.min_confidence;
-  });
+  std::erase_if(found, [&](Candidate& candidate) { return !candidate.object || !is(candidate); });
   std::sort(found.begin(), found.end(), [&](const Candidate& a, const Candidate& b) {
     if (a.object->disparity_px != b.object->disparity_px)
       return a.object->disparity_px > b.object->disparity_px;
@@ -415,7 +406,7 @@ Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_bac
   });
 
   Objects objects{Image<ObjectId>(size, exec.pool), {}};
-  std::vector<ObjectId> id_of(is_background.size(), ObjectId::none);
+  std::vector<ObjectId> id_of(outline.size(), ObjectId::none);
   for (Candidate& candidate : found) {
     candidate.object->id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
     id_of[candidate.region] = candidate.object->id;
@@ -423,12 +414,42 @@ Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_bac
   }
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      const RegionId* const in_row = candidates.row(y);
+      const RegionId* const in_row = in.candidates.row(y);
       ObjectId* const out = objects.labels.row(y);
       for (int x = 0; x < size.width; ++x) out[x] = id_of[index(in_row[x])];
     }
   });
   return objects;
+}
+
+}  // namespace
+
+Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
+                const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
+                float noise_sigma, const std::optional<StereoRig>& rig, const ObjectsConfig& config,
+                const Exec& exec) {
+  const Inputs in{candidates, is_background.size(),     disparity.disparity_px, left, left_rgb,
+                  rig,        weakest_edge(noise_sigma)};
+  const auto may_be = [&](std::size_t region, const Outline& outline) {
+    return !is_background[region] && may_be_object(outline, candidates.size(), config);
+  };
+  const auto is = [&](const Candidate& candidate) {
+    return candidate.object->confidence >= config.min_confidence;
+  };
+  return measure_those(in, may_be, is, exec);
+}
+
+Objects measure(View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
+                View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma,
+                const std::optional<StereoRig>& rig, const Exec& exec) {
+  const Inputs in{chosen,   scores.size(), disparity.disparity_px,   left,
+                  left_rgb, rig,           weakest_edge(noise_sigma)};
+  const auto may_be = [&](std::size_t region, const Outline&) { return scores[region] > 0; };
+  const auto is = [&](Candidate& candidate) {
+    candidate.object->confidence = scores[candidate.region];
+    return true;
+  };
+  return measure_those(in, may_be, is, exec);
 }
 
 }  // namespace cairn

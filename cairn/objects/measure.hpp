@@ -19,7 +19,8 @@ struct ObjectsConfig {
 template <class V>
 void fields(ObjectsConfig& c, V&& v) {
   v("min_area", c.min_area, "% of the image", "smaller regions are no objects", range(0.0F, 100.0F));
-  v("max_area", c.max_area, "% of the image", "larger regions are background", range(0.0F, 100.0F));
+  v("max_area", c.max_area, "% of the image", "larger regions are background", range(0.0F, 100.0F),
+    when("fusion.method", "overlap"));
   v("min_confidence", c.min_confidence, "", "regions less likely than this to be an object are none",
     range(0.0F, 1.0F));
 }
@@ -48,9 +49,6 @@ struct Objects {
   std::vector<Object> list;
 };
 
-/// Which regions of a segmentation are background, as measure() asks for it.
-std::vector<bool> background_of(const Segmentation& groups);
-
 /// Turns candidates into objects: regions 0 … is_background.size()−1 that divide the image among them, fused
 /// ones or groups. No objects are: what is known to be background, such as the floor; what covers more than
 /// max_area of the image or touches three of its borders (background); what is smaller than min_area; what
@@ -64,5 +62,11 @@ Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_bac
                 const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
                 float noise_sigma, const std::optional<StereoRig>& rig, const ObjectsConfig& config,
                 const Exec& exec);
+
+/// The same of regions that were chosen to be objects: region i is one with the confidence scores[i], however
+/// large it is and wherever it lies, unless that is 0 or the region has no valid pixel.
+Objects measure(View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
+                View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma,
+                const std::optional<StereoRig>& rig, const Exec& exec);
 
 }  // namespace cairn

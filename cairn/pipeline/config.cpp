@@ -212,27 +212,11 @@ constexpr std::array kGone{
     Gone{"ground.pitch", "it is a fact of the rig, camera_pitch in its calibration file (docs/formats.md)"},
     Gone{"ground.roll", "it is a fact of the rig, camera_roll in its calibration file (docs/formats.md)"}};
 
-constexpr std::array<std::string_view, 21> kConstants{"evidence.noise_factor",
-                                                      "evidence.agreement",
-                                                      "background.tolerance",
-                                                      "background.min_share",
-                                                      "background.min_share_square",
-                                                      "background.max_behind",
-                                                      "facets.smoothing_sigma",
-                                                      "facets.noise_factor",
-                                                      "facets.contrast_share",
-                                                      "figure.longest_bridge",
-                                                      "figure.border_weight",
-                                                      "figure.skirting",
-                                                      "figure.smoothness",
-                                                      "figure.colour_weight",
-                                                      "figure.continuation_weight",
-                                                      "figure.largest_part",
-                                                      "group.step_share",
-                                                      "group.deviation",
-                                                      "group.deviation_share",
-                                                      "group.gap_share",
-                                                      "group.occluded_gap"};
+constexpr std::array<std::string_view, 6> kConstants{"evidence.noise_factor",       "evidence.agreement",
+                                                     "background.tolerance",        "background.min_share",
+                                                     "background.min_share_square", "background.max_behind"};
+/// Sections of stages that there are no more.
+constexpr std::array<std::string_view, 3> kGoneSections{"facets.", "figure.", "group."};
 
 void refuse_what_is_gone(std::string_view name) {
   for (const auto& [option, where] : kGone) {
@@ -240,6 +224,10 @@ void refuse_what_is_gone(std::string_view name) {
   }
   if (std::find(kConstants.begin(), kConstants.end(), name) != kConstants.end())
     throw Error("option " + std::string(name) + " is gone: it is a constant of its stage");
+  for (const std::string_view section : kGoneSections) {
+    if (name.starts_with(section))
+      throw Error("option " + std::string(name) + " is gone: fitted scores have replaced its stage");
+  }
 }
 
 }  // namespace

@@ -8,9 +8,7 @@
 #include <cairn/disparity/texture.hpp>
 #include <cairn/disparity/uniqueness.hpp>
 #include <cairn/grouping/evidence.hpp>
-#include <cairn/grouping/facets.hpp>
-#include <cairn/grouping/figure.hpp>
-#include <cairn/grouping/group.hpp>
+#include <cairn/grouping/superpixels.hpp>
 #include <cairn/matching/epipolar_correction.hpp>
 #include <cairn/matching/match.hpp>
 #include <cairn/matching/semi_global.hpp>
@@ -44,11 +42,9 @@ struct Config {
   BackgroundConfig background;
   IntensityConfig intensity;
   DisparityConfig disparity;
-  FusionConfig fusion{.method = FusionMethod::evidence};
-  FacetsConfig facets;
-  FigureConfig figure;
-  GroupConfig group;
-  ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.2F};
+  FusionConfig fusion{.method = FusionMethod::hierarchy};
+  SuperpixelsConfig superpixels;
+  ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
 
   /// Only what the paper describes.
   static Config paper();
@@ -74,9 +70,7 @@ void for_each_section(C& c, F&& visit) {
   visit("intensity", c.intensity);
   visit("disparity", c.disparity);
   visit("fusion", c.fusion);
-  visit("facets", c.facets);
-  visit("figure", c.figure);
-  visit("group", c.group);
+  visit("superpixels", c.superpixels);
   visit("objects", c.objects);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/match_and_check.hpp>
 #include <cairn/pipeline/segment.hpp>
 
@@ -13,9 +14,12 @@ namespace cairn {
 Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const Config& config,
                          const Exec& exec);
 
-/// fusion.method=evidence, evidence.cpp: superpixels are parted into figure and ground by what texture
-/// proves, and grouped from near to far.
-Frame segment_by_evidence(Given given, const std::optional<StereoRig>& rig, const Config& config,
-                          const Exec& exec);
+/// fusion.method=hierarchy, hierarchy.cpp: superpixels fuse by every cue to a tree of regions, of which those
+/// that are likeliest whole objects are chosen.
+Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
+                           const Exec& exec);
+
+/// What the options ask of an object in an image of this size.
+ChoiceLimits limits_of(const ObjectsConfig& config, Size image);
 
 }  // namespace cairn

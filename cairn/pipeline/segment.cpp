@@ -12,14 +12,14 @@ Given given_as(const StereoPair& pair) {
   return {pair.left(), pair.left_rgb(), pair.right(), {}};
 }
 
-bool by_evidence(const Config& config) {
-  return config.fusion.method == FusionMethod::evidence;
+bool by_hierarchy(const Config& config) {
+  return config.fusion.method == FusionMethod::hierarchy;
 }
 
 Frame by_the_method(Given given, const std::optional<StereoRig>& rig, const Config& config,
                     const Exec& exec) {
-  return by_evidence(config) ? segment_by_evidence(std::move(given), rig, config, exec)
-                             : segment_by_overlap(std::move(given), rig, config, exec);
+  return by_hierarchy(config) ? segment_by_hierarchy(std::move(given), rig, config, exec)
+                              : segment_by_overlap(std::move(given), rig, config, exec);
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
 
   Image<float> evidence_px;
   View<const float> trusted_px = matched.disparity.disparity_px;
-  if (by_evidence(config)) {
+  if (by_hierarchy(config)) {
     const float noise = stage("noise_sigma", noise_sigma(pair.left(), exec));
     evidence_px =
         stage("find_evidence", find_evidence(pair.left(), matched.disparity, noise, config.evidence, exec));

@@ -24,8 +24,8 @@ struct Frame {
   Segmentation by_intensity;
   Segmentation by_disparity;
   Fusion fusion;
-  // With fusion.method=evidence: the facets of the left picture with their grey levels, and the groups that
-  // those before the background make.
+  // With fusion.method=hierarchy: the pieces of the left picture with their grey levels, and the regions that
+  // were chosen to be objects (region 0 = all else) with their disparities.
   Segmentation superpixels;
   Segmentation groups;
   Objects objects;

@@ -20,7 +20,7 @@ struct Region {
   double mean = 0;
   double variance = 0;         // of the population
   bool is_floor = false;       // the one floor region of a disparity segmentation
-  bool is_background = false;  // what groups of facets stand before: floor, walls and all that is no figure
+  bool is_background = false;  // all that is no object
 };
 
 /// The result of a segmentation: every pixel's region, 0 … regions.size()−1 in raster order of their first

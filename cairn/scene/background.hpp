@@ -19,7 +19,7 @@ struct BackgroundConfig {
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
   v("max_walls", c.max_walls, "", "how many walls are looked for besides the floor", range(0, 8),
-    when("fusion.method", "evidence"));
+    when("fusion.method", "hierarchy"));
 }
 
 /// The planes that bound the scene from behind: the floor, if there is one, and walls. A room seen from

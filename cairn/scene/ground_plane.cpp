@@ -101,6 +101,12 @@ Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>
   return {std::nullopt, 0.0F, 0.0F, Refusal::off};
 }
 
+Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
+                     const GroundConfig& config, const Exec& exec) {
+  if (ground.plane || config.source != GroundSource::automatic) return ground;
+  return fit_ground(disparity.disparity_px, rig, config, exec);
+}
+
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const std::optional<StereoRig>& rig, const GroundConfig& config,
                                  const Exec& exec) {

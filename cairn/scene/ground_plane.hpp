@@ -63,7 +63,8 @@ struct Ground {
 
 /// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
 /// when no plane has enough support. points: the plane of least squares through the pairs (RANSAC beyond
-/// four). pose: from height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper, "ground plane")
+/// four). pose: from height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper, "ground
+/// plane")
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 
@@ -77,6 +78,11 @@ Ground ground_from_points(const std::vector<PointPair>& points);
 
 /// Throws Error where `source` is points or pose and `known` does not say it, or not soundly.
 void validate(const GroundConfig& config, bool has_rig);
+
+/// `ground` itself, or where it was refused for want of evidence a ground fitted to all disparities: good
+/// enough as one cue among others, not to reject matches by.
+Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
+                     const GroundConfig& config, const Exec& exec);
 
 /// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground.
 /// Nothing is above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground:

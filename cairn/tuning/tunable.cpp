@@ -181,8 +181,8 @@ std::vector<std::string> usual_tunables(const Config& config, bool objects) {
   if (!objects) return patterns;
   if (config.ground.source != GroundSource::off) add({"ground.margin"});
   add({"objects.min_area", "objects.min_confidence"});
-  if (config.fusion.method == FusionMethod::evidence) {
-    add({"evidence.*", "facets.*", "figure.*", "group.*"});
+  if (config.fusion.method == FusionMethod::hierarchy) {
+    add({"evidence.*", "superpixels.*"});
   } else {
     add({"intensity.*", "disparity.*"});
   }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/target.hpp>
-#include <cairn/grouping/ranks.hpp>
+#include <cairn/objects/ranks.hpp>
 #include <limits>
 #include <random>
 #include <vector>

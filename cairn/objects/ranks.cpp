@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
-#include <cairn/grouping/ranks.hpp>
+#include <cairn/objects/ranks.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cmath>
 #include <cstdint>

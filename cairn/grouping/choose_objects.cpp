@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/grouping/choose_objects.hpp>
+#include <cairn/grouping/segmentation_of.hpp>
+#include <cmath>
+
+namespace cairn {
+namespace {
+
+/// 1/(1 + e^−x) in steps of 1/4096, the same bits everywhere: what exp() gives in the last place differs
+/// between processors.
+float likelihood(float odds_logarithm) {
+  return static_cast<float>(std::floor(4096.0 / (1.0 + std::exp(-double{odds_logarithm})) + 0.5) / 4096.0);
+}
+
+}  // namespace
+
+ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
+                             const ChoiceLimits& limits) {
+  const std::size_t count = tree.nodes.size();
+  std::vector<float> scores(count);
+  std::vector<double> best(count);  // what the best choice at or below each node exceeds min_score by
+  std::vector<bool> taken(count);   // that choice is the node itself
+  for (std::size_t i = 0; i < count; ++i) {
+    const MergeNode& node = tree.nodes[i];
+    if (node.part_a >= 0) best[i] = best[slot(node.part_a)] + best[slot(node.part_b)];
+    if (node.area < limits.min_area) continue;
+    scores[i] = likelihood(whole_object(node.features));
+    const double gain = double{scores[i]} - limits.min_score;
+    taken[i] = gain > 0 && gain >= best[i];
+    if (taken[i]) best[i] = gain;
+  }
+  ChosenObjects chosen{{}, {0.0F}};
+  std::vector<std::int32_t> object(count, 0);
+  for (std::size_t i = count; i-- > 0;) {
+    const std::int32_t whole = tree.nodes[i].whole;
+    if (whole >= 0) object[i] = object[slot(whole)];
+    if (object[i] > 0 || !taken[i]) continue;
+    object[i] = static_cast<std::int32_t>(chosen.scores.size());
+    chosen.scores.push_back(scores[i]);
+  }
+  chosen.object_of.assign(object.begin(), object.begin() + tree.superpixels);
+  return chosen;
+}
+
+Segmentation groups_of(const Superpixels& superpixels, const ChosenObjects& chosen,
+                       const DisparityMap& disparity, const Exec& exec) {
+  Image<RegionId> labels(superpixels.labels.size(), exec.pool);
+  for (int y = 0; y < labels.height(); ++y) {
+    for (int x = 0; x < labels.width(); ++x)
+      labels(x, y) = RegionId{chosen.object_of[index(superpixels.labels(x, y))]};
+  }
+  Segmentation groups = segmentation_of(std::move(labels), chosen.scores.size(),
+                                        [&](int x, int y) { return double{disparity.disparity_px(x, y)}; });
+  groups.regions.front().is_background = true;
+  return groups;
+}
+
+}  // namespace cairn

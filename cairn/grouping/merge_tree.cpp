@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/grouping/merge_tree.hpp>
+#include <queue>
+#include <utility>
+
+namespace cairn {
+namespace {
+
+constexpr float kOneSuperpixel = 20.0F;  // how alike the parts of a superpixel are
+constexpr int kMuch = 8;                 // a part of less than 1/8 of the other's area changes little
+
+FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
+  FrameCues frame{.width = cues.gray.width(),
+                  .height = cues.gray.height(),
+                  .has_colour = !cues.rgb.empty(),
+                  .has_ground = cues.ground.plane.has_value(),
+                  .walls_and_floor = static_cast<int>(cues.background.planes.size()),
+                  .noise_sigma = cues.noise_sigma};
+  std::int64_t matched = 0;
+  std::int64_t textured = 0;
+  for (const RegionCues& region : graph.regions) {
+    matched += region.matched.n;
+    textured += region.textured.n;
+    if (region.matched.n == 0) continue;
+    frame.nearest_px =
+        std::max(frame.nearest_px, static_cast<double>(region.matched.d) /
+                                       static_cast<double>(region.matched.n) / kDisparitySteps);
+  }
+  const auto area = static_cast<float>(cues.gray.size().area());
+  frame.matched_share = static_cast<float>(matched) / area;
+  frame.evidence_share = static_cast<float>(textured) / area;
+  return frame;
+}
+
+class Growing {
+ public:
+  Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
+          const JudgedPair& told)
+      : graph_(gather_cues(superpixels, cues)),
+        frame_(frame_cues(graph_, cues)),
+        same_thing_(same_thing),
+        told_(told),
+        planes_(graph_.regions.size()),
+        nodes_(graph_.regions.size()),
+        contacts_of_(graph_.regions.size()),
+        common_(graph_.regions.size(), -1),
+        fusions_(graph_.regions.size(), 0),
+        judged_(graph_.contacts.size()) {
+    tree_.superpixels = superpixels.count;
+    tree_.nodes.reserve(2 * graph_.regions.size());
+    tree_.nodes.resize(graph_.regions.size());
+    for (std::size_t i = 0; i < graph_.contacts.size(); ++i) {
+      contacts_of_[slot(graph_.contacts[i].a)].push_back(static_cast<std::int32_t>(i));
+      contacts_of_[slot(graph_.contacts[i].b)].push_back(static_cast<std::int32_t>(i));
+    }
+    for (std::size_t r = 0; r < graph_.regions.size(); ++r) {
+      nodes_[r] = static_cast<std::int32_t>(r);
+      fit(r);
+    }
+    for (std::size_t i = 0; i < graph_.contacts.size(); ++i) queue(static_cast<std::int32_t>(i));
+    for (std::size_t r = 0; r < graph_.regions.size(); ++r) describe(r, {kOneSuperpixel, kOneSuperpixel, 1});
+  }
+
+  MergeTree run() {
+    while (!queue_.empty()) {
+      const Entry next = queue_.top();
+      queue_.pop();
+      const Judged& judged = judged_[slot(next.contact)];
+      if (judged.version != next.version) continue;
+      if (fusions_at(next.contact) != next.fusions) {
+        judge(next.contact);
+        if (!queue_.empty() && judged.score < queue_.top().score) {
+          queue_.push({judged.score, next.contact, next.version, fusions_at(next.contact)});
+          continue;
+        }
+      }
+      fuse(next.contact);
+    }
+    return std::move(tree_);
+  }
+
+ private:
+  struct Judged {
+    float score = 0;
+    std::int32_t version = 0;  // −1: there is no such contact any more
+  };
+  struct Entry {
+    float score;
+    std::int32_t contact;
+    std::int32_t version;
+    std::int64_t fusions;                       // of its two ends, when it was judged
+    bool operator<(const Entry& other) const {  // the queue's top is the greatest
+      return score < other.score || (score == other.score && contact > other.contact);
+    }
+  };
+
+  [[nodiscard]] RegionSide side(std::int32_t region) const {
+    return {graph_.regions[slot(region)], planes_[slot(region)]};
+  }
+  [[nodiscard]] std::int32_t other_end(std::int32_t contact, std::int32_t region) const {
+    const ContactCues& c = graph_.contacts[slot(contact)];
+    return c.a == region ? c.b : c.a;
+  }
+  [[nodiscard]] std::int64_t fusions_at(std::int32_t contact) const {
+    const ContactCues& c = graph_.contacts[slot(contact)];
+    return fusions_[slot(c.a)] + fusions_[slot(c.b)];
+  }
+
+  void fit(std::size_t region) {
+    const RegionCues& r = graph_.regions[region];
+    planes_[region] = {fit_plane(r.matched, frame_.width), fit_plane(r.textured, frame_.width)};
+  }
+
+  void judge(std::int32_t contact) {
+    const ContactCues& c = graph_.contacts[slot(contact)];
+    const MergeFeatures features = merge_features(side(c.a), side(c.b), c, frame_);
+    judged_[slot(contact)].score = same_thing_(features);
+    if (told_) told_(nodes_[slot(c.a)], nodes_[slot(c.b)], features);
+  }
+  void queue(std::int32_t contact) {
+    judge(contact);
+    const Judged& judged = judged_[slot(contact)];
+    queue_.push({judged.score, contact, judged.version, fusions_at(contact)});
+  }
+
+  void describe(std::size_t region, const Origin& origin) {
+    neighbours_.clear();
+    for (const std::int32_t i : contacts_of_[region]) {
+      if (judged_[slot(i)].version < 0) continue;
+      const ContactCues& c = graph_.contacts[slot(i)];
+      const bool turned = slot(c.b) == region;
+      neighbours_.push_back({side(turned ? c.a : c.b), c, turned, judged_[slot(i)].score});
+    }
+    MergeNode& node = tree_.nodes[slot(nodes_[region])];
+    node.area = graph_.regions[region].area;
+    node.origin = origin;
+    node.features = object_features(side(static_cast<std::int32_t>(region)), neighbours_, origin, frame_);
+  }
+
+  /// The contacts of `lost` become those of `kept`. Returns those that changed.
+  std::vector<std::int32_t> hand_over(std::int32_t kept, std::int32_t lost) {
+    std::vector<std::int32_t>& contacts = contacts_of_[slot(kept)];
+    std::erase_if(contacts, [&](std::int32_t i) { return judged_[slot(i)].version < 0; });
+    for (const std::int32_t i : contacts) common_[slot(other_end(i, kept))] = i;
+    std::vector<std::int32_t> changed;
+    for (const std::int32_t i : contacts_of_[slot(lost)]) {
+      if (judged_[slot(i)].version < 0) continue;
+      ContactCues& contact = graph_.contacts[slot(i)];
+      const bool first = contact.a == lost;
+      const std::int32_t known = common_[slot(first ? contact.b : contact.a)];
+      if (known >= 0) {
+        ContactCues& both = graph_.contacts[slot(known)];
+        both.add(contact, (both.a == kept) != first);
+        judged_[slot(i)].version = -1;
+        changed.push_back(known);
+      } else {
+        (first ? contact.a : contact.b) = kept;
+        contacts.push_back(i);
+        changed.push_back(i);
+      }
+    }
+    contacts_of_[slot(lost)] = {};
+    for (const std::int32_t i : contacts) common_[slot(other_end(i, kept))] = -1;
+    return changed;
+  }
+
+  void fuse(std::int32_t across) {
+    const float score = judged_[slot(across)].score;
+    std::int32_t kept = graph_.contacts[slot(across)].a;
+    std::int32_t lost = graph_.contacts[slot(across)].b;
+    if (contacts_of_[slot(kept)].size() < contacts_of_[slot(lost)].size()) std::swap(kept, lost);
+    judged_[slot(across)].version = -1;
+    RegionCues& region = graph_.regions[slot(kept)];
+    const auto [small, large] = std::minmax(region.area, graph_.regions[slot(lost)].area);
+    const bool much = small * kMuch > large;
+    const Origin origin = fused_node(kept, lost, score);
+    region.add(graph_.regions[slot(lost)], graph_.contacts[slot(across)].length);
+    ++fusions_[slot(kept)];
+    fit(slot(kept));
+    const std::vector<std::int32_t> changed = hand_over(kept, lost);
+    for (const std::int32_t i : much ? contacts_of_[slot(kept)] : changed) {
+      ++judged_[slot(i)].version;
+      queue(i);
+    }
+    describe(slot(kept), origin);
+  }
+
+  /// A new node of the two regions' nodes, which is from now on that of `kept`.
+  Origin fused_node(std::int32_t kept, std::int32_t lost, float score) {
+    const auto node = static_cast<std::int32_t>(tree_.nodes.size());
+    const std::array parts{nodes_[slot(kept)], nodes_[slot(lost)]};
+    const std::int64_t area = tree_.nodes[slot(parts[0])].area + tree_.nodes[slot(parts[1])].area;
+    Origin origin{.same_thing = score, .least_same_thing = score};
+    for (const std::int32_t i : parts) {
+      MergeNode& part = tree_.nodes[slot(i)];
+      part.whole = node;
+      const float share = static_cast<float>(part.area) / static_cast<float>(area);
+      tell_end(part.features, share, score);
+      origin.least_same_thing = std::min(origin.least_same_thing, part.origin.least_same_thing);
+      origin.larger_part = i == parts[0] ? share : std::max(origin.larger_part, share);
+    }
+    tree_.nodes.push_back({.part_a = parts[0], .part_b = parts[1]});
+    nodes_[slot(kept)] = node;
+    return origin;
+  }
+
+  RegionGraphCues graph_;
+  FrameCues frame_;
+  const FittedTrees& same_thing_;
+  const JudgedPair& told_;
+  std::vector<RegionPlanes> planes_;
+  std::vector<std::int32_t> nodes_;  // of each region
+  std::vector<std::vector<std::int32_t>> contacts_of_;
+  std::vector<std::int32_t> common_;   // while two fuse: the contact with the one that is kept; −1 = none
+  std::vector<std::int64_t> fusions_;  // of each region
+  std::vector<Judged> judged_;         // each contact
+  std::vector<Neighbour> neighbours_;  // of the region that is described
+  std::priority_queue<Entry> queue_;
+  MergeTree tree_;
+};
+
+}  // namespace
+
+MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
+                          const JudgedPair& told) {
+  return Growing(superpixels, cues, same_thing, told).run();
+}
+
+}  // namespace cairn

@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/grouping/region_features.hpp>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace cairn {
+namespace {
+
+constexpr double kLevelling = 4e-4;  // of a plane: the spread that its slopes are damped by, in image widths²
+constexpr std::int64_t kLeastTextured = 6;  // disparities that a plane is believed from
+constexpr std::int64_t kLeastMatched = 12;
+
+/// Takes the features in turn, each with its name.
+struct Values {
+  std::span<float> out;
+  std::size_t n = 0;
+  void operator()(std::string_view /*name*/, double value) { out[n++] = static_cast<float>(value); }
+};
+struct Names {
+  std::vector<std::string_view> out;
+  void operator()(std::string_view name, double /*value*/) { out.push_back(name); }
+};
+
+double share(double part, double whole) {
+  return whole > 0 ? part / whole : double{kUnknown};
+}
+double share(std::int64_t part, std::int64_t whole) {
+  return share(static_cast<double>(part), static_cast<double>(whole));
+}
+/// Of sums in 1/64 px.
+double mean_px(std::int64_t sum, std::int64_t n) {
+  return share(static_cast<double>(sum) / kDisparitySteps, static_cast<double>(n));
+}
+double root(double squares) {
+  return std::sqrt(std::max(0.0, squares));
+}
+
+double mean(const RegionCues& r, std::size_t channel) {
+  return static_cast<double>(r.colour[channel]) / static_cast<double>(r.area);
+}
+double spread(const RegionCues& r, std::size_t channel) {
+  const double m = mean(r, channel);
+  return root(static_cast<double>(r.colour_squares[channel]) / static_cast<double>(r.area) - m * m);
+}
+double brightness_difference(const RegionCues& p, const RegionCues& q) {
+  return std::abs(mean(p, 0) - mean(q, 0));
+}
+double colour_difference(const RegionCues& p, const RegionCues& q) {
+  const double blue = mean(p, 1) - mean(q, 1);
+  const double red = mean(p, 2) - mean(q, 2);
+  return std::sqrt(blue * blue + red * red);
+}
+/// χ² of the shares of each bin.
+double histogram_distance(const RegionCues& p, const RegionCues& q) {
+  const float of_p = 1.0F / static_cast<float>(p.area);
+  const float of_q = 1.0F / static_cast<float>(q.area);
+  float sum = 0;
+  for (std::size_t i = 0; i < p.histogram.size(); ++i) {
+    const float u = static_cast<float>(p.histogram[i]) * of_p;
+    const float v = static_cast<float>(q.histogram[i]) * of_q;
+    if (u + v > 0) sum += (u - v) * (u - v) / (u + v);
+  }
+  return sum;
+}
+
+double box_area(const RegionCues& r) {
+  return (r.right - r.left + 1.0) * (r.bottom - r.top + 1.0);
+}
+double common_box_area(const RegionCues& p, const RegionCues& q) {
+  return (std::max(p.right, q.right) - std::min(p.left, q.left) + 1.0) *
+         (std::max(p.bottom, q.bottom) - std::min(p.top, q.top) + 1.0);
+}
+std::int64_t at_image_border(const RegionCues& r) {
+  return r.at_image_border[0] + r.at_image_border[1] + r.at_image_border[2] + r.at_image_border[3];
+}
+
+/// Where the contact's middle lies, from the image's centre.
+std::pair<double, double> middle(const ContactCues& c) {
+  const auto twice = static_cast<double>(2 * c.length);
+  return {static_cast<double>(c.x2) / twice, static_cast<double>(c.y2) / twice};
+}
+
+/// Depth of a smaller region s beside a larger one l, by one kind of disparities.
+template <class Out>
+void depth_features(const std::array<std::string_view, 5>& names, const PlaneMoments& of_s,
+                    const FittedPlane& s, const PlaneMoments& of_l, const FittedPlane& l, std::int64_t least,
+                    const ContactCues& contact, int width, Out& out) {
+  if (of_s.n < least || of_l.n < least) {
+    for (const std::string_view name : names) out(name, kUnknown);
+    return;
+  }
+  PlaneMoments both = of_s;
+  both.add(of_l);
+  const FittedPlane common = fit_plane(both, width);
+  const auto [x, y] = middle(contact);
+  out(names[0], s.at(x, y) - l.at(x, y));
+  out(names[1], s.d - l.at(s.x, s.y));
+  out(names[2],
+      root((common.squares - s.squares - l.squares) / static_cast<double>(std::min(of_s.n, of_l.n))));
+  out(names[3], root(common.squares / static_cast<double>(both.n)));
+  out(names[4], (s.d - l.d) / std::max({1.0, s.d, l.d}));
+}
+
+constexpr std::array<std::string_view, 5> kMatchedNames{
+    "step of the planes at the border, px", "distance of the smaller one from the other's plane, px",
+    "what a common plane is worse, px", "distance from a common plane, px", "step of the means, relative"};
+constexpr std::array<std::string_view, 5> kTexturedNames{
+    "evidence: step of the planes at the border, px",
+    "evidence: distance of the smaller one from the other's plane, px",
+    "evidence: what a common plane is worse, px", "evidence: distance from a common plane, px",
+    "evidence: step of the means, relative"};
+
+template <class Out>
+void list_merge_features(const RegionSide& a, const RegionSide& b, const ContactCues& contact,
+                         const FrameCues& frame, Out& out) {
+  const bool swapped = a.cues.area > b.cues.area;
+  const RegionCues& s = swapped ? b.cues : a.cues;
+  const RegionCues& l = swapped ? a.cues : b.cues;
+  const RegionPlanes& planes_s = swapped ? b.planes : a.planes;
+  const RegionPlanes& planes_l = swapped ? a.planes : b.planes;
+  const double image = static_cast<double>(frame.width) * frame.height;
+  const auto length = static_cast<double>(contact.length);
+  const auto area_s = static_cast<double>(s.area);
+  const auto area_l = static_cast<double>(l.area);
+  out("border length over the root of the smaller one's area", length / std::sqrt(area_s));
+  out("border length, share of the smaller one's outline", share(contact.length, s.perimeter));
+  const double edge = static_cast<double>(contact.edge_sum) / length / 4;
+  out("mean edge, grey levels", edge);
+  out("mean edge over noise", edge / (frame.noise_sigma + 1));
+  out("share of the border without an edge", share(contact.weak, contact.length));
+  const double brightness = brightness_difference(s, l);
+  out("difference of brightness, grey levels", brightness);
+  out("difference of colour, grey levels", frame.has_colour ? colour_difference(s, l) : double{kUnknown});
+  out("difference of brightness over its spread",
+      brightness / (1 + frame.noise_sigma + 0.5 * (spread(s, 0) + spread(l, 0))));
+  out("distance of the colours' histograms", histogram_distance(s, l));
+  out("step right at the border, px", mean_px(contact.near_abs, contact.near_n));
+  out("step 3 px away from it, with its sign, px",
+      contact.far_n > 0 ? (swapped ? -1 : 1) * mean_px(contact.far_sum, contact.far_n) : double{kUnknown});
+  out("step 3 px away from it, px", mean_px(contact.far_abs, contact.far_n));
+  out("share of the border with disparities there", share(contact.far_n, contact.length));
+  out("share of these that are level", share(contact.level, contact.far_n));
+  depth_features(kTexturedNames, s.textured, planes_s.textured, l.textured, planes_l.textured, kLeastTextured,
+                 contact, frame.width, out);
+  depth_features(kMatchedNames, s.matched, planes_s.matched, l.matched, planes_l.matched, kLeastMatched,
+                 contact, frame.width, out);
+  out("evidence, share of the smaller one", share(s.textured.n, s.area));
+  out("evidence, share of the larger one", share(l.textured.n, l.area));
+  out("disparities, share of the smaller one", share(s.matched.n, s.area));
+  out("area of the smaller one, share of the image", area_s / image);
+  out("area of the larger one, share of the image", area_l / image);
+  out("height of the smaller one above the ground, px", mean_px(s.above_ground.sum, s.above_ground.n));
+  out("height of the larger one above the ground, px", mean_px(l.above_ground.sum, l.above_ground.n));
+  out("share of the smaller one on the ground", share(s.above_ground.on, s.above_ground.n));
+  out("share of the larger one on the ground", share(l.above_ground.on, l.above_ground.n));
+  out("the smaller one before the background, px", mean_px(s.before_background.sum, s.before_background.n));
+  out("the larger one before the background, px", mean_px(l.before_background.sum, l.before_background.n));
+  const double fill = (area_s + area_l) / common_box_area(s, l);
+  out("both fill of their box", fill);
+  out("what that is more than before", fill - std::max(area_s / box_area(s), area_l / box_area(l)));
+  const auto outline_s = static_cast<double>(s.perimeter);
+  const auto outline_l = static_cast<double>(l.perimeter);
+  const double outline = (outline_s + outline_l - 2 * length) / std::sqrt(area_s + area_l);
+  out("outline of both over the root of their area", outline);
+  out("what that is longer than before",
+      outline - std::max(outline_s / std::sqrt(area_s), outline_l / std::sqrt(area_l)));
+  out("image's border, share of the smaller one's outline",
+      share(at_image_border(s), at_image_border(s) + s.perimeter));
+  out("image's border, share of the larger one's outline",
+      share(at_image_border(l), at_image_border(l) + l.perimeter));
+  out("difference of texture, grey levels",
+      std::abs(static_cast<double>(s.texture) / area_s - static_cast<double>(l.texture) / area_l) / 4);
+  out("noise, grey levels", frame.noise_sigma);
+  out("disparity of the smaller one, share of the nearest",
+      planes_s.matched.any ? planes_s.matched.d / frame.nearest_px : double{kUnknown});
+}
+
+template <class Out>
+void list_shape(const RegionCues& r, const FrameCues& frame, Out& out) {
+  const double image = static_cast<double>(frame.width) * frame.height;
+  const auto area = static_cast<double>(r.area);
+  const auto outline = static_cast<double>(r.perimeter + at_image_border(r));
+  out("area, share of the image", area / image);
+  out("fills of its box", area / box_area(r));
+  out("outline over the root of the area", outline / std::sqrt(area));
+  const double x = static_cast<double>(r.x) / area;
+  const double y = static_cast<double>(r.y) / area;
+  const double xx = static_cast<double>(r.xx) / area - x * x;
+  const double yy = static_cast<double>(r.yy) / area - y * y;
+  const double xy = static_cast<double>(r.xy) / area - x * y;
+  const double sum = xx + yy;
+  const double difference = root((xx - yy) * (xx - yy) + 4 * xy * xy);
+  out("least over greatest extent, squared", (sum - difference) / std::max(1e-9, sum + difference));
+  out("area over that of an ellipse of its extents", area / std::max(1e-9, root(xx * yy - xy * xy)));
+  out("its middle below the image's, share of the height", y / frame.height);
+  out("its middle beside the image's, share of the width", std::abs(x) / frame.width);
+  out("width, share of the image's", (r.right - r.left + 1.0) / frame.width);
+  out("height, share of the image's", (r.bottom - r.top + 1.0) / frame.height);
+  out("its foot, share of the image's height", (r.bottom + 1.0) / frame.height);
+  out("image's left border, share of its outline", static_cast<double>(r.at_image_border[0]) / outline);
+  out("image's right border, share of its outline", static_cast<double>(r.at_image_border[1]) / outline);
+  out("image's top, share of its outline", static_cast<double>(r.at_image_border[2]) / outline);
+  out("image's bottom, share of its outline", static_cast<double>(r.at_image_border[3]) / outline);
+  out("borders of the image that it touches",
+      static_cast<double>(std::count_if(r.at_image_border.begin(), r.at_image_border.end(),
+                                        [](std::int64_t pixels) { return pixels > 0; })));
+  out("spread of brightness, grey levels", spread(r, 0));
+  out("spread of colour, grey levels", frame.has_colour ? spread(r, 1) + spread(r, 2) : double{kUnknown});
+  out("texture, grey levels", static_cast<double>(r.texture) / area / 4);
+}
+
+/// Sums over a region's neighbours, weighted by the length of the contact.
+struct Surroundings {
+  double length = 0;
+  std::int64_t edge_sum = 0, weak = 0, near_n = 0, near_sum = 0, far_n = 0, far_sum = 0;
+  std::int64_t nearer = 0, farther = 0, level = 0, foot_n = 0, foot_sum = 0;
+  double brightness = 0, colour = 0, histogram = 0;
+  double on_ground = 0, on_ground_length = 0, on_background = 0, on_background_length = 0;
+  double step = 0, step_length = 0;
+  double textured_step = 0, textured_length = 0, matched_step = 0, matched_length = 0, least_step = 1e9;
+  double largest = 0, same_thing = 0, wants = 0, most_same_thing = -100;
+
+  void add(const RegionSide& region, const Neighbour& n) {
+    const RegionCues& r = region.cues;
+    const RegionCues& o = n.side.cues;
+    const ContactCues& c = n.contact;
+    const auto weight = static_cast<double>(c.length);
+    const std::int64_t sign = n.turned ? -1 : 1;
+    length += weight;
+    edge_sum += c.edge_sum;
+    weak += c.weak;
+    near_n += c.near_n;
+    near_sum += sign * c.near_sum;
+    far_n += c.far_n;
+    far_sum += sign * c.far_sum;
+    nearer += n.turned ? c.farther : c.nearer;
+    farther += n.turned ? c.nearer : c.farther;
+    level += c.level;
+    const auto [x, y] = middle(c);
+    if (y > static_cast<double>(r.y) / static_cast<double>(r.area)) {
+      foot_n += c.far_n;
+      foot_sum += sign * c.far_sum;
+    }
+    brightness += weight * brightness_difference(r, o);
+    colour += weight * colour_difference(r, o);
+    histogram += weight * histogram_distance(r, o);
+    if (o.above_ground.n > 0) {
+      on_ground += weight * share(o.above_ground.on, o.above_ground.n);
+      on_ground_length += weight;
+    }
+    if (o.before_background.n > 0) {
+      on_background +=
+          weight * share(o.before_background.on + o.before_background.behind, o.before_background.n);
+      on_background_length += weight;
+    }
+    if (region.planes.matched.any && n.side.planes.matched.any) {
+      step += weight * (region.planes.matched.d - n.side.planes.matched.d);
+      step_length += weight;
+    }
+    if (r.textured.n >= kLeastTextured && o.textured.n >= kLeastTextured) {
+      textured_step += weight * (region.planes.textured.at(x, y) - n.side.planes.textured.at(x, y));
+      textured_length += weight;
+    }
+    if (r.matched.n >= kLeastMatched && o.matched.n >= kLeastMatched) {
+      const double to = region.planes.matched.at(x, y) - n.side.planes.matched.at(x, y);
+      matched_step += weight * to;
+      matched_length += weight;
+      least_step = std::min(least_step, to);
+    }
+    largest = std::max(largest, static_cast<double>(o.area) / static_cast<double>(r.area));
+    same_thing += weight * std::clamp(n.same_thing, -4.0F, 4.0F);
+    wants += n.same_thing > 0 ? weight : 0;
+    most_same_thing = std::max(most_same_thing, double{n.same_thing});
+  }
+};
+
+template <class Out>
+void list_surroundings(const Surroundings& s, std::size_t neighbours, double own_px, const FrameCues& frame,
+                       Out& out) {
+  const auto edges = static_cast<double>(s.edge_sum) / 4;
+  out("mean edge around it, grey levels", share(edges, s.length));
+  out("mean edge around it over noise", share(edges, s.length * (frame.noise_sigma + 1)));
+  out("share of the outline without an edge", share(static_cast<double>(s.weak), s.length));
+  out("step down around it, 3 px away, px", mean_px(s.far_sum, s.far_n));
+  out("step down right at the outline, px", mean_px(s.near_sum, s.near_n));
+  out("share of the outline with disparities", share(static_cast<double>(s.far_n), s.length));
+  out("share of these where it is nearer", share(s.nearer, s.far_n));
+  out("share of these where it is farther", share(s.farther, s.far_n));
+  out("share of these that are level", share(s.level, s.far_n));
+  out("difference of brightness to what is around, grey levels", share(s.brightness, s.length));
+  out("difference of colour to what is around, grey levels",
+      frame.has_colour ? share(s.colour, s.length) : double{kUnknown});
+  out("distance of the colours' histograms to what is around", share(s.histogram, s.length));
+  out("what is around it on the ground, share", share(s.on_ground, s.on_ground_length));
+  out("what is around it in the background, share", share(s.on_background, s.on_background_length));
+  out("step of the means to what is around, relative",
+      s.step_length > 0 ? s.step / s.step_length / std::max(1.0, own_px) : double{kUnknown});
+  out("step at its foot, px", mean_px(s.foot_sum, s.foot_n));
+  out("the largest neighbour over its own area", std::min(s.largest, 1000.0));
+  out("neighbours", static_cast<double>(neighbours));
+}
+
+template <class Out>
+void list_plane(const std::array<std::string_view, 4>& names, const PlaneMoments& moments,
+                const FittedPlane& plane, int width, Out& out) {
+  if (moments.n < kLeastMatched) {
+    for (const std::string_view name : names) out(name, kUnknown);
+    return;
+  }
+  const auto n = static_cast<double>(moments.n);
+  const double nearness = std::max(1.0, plane.d);
+  out(names[0], root(plane.squares / n));
+  out(names[1], plane.a * width / nearness);
+  out(names[2], plane.b * width / nearness);
+  const double squares = static_cast<double>(moments.dd) / (kDisparitySteps * kDisparitySteps);
+  out(names[3], root(squares / n - plane.d * plane.d) / nearness);
+}
+
+constexpr std::array<std::string_view, 4> kTexturedPlane{
+    "evidence: distance from its plane, px", "evidence: slope across, relative",
+    "evidence: slope down, relative", "evidence: spread, relative"};
+constexpr std::array<std::string_view, 4> kMatchedPlane{"distance from its plane, px",
+                                                        "slope across, relative", "slope down, relative",
+                                                        "spread of disparity, relative"};
+
+/// The mean height over what its error may be.
+double how_clear(const Heights& heights) {
+  if (heights.n < 3) return kUnknown;
+  const auto n = static_cast<double>(heights.n);
+  const double m = static_cast<double>(heights.sum) / kDisparitySteps / n;
+  const double squares = static_cast<double>(heights.squares) / (kDisparitySteps * kDisparitySteps) / n;
+  return m / std::sqrt((std::max(0.0, squares - m * m) + 0.05) / n);
+}
+
+template <class Out>
+void list_object_features(const RegionSide& region, std::span<const Neighbour> neighbours,
+                          const Origin& origin, const FrameCues& frame, Out& out) {
+  const RegionCues& r = region.cues;
+  list_shape(r, frame, out);
+  Surroundings around;
+  for (const Neighbour& neighbour : neighbours) around.add(region, neighbour);
+  const double own_px = region.planes.matched.any ? region.planes.matched.d : 0;
+  list_surroundings(around, neighbours.size(), own_px, frame, out);
+  out("evidence, share", share(r.textured.n, r.area));
+  out("disparities, share", share(r.matched.n, r.area));
+  out("disparity, share of the nearest", own_px / frame.nearest_px);
+  list_plane(kTexturedPlane, r.textured, region.planes.textured, frame.width, out);
+  list_plane(kMatchedPlane, r.matched, region.planes.matched, frame.width, out);
+  const Heights& ground = r.above_ground;
+  out("height above the ground, px", mean_px(ground.sum, ground.n));
+  out("height above the ground, relative",
+      ground.n > 0 ? mean_px(ground.sum, ground.n) / std::max(1.0, own_px) : double{kUnknown});
+  out("share on the ground", share(ground.on, ground.n));
+  out("share below the ground", share(ground.behind, ground.n));
+  out("share above the ground", share(ground.n - ground.on - ground.behind, ground.n));
+  const Heights& background = r.before_background;
+  out("before the background, px", mean_px(background.sum, background.n));
+  out("share in the background", share(background.on + background.behind, background.n));
+  out("a ground is known", frame.has_ground ? 1 : 0);
+  out("floor and walls known", frame.walls_and_floor);
+  out("noise, grey levels", frame.noise_sigma);
+  out("its parts were one thing", origin.same_thing);
+  out("its larger part, share", origin.larger_part);
+  out("evidence: step of the planes around, px", share(around.textured_step, around.textured_length));
+  out("step of the planes around, px", share(around.matched_step, around.matched_length));
+  out("least step of the planes around, px",
+      around.matched_length > 0 ? around.least_step : double{kUnknown});
+  out("evidence: height above the ground, px",
+      mean_px(r.textured_above_ground.sum, r.textured_above_ground.n));
+  out("evidence: height above the ground over its error", how_clear(r.textured_above_ground));
+  out("evidence: before the background, px",
+      mean_px(r.textured_before_background.sum, r.textured_before_background.n));
+  out("evidence: before the background over its error", how_clear(r.textured_before_background));
+  const bool alone = neighbours.empty();
+  out("most alike neighbour", alone ? double{kUnknown} : around.most_same_thing);
+  out("how alike what is around is", share(around.same_thing, around.length));
+  out("share of the outline to what is likely the same thing", share(around.wants, around.length));
+  out("its least alike parts", origin.least_same_thing);
+  out("disparities in the image, share", frame.matched_share);
+  out("evidence in the image, share", frame.evidence_share);
+  out("its share of what it becomes a part of", kUnknown);
+  out("how alike it is to the rest of that", kUnknown);
+}
+
+}  // namespace
+
+FittedPlane fit_plane(const PlaneMoments& m, int width) {
+  FittedPlane plane;
+  if (m.n < 1) return plane;
+  const auto n = static_cast<double>(m.n);
+  const double steps = kDisparitySteps;
+  plane.any = true;
+  plane.x = static_cast<double>(m.x) / n;
+  plane.y = static_cast<double>(m.y) / n;
+  const double mean_steps = static_cast<double>(m.d) / n;
+  const double ridge = n * kLevelling * width * width;
+  const double xx = static_cast<double>(m.xx) - static_cast<double>(m.x) * plane.x + ridge;
+  const double yy = static_cast<double>(m.yy) - static_cast<double>(m.y) * plane.y + ridge;
+  const double xy = static_cast<double>(m.xy) - static_cast<double>(m.x) * plane.y;
+  const double xd = (static_cast<double>(m.xd) - static_cast<double>(m.x) * mean_steps) / steps;
+  const double yd = (static_cast<double>(m.yd) - static_cast<double>(m.y) * mean_steps) / steps;
+  const double dd = (static_cast<double>(m.dd) - static_cast<double>(m.d) * mean_steps) / (steps * steps);
+  const double determinant = xx * yy - xy * xy;
+  plane.d = mean_steps / steps;
+  plane.a = (xd * yy - yd * xy) / determinant;
+  plane.b = (yd * xx - xd * xy) / determinant;
+  plane.squares = std::max(0.0, dd - plane.a * xd - plane.b * yd);
+  return plane;
+}
+
+MergeFeatures merge_features(const RegionSide& a, const RegionSide& b, const ContactCues& contact,
+                             const FrameCues& frame) {
+  MergeFeatures features{};
+  Values values{features};
+  list_merge_features(a, b, contact, frame, values);
+  assert(values.n == features.size());
+  return features;
+}
+
+ObjectFeatures object_features(const RegionSide& region, std::span<const Neighbour> neighbours,
+                               const Origin& origin, const FrameCues& frame) {
+  ObjectFeatures features{};
+  Values values{features};
+  list_object_features(region, neighbours, origin, frame, values);
+  assert(values.n == features.size());
+  return features;
+}
+
+void tell_end(ObjectFeatures& features, float share_of_it, float same_thing) {
+  features[kObjectFeatures - 2] = share_of_it;
+  features[kObjectFeatures - 1] = same_thing;
+}
+
+std::vector<std::string_view> merge_feature_names() {
+  const RegionCues region{.area = 1};
+  const RegionPlanes planes;
+  const ContactCues contact{.length = 1};
+  Names names;
+  list_merge_features({region, planes}, {region, planes}, contact, {}, names);
+  return names.out;
+}
+
+std::vector<std::string_view> object_feature_names() {
+  const RegionCues region{.area = 1};
+  const RegionPlanes planes;
+  Names names;
+  list_object_features({region, planes}, {}, {}, {}, names);
+  return names.out;
+}
+
+}  // namespace cairn

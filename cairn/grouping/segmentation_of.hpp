@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <algorithm>
+#include <cairn/regions/region_graph.hpp>
+#include <utility>
+#include <vector>
+
+namespace cairn {
+
+/// Labels as a segmentation of `count` regions. value(x, y): what their statistics are of; NaN does not
+/// count.
+template <class Value>
+Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, Value value) {
+  Segmentation result{std::move(labels), std::vector<Region>(count)};
+  for (int y = 0; y < result.labels.height(); ++y) {
+    for (int x = 0; x < result.labels.width(); ++x) {
+      Region& region = result.regions[index(result.labels(x, y))];
+      ++region.pixel_count;
+      region.box = united(region.box, {x, y, 1, 1});
+      const double v = value(x, y);
+      if (!(v == v)) continue;
+      ++region.valid_count;
+      region.mean += v;
+      region.variance += v * v;
+    }
+  }
+  for (Region& region : result.regions) {
+    if (region.valid_count == 0) continue;
+    region.mean /= region.valid_count;
+    region.variance = std::max(0.0, region.variance / region.valid_count - region.mean * region.mean);
+  }
+  return result;
+}
+
+}  // namespace cairn

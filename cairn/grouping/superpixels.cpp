@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/parallel.hpp>
+#include <cairn/grouping/segmentation_of.hpp>
+#include <cairn/grouping/superpixels.hpp>
+#include <cairn/image/gradient.hpp>
+#include <cairn/regions/watershed.hpp>
+#include <cmath>
+#include <numeric>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+constexpr int kGrain = 16;                // rows
+constexpr float kSmoothing = 0.7F;        // px
+constexpr float kStepWeight = 8.0F;       // 1/4 grey level for each px of a step of disparity
+constexpr float kLargestStep = 4.0F;      // px
+constexpr double kEvenWithoutEdge = 2.0;  // 1/4 grey level
+
+/// The largest step of disparity to one of the four neighbours; 0 beside holes.
+float step_at(View<const float> disparity_px, int x, int y) {
+  const float here = disparity_px(x, y);
+  float step = 0;
+  const auto look = [&](int u, int v) {
+    if (!disparity_px.contains(u, v)) return;
+    const float to = std::abs(disparity_px(u, v) - here);
+    if (to > step) step = to;  // NaN is not
+  };
+  look(x - 1, y);
+  look(x + 1, y);
+  look(x, y - 1);
+  look(x, y + 1);
+  return std::min(step, kLargestStep);
+}
+
+Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const float> disparity_px,
+                                const Exec& exec) {
+  Image<std::uint16_t> sum(edges.size(), exec.pool);
+  parallel_for(exec, edges.height(), kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < edges.width(); ++x) {
+        const float step = std::floor(step_at(disparity_px, x, y) * kStepWeight + 0.5F);
+        sum(x, y) = static_cast<std::uint16_t>(edges(x, y) + static_cast<int>(step));
+      }
+    }
+  });
+  return sum;
+}
+
+/// Basins that fuse two by two.
+class Fusing {
+ public:
+  Fusing(const Basins& basins, View<const std::uint16_t> edges) : left_(basins.count) {
+    const auto count = slot(basins.count);
+    areas_.assign(count, 0);
+    for (int y = 0; y < basins.labels.height(); ++y) {
+      for (int x = 0; x < basins.labels.width(); ++x) ++areas_[index(basins.labels(x, y))];
+    }
+    parents_.resize(count);
+    std::iota(parents_.begin(), parents_.end(), 0);
+    common_.assign(count, -1);
+    links_of_.resize(count);
+    for (int y = 0; y < basins.labels.height(); ++y) {
+      for (int x = 0; x < basins.labels.width(); ++x) {
+        if (x + 1 < basins.labels.width()) meet(basins.labels, edges, {x, y}, {x + 1, y});
+        if (y + 1 < basins.labels.height()) meet(basins.labels, edges, {x, y}, {x, y + 1});
+      }
+    }
+    for (std::size_t i = 0; i < links_.size(); ++i) queue(static_cast<std::int32_t>(i));
+  }
+
+  void until(int count) {
+    while (left_ > count && !queue_.empty()) {
+      const Entry next = queue_.top();
+      queue_.pop();
+      const Link& link = links_[slot(next.link)];
+      if (link.version == next.version) fuse(next.link);
+    }
+  }
+
+  /// Which basin each one is part of now.
+  std::int32_t root(std::int32_t basin) {
+    while (parents_[slot(basin)] != basin) {
+      parents_[slot(basin)] = parents_[slot(parents_[slot(basin)])];
+      basin = parents_[slot(basin)];
+    }
+    return basin;
+  }
+
+ private:
+  struct Link {
+    std::int32_t a = 0;
+    std::int32_t b = 0;
+    std::int64_t length = 0;
+    std::int64_t edge_sum = 0;
+    std::int32_t version = 0;  // −1 = gone
+    [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
+  };
+  struct Entry {
+    double key;
+    std::int32_t link;
+    std::int32_t version;
+    bool operator<(const Entry& other) const {  // the queue's top is the greatest
+      return key > other.key || (key == other.key && link > other.link);
+    }
+  };
+
+  void meet(View<const RegionId> labels, View<const std::uint16_t> edges, Point p, Point q) {
+    const std::int32_t a = number(labels(p.x, p.y));
+    const std::int32_t b = number(labels(q.x, q.y));
+    if (a == b) return;
+    Link& link = link_between(a, b);
+    ++link.length;
+    link.edge_sum += std::max(edges(p.x, p.y), edges(q.x, q.y));
+  }
+  Link& link_between(std::int32_t a, std::int32_t b) {
+    // What was met last stands last.
+    const std::vector<std::int32_t>& known = links_of_[slot(a)];
+    for (auto i = known.rbegin(); i != known.rend(); ++i) {
+      if (links_[slot(*i)].other(a) == b) return links_[slot(*i)];
+    }
+    const auto next = static_cast<std::int32_t>(links_.size());
+    links_of_[slot(a)].push_back(next);
+    links_of_[slot(b)].push_back(next);
+    links_.push_back({a, b});
+    return links_.back();
+  }
+
+  void queue(std::int32_t i) {
+    const Link& link = links_[slot(i)];
+    const auto area = static_cast<double>(std::min(areas_[slot(link.a)], areas_[slot(link.b)]));
+    const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
+    queue_.push({(edge + kEvenWithoutEdge) * std::sqrt(area), i, link.version});
+  }
+
+  void queue_anew(std::int32_t i) {
+    ++links_[slot(i)].version;
+    queue(i);
+  }
+
+  void fuse(std::int32_t across) {
+    std::int32_t kept = links_[slot(across)].a;
+    std::int32_t lost = links_[slot(across)].b;
+    if (links_of_[slot(kept)].size() < links_of_[slot(lost)].size()) std::swap(kept, lost);
+    links_[slot(across)].version = -1;
+    parents_[slot(lost)] = kept;
+    const std::int64_t before = areas_[slot(kept)];
+    areas_[slot(kept)] += areas_[slot(lost)];
+    --left_;
+    std::vector<std::int32_t>& links = links_of_[slot(kept)];
+    std::erase_if(links, [&](std::int32_t i) { return links_[slot(i)].version < 0; });
+    for (const std::int32_t i : links) common_[slot(links_[slot(i)].other(kept))] = i;
+    for (const std::int32_t i : links_of_[slot(lost)]) {
+      Link& link = links_[slot(i)];
+      if (link.version < 0) continue;
+      const std::int32_t known = common_[slot(link.other(lost))];
+      if (known >= 0) {
+        links_[slot(known)].length += link.length;
+        links_[slot(known)].edge_sum += link.edge_sum;
+        link.version = -1;
+        queue_anew(known);
+      } else {
+        (link.a == lost ? link.a : link.b) = kept;
+        links.push_back(i);
+        queue_anew(i);
+      }
+    }
+    links_of_[slot(lost)] = {};
+    for (const std::int32_t i : links) {
+      const std::int32_t other = links_[slot(i)].other(kept);
+      common_[slot(other)] = -1;
+      if (areas_[slot(other)] > before) queue_anew(i);  // the smaller of the two may have grown
+    }
+  }
+
+  int left_;
+  std::vector<std::int64_t> areas_;
+  std::vector<std::int32_t> parents_;
+  std::vector<Link> links_;
+  std::vector<std::vector<std::int32_t>> links_of_;
+  std::vector<std::int32_t> common_;  // while two fuse: the link from the one that is kept; −1 = none
+  std::priority_queue<Entry> queue_;
+};
+
+}  // namespace
+
+Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
+                            const SuperpixelsConfig& config, const Exec& exec) {
+  Image<std::uint16_t> edges = edge_strength(gray, rgb, kSmoothing, exec);
+  const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, exec);
+  Basins basins = watershed(with_depth, exec);
+  Fusing fusing(basins, with_depth);
+  fusing.until(config.count);
+  std::vector<std::int32_t> numbers(slot(basins.count), -1);
+  std::int32_t count = 0;
+  for (int y = 0; y < gray.height(); ++y) {
+    RegionId* const row = basins.labels.row(y);
+    for (int x = 0; x < gray.width(); ++x) {
+      std::int32_t& number_of = numbers[slot(fusing.root(number(row[x])))];
+      if (number_of < 0) number_of = count++;
+      row[x] = RegionId{number_of};
+    }
+  }
+  return {std::move(basins.labels), count, std::move(edges)};
+}
+
+Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {
+  return segmentation_of(superpixels.labels.clone(exec.pool), slot(superpixels.count),
+                         [&](int x, int y) { return double{left(x, y)}; });
+}
+
+}  // namespace cairn

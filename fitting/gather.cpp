@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// fitting JOBS [--pairs FILE] [--regions FILE] [--min-score S] [--pictures DIR]: what fit.py fits to, and how
+// well what it has fitted does.
+//
+// Each line of JOBS is a frame's folder, `colour` or `grey`, and two files of fitted trees, `-` for those
+// that the library has. For each line one is printed: what was found in the frame. FILEs get a record of
+// floats for each pair of regions that was judged (the job's number, whether they show one thing, how pure
+// they are, the features), and for each region that may be an object (the job's number, its greatest IoU with
+// a true object, whether the truth is partial, the features).
+#include <cairn/cairn.hpp>
+#include <cairn/grouping/choose_objects.hpp>
+#include <cairn/image/noise.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <span>
+#include <sstream>
+#include <timing/clock.hpp>
+
+#include "scored_frames.hpp"
+
+namespace cairn::report {
+namespace {
+
+constexpr double kLeastArea = 0.0015;  // share of the image; regions that may be objects
+constexpr double kMostArea = 0.7;
+constexpr float kBothBackground =
+    0.3F;  // weight of pairs that are both background: the truth does not part its surfaces
+constexpr float kLeastPurity = 0.1F;
+
+/// Fitted trees in a file: base, numbers of roots and nodes; the roots; a node a line.
+struct LoadedTrees {
+  std::vector<std::int16_t> roots;
+  std::vector<FittedTrees::Node> nodes;
+  FittedTrees trees;
+};
+
+std::unique_ptr<LoadedTrees> load_trees(const std::string& path) {
+  auto loaded = std::make_unique<LoadedTrees>();
+  std::ifstream in(path);
+  std::size_t roots = 0;
+  std::size_t nodes = 0;
+  in >> loaded->trees.base >> roots >> nodes;
+  loaded->roots.resize(roots);
+  loaded->nodes.resize(nodes);
+  for (std::int16_t& root : loaded->roots) in >> root;
+  for (FittedTrees::Node& node : loaded->nodes) in >> node.feature >> node.below >> node.value;
+  if (!in) throw Error(path + ": no file of fitted trees");
+  loaded->trees.roots = loaded->roots;
+  loaded->trees.nodes = loaded->nodes;
+  return loaded;
+}
+
+class Trees {
+ public:
+  const FittedTrees& at(const std::string& path, const FittedTrees& otherwise) {
+    if (path == "-") return otherwise;
+    std::unique_ptr<LoadedTrees>& known = known_[path];
+    if (!known) known = load_trees(path);
+    return known->trees;
+  }
+
+ private:
+  std::map<std::string, std::unique_ptr<LoadedTrees>> known_;
+};
+
+struct Files {
+  std::ofstream pairs;
+  std::ofstream regions;
+};
+
+template <std::size_t N>
+void record(std::ofstream& file, int job, float label, float more, const std::array<float, N>& features) {
+  const std::array head{static_cast<float>(job), label, more};
+  file.write(reinterpret_cast<const char*>(head.data()), sizeof head);
+  file.write(reinterpret_cast<const char*>(features.data()), sizeof features);
+}
+
+/// What the truth says of the nodes of a tree. Kind 0: don't care, 1: no object, 2 …: objects.
+class Truth {
+ public:
+  Truth(const TrueFrame& frame, const Superpixels& superpixels, const MergeTree& tree)
+      : partial_(frame.partial) {
+    std::map<TruthId, std::size_t> kinds{{TruthId::dont_care, 0}, {TruthId::none, 1}};
+    const View<const TruthId> truth = frame.objects;
+    for (int y = 0; y < truth.height(); ++y) {
+      for (int x = 0; x < truth.width(); ++x) kinds.try_emplace(truth(x, y), kinds.size());
+    }
+    areas_.resize(kinds.size());
+    shares_.assign(tree.nodes.size(), std::vector<std::int64_t>(kinds.size()));
+    for (int y = 0; y < truth.height(); ++y) {
+      for (int x = 0; x < truth.width(); ++x) {
+        const std::size_t kind = kinds.at(truth(x, y));
+        ++areas_[kind];
+        ++shares_[index(superpixels.labels(x, y))][kind];
+      }
+    }
+    for (std::size_t i = slot(tree.superpixels); i < tree.nodes.size(); ++i) {
+      for (std::size_t k = 0; k < kinds.size(); ++k)
+        shares_[i][k] = shares_[slot(tree.nodes[i].part_a)][k] + shares_[slot(tree.nodes[i].part_b)][k];
+    }
+  }
+  [[nodiscard]] std::int64_t known(std::size_t node) const {
+    std::int64_t sum = 0;
+    for (std::size_t k = 1; k < areas_.size(); ++k) sum += shares_[node][k];
+    return sum;
+  }
+  /// What most of it is; 0 where nothing is known.
+  [[nodiscard]] std::size_t kind(std::size_t node) const {
+    const auto first = shares_[node].begin() + 1;
+    return known(node) == 0
+               ? 0
+               : static_cast<std::size_t>(std::max_element(first, shares_[node].end()) - first) + 1;
+  }
+  [[nodiscard]] float purity(std::size_t node) const {
+    const std::int64_t all = known(node);
+    return all == 0 ? 0 : static_cast<float>(shares_[node][kind(node)]) / static_cast<float>(all);
+  }
+  [[nodiscard]] float best_iou(std::size_t node) const {
+    float best = 0;
+    for (std::size_t k = 2; k < areas_.size(); ++k) {
+      const auto common = static_cast<float>(shares_[node][k]);
+      best = std::max(best, common / (static_cast<float>(known(node) + areas_[k]) - common));
+    }
+    return best;
+  }
+  [[nodiscard]] bool partial() const { return partial_; }
+
+ private:
+  bool partial_;
+  std::vector<std::int64_t> areas_;
+  std::vector<std::vector<std::int64_t>> shares_;
+};
+
+struct Pair {
+  std::int32_t a;
+  std::int32_t b;
+  MergeFeatures features;
+};
+
+void record_pairs(std::ofstream& file, int job, const std::vector<Pair>& pairs, const Truth& truth) {
+  for (const Pair& pair : pairs) {
+    const std::size_t a = truth.kind(slot(pair.a));
+    const std::size_t b = truth.kind(slot(pair.b));
+    if (a == 0 || b == 0) continue;
+    float purity = truth.purity(slot(pair.a)) * truth.purity(slot(pair.b));
+    if (a == 1 && b == 1) {
+      if (truth.partial()) continue;  // may be two objects that are not labelled
+      purity *= kBothBackground;
+    }
+    if (purity >= kLeastPurity) record(file, job, a == b ? 1.0F : 0.0F, purity, pair.features);
+  }
+}
+
+void record_regions(std::ofstream& file, int job, const MergeTree& tree, const Truth& truth, Size size) {
+  const auto image = static_cast<double>(size.area());
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const MergeNode& node = tree.nodes[i];
+    const auto area = static_cast<double>(node.area);
+    if (area < kLeastArea * image || area > kMostArea * image) continue;
+    if (2 * truth.known(i) < node.area) continue;
+    const float iou = truth.best_iou(i);
+    // What is not labelled may be an object.
+    if (truth.partial() && truth.kind(i) == 1 && iou < 0.1F && truth.purity(i) > 0.9F) continue;
+    record(file, job, iou, truth.partial() ? 1.0F : 0.0F, node.features);
+  }
+}
+
+void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, const ChosenObjects& chosen,
+                 double milliseconds) {
+  int right = 0;
+  int ours = 0;
+  int phantoms = 0;
+  std::ostringstream scores;
+  for (const FoundObjectScore& found : errors.ours) {
+    if (found.mostly_dont_care) continue;
+    ++ours;
+    right += found.iou >= 0.5 ? 1 : 0;
+    phantoms += found.phantom ? 1 : 0;
+    scores << chosen.scores[slot(number(found.id))] << ':' << (found.iou >= 0.5 ? 1 : 0) << ',';
+  }
+  std::ostringstream ious;
+  for (const TrueObjectScore& truth : errors.truth) ious << truth.iou << ',';
+  std::cout << job << ' ' << frame.name << ' ' << frame.partial << ' ' << ours << ' ' << right << ' '
+            << phantoms << " =" << ious.str() << " =" << scores.str() << ' ' << milliseconds << '\n';
+}
+
+void work(int job, const std::string& folder, bool grey, const FittedTrees& same_thing,
+          const FittedTrees& whole_object, float min_score, Files& files, const std::string& pictures) {
+  const TrueFrame frame = load_true_frame(io::find_frames(folder).front());
+  Config config;
+  config.match.num_disparities = frame.num_disparities;
+  const Exec exec;
+  const View<const Gray> left = frame.pictures.left.gray;
+  const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.pictures.left.rgb.view();
+  const SceneDisparity scene =
+      estimate_disparity(StereoPair::from(left, frame.pictures.right.gray, rgb), frame.rig, config, exec);
+  const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
+  const float noise = noise_sigma(left, exec);
+  const Image<float> evidence = find_evidence(left, scene.disparity, noise, config.evidence, exec);
+  const Ground ground = likely_ground(scene.ground, scene.disparity, frame.rig, config.ground, exec);
+  const Background background = fit_background(evidence, ground, frame.rig, config.background, exec);
+  const Superpixels superpixels =
+      cut_superpixels(left, rgb, scene.disparity.disparity_px, config.superpixels, exec);
+  const Cues cues{left, rgb, scene.disparity.disparity_px, evidence, ground, background, noise};
+  std::vector<Pair> pairs;
+  JudgedPair told;
+  if (files.pairs.is_open())
+    told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
+  const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing, told);
+  const auto least = static_cast<std::int64_t>(
+      std::ceil(static_cast<double>(left.size().area()) * double{config.objects.min_area} / 100));
+  const ChosenObjects chosen = choose_objects(tree, whole_object, {min_score, least});
+  const double milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
+  const Truth truth(frame, superpixels, tree);
+  if (files.pairs.is_open()) record_pairs(files.pairs, job, pairs, truth);
+  if (files.regions.is_open()) record_regions(files.regions, job, tree, truth, left.size());
+  Image<ObjectId> ours(left.size());
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x)
+      ours(x, y) = ObjectId{chosen.object_of[index(superpixels.labels(x, y))]};
+  }
+  print_found(job, frame, object_errors(ours, frame.objects, {}), chosen, milliseconds);
+  if (!pictures.empty()) {
+    Image<Rgb> picture(left.size());
+    for (int y = 0; y < left.height(); ++y) {
+      for (int x = 0; x < left.width(); ++x) {
+        const int id = number(ours(x, y));
+        const Gray g = left(x, y);
+        const auto part = [&](int k) { return static_cast<std::uint8_t>((g + 2 * ((id * k) % 256)) / 3); };
+        picture(x, y) = id == 0 ? Rgb{g, g, g} : Rgb{part(97), part(181), part(53)};
+      }
+    }
+    io::save_png(pictures + "/" + frame.name + (grey ? "_grey.png" : ".png"), picture);
+  }
+}
+
+int run(std::span<char*> arguments) {
+  Files files;
+  std::string pictures;
+  float min_score = Config{}.objects.min_confidence;
+  for (std::size_t i = 2; i + 1 < arguments.size(); i += 2) {
+    const std::string option = arguments[i];
+    const std::string value = arguments[i + 1];
+    if (option == "--pairs") files.pairs.open(value, std::ios::binary);
+    if (option == "--regions") files.regions.open(value, std::ios::binary);
+    if (option == "--min-score") min_score = std::stof(value);
+    if (option == "--pictures") pictures = value;
+  }
+  std::ifstream jobs(arguments[1]);
+  Trees trees;
+  std::string folder;
+  std::string colour;
+  std::string same_thing;
+  std::string whole_object;
+  for (int job = 0; jobs >> folder >> colour >> same_thing >> whole_object; ++job) {
+    work(job, folder, colour == "grey", trees.at(same_thing, kSameThing),
+         trees.at(whole_object, kWholeObject), min_score, files, pictures);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace cairn::report
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 2) throw cairn::Error("fitting: which jobs?");
+    return cairn::report::run({argv, static_cast<std::size_t>(argc)});
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 2;
+  }
+}
