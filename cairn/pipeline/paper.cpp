@@ -3,6 +3,7 @@
 //
 // The paper's method, one call a stage, in the order in which data flows.
 #include <cairn/core/later.hpp>
+#include <cairn/disparity/confidence.hpp>
 #include <cairn/image/noise.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <utility>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/disparity/confidence.hpp>
 #include <cairn/image/noise.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <utility>

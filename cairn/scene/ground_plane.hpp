@@ -63,8 +63,7 @@ struct Ground {
 
 /// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
 /// when no plane has enough support. points: the plane of least squares through the pairs (RANSAC beyond
-/// four). pose: from height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper, "ground
-/// plane")
+/// four). pose: from height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper)
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 

@@ -25,7 +25,7 @@ find cairn io page timing cli python examples benchmarks tests \( -name '*.?pp' 
       split($0, quoted, /[<>"]/)
       from = folder_of(FILENAME)
       to = folder_of(quoted[2])
-      if (to == "cairn/io") to = "io"  # as it is installed
+      if (to ~ "^cairn/(io|page)$") sub("cairn/", "", to)  # as they are installed
       if (to !~ "^cairn" && !(to in rank)) next  # not ours, or beside the file
       if (!(from in rank) || !(to in rank)) {
         printf "%s:%d: a folder without a rank: %s includes %s\n", FILENAME, FNR, from, to
