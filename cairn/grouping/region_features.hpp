@@ -43,8 +43,8 @@ struct FrameCues {
   double nearest_px = 1;  // the greatest mean disparity of a superpixel, at least 1
 };
 
-inline constexpr std::size_t kMergeFeatures = 43;
-inline constexpr std::size_t kObjectFeatures = 76;
+inline constexpr std::size_t kMergeFeatures = 44;
+inline constexpr std::size_t kObjectFeatures = 74;
 using MergeFeatures = std::array<float, kMergeFeatures>;
 using ObjectFeatures = std::array<float, kObjectFeatures>;
 

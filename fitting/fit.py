@@ -1,0 +1,285 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
+
+fit.py TOOL DATA [--rooms FOLDER] [--only-report] [--folds N] [--work FOLDER]
+
+Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
+the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
+Which pairs and regions are met depends on the first, so it is fitted twice. Regions are always taken from trees
+that were grown by what was fitted without their scene, in `--folds` folds; so is every figure that is printed for
+the fit set. Frames under `validate` are only reported. Everything is seeded: the same frames give the same trees.
+"""
+import argparse
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import time
+import zlib
+
+import numpy as np
+import xgboost
+
+PAIR_FEATURES, REGION_FEATURES = 44, 74
+WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
+PAIRS_KEPT = 0.4  # of all that are met: there are millions
+PAIR_TREES, PAIR_DEPTH = 80, 5
+REGION_TREES, REGION_DEPTH = 250, 3
+SEED = 7
+MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
+              "2006/Lampshade1"]
+
+
+def frames_in(folder):
+    return sorted(p.parent for p in pathlib.Path(folder).glob("*/left.png") if (p.parent / "objects.png").exists())
+
+
+def fit_sets(data, rooms):
+    sets = {"dev 320x240": frames_in(data / "rendered/dev/320x240"), "dev 640x480": frames_in(data / "rendered/dev/640x480"),
+            "train": frames_in(data / "rendered/train/320x240")}
+    if rooms:
+        sets["more rooms"] = frames_in(rooms)
+    sets["rc_tabletop"] = frames_in(data / "real/rc_tabletop")
+    sets["middlebury"] = [data / ("real/middlebury" + name) for name in MIDDLEBURY]
+    return sets
+
+
+def validation_sets(data):
+    return {"validate 320x240": frames_in(data / "rendered/validate/320x240"),
+            "validate 640x480": frames_in(data / "rendered/validate/640x480"),
+            "validate rc_tabletop": frames_in(data / "real/validate/rc_tabletop"),
+            "validate middlebury": frames_in(data / "real/validate/middlebury")}
+
+
+def fold_of(frame, folds):
+    return zlib.crc32(frame.name.encode()) % folds  # a scene has one name at all sizes
+
+
+class Nodes:
+    """Trees as the library keeps them: a node's two branches stand side by side."""
+
+    def __init__(self, base):
+        self.base, self.roots, self.nodes = base, [], []
+
+    def add(self, tree):
+        def fill(at, node):
+            if "leaf" in node:
+                self.nodes[at] = (-1, 0, node["leaf"])
+                return
+            branch = {child["nodeid"]: child for child in node["children"]}
+            below = len(self.nodes)
+            self.nodes += [None, None]
+            self.nodes[at] = (int(node["split"][1:]), below, node["split_condition"])
+            fill(below, branch[node["yes"]])
+            fill(below + 1, branch[node["no"]])
+
+        self.roots.append(len(self.nodes))
+        self.nodes.append(None)
+        fill(self.roots[-1], tree)
+
+    def write(self, path):
+        with open(path, "w") as out:
+            out.write(f"{self.base:.9g} {len(self.roots)} {len(self.nodes)}\n" + " ".join(map(str, self.roots)) + "\n")
+            out.writelines(f"{feature} {below} {value:.9g}\n" for feature, below, value in self.nodes)
+
+    def write_source(self, path, name):
+        def number(value):
+            text = f"{value:.9g}"
+            return text + ("F" if "." in text or "e" in text else ".0F")
+
+        def rows(items):
+            line, lines = "", []
+            for item in items:
+                if len(line) + len(item) > 108:
+                    lines.append(line.rstrip())
+                    line = ""
+                line += item + " "
+            return "\n".join("    " + l for l in [*lines, line.rstrip()])
+
+        with open(path, "w") as out:
+            out.write("// Written by fitting/fit.py (./dev fit); do not edit.\n// clang-format off\n")
+            out.write(f"constexpr float k{name}Base = {number(self.base)};\n")
+            out.write(f"constexpr std::array<std::int16_t, {len(self.roots)}> k{name}Roots{{\n")
+            out.write(rows(f"{root}," for root in self.roots) + "};\n")
+            out.write(f"constexpr std::array<FittedTrees::Node, {len(self.nodes)}> k{name}Nodes{{{{\n")
+            out.write(rows(f"{{{f},{b},{number(v)}}}," for f, b, v in self.nodes) + "}};\n")
+
+
+def by_edges():
+    """To begin with: what parts two regions is the edge between them, and the step of disparity."""
+    trees = Nodes(0.0)
+    for feature, steps in ((2, [0.5 * k for k in range(1, 80)]), (11, [0.25 * k for k in range(1, 40)])):
+        for step in steps:
+            at = len(trees.nodes)
+            trees.roots.append(at)
+            trees.nodes += [(feature, at + 1, step), (-1, 0, 0.1), (-1, 0, -0.1)]
+    return trees
+
+
+def fitted(labels, weights, features, trees, depth, least_weight):
+    data = xgboost.DMatrix(features, label=labels, weight=weights)
+    model = xgboost.train(
+        {"objective": "binary:logistic", "base_score": 0.5, "max_depth": depth, "eta": 0.12, "subsample": 0.7,
+         "colsample_bytree": 0.6, "min_child_weight": least_weight, "tree_method": "hist", "lambda": 2.0, "seed": SEED,
+         "nthread": 2}, data, trees)
+    nodes = Nodes(0.0)
+    for tree in model.get_dump(dump_format="json"):
+        nodes.add(json.loads(tree))
+    return nodes
+
+
+class Fitting:
+    def __init__(self, tool, work, folds, sets):
+        self.tool, self.work, self.folds = tool, work, folds
+        self.jobs = [(frame, colour, name) for name, frames in sets.items() for frame in frames
+                     for colour in ("colour", "grey")]
+        self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
+        self.weight = np.array([WEIGHTS.get(name, 1.0) for _, _, name in self.jobs])
+
+    def run(self, trees, *options, jobs=None):
+        """trees(i): the two files of job i. Two processes at a time."""
+        jobs = self.jobs if jobs is None else jobs
+        processes = []
+        for part in range(2):
+            lines = [f"{frame} {colour} {' '.join(map(str, trees(i)))}\n"
+                     for i, (frame, colour, _) in enumerate(jobs) if i % 2 == part]
+            (self.work / f"jobs{part}").write_text("".join(lines))
+            command = [self.tool, self.work / f"jobs{part}", *(str(o).replace("@", str(part)) for o in options)]
+            processes.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
+        rows = [None] * len(jobs)
+        for part, process in enumerate(processes):
+            out, _ = process.communicate()
+            if process.returncode:
+                sys.exit(process.returncode)
+            for line in out.splitlines():
+                row = line.split(" ")
+                rows[2 * int(row[0]) + part] = row
+        return rows
+
+    def records(self, name, features, share=1.0):
+        heads, values = [], []
+        for part in range(2):
+            all_ = np.fromfile(self.work / f"{name}{part}", dtype=np.float32).reshape(-1, 3 + features)
+            if share < 1:
+                all_ = all_[np.random.RandomState(SEED + part).rand(len(all_)) < share]
+            head = all_[:, :3].copy()
+            head[:, 0] = 2 * head[:, 0] + part
+            heads.append(head)
+            values.append(all_[:, 3:])
+        return np.concatenate(heads), np.concatenate(values)
+
+    def model(self, kind, fold):
+        return self.work / f"{kind}_{fold}"
+
+    def fit_pairs(self):
+        by_edges().write(self.work / "by_edges")
+        seen = []
+        for round_ in range(2):
+            trees = (lambda i: (self.work / "by_edges", "-")) if round_ == 0 else self.of_fold_pairs
+            self.run(trees, "--pairs", self.work / "pairs@")
+            seen.append(self.records("pairs", PAIR_FEATURES, PAIRS_KEPT))
+            head = np.concatenate([h for h, _ in seen])
+            features = np.concatenate([f for _, f in seen])
+            job = head[:, 0].astype(int)
+            weights = head[:, 2] * self.weight[job]
+            for fold in [*range(self.folds), *(["all"] if round_ == 1 else [])]:
+                take = self.fold[job] != fold if fold != "all" else job >= 0
+                fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20).write(
+                    self.model("same_thing", fold))
+                say(f"pairs, round {round_ + 1}, without fold {fold}: {take.sum()} of them")
+
+    def of_fold_pairs(self, i):
+        return self.model("same_thing", self.fold[i]), "-"
+
+    def of_fold(self, i):
+        return self.model("same_thing", self.fold[i]), self.model("whole_object", self.fold[i])
+
+    def fit_regions(self):
+        self.run(self.of_fold_pairs, "--regions", self.work / "regions@")
+        head, features = self.records("regions", REGION_FEATURES)
+        job = head[:, 0].astype(int)
+        # Half right where more than half of it is, wholly where three quarters are.
+        labels = 0.5 * (head[:, 1] >= 0.5) + 0.5 * (head[:, 1] >= 0.75)
+        for fold in [*range(self.folds), "all"]:
+            take = self.fold[job] != fold if fold != "all" else job >= 0
+            model = fitted(labels[take], self.weight[job][take], features[take], REGION_TREES, REGION_DEPTH, 10)
+            model.write(self.model("whole_object", fold))
+            say(f"regions, without fold {fold}: {take.sum()} of them")
+
+
+def share_with_interval(hits, of):
+    """Wilson's interval of 95 %."""
+    if of == 0:
+        return "–"
+    p, z = hits / of, 1.96
+    middle = (p + z * z / (2 * of)) / (1 + z * z / of)
+    reach = z / (1 + z * z / of) * math.sqrt(p * (1 - p) / of + z * z / (4 * of * of))
+    return f"{p:.2f} ({max(0, middle - reach):.2f} … {min(1, middle + reach):.2f})"
+
+
+def report(rows, jobs):
+    lines = ["| frames | input | objects | found .5 | found .75 | precision | median E, % | phantoms a frame | stated ≥ .8, right | ms |",
+             "|---|---|---:|---|---|---|---:|---:|---|---:|"]
+    for name in dict.fromkeys(name for _, _, name in jobs):
+        for colour in ("colour", "grey"):
+            mine = [row for row, job in zip(rows, jobs) if job[1:] == (colour, name)]
+            if not mine:
+                continue
+            iou = np.array([float(v) for row in mine for v in row[6][1:].split(",") if v])
+            complete = [row for row in mine if row[2] == "0"]
+            ours, right, phantoms = (sum(int(row[k]) for row in complete) for k in (3, 4, 5))
+            scores = [v.split(":") for row in complete for v in row[7][1:].split(",") if v]
+            sure = [int(v[1]) for v in scores if float(v[0]) >= 0.8]
+            error = np.minimum(1 / np.maximum(iou, 1e-9) - 1, 2)
+            lines.append(f"| {name} | {colour} | {len(iou)} | {share_with_interval((iou >= .5).sum(), len(iou))} | "
+                         f"{share_with_interval((iou >= .75).sum(), len(iou))} | {share_with_interval(right, ours)} | "
+                         f"{100 * np.median(error):.0f} | {phantoms / max(1, len(complete)):.2f} | "
+                         f"{share_with_interval(sum(sure), len(sure))} | {np.median([float(row[8]) for row in mine]):.1f} |")
+    return "\n".join(lines)
+
+
+begin = time.time()
+
+
+def say(text):
+    print(f"{time.time() - begin:6.0f} s  {text}", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("tool", type=pathlib.Path)
+    parser.add_argument("data", type=pathlib.Path)
+    parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
+    parser.add_argument("--folds", type=int, default=5)
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
+    parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn/grouping)")
+    parser.add_argument("--min-scores", default="0.3", help="for the report")
+    arguments = parser.parse_args()
+    arguments.work.mkdir(parents=True, exist_ok=True)
+    fitting = Fitting(arguments.tool, arguments.work, arguments.folds, fit_sets(arguments.data, arguments.rooms))
+    say(f"{len(fitting.jobs)} frames, colour and grey")
+    fitting.fit_pairs()
+    fitting.fit_regions()
+    validation = [(frame, colour, name) for name, frames in validation_sets(arguments.data).items() for frame in frames
+                  for colour in ("colour", "grey")]
+    for score in arguments.min_scores.split(","):
+        rows = fitting.run(fitting.of_fold, "--min-score", score)
+        checked = fitting.run(lambda i: (fitting.model("same_thing", "all"), fitting.model("whole_object", "all")),
+                              "--min-score", score, jobs=validation)
+        print(f"\nobjects.min_confidence={score}; fit set in {arguments.folds} folds by scene\n")
+        print(report(rows, fitting.jobs) + "\n\n" + report(checked, validation), flush=True)
+    if arguments.out:
+        for name, kind in (("SameThing", "same_thing"), ("WholeObject", "whole_object")):
+            lines = fitting.model(kind, "all").read_text().split("\n")
+            nodes = Nodes(float(lines[0].split()[0]))
+            nodes.roots = [int(v) for v in lines[1].split()]
+            nodes.nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
+            nodes.write_source(arguments.out / f"fitted_{kind}.inc", name)
+    say("done")
+
+
+if __name__ == "__main__":
+    main()
