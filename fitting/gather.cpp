@@ -206,13 +206,13 @@ void work(int job, const std::string& folder, bool grey, const FittedTrees& same
   const Ground ground = likely_ground(scene.ground, scene.disparity, frame.rig, config.ground, exec);
   const Background background = fit_background(evidence, ground, frame.rig, config.background, exec);
   const Superpixels superpixels =
-      cut_superpixels(left, rgb, scene.disparity.disparity_px, config.superpixels, exec);
+      cut_superpixels(left, rgb, scene.disparity.disparity_px, noise, config.superpixels, exec);
   const Cues cues{left, rgb, scene.disparity.disparity_px, evidence, ground, background, noise};
   std::vector<Pair> pairs;
   JudgedPair told;
   if (files.pairs.is_open())
     told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
-  const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing, told);
+  const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing, exec, told);
   const auto least = static_cast<std::int64_t>(
       std::ceil(static_cast<double>(left.size().area()) * double{config.objects.min_area} / 100));
   const ChosenObjects chosen = choose_objects(tree, whole_object, {min_score, least});

@@ -36,9 +36,9 @@ FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
 
 class Growing {
  public:
-  Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
+  Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing, const Exec& exec,
           const JudgedPair& told)
-      : graph_(gather_cues(superpixels, cues)),
+      : graph_(gather_cues(superpixels, cues, exec)),
         frame_(frame_cues(graph_, cues)),
         same_thing_(same_thing),
         told_(told),
@@ -224,8 +224,8 @@ class Growing {
 }  // namespace
 
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
-                          const JudgedPair& told) {
-  return Growing(superpixels, cues, same_thing, told).run();
+                          const Exec& exec, const JudgedPair& told) {
+  return Growing(superpixels, cues, same_thing, exec, told).run();
 }
 
 }  // namespace cairn

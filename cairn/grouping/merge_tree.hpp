@@ -38,6 +38,6 @@ using JudgedPair = std::function<void(std::int32_t node_a, std::int32_t node_b, 
 /// one's area; others are judged anew when their turn comes, and wait on if they are not the likeliest any
 /// more. Ties: the contact that the picture's rows show first.
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
-                          const JudgedPair& told = {});
+                          const Exec& exec, const JudgedPair& told = {});
 
 }  // namespace cairn

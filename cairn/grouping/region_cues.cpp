@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/grouping/region_cues.hpp>
 #include <cmath>
 #include <utility>
@@ -13,9 +14,11 @@ constexpr int kNoDisparity = std::numeric_limits<int>::min();
 constexpr int kLeastHeight = -8 * kDisparitySteps;
 constexpr int kMostHeight = 24 * kDisparitySteps;
 
+/// In 1/64 px, halves up. Only for |px| < 2^13; what is below the middle of a step by less than 1/32 of one
+/// may be rounded up, too. (Truncating what is positive is quicker than floor().)
 int in_steps(float px) {
-  if (std::isnan(px)) return kNoDisparity;
-  return static_cast<int>(std::floor(px * kDisparitySteps + 0.5F));
+  constexpr int kPositive = 1 << 19;
+  return static_cast<int>(px * kDisparitySteps + (0.5F + kPositive)) - kPositive;
 }
 
 /// What a picture's gradient must reach to be an edge, in 1/4 grey level.
@@ -25,21 +28,33 @@ float weakest_edge(float noise_sigma) {
 
 class Gathering {
  public:
-  Gathering(const Superpixels& superpixels, const Cues& cues)
+  Gathering(const Superpixels& superpixels, const Cues& cues, const Exec& exec)
       : cues_(cues),
         labels_(superpixels.labels),
         edges_(superpixels.edges),
         width_(labels_.width()),
         height_(labels_.height()),
         weak_(weakest_edge(cues.noise_sigma)),
+        steps_(labels_.size(), exec.pool),
+        ground_(slot(width_)),
+        background_(slot(width_)),
         contacts_of_(slot(superpixels.count)) {
     result_.regions.resize(slot(superpixels.count));
   }
 
   RegionGraphCues run() {
     for (int y = 0; y < height_; ++y) {
+      note_steps(y);
+      const RegionId* const row = labels_.row(y);
+      for (int first = 0; first < width_;) {
+        int last = first + 1;
+        while (last < width_ && row[last] == row[first]) ++last;
+        add_run(result_.regions[index(row[first])], y, first, last);
+        first = last;
+      }
+    }
+    for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x) {
-        add_pixel(x, y);
         if (x + 1 < width_) meet(x, y, 1, 0);
         if (y + 1 < height_) meet(x, y, 0, 1);
       }
@@ -48,69 +63,105 @@ class Gathering {
   }
 
  private:
-  void add_pixel(int x, int y) {
-    RegionCues& region = result_.regions[index(labels_(x, y))];
-    const int u = x - width_ / 2;
+  /// The disparities of a row in steps, and what lies behind them.
+  void note_steps(int y) {
+    const float* const d = cues_.disparity_px.row(y);
+    std::int32_t* const out = steps_.row(y);
+    for (int x = 0; x < width_; ++x) out[x] = std::isnan(d[x]) ? kNoDisparity : in_steps(d[x]);
+    const auto fy = static_cast<float>(y);
+    for (int x = 0; cues_.ground.plane && x < width_; ++x) {
+      const float ground = cues_.ground.plane->disparity_px(static_cast<float>(x), fy);
+      ground_[slot(x)] =
+          ground > 0 ? in_steps(std::min(ground, kMaxDisparity)) : kNoDisparity;  // above the horizon
+    }
+    for (int x = 0; !cues_.background.planes.empty() && x < width_; ++x)
+      background_[slot(x)] =
+          in_steps(std::min(cues_.background.disparity_px(static_cast<float>(x), fy), kMaxDisparity));
+  }
+
+  /// The pixels first … last − 1 of row y, which all are the region's.
+  void add_run(RegionCues& region, int y, int first, int last) const {
+    const int count = last - first;
     const int v = y - height_ / 2;
-    ++region.area;
-    region.x += u;
-    region.y += v;
-    region.xx += std::int64_t{u} * u;
-    region.xy += std::int64_t{u} * v;
-    region.yy += std::int64_t{v} * v;
-    region.left = std::min(region.left, x);
-    region.right = std::max(region.right, x);
+    std::int64_t x = 0;
+    std::int64_t xx = 0;
+    for (int u = first - width_ / 2; u < last - width_ / 2; ++u) {
+      x += u;
+      xx += std::int64_t{u} * u;
+    }
+    region.area += count;
+    region.x += x;
+    region.y += std::int64_t{count} * v;
+    region.xx += xx;
+    region.xy += x * v;
+    region.yy += std::int64_t{count} * v * v;
+    region.left = std::min(region.left, first);
+    region.right = std::max(region.right, last - 1);
     region.top = std::min(region.top, y);
     region.bottom = y;
-    region.at_image_border[0] += x == 0 ? 1 : 0;
-    region.at_image_border[1] += x == width_ - 1 ? 1 : 0;
-    region.at_image_border[2] += y == 0 ? 1 : 0;
-    region.at_image_border[3] += y == height_ - 1 ? 1 : 0;
-    region.texture += edges_(x, y);
-    add_colour(region, x, y);
-    add_depth(region, x, y, u, v);
+    region.at_image_border[0] += first == 0 ? 1 : 0;
+    region.at_image_border[1] += last == width_ ? 1 : 0;
+    region.at_image_border[2] += y == 0 ? count : 0;
+    region.at_image_border[3] += y == height_ - 1 ? count : 0;
+    std::int64_t texture = 0;
+    for (int i = first; i < last; ++i) texture += edges_(i, y);
+    region.texture += texture;
+    add_colour(region, y, first, last);
+    add_depth(region, y, first, last);
   }
 
-  void add_colour(RegionCues& region, int x, int y) const {
-    std::array<int, 3> colour{cues_.gray(x, y), 0, 0};
-    if (!cues_.rgb.empty()) {
-      const Rgb p = cues_.rgb(x, y);
-      colour = {(p.r + 2 * p.g + p.b) / 4, p.b - p.g, p.r - p.g};
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      region.colour[i] += colour[i];
-      region.colour_squares[i] += colour[i] * colour[i];
-      const int bin = i == 0 ? colour[i] / 16 : std::clamp((colour[i] + 96) / 12, 0, int{kColourBins} - 1);
-      ++region.histogram[i * kColourBins + slot(bin)];
-    }
-  }
-
-  void add_depth(RegionCues& region, int x, int y, int u, int v) const {
-    const int d = in_steps(cues_.disparity_px(x, y));
-    const int e = in_steps(cues_.evidence_px(x, y));
-    if (d == kNoDisparity && e == kNoDisparity) return;
-    if (d != kNoDisparity) region.matched.add(u, v, d);
-    if (e != kNoDisparity) region.textured.add(u, v, e);
-    const auto fx = static_cast<float>(x);
-    const auto fy = static_cast<float>(y);
-    if (cues_.ground.plane) {
-      const float ground = cues_.ground.plane->disparity_px(fx, fy);
-      if (ground > 0) {  // below the horizon
-        if (d != kNoDisparity) region.above_ground.add(d - in_steps(ground));
-        if (e != kNoDisparity) region.textured_above_ground.add(e - in_steps(ground));
+  void add_colour(RegionCues& region, int y, int first, int last) const {
+    std::array<std::int64_t, 3> sums{};
+    std::array<std::int64_t, 3> squares{};
+    for (int x = first; x < last; ++x) {
+      std::array<int, 3> colour{cues_.gray(x, y), 0, 0};
+      if (!cues_.rgb.empty()) {
+        const Rgb p = cues_.rgb(x, y);
+        colour = {(p.r + 2 * p.g + p.b) / 4, p.b - p.g, p.r - p.g};
+      }
+      for (std::size_t i = 0; i < 3; ++i) {
+        sums[i] += colour[i];
+        squares[i] += colour[i] * colour[i];
+        const int bin = i == 0 ? colour[i] / 16 : std::clamp((colour[i] + 96) / 12, 0, int{kColourBins} - 1);
+        ++region.histogram[i * kColourBins + slot(bin)];
       }
     }
-    if (!cues_.background.planes.empty()) {
-      const int behind = in_steps(cues_.background.disparity_px(fx, fy));
-      if (d != kNoDisparity) region.before_background.add(d - behind);
-      if (e != kNoDisparity) region.textured_before_background.add(e - behind);
+    for (std::size_t i = 0; i < 3; ++i) {
+      region.colour[i] += sums[i];
+      region.colour_squares[i] += squares[i];
     }
+  }
+
+  void add_depth(RegionCues& region, int y, int first, int last) const {
+    const std::int32_t* const d = steps_.row(y);
+    const float* const evidence = cues_.evidence_px.row(y);
+    PlaneMoments matched;
+    PlaneMoments textured;
+    for (int x = first; x < last; ++x) {
+      const bool is_textured = !std::isnan(evidence[x]);
+      const int e = is_textured ? in_steps(evidence[x]) : kNoDisparity;
+      if (is_textured) textured.add(x - width_ / 2, 0, e);
+      if (d[x] != kNoDisparity) matched.add(x - width_ / 2, 0, d[x]);
+      if (cues_.ground.plane && ground_[slot(x)] != kNoDisparity) {
+        if (d[x] != kNoDisparity) region.above_ground.add(d[x] - ground_[slot(x)]);
+        if (is_textured) region.textured_above_ground.add(e - ground_[slot(x)]);
+      }
+      if (!cues_.background.planes.empty()) {
+        if (d[x] != kNoDisparity) region.before_background.add(d[x] - background_[slot(x)]);
+        if (is_textured) region.textured_before_background.add(e - background_[slot(x)]);
+      }
+    }
+    matched.move_down(y - height_ / 2);
+    textured.move_down(y - height_ / 2);
+    region.matched.add(matched);
+    region.textured.add(textured);
   }
 
   ContactCues& contact(std::int32_t a, std::int32_t b) {
     std::vector<std::pair<std::int32_t, std::int32_t>>& known = contacts_of_[slot(a)];
-    for (const auto& [other, i] : known) {
-      if (other == b) return result_.contacts[slot(i)];
+    // What was met last stands last.
+    for (auto at = known.rbegin(); at != known.rend(); ++at) {
+      if (at->first == b) return result_.contacts[slot(at->second)];
     }
     known.emplace_back(b, static_cast<std::int32_t>(result_.contacts.size()));
     result_.contacts.emplace_back();
@@ -145,8 +196,8 @@ class Gathering {
     c.y2 += 2 * (y - height_ / 2) + dy;
     ++result_.regions[slot(here)].perimeter;
     ++result_.regions[slot(there)].perimeter;
-    const int near_here = in_steps(cues_.disparity_px(x, y));
-    const int near_there = in_steps(cues_.disparity_px(x + dx, y + dy));
+    const int near_here = steps_(x, y);
+    const int near_there = steps_(x + dx, y + dy);
     if (near_here != kNoDisparity && near_there != kNoDisparity) {
       ++c.near_n;
       c.near_sum += sign * (near_here - near_there);
@@ -154,8 +205,8 @@ class Gathering {
     }
     const Point p = away(x, y, -dx, -dy);
     const Point q = away(x + dx, y + dy, dx, dy);
-    const int far_here = in_steps(cues_.disparity_px(p.x, p.y));
-    const int far_there = in_steps(cues_.disparity_px(q.x, q.y));
+    const int far_here = steps_(p.x, p.y);
+    const int far_there = steps_(q.x, q.y);
     if (far_here == kNoDisparity || far_there == kNoDisparity) return;
     const int step = sign * (far_here - far_there);
     ++c.far_n;
@@ -172,6 +223,9 @@ class Gathering {
   int width_;
   int height_;
   float weak_;
+  Image<std::int32_t> steps_;         // the disparities; kNoDisparity = hole
+  std::vector<std::int32_t> ground_;  // those of a row's background, kNoDisparity above the horizon
+  std::vector<std::int32_t> background_;
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> contacts_of_;  // of a: b, and which
   RegionGraphCues result_;
 };
@@ -192,6 +246,13 @@ void PlaneMoments::add(int at_x, int at_y, int disparity) {
   xd += px * pd;
   yd += py * pd;
   dd += pd * pd;
+}
+
+void PlaneMoments::move_down(int by) {  // from row 0
+  y += n * by;
+  xy += x * by;
+  yy += n * by * by;
+  yd += d * by;
 }
 
 void PlaneMoments::add(const PlaneMoments& other) {
@@ -269,8 +330,8 @@ void ContactCues::add(const ContactCues& other, bool turned) {
   level += other.level;
 }
 
-RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues) {
-  return Gathering(superpixels, cues).run();
+RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
+  return Gathering(superpixels, cues, exec).run();
 }
 
 }  // namespace cairn

@@ -34,6 +34,8 @@ struct PlaneMoments {
   std::int64_t n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, d = 0, xd = 0, yd = 0, dd = 0;
   void add(int at_x, int at_y, int disparity);
   void add(const PlaneMoments& other);
+  /// Sums of points in row 0 become those of points `by` rows below.
+  void move_down(int by);
   friend bool operator==(const PlaneMoments&, const PlaneMoments&) = default;
 };
 
@@ -84,6 +86,6 @@ struct RegionGraphCues {
   std::vector<ContactCues> contacts;  // in the order in which the picture's rows show them first
 };
 
-RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues);
+RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues, const Exec& exec);
 
 }  // namespace cairn

@@ -19,6 +19,8 @@ constexpr int kGrain = 16;                // rows
 constexpr float kSmoothing = 0.7F;        // px
 constexpr float kStepWeight = 8.0F;       // 1/4 grey level for each px of a step of disparity
 constexpr float kLargestStep = 4.0F;      // px
+constexpr float kFlat = 4.0F;             // 1/4 grey level; what is less, and …
+constexpr float kFlatInNoise = 4.0F;      // … as much again for each level of noise, is no edge
 constexpr double kEvenWithoutEdge = 2.0;  // 1/4 grey level
 
 /// The largest step of disparity to one of the four neighbours; 0 beside holes.
@@ -37,14 +39,17 @@ float step_at(View<const float> disparity_px, int x, int y) {
   return std::min(step, kLargestStep);
 }
 
+/// 0 where nothing stands out of the noise: else that would make most of the basins.
 Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const float> disparity_px,
-                                const Exec& exec) {
+                                float noise_sigma, const Exec& exec) {
+  const int least = static_cast<int>(kFlat + kFlatInNoise * noise_sigma);
   Image<std::uint16_t> sum(edges.size(), exec.pool);
   parallel_for(exec, edges.height(), kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       for (int x = 0; x < edges.width(); ++x) {
-        const float step = std::floor(step_at(disparity_px, x, y) * kStepWeight + 0.5F);
-        sum(x, y) = static_cast<std::uint16_t>(edges(x, y) + static_cast<int>(step));
+        const float step = step_at(disparity_px, x, y) * kStepWeight + 0.5F;
+        const int edge = edges(x, y) + static_cast<int>(step);
+        sum(x, y) = static_cast<std::uint16_t>(edge < least ? 0 : edge);
       }
     }
   });
@@ -189,9 +194,9 @@ class Fusing {
 }  // namespace
 
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            const SuperpixelsConfig& config, const Exec& exec) {
+                            float noise_sigma, const SuperpixelsConfig& config, const Exec& exec) {
   Image<std::uint16_t> edges = edge_strength(gray, rgb, kSmoothing, exec);
-  const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, exec);
+  const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, noise_sigma, exec);
   Basins basins = watershed(with_depth, exec);
   Fusing fusing(basins, with_depth);
   fusing.until(config.count);

@@ -12,7 +12,7 @@
 namespace cairn {
 
 struct SuperpixelsConfig {
-  int count = 500;  // pieces; more of them follow small things, and take longer
+  int count = 400;  // pieces; more of them follow small things, and take longer
 };
 template <class V>
 void fields(SuperpixelsConfig& c, V&& v) {
@@ -29,7 +29,8 @@ struct Superpixels {
 };
 
 /// A watershed of the picture's edges, to each of which a step of disparity adds 2 grey levels a px (at most
-/// 8), so that depth cuts where brightness does not. Then basins fuse two by two, those of least
+/// 8), so that depth cuts where brightness does not; what is below 1 + noise_sigma grey levels counts as 0.
+/// Then basins fuse two by two, those of least
 ///
 ///     (mean edge along the common border + 1/2 grey level) · sqrt(area of the smaller one)
 ///
@@ -37,7 +38,7 @@ struct Superpixels {
 /// first by its basins' numbers. `rgb` may be empty; `disparity_px`: NaN for holes, which add nothing.
 /// (docs/stages/superpixels.md, beyond the paper)
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            const SuperpixelsConfig& config, const Exec& exec);
+                            float noise_sigma, const SuperpixelsConfig& config, const Exec& exec);
 
 /// The superpixels as a segmentation, with their grey statistics.
 Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec);

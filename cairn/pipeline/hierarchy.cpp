@@ -46,12 +46,12 @@ Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, con
       stage("fit_background", fit_background(evidence_px, ground, rig, config.background, exec));
 
   // The picture in pieces, and all that they may fuse to, by every cue.
-  const Superpixels superpixels = stage(
-      "cut_superpixels",
-      cut_superpixels(given.left, given.left_rgb, frame.disparity.disparity_px, config.superpixels, exec));
+  const Superpixels superpixels =
+      stage("cut_superpixels", cut_superpixels(given.left, given.left_rgb, frame.disparity.disparity_px,
+                                               noise, config.superpixels, exec));
   const Cues cues{given.left, given.left_rgb, frame.disparity.disparity_px, evidence_px, ground,
                   background, noise};
-  const MergeTree tree = stage("grow_merge_tree", grow_merge_tree(superpixels, cues, kSameThing));
+  const MergeTree tree = stage("grow_merge_tree", grow_merge_tree(superpixels, cues, kSameThing, exec));
 
   // Which of these regions are objects, and where.
   const ChosenObjects chosen = stage(
