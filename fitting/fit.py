@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
 
-fit.py TOOL DATA [--rooms FOLDER] [--only-report] [--folds N] [--work FOLDER]
+fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--out FOLDER] [--page FILE]
 
 Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
 the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
@@ -23,7 +23,6 @@ import zlib
 import numpy as np
 import xgboost
 
-PAIR_FEATURES, REGION_FEATURES = 44, 74
 WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
 PAIRS_KEPT = 0.4  # of all that are met: there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
@@ -126,6 +125,7 @@ def fitted(labels, weights, features, trees, depth, least_weight):
          "colsample_bytree": 0.6, "min_child_weight": least_weight, "tree_method": "hist", "lambda": 2.0, "seed": SEED,
          "nthread": 2}, data, trees)
     nodes = Nodes(0.0)
+    nodes.gains = model.get_score(importance_type="total_gain")
     for tree in model.get_dump(dump_format="json"):
         nodes.add(json.loads(tree))
     return nodes
@@ -134,6 +134,9 @@ def fitted(labels, weights, features, trees, depth, least_weight):
 class Fitting:
     def __init__(self, tool, work, folds, sets):
         self.tool, self.work, self.folds = tool, work, folds
+        names = subprocess.run([tool, "--names"], capture_output=True, text=True, check=True).stdout
+        self.pair_features, self.region_features = (part.splitlines() for part in names.split("\n\n"))
+        self.gains = {}
         self.jobs = [(frame, colour, name) for name, frames in sets.items() for frame in frames
                      for colour in ("colour", "grey")]
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
@@ -180,15 +183,16 @@ class Fitting:
         for round_ in range(2):
             trees = (lambda i: (self.work / "by_edges", "-")) if round_ == 0 else self.of_fold_pairs
             self.run(trees, "--pairs", self.work / "pairs@")
-            seen.append(self.records("pairs", PAIR_FEATURES, PAIRS_KEPT))
+            seen.append(self.records("pairs", len(self.pair_features), PAIRS_KEPT))
             head = np.concatenate([h for h, _ in seen])
             features = np.concatenate([f for _, f in seen])
             job = head[:, 0].astype(int)
             weights = head[:, 2] * self.weight[job]
             for fold in [*range(self.folds), *(["all"] if round_ == 1 else [])]:
                 take = self.fold[job] != fold if fold != "all" else job >= 0
-                fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20).write(
-                    self.model("same_thing", fold))
+                model = fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20)
+                model.write(self.model("same_thing", fold))
+                self.gains["same_thing"] = shares_of(model.gains, self.pair_features)
                 say(f"pairs, round {round_ + 1}, without fold {fold}: {take.sum()} of them")
 
     def of_fold_pairs(self, i):
@@ -199,7 +203,7 @@ class Fitting:
 
     def fit_regions(self):
         self.run(self.of_fold_pairs, "--regions", self.work / "regions@")
-        head, features = self.records("regions", REGION_FEATURES)
+        head, features = self.records("regions", len(self.region_features))
         job = head[:, 0].astype(int)
         # Half right where more than half of it is, wholly where three quarters are.
         labels = 0.5 * (head[:, 1] >= 0.5) + 0.5 * (head[:, 1] >= 0.75)
@@ -207,7 +211,50 @@ class Fitting:
             take = self.fold[job] != fold if fold != "all" else job >= 0
             model = fitted(labels[take], self.weight[job][take], features[take], REGION_TREES, REGION_DEPTH, 10)
             model.write(self.model("whole_object", fold))
+            self.gains["whole_object"] = shares_of(model.gains, self.region_features)
             say(f"regions, without fold {fold}: {take.sum()} of them")
+
+
+def shares_of(gains, names):
+    """Which share of what all splits gain each feature's have, largest first."""
+    total = sum(gains.values())
+    shares = [(gains.get(f"f{i}", 0.0) / total, name) for i, name in enumerate(names)]
+    return sorted(shares, key=lambda item: (-item[0], item[1]))
+
+
+def page(fitting, sets, reports, score):
+    def table(kind, header):
+        rows = [f"| {name} | {100 * share:.1f} |" for share, name in fitting.gains[kind] if share >= 0.005]
+        return f"| {header} | share of the gain, % |\n|---|---:|\n" + "\n".join(rows)
+
+    counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
+    rooms = [int(frame.name.rsplit("s", 1)[1]) for frame in sets.get("more rooms", [])]
+    more = (f"The more rooms are those that the generator calls {min(rooms)} to {max(rooms)} "
+            f"(`rooms.py jobs.json {min(rooms)} {max(rooms) + 1}`).\n" if rooms else "")
+    return f"""# What was fitted
+
+<!-- Written by ./dev fit; do not edit. -->
+
+`./dev fit` fits the two sums of small trees that the preset `default` judges regions by ([grouping](stages/grouping.md)), and writes them and this page: the same frames give the same numbers.
+Fitted to: {counts}; each frame once in colour and once in grey.
+{more}Frames of the fit set are judged by trees that were fitted without their scene, in {fitting.folds} folds; frames to validate by those that the library has, and nothing was chosen on them.
+In brackets: Wilson's interval of 95 %. ms: of one core, the median frame, from the noise to the choice of objects, without matching; on a machine that did other things meanwhile.
+`objects.min_confidence` = {score}.
+
+{reports}
+
+## What pairs of regions are judged by
+
+{len(fitting.pair_features)} features, {PAIR_TREES} trees of depth {PAIR_DEPTH}. Those that gain less than 0.5 % are left out of the table.
+
+{table("same_thing", "feature")}
+
+## What regions are judged by
+
+{len(fitting.region_features)} features, {REGION_TREES} trees of depth {REGION_DEPTH}.
+
+{table("whole_object", "feature")}
+"""
 
 
 def share_with_interval(hits, of):
@@ -256,10 +303,12 @@ def main():
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn/grouping)")
-    parser.add_argument("--min-scores", default="0.3", help="for the report")
+    parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
+    parser.add_argument("--min-scores", default="0.3", help="for the report; the first for the page")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
-    fitting = Fitting(arguments.tool, arguments.work, arguments.folds, fit_sets(arguments.data, arguments.rooms))
+    sets = fit_sets(arguments.data, arguments.rooms)
+    fitting = Fitting(arguments.tool, arguments.work, arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
     fitting.fit_pairs()
     fitting.fit_regions()
@@ -270,7 +319,10 @@ def main():
         checked = fitting.run(lambda i: (fitting.model("same_thing", "all"), fitting.model("whole_object", "all")),
                               "--min-score", score, jobs=validation)
         print(f"\nobjects.min_confidence={score}; fit set in {arguments.folds} folds by scene\n")
-        print(report(rows, fitting.jobs) + "\n\n" + report(checked, validation), flush=True)
+        reports = report(rows, fitting.jobs) + "\n\n" + report(checked, validation)
+        print(reports, flush=True)
+        if arguments.page and score == arguments.min_scores.split(",")[0]:
+            arguments.page.write_text(page(fitting, sets, reports, score))
     if arguments.out:
         for name, kind in (("SameThing", "same_thing"), ("WholeObject", "whole_object")):
             lines = fitting.model(kind, "all").read_text().split("\n")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
+// fitting --names: the features' names.
 // fitting JOBS [--pairs FILE] [--regions FILE] [--min-score S] [--pictures DIR]: what fit.py fits to, and how
 // well what it has fitted does.
 //
@@ -240,7 +241,16 @@ void work(int job, const std::string& folder, bool grey, const FittedTrees& same
   }
 }
 
+/// The features, one a line: pairs', an empty line, regions'.
+int print_names() {
+  for (const std::string_view name : merge_feature_names()) std::cout << name << '\n';
+  std::cout << '\n';
+  for (const std::string_view name : object_feature_names()) std::cout << name << '\n';
+  return 0;
+}
+
 int run(std::span<char*> arguments) {
+  if (std::string_view(arguments[1]) == "--names") return print_names();
   Files files;
   std::string pictures;
   float min_score = Config{}.objects.min_confidence;
