@@ -29,27 +29,26 @@ class EpipolarCorrectionOptions(TypedDict, total=False):
 
 class MatchOptions(TypedDict, total=False):
     method: Literal["window", "semi_global"]  # window|semi_global: window: correlation alone; semi_global: neighbours agree along paths
-    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"]  # sad|ssd|zsad|zssd|nssd|zncc: correlation operator
-    window_size: int  # px, 3 … 31, odd: side of the square correlation window, odd
+    cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"]  # sad|ssd|zsad|zssd|nssd|zncc, read while match.method=window: correlation operator
+    window_size: int  # px, 3 … 31, odd, read while match.method=window: side of the square correlation window, odd
     min_disparity: int  # px, -1024 … 1023: first disparity tried; may be negative
     num_disparities: int  # px, 1 … 1024: how many disparities are tried; a calibration's ndisp replaces the default
-    row_band: int  # rows, 0 … 8: also search k rows above and below (vibration)
-    prefilter: Literal["none", "xsobel"]  # none|xsobel: filter both images before matching
-    prefilter_cap: int  # grey levels, 1 … 63: clip the x-Sobel response to ±cap
-    evidence: Literal["winner", "minimum", "full"]  # winner|minimum|full: winner: best and cost only; minimum: also its neighbours and the runner-up, all that sub-pixel, uniqueness and left_right.method=vote need; full: all that the checks need
+    row_band: int  # rows, 0 … 8, read while match.method=window: also search k rows above and below (vibration)
+    prefilter: Literal["none", "xsobel"]  # none|xsobel, read while match.method=window: filter both images before matching
+    prefilter_cap: int  # grey levels, 1 … 63, read while match.prefilter=xsobel: clip the x-Sobel response to ±cap
 
 class SemiGlobalOptions(TypedDict, total=False):
-    penalty_small: float  # greatest cost, 0 … 2.3: for a change of disparity by one pixel
-    penalty_large: float  # greatest cost, 0 … 2.3: for a larger change of disparity
-    penalty_edge: float  # 1/grey level, 0 … 10: how fast the large penalty falls where the intensity changes
+    penalty_small: float  # greatest cost, 0 … 2.3, read while match.method=semi_global: for a change of disparity by one pixel
+    penalty_large: float  # greatest cost, 0 … 2.3, read while match.method=semi_global: for a larger change of disparity
+    penalty_edge: float  # 1/grey level, 0 … 10, read while match.method=semi_global: how fast the large penalty falls where the intensity changes
 
 class SubpixelOptions(TypedDict, total=False):
     enabled: bool  # true|false: refine each winner by a curve through its cost and its neighbours'
-    method: Literal["parabola", "equiangular"]  # parabola|equiangular: the curve: round for squares, pointed for absolute differences and semi_global
+    method: Literal["parabola", "equiangular"]  # parabola|equiangular, read while subpixel.enabled=true: the curve: round for squares, pointed for absolute differences and semi_global
 
 class LeftRightOptions(TypedDict, total=False):
     max_diff: float  # px, −1 = off, 0 … 64: largest left-right disagreement still accepted
-    method: Literal["true", "vote"]  # true|vote: true: the right image's own winner over all candidates; vote: the right pixel takes the best left winner (OpenCV)
+    method: Literal["true", "vote"]  # true|vote, read while left_right.max_diff!=-1: true: the right image's own winner over all candidates; vote: the right pixel takes the best left winner (OpenCV)
 
 class UniquenessOptions(TypedDict, total=False):
     ratio: float  # %, −1 = off, 0 … 100: by how much the best cost must beat the runner-up (OpenCV's uniquenessRatio)
@@ -58,79 +57,51 @@ class FlatnessOptions(TypedDict, total=False):
     threshold: float  # share, −1 = off, 0 … 1: least depth of the best cost below the mean cost
 
 class TextureOptions(TypedDict, total=False):
-    window_size: int  # px, 3 … 31, odd: side of the Moravec operator's window, odd
+    window_size: int  # px, 3 … 31, odd, read while texture.threshold!=-1: side of the Moravec operator's window, odd
     threshold: float  # grey levels², −1 = off, 0 … 65025: least mean squared difference to the most similar shift
 
 class GroundOptions(TypedDict, total=False):
-    source: Literal["off", "automatic", "points", "pose"]  # off|automatic|points|pose: where the floor comes from: fitted to each frame, hand-given points, the camera's pose, nowhere
-    points: Points  # px, x_left,y_left,x_right,y_right;…: floor points as x_left,y_left,x_right,y_right; at least four, separated by ;
-    height: float  # m, 0.01 … 100: height of the left camera above the floor (source pose)
-    pitch: float  # degrees, -89 … 89: camera pitch, positive looks down (source pose)
-    roll: float  # degrees, -89 … 89: camera roll, positive lowers the camera's right side (source pose)
-    margin: float  # px, 0 … 64: how far a disparity may lie from the floor's and still be floor
-    label_floor: bool  # true|false: label matches on the floor; the floor is no object
+    source: Literal["off", "automatic", "points", "pose"]  # off|automatic|points|pose: where the floor comes from: fitted to each frame, the calibration's points or pose, nowhere
+    margin: float  # px, 0 … 64, read while ground.source!=off: how far a disparity may lie from the floor's and still be floor
+    label_floor: bool  # true|false, read while ground.source!=off: label matches on the floor; the floor is no object
 
 class SpeckleOptions(TypedDict, total=False):
     size: int  # px, −1 = off, 0 … 1000000: islands of up to this many pixels are rejected (OpenCV's speckleWindowSize)
-    range: float  # px, 0 … 64: largest step of disparity between neighbours of one island
-
-class ConfidenceOptions(TypedDict, total=False):
-    enabled: bool  # true|false: say of each disparity how likely it is right; changes nothing else
+    range: float  # px, 0 … 64, read while speckle.size!=-1: largest step of disparity between neighbours of one island
 
 class EvidenceOptions(TypedDict, total=False):
-    noise_factor: float  # σ of the noise, 0 … 100: least horizontal gradient of a pixel that counts as evidence: this many deviations of the image noise …
-    gradient_min: float  # grey levels, 0 … 255: … plus this
-    agreement: float  # ‰ of the width, 0 … 100: how far the disparities of neighbouring evidence may lie apart
+    gradient_min: float  # grey levels, 0 … 255, read while fusion.method=evidence: how far a pixel's horizontal gradient must exceed the image's noise to count as evidence
 
 class BackgroundOptions(TypedDict, total=False):
-    max_walls: int  # 0 … 8: how many walls are looked for besides the floor
-    tolerance: float  # ‰ of the width, 0 … 100: how far a disparity may lie from a wall's and still support it
-    min_share: float  # % of the evidence, 0 … 100: least support of a wall
-    min_share_square: float  # % of the evidence, 0 … 100: the same of a wall square on the first one
-    max_behind: float  # % of the support, 0 … 100: most evidence that may lie behind a wall
+    max_walls: int  # 0 … 8, read while fusion.method=evidence: how many walls are looked for besides the floor
 
 class IntensityOptions(TypedDict, total=False):
-    smoothing_sigma: float  # px, 0 … 5: Gaussian smoothing before the gradient
-    mean_difference_max: float  # grey levels, 0 … 255: Eq. 1: largest difference of two means that fuse
-    deviation_max: float  # σ, 0 … 100: Eq. 2: how many deviations a fusion may move the mean
-    sigma_min: float  # grey levels, 0.01 … 255: least deviation used in Eq. 2
-    min_region_area: float  # % of the image, 0 … 100: smaller regions fuse with the most similar neighbour
+    smoothing_sigma: float  # px, 0 … 5, read while fusion.method=overlap: Gaussian smoothing before the gradient
+    mean_difference_max: float  # grey levels, 0 … 255, read while fusion.method=overlap: Eq. 1: largest difference of two means that fuse
+    deviation_max: float  # σ, 0 … 100, read while fusion.method=overlap: Eq. 2: how many deviations a fusion may move the mean
+    sigma_min: float  # grey levels, 0.01 … 255, read while fusion.method=overlap: least deviation used in Eq. 2
+    min_region_area: float  # % of the image, 0 … 100, read while fusion.method=overlap: smaller regions fuse with the most similar neighbour
 
 class DisparityOptions(TypedDict, total=False):
-    smoothing_sigma: float  # px, 0 … 5: Gaussian smoothing before the gradient
-    mean_difference_max: float  # px of disparity, 0 … 64: Eq. 1: largest difference of two means that fuse
-    deviation_max: float  # σ, 0 … 100: Eq. 2: how many deviations a fusion may move the mean
-    sigma_min: float  # px of disparity, 0.01 … 64: least deviation used in Eq. 2
-    min_region_area: float  # % of the image, 0 … 100: smaller regions fuse with the most similar neighbour
+    smoothing_sigma: float  # px, 0 … 5, read while fusion.method=overlap: Gaussian smoothing before the gradient
+    mean_difference_max: float  # px, 0 … 64, read while fusion.method=overlap: Eq. 1: largest difference of two means that fuse
+    deviation_max: float  # σ, 0 … 100, read while fusion.method=overlap: Eq. 2: how many deviations a fusion may move the mean
+    sigma_min: float  # px, 0.01 … 64, read while fusion.method=overlap: least deviation used in Eq. 2
+    min_region_area: float  # % of the image, 0 … 100, read while fusion.method=overlap: smaller regions fuse with the most similar neighbour
 
 class FusionOptions(TypedDict, total=False):
     method: Literal["overlap", "evidence"]  # overlap|evidence: overlap: the paper's two segmentations; evidence: facets that texture vouches for
 
 class FacetsOptions(TypedDict, total=False):
-    smoothing_sigma: float  # px, 0 … 5: Gaussian smoothing before the edges
-    edge_min: float  # grey levels, 0 … 255: basins fuse across borders whose mean edge is weaker than this …
-    noise_factor: float  # σ of the noise, 0 … 100: … plus this many deviations of the image noise …
-    contrast_share: float  # % of a clear edge, 0 … 100: … plus this share of the edge that 2 % of the pixels exceed
+    edge_min: float  # grey levels, 0 … 255, read while fusion.method=evidence: basins fuse across borders whose mean edge is weaker than this, the image's noise and a share of its clear edges together
 
 class FigureOptions(TypedDict, total=False):
-    margin: float  # ‰ of the width, 0 … 100: how far a disparity must stand before the background to be figure
-    agreement: float  # ‰ of the width, 0 … 100: largest difference of the disparities on both sides of a plain stretch that still belongs to one surface
-    longest_bridge: float  # % of the width, 0 … 100: plain stretches longer than this hardly count
-    border_weight: float  # px of evidence, 0 … 1: what a pixel beside a facet's border counts that is seen before the background: the matcher gives the nearer surface's disparity to both sides of its edge; 1 = as much as any
-    skirting: float  # % of the width, 0 … 100: a plain facet within this above the foot of a wall is figure only where that is seen; 0 = anywhere
-    smoothness: float  # px of evidence, 0 … 100: what it costs, for each pixel of a border without an edge, to part figure and ground there
-    colour_weight: float  # px of evidence, 0 … 10: what a plain pixel's colour says, when it is e times as common in the figure as in the ground; 0 = nothing
-    continuation_weight: float  # px of evidence, 0 … 10: what it says for ground that ground of its colour goes on beside it; 0 = nothing
-    largest_part: float  # % of the image, 0 … 100: ground that touches figure speaks for its colour only with what it is larger than this: it may be a part of an object without evidence; 0 = with all
+    margin: float  # ‰ of the width, 0 … 100, read while fusion.method=evidence: how far a disparity must stand before the background to be figure
+    agreement: float  # ‰ of the width, 0 … 100, read while fusion.method=evidence: largest difference of the disparities on both sides of a plain stretch that still belongs to one surface
 
 class GroupOptions(TypedDict, total=False):
-    step: float  # ‰ of the width, 0 … 1000: largest step of disparity across a border within one object …
-    step_share: float  # % of the disparity, 0 … 100: … or this share of the disparity, if that is more
-    deviation: float  # ‰ of the width, 0 … 1000: how far a facet may lie off the plane of the object that it joins …
-    deviation_share: float  # % of the disparity, 0 … 100: … or this share of the disparity, if that is more
-    gap_share: float  # % of its border, 0 … 100: a facet without evidence that has more ground around it than this connects nothing
-    min_area: float  # % of the image, 0 … 100: smaller groups join a neighbour
-    occluded_gap: float  # % of the width, 0 … 100: groups of one depth this close to each other behind a common nearer one are one object; 0 = never
+    step: float  # ‰ of the width, 0 … 1000, read while fusion.method=evidence: largest step of disparity across a border within one object
+    min_area: float  # % of the image, 0 … 100, read while fusion.method=evidence: smaller groups join a neighbour
 
 class ObjectsOptions(TypedDict, total=False):
     min_area: float  # % of the image, 0 … 100: smaller regions are no objects
@@ -181,6 +152,20 @@ class BrightnessDifference:
 
 class Calibration:
     """What a calibration file says of a rectified pair. Stands wherever a Rig does; segment() then also checks the pictures' size and takes the file's number of disparities as default."""
+    def __init__(
+        self,
+        rig: Optional[Rig] = None,
+        image_size: Optional[Tuple[int, int]] = None,
+        num_disparities: Optional[int] = None,
+        ground_points: Points = [],
+        camera_height_m: Optional[float] = None,
+        camera_pitch_deg: float = 0.0,
+        camera_roll_deg: float = 0.0,
+    ) -> None:
+        """What a file would say, see load_calibration(). ground_points: (x_left, y_left, x_right, y_right) in
+        px of four and more points of the floor, for ground={'source': 'points'}. camera_height_m: of the
+        left camera above the floor, for 'pose'. Raises cairn.Error.
+        """
     @property
     def rig(self) -> Optional[Rig]:
         """None where the file has no focal length or no baseline"""
@@ -191,6 +176,18 @@ class Calibration:
     def num_disparities(self) -> Optional[int]:
         """the default of match.num_disparities, or None"""
     @property
+    def ground_points(self) -> List[Tuple[float, float, float, float]]:
+        """points of the floor: (x_left, y_left, x_right, y_right) in px"""
+    @property
+    def camera_height_m(self) -> Optional[float]:
+        """of the left camera above the floor, m, or None"""
+    @property
+    def camera_pitch_deg(self) -> float:
+        """degrees; positive looks down"""
+    @property
+    def camera_roll_deg(self) -> float:
+        """degrees; positive lowers the camera's right side"""
+    @property
     def of_raw_cameras(self) -> bool:
         """whether the file describes the lenses of the raw cameras as well: the rig fits pictures that were
         rectified with it
@@ -199,7 +196,7 @@ class Calibration:
 class Config:
     """What is computed: every option's value. Made from a preset, then a file (as `cairn config` prints it), then keywords; later ones win:
         cairn.Config('paper', match={'window_size': 11})
-    Raises cairn.Error for an unknown name or a value out of range."""
+    Raises cairn.Error for an unknown name, a value out of range, and an option that would have no effect."""
     def __init__(
         self,
         preset: str = 'default',
@@ -215,7 +212,6 @@ class Config:
         texture: TextureOptions = ...,
         ground: GroundOptions = ...,
         speckle: SpeckleOptions = ...,
-        confidence: ConfidenceOptions = ...,
         evidence: EvidenceOptions = ...,
         background: BackgroundOptions = ...,
         intensity: IntensityOptions = ...,
@@ -235,9 +231,11 @@ class Config:
     def __getitem__(self, name: str) -> object:
         """The value of an option by its full name, 'match.window_size'."""
     def as_dict(self) -> Dict[str, Dict[str, Any]]:
-        """All values: a dict of the groups' dicts. Config(**config.as_dict()) is its equal."""
+        """The values of all options that it reads: a dict of the groups' dicts. Config(**config.as_dict()) is
+        its equal.
+        """
     def yaml(self) -> str:
-        """The text of a configuration file, one comment for each option."""
+        """The text of a configuration file: the options that it reads, one comment for each."""
     def __eq__(self, other: object) -> bool: ...
 
 class DisparityErrors:
@@ -394,7 +392,7 @@ class Frame:
     @property
     def confidence(self) -> Optional[NDArray[numpy.float32]]:
         """float32, 0 to 1: how likely the disparity is within 1 px of the truth; 0 in holes. None where
-        nothing was matched or the option is off
+        nothing was matched
         """
     @property
     def floor(self) -> Optional[NDArray[numpy.uint8]]:
@@ -503,7 +501,7 @@ class GroundPlane:
 HOLE_16: int
 
 class Matches:
-    """The outcome of correlation for each pixel of the left picture (best_right: of the right one). Arrays (H, W), read-only; None where match.evidence or match.row_band left them out."""
+    """The outcome of correlation for each pixel of the left picture (best_right: of the right one). Arrays (H, W), read-only; row_offset is None without match.row_band."""
     @property
     def best(self) -> NDArray[numpy.int16]:
         """int16, disparity of least cost in px; NO_MATCH = none"""
@@ -634,7 +632,7 @@ class Option:
         """the stage that it belongs to, 'match'"""
     @property
     def type(self) -> str:
-        """'int', 'float', 'bool', 'choice' or 'points'"""
+        """'int', 'float', 'bool' or 'choice'"""
     @property
     def default(self) -> object:
         """value in the preset asked for"""
@@ -647,6 +645,12 @@ class Option:
     @property
     def help(self) -> str:
         """what it does"""
+    @property
+    def needs(self) -> str:
+        """'match.method=window', 'ground.source!=off': it is read only while that is so; '' = always"""
+    @property
+    def active(self) -> bool:
+        """whether the preset asked for reads it"""
 
 class PairMeasures:
     """All that measure_pair() measures of one pair."""
@@ -839,7 +843,6 @@ class Segmenter:
         texture: TextureOptions = ...,
         ground: GroundOptions = ...,
         speckle: SpeckleOptions = ...,
-        confidence: ConfidenceOptions = ...,
         evidence: EvidenceOptions = ...,
         background: BackgroundOptions = ...,
         intensity: IntensityOptions = ...,
@@ -1079,7 +1082,6 @@ def correct_epipolar(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
 ) -> EpipolarCorrection:
     """Both: compensates a small misalignment of the cameras, as vibration makes it, before the matching."""
 
@@ -1099,7 +1101,6 @@ def diagnose(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
 ) -> List[Finding]: ...
 @overload
 def diagnose(synchrony: Synchrony) -> Optional[Finding]: ...
@@ -1146,7 +1147,6 @@ def estimate_confidence(
     *,
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
-    enabled: bool = ...,
     method: Literal["window", "semi_global"] = ...,
     cost: Literal["sad", "ssd", "zsad", "zssd", "nssd", "zncc"] = ...,
     window_size: int = ...,
@@ -1155,11 +1155,9 @@ def estimate_confidence(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
-) -> Optional[NDArray[numpy.float32]]:
+) -> NDArray[numpy.float32]:
     """How likely each disparity is within 1 px of the truth: (H, W) float32, 0 to 1; 0 where there is
-    none. None where it is off, or where `matches` lacks runner_up or mean_cost. Of the group match only
-    `method` counts: how `matches` was made.
+    none. Of the group match only `method` counts: how `matches` was made.
     """
 
 def estimate_disparity(
@@ -1181,7 +1179,6 @@ def estimate_disparity(
     texture: TextureOptions = ...,
     ground: GroundOptions = ...,
     speckle: SpeckleOptions = ...,
-    confidence: ConfidenceOptions = ...,
     evidence: EvidenceOptions = ...,
     background: BackgroundOptions = ...,
     intensity: IntensityOptions = ...,
@@ -1229,7 +1226,6 @@ def find_epipolar_offset(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
 ) -> EpipolarOffset:
     """Finds how far the right picture's rows are off, from textured points all over it. left, right: (H,
     W) or (H, W, 3) uint8 of one size.
@@ -1243,9 +1239,7 @@ def find_evidence(
     bgr: bool = False,
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
-    noise_factor: float = ...,
     gradient_min: float = ...,
-    agreement: float = ...,
 ) -> NDArray[numpy.float32]:
     """The disparities that rest on the pixel's own texture, NaN elsewhere: (H, W) float32, px. noise_sigma
     as noise_sigma() gives it.
@@ -1259,10 +1253,6 @@ def fit_background(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     max_walls: int = ...,
-    tolerance: float = ...,
-    min_share: float = ...,
-    min_share_square: float = ...,
-    max_behind: float = ...,
 ) -> Background:
     """Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as
     find_evidence() gives it.
@@ -1275,10 +1265,6 @@ def fit_ground(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     source: Literal["off", "automatic", "points", "pose"] = ...,
-    points: Points = ...,
-    height: float = ...,
-    pitch: float = ...,
-    roll: float = ...,
     margin: float = ...,
     label_floor: bool = ...,
 ) -> Ground:
@@ -1316,21 +1302,9 @@ def group_facets(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     step: float = ...,
-    step_share: float = ...,
-    deviation: float = ...,
-    deviation_share: float = ...,
-    gap_share: float = ...,
     min_area: float = ...,
-    occluded_gap: float = ...,
     margin: float = ...,
     agreement: float = ...,
-    longest_bridge: float = ...,
-    border_weight: float = ...,
-    skirting: float = ...,
-    smoothness: float = ...,
-    colour_weight: float = ...,
-    continuation_weight: float = ...,
-    largest_part: float = ...,
 ) -> Segmentation:
     """Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the
     background (is_background), the others are groups. Means in px.
@@ -1372,10 +1346,6 @@ def label_floor(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     source: Literal["off", "automatic", "points", "pose"] = ...,
-    points: Points = ...,
-    height: float = ...,
-    pitch: float = ...,
-    roll: float = ...,
     margin: float = ...,
     label_floor: bool = ...,
 ) -> Optional[NDArray[numpy.uint8]]:
@@ -1425,7 +1395,6 @@ def match(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
     penalty_small: float = ...,
     penalty_large: float = ...,
     penalty_edge: float = ...,
@@ -1450,13 +1419,12 @@ def match_semi_global(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
     penalty_small: float = ...,
     penalty_large: float = ...,
     penalty_edge: float = ...,
 ) -> Matches:
     """match() with method='semi_global', whatever the configuration says: neighbours vote along four paths
-    (Hirschmueller 2008). Of the group match only min_disparity, num_disparities and evidence count.
+    (Hirschmueller 2008). Of the group match only min_disparity and num_disparities count.
     """
 
 def match_windows(
@@ -1474,7 +1442,6 @@ def match_windows(
     row_band: int = ...,
     prefilter: Literal["none", "xsobel"] = ...,
     prefilter_cap: int = ...,
-    evidence: Literal["winner", "minimum", "full"] = ...,
 ) -> Matches:
     """match() with method='window', whatever the configuration says: a square window for every pixel, on
     its own.
@@ -1580,10 +1547,6 @@ def reject_below_ground(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     source: Literal["off", "automatic", "points", "pose"] = ...,
-    points: Points = ...,
-    height: float = ...,
-    pitch: float = ...,
-    roll: float = ...,
     margin: float = ...,
     label_floor: bool = ...,
 ) -> DisparityMap:
@@ -1659,7 +1622,6 @@ def segment(
     texture: TextureOptions = ...,
     ground: GroundOptions = ...,
     speckle: SpeckleOptions = ...,
-    confidence: ConfidenceOptions = ...,
     evidence: EvidenceOptions = ...,
     background: BackgroundOptions = ...,
     intensity: IntensityOptions = ...,
@@ -1704,10 +1666,7 @@ def segment_facets(
     bgr: bool = False,
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
-    smoothing_sigma: float = ...,
     edge_min: float = ...,
-    noise_factor: float = ...,
-    contrast_share: float = ...,
 ) -> Facets:
     """Cuts the picture into pieces that no clear edge runs through, by colour where there is colour.
     noise_sigma as noise_sigma() gives it.
@@ -1741,13 +1700,6 @@ def separate_figure(
     exec: Optional[Exec] = None,
     margin: float = ...,
     agreement: float = ...,
-    longest_bridge: float = ...,
-    border_weight: float = ...,
-    skirting: float = ...,
-    smoothness: float = ...,
-    colour_weight: float = ...,
-    continuation_weight: float = ...,
-    largest_part: float = ...,
 ) -> NDArray[numpy.int32]:
     """For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, one
     number for each facet. noise_sigma as noise_sigma() gives it.
@@ -1796,7 +1748,6 @@ def tune(
     texture: TextureOptions = ...,
     ground: GroundOptions = ...,
     speckle: SpeckleOptions = ...,
-    confidence: ConfidenceOptions = ...,
     evidence: EvidenceOptions = ...,
     background: BackgroundOptions = ...,
     intensity: IntensityOptions = ...,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
+#include <cairn/core/error.hpp>
 #include <cairn/scene/ground_plane.hpp>
 
 #include <algorithm>
