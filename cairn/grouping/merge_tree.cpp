@@ -201,7 +201,9 @@ class Growing {
       origin.least_same_thing = std::min(origin.least_same_thing, part.origin.least_same_thing);
       origin.larger_part = i == parts[0] ? share : std::max(origin.larger_part, share);
     }
-    tree_.nodes.push_back({.part_a = parts[0], .part_b = parts[1]});
+    MergeNode& fused = tree_.nodes.emplace_back();
+    fused.part_a = parts[0];
+    fused.part_b = parts[1];
     nodes_[slot(kept)] = node;
     return origin;
   }

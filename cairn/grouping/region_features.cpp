@@ -435,16 +435,19 @@ void tell_end(ObjectFeatures& features, float share_of_it, float same_thing) {
 }
 
 std::vector<std::string_view> merge_feature_names() {
-  const RegionCues region{.area = 1};
+  RegionCues region;
+  region.area = 1;
   const RegionPlanes planes;
-  const ContactCues contact{.length = 1};
+  ContactCues contact;
+  contact.length = 1;
   Names names;
   list_merge_features({region, planes}, {region, planes}, contact, {}, names);
   return names.out;
 }
 
 std::vector<std::string_view> object_feature_names() {
-  const RegionCues region{.area = 1};
+  RegionCues region;
+  region.area = 1;
   const RegionPlanes planes;
   Names names;
   list_object_features({region, planes}, {}, {}, {}, names);

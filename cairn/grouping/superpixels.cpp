@@ -215,7 +215,7 @@ Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<con
 
 Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {
   return segmentation_of(superpixels.labels.clone(exec.pool), slot(superpixels.count),
-                         [&](int x, int y) { return double{left(x, y)}; });
+                         [&](int x, int y) { return static_cast<double>(left(x, y)); });
 }
 
 }  // namespace cairn
