@@ -694,9 +694,8 @@ std::string head(const std::string& commit) {
 
 constexpr std::string_view kNotHeldOut =
     "**This is not held out.** The constants of `default` were chosen on `rendered/dev`, its sequences among "
-    "it, and `rc_tabletop`, "
-    "the "
-    "very frames of most tables below, so the figures flatter it there. "
+    "it, and `rc_tabletop`, the very frames of most tables below, and its trees were fitted to the single "
+    "frames among these (`fitting/fit.py` lists the fit set), so the figures flatter it there. "
     "What is rendered, the stress series among it, is of our own making.\n\n";
 
 constexpr std::string_view kColumns =
