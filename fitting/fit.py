@@ -25,7 +25,6 @@ import xgboost
 
 WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
 PAIRS_KEPT = 0.4  # of all that are met: there are millions
-PARTED = 3.0  # weight of pairs that are not one thing: two that fused wrongly cannot be parted again
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 250, 3
 SEED = 7
@@ -188,7 +187,7 @@ class Fitting:
             head = np.concatenate([h for h, _ in seen])
             features = np.concatenate([f for _, f in seen])
             job = head[:, 0].astype(int)
-            weights = head[:, 2] * self.weight[job] * np.where(head[:, 1] == 0, PARTED, 1.0)
+            weights = head[:, 2] * self.weight[job]
             for fold in [*range(self.folds), *(["all"] if round_ == 1 else [])]:
                 take = self.fold[job] != fold if fold != "all" else job >= 0
                 model = fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20)

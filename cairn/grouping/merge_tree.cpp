@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/grouping/merge_tree.hpp>
+#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -47,7 +48,9 @@ class Growing {
         contacts_of_(graph_.regions.size()),
         common_(graph_.regions.size(), -1),
         fusions_(graph_.regions.size(), 0),
+        first_(graph_.contacts.size()),
         judged_(graph_.contacts.size()) {
+    std::iota(first_.begin(), first_.end(), 0);
     tree_.superpixels = superpixels.count;
     tree_.nodes.reserve(2 * graph_.regions.size());
     tree_.nodes.resize(graph_.regions.size());
@@ -67,16 +70,12 @@ class Growing {
     while (!queue_.empty()) {
       const Entry next = queue_.top();
       queue_.pop();
-      const Judged& judged = judged_[slot(next.contact)];
-      if (judged.version != next.version) continue;
-      if (fusions_at(next.contact) != next.fusions) {
-        judge(next.contact);
-        if (!queue_.empty() && judged.score < queue_.top().score) {
-          queue_.push({judged.score, next.contact, next.version, fusions_at(next.contact)});
-          continue;
-        }
+      if (judged_[slot(next.contact)].version != next.version) continue;
+      if (fusions_at(next.contact) == next.fusions) {
+        fuse(next.contact);
+      } else {
+        queue(next.contact);
       }
-      fuse(next.contact);
     }
     return std::move(tree_);
   }
@@ -88,11 +87,12 @@ class Growing {
   };
   struct Entry {
     float score;
+    std::int32_t first;
     std::int32_t contact;
     std::int32_t version;
     std::int64_t fusions;                       // of its two ends, when it was judged
     bool operator<(const Entry& other) const {  // the queue's top is the greatest
-      return score < other.score || (score == other.score && contact > other.contact);
+      return score < other.score || (score == other.score && first > other.first);
     }
   };
 
@@ -122,7 +122,7 @@ class Growing {
   void queue(std::int32_t contact) {
     judge(contact);
     const Judged& judged = judged_[slot(contact)];
-    queue_.push({judged.score, contact, judged.version, fusions_at(contact)});
+    queue_.push({judged.score, first_[slot(contact)], contact, judged.version, fusions_at(contact)});
   }
 
   void describe(std::size_t region, const Origin& origin) {
@@ -139,14 +139,16 @@ class Growing {
     node.features = object_features(side(static_cast<std::int32_t>(region)), neighbours_, origin, frame_);
   }
 
+  void forget_gone(std::vector<std::int32_t>& contacts) const {
+    std::erase_if(contacts, [&](std::int32_t i) { return judged_[slot(i)].version < 0; });
+  }
+
   /// The contacts of `lost` become those of `kept`. Returns those that changed.
   std::vector<std::int32_t> hand_over(std::int32_t kept, std::int32_t lost) {
     std::vector<std::int32_t>& contacts = contacts_of_[slot(kept)];
-    std::erase_if(contacts, [&](std::int32_t i) { return judged_[slot(i)].version < 0; });
     for (const std::int32_t i : contacts) common_[slot(other_end(i, kept))] = i;
     std::vector<std::int32_t> changed;
     for (const std::int32_t i : contacts_of_[slot(lost)]) {
-      if (judged_[slot(i)].version < 0) continue;
       ContactCues& contact = graph_.contacts[slot(i)];
       const bool first = contact.a == lost;
       const std::int32_t known = common_[slot(first ? contact.b : contact.a)];
@@ -154,6 +156,7 @@ class Growing {
         ContactCues& both = graph_.contacts[slot(known)];
         both.add(contact, (both.a == kept) != first);
         judged_[slot(i)].version = -1;
+        first_[slot(known)] = std::min(first_[slot(known)], first_[slot(i)]);
         changed.push_back(known);
       } else {
         (first ? contact.a : contact.b) = kept;
@@ -170,8 +173,10 @@ class Growing {
     const float score = judged_[slot(across)].score;
     std::int32_t kept = graph_.contacts[slot(across)].a;
     std::int32_t lost = graph_.contacts[slot(across)].b;
-    if (contacts_of_[slot(kept)].size() < contacts_of_[slot(lost)].size()) std::swap(kept, lost);
     judged_[slot(across)].version = -1;
+    forget_gone(contacts_of_[slot(kept)]);
+    forget_gone(contacts_of_[slot(lost)]);
+    if (contacts_of_[slot(kept)].size() < contacts_of_[slot(lost)].size()) std::swap(kept, lost);
     RegionCues& region = graph_.regions[slot(kept)];
     const auto [small, large] = std::minmax(region.area, graph_.regions[slot(lost)].area);
     const bool much = small * kMuch > large;
@@ -217,6 +222,7 @@ class Growing {
   std::vector<std::vector<std::int32_t>> contacts_of_;
   std::vector<std::int32_t> common_;   // while two fuse: the contact with the one that is kept; −1 = none
   std::vector<std::int64_t> fusions_;  // of each region
+  std::vector<std::int32_t> first_;    // of each contact: where the picture's rows show it first, among all
   std::vector<Judged> judged_;         // each contact
   std::vector<Neighbour> neighbours_;  // of the region that is described
   std::priority_queue<Entry> queue_;

@@ -74,9 +74,10 @@ class Gathering {
       ground_[slot(x)] =
           ground > 0 ? in_steps(std::min(ground, kMaxDisparity)) : kNoDisparity;  // above the horizon
     }
-    for (int x = 0; !cues_.background.planes.empty() && x < width_; ++x)
-      background_[slot(x)] =
-          in_steps(std::min(cues_.background.disparity_px(static_cast<float>(x), fy), kMaxDisparity));
+    for (int x = 0; !cues_.background.planes.empty() && x < width_; ++x) {
+      const float behind = cues_.background.disparity_px(static_cast<float>(x), fy);
+      background_[slot(x)] = in_steps(std::min(behind, kMaxDisparity));
+    }
   }
 
   /// The pixels first … last − 1 of row y, which all are the region's.
@@ -160,9 +161,9 @@ class Gathering {
   ContactCues& contact(std::int32_t a, std::int32_t b) {
     std::vector<std::pair<std::int32_t, std::int32_t>>& known = contacts_of_[slot(a)];
     // What was met last stands last.
-    for (auto at = known.rbegin(); at != known.rend(); ++at) {
-      if (at->first == b) return result_.contacts[slot(at->second)];
-    }
+    const auto at =
+        std::find_if(known.rbegin(), known.rend(), [&](const auto& met) { return met.first == b; });
+    if (at != known.rend()) return result_.contacts[slot(at->second)];
     known.emplace_back(b, static_cast<std::int32_t>(result_.contacts.size()));
     result_.contacts.emplace_back();
     result_.contacts.back().a = a;

@@ -26,7 +26,8 @@ struct Cues {
   float noise_sigma = 0;  // grey levels
 };
 
-/// Disparities are counted in 1/64 px, positions in px from the image's centre.
+/// Disparities are counted in 1/64 px (rounded, halves up), positions in px from the image's centre, which is
+/// the pixel (width/2, height/2) rounded down.
 inline constexpr int kDisparitySteps = 64;
 
 /// Sums that a plane of disparity is fitted to.
@@ -39,7 +40,7 @@ struct PlaneMoments {
   friend bool operator==(const PlaneMoments&, const PlaneMoments&) = default;
 };
 
-/// How far disparities lie before a surface, in 1/64 px.
+/// How far disparities lie before a surface, in 1/64 px, which count from 8 px behind to 24 px before it.
 struct Heights {
   std::int64_t n = 0, sum = 0, squares = 0;
   std::int64_t behind = 0, on = 0;  // farther behind than 1 px; within 1 px
@@ -48,33 +49,38 @@ struct Heights {
   friend bool operator==(const Heights&, const Heights&) = default;
 };
 
+/// Steps of a histogram: brightness by 16 grey levels from 0 on, the differences of colour by 12 from −96 on,
+/// what lies outside in the first or the last.
 inline constexpr std::size_t kColourBins = 16;
 
 struct RegionCues {
   std::int64_t area = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   int left = std::numeric_limits<int>::max(), top = std::numeric_limits<int>::max();
-  int right = -1, bottom = -1;                             // the last column and row
-  std::array<std::int64_t, 4> at_image_border{};           // pixels at its left, right, top, bottom
-  std::array<std::int64_t, 3> colour{}, colour_squares{};  // brightness, blue − green, red − green
+  int right = -1, bottom = -1;                    // the last column and row
+  std::array<std::int64_t, 4> at_image_border{};  // pixels at its left, right, top, bottom
+  // Brightness, (red + 2 green + blue)/4 rounded down, blue − green, red − green; without colours grey, 0, 0.
+  std::array<std::int64_t, 3> colour{}, colour_squares{};
   std::array<std::int32_t, 3 * kColourBins> histogram{};
-  std::int64_t texture = 0;        // sum of the edges inside, in 1/4 grey level
-  std::int64_t perimeter = 0;      // pairs of 4-neighbours of which one lies outside
-  PlaneMoments matched, textured;  // all disparities; those of the evidence
-  Heights above_ground, textured_above_ground;
-  Heights before_background, textured_before_background;
+  std::int64_t texture = 0;                         // sum of the edges inside, in 1/4 grey level
+  std::int64_t perimeter = 0;                       // pairs of 4-neighbours of which one lies outside
+  PlaneMoments matched{}, textured{};               // all disparities; those of the evidence
+  Heights above_ground{}, textured_above_ground{};  // where the ground's disparity is positive
+  Heights before_background{}, textured_before_background{};
   /// `common`: pairs of neighbours between the two.
   void add(const RegionCues& other, std::int64_t common);
   friend bool operator==(const RegionCues&, const RegionCues&) = default;
 };
 
-/// Where two regions touch, a < b among superpixels. Steps are those of a over b.
+/// Where two regions touch, a < b among superpixels. Steps are those of a over b. The edge between two pixels
+/// is the stronger one of theirs, and none below 1.5 grey levels + 0.8 noise_sigma.
 struct ContactCues {
   std::int32_t a = 0, b = 0;
   std::int64_t length = 0, edge_sum = 0,
                weak = 0;        // pairs of neighbours; 1/4 grey level; pairs without an edge
   std::int64_t x2 = 0, y2 = 0;  // of the pairs' midpoints, in half pixels from the image's centre
   std::int64_t near_n = 0, near_sum = 0, near_abs = 0;  // steps between the two pixels, in 1/64 px
-  std::int64_t far_n = 0, far_sum = 0, far_abs = 0;     // between pixels three further away from the contact
+  // Between pixels up to three further away from the contact, as far as their superpixels go straight on:
+  std::int64_t far_n = 0, far_sum = 0, far_abs = 0;
   std::int64_t nearer = 0, farther = 0, level = 0;  // of the far ones: more than 1 px, less than −1, between
   /// `turned`: the other's a is this one's b.
   void add(const ContactCues& other, bool turned);
@@ -83,7 +89,7 @@ struct ContactCues {
 
 struct RegionGraphCues {
   std::vector<RegionCues> regions;
-  std::vector<ContactCues> contacts;  // in the order in which the picture's rows show them first
+  std::vector<ContactCues> contacts;  // as the picture's rows show them first, to the right before down
 };
 
 RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues, const Exec& exec);

@@ -19,7 +19,7 @@ struct FittedPlane {
   bool any = false;
   double a = 0, b = 0;         // px a px
   double d = 0, x = 0, y = 0;  // through this point; x and y from the image's centre
-  double squares = 0;          // sum of the squared distances from it
+  double squares = 0;          // sum of the squared distances from it, and what its levelling costs
   [[nodiscard]] double at(double px, double py) const { return d + a * (px - x) + b * (py - y); }
 };
 /// `width`: of the image.
@@ -66,7 +66,7 @@ struct Neighbour {
   float same_thing;  // kSameThing of the two
 };
 
-/// How a region came to be.
+/// How a region came to be; of a superpixel: {20, 20, 1}.
 struct Origin {
   float same_thing = 0;        // kSameThing of its two parts, when they fused
   float least_same_thing = 0;  // … and the least of all fusions in it

@@ -100,6 +100,7 @@ class Fusing {
   struct Link {
     std::int32_t a = 0;
     std::int32_t b = 0;
+    std::int32_t first = 0;  // where the picture's rows show it first, among all links
     std::int64_t length = 0;
     std::int64_t edge_sum = 0;
     std::int32_t version = 0;  // −1 = gone
@@ -107,10 +108,11 @@ class Fusing {
   };
   struct Entry {
     double key;
+    std::int32_t first;
     std::int32_t link;
     std::int32_t version;
     bool operator<(const Entry& other) const {  // the queue's top is the greatest
-      return key > other.key || (key == other.key && link > other.link);
+      return key > other.key || (key == other.key && first > other.first);
     }
   };
 
@@ -125,13 +127,13 @@ class Fusing {
   Link& link_between(std::int32_t a, std::int32_t b) {
     // What was met last stands last.
     const std::vector<std::int32_t>& known = links_of_[slot(a)];
-    for (auto i = known.rbegin(); i != known.rend(); ++i) {
-      if (links_[slot(*i)].other(a) == b) return links_[slot(*i)];
-    }
+    const auto met = std::find_if(known.rbegin(), known.rend(),
+                                  [&](std::int32_t i) { return links_[slot(i)].other(a) == b; });
+    if (met != known.rend()) return links_[slot(*met)];
     const auto next = static_cast<std::int32_t>(links_.size());
     links_of_[slot(a)].push_back(next);
     links_of_[slot(b)].push_back(next);
-    links_.push_back({a, b});
+    links_.push_back({a, b, next});
     return links_.back();
   }
 
@@ -139,7 +141,7 @@ class Fusing {
     const Link& link = links_[slot(i)];
     const auto area = static_cast<double>(std::min(areas_[slot(link.a)], areas_[slot(link.b)]));
     const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
-    queue_.push({(edge + kEvenWithoutEdge) * std::sqrt(area), i, link.version});
+    queue_.push({(edge + kEvenWithoutEdge) * std::sqrt(area), link.first, i, link.version});
   }
 
   void queue_anew(std::int32_t i) {
@@ -164,8 +166,10 @@ class Fusing {
       if (link.version < 0) continue;
       const std::int32_t known = common_[slot(link.other(lost))];
       if (known >= 0) {
-        links_[slot(known)].length += link.length;
-        links_[slot(known)].edge_sum += link.edge_sum;
+        Link& both = links_[slot(known)];
+        both.first = std::min(both.first, link.first);
+        both.length += link.length;
+        both.edge_sum += link.edge_sum;
         link.version = -1;
         queue_anew(known);
       } else {

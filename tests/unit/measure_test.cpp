@@ -42,6 +42,9 @@ struct Scene {
   [[nodiscard]] Objects measured(const ObjectsConfig& config = {}, std::optional<StereoRig> rig = {}) const {
     return measure(labels, is_background, disparity, left, {}, noise_sigma(left), rig, config, {});
   }
+  [[nodiscard]] Objects measured_as_chosen(const std::vector<float>& scores, int threads = 1) const {
+    return measure(labels, scores, disparity, left, {}, noise_sigma(left), {}, Exec::with_threads(threads));
+  }
   [[nodiscard]] Objects measured_in_colour(View<const Rgb> rgb) const {
     return measure(labels, is_background, disparity, left, rgb, noise_sigma(left), {}, {}, {});
   }
@@ -219,6 +222,56 @@ TEST(Measure, AnObjectAtInfinityHasNoPosition) {
   const Scene scene({60, 20}, {{{20, 5, 10, 10}, 0}});
   ASSERT_EQ(scene.measured({}, kRig).list.size(), 1U);
   EXPECT_FALSE(scene.measured({}, kRig).list[0].position_in_camera_m);
+}
+
+TEST(MeasureChosen, TakesTheScoresForConfidences) {
+  const Objects objects =
+      Scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, 16}}).measured_as_chosen({0, 0.25F, 0.5F});
+  ASSERT_EQ(objects.list.size(), 2U);
+  EXPECT_EQ(objects.list[0].disparity_px, 16);  // nearest first
+  EXPECT_EQ(objects.list[0].confidence, 0.5F);
+  EXPECT_EQ(objects.list[1].confidence, 0.25F);
+  EXPECT_EQ(objects.labels(3, 3), ObjectId{2});
+  EXPECT_EQ(objects.labels(12, 3), ObjectId{1});
+  EXPECT_EQ(objects.labels(0, 0), ObjectId::none);
+}
+
+TEST(MeasureChosen, WhatScoresNothingOrHasNoDisparityIsNoObject) {
+  const Objects objects = Scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, kNan}, {{20, 2, 5, 5}, 4}})
+                              .measured_as_chosen({0, 0, 0.9F, 0.1F});
+  ASSERT_EQ(objects.list.size(), 1U);
+  EXPECT_EQ(objects.list[0].disparity_px, 4);
+  EXPECT_EQ(objects.labels(3, 3), ObjectId::none);
+  EXPECT_EQ(objects.labels(12, 3), ObjectId::none);
+}
+
+TEST(MeasureChosen, SizeAndBordersDoNotMatter) {
+  const Objects objects =
+      Scene({40, 20}, {{{0, 5, 40, 15}, 8}, {{3, 1, 1, 1}, 9}}).measured_as_chosen({0, 0.5F, 0.5F});
+  ASSERT_EQ(objects.list.size(), 2U);
+  EXPECT_EQ(objects.list[0].pixel_count, 1);
+  EXPECT_EQ(objects.list[1].pixel_count, 40 * 15);
+}
+
+TEST(MeasureChosen, MeasuresAllElseAsOfCandidates) {
+  const Scene scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{0, 8, 5, 9}, 16}, {{20, 2, 5, 5}, 8}});
+  const Objects candidates = scene.measured({.min_area = 0, .max_area = 50});
+  for (const int threads : {1, 3}) {
+    const Objects objects = scene.measured_as_chosen({0, 0.5F, 0.5F, 0.5F}, threads);
+    ASSERT_EQ(objects.list.size(), candidates.list.size());
+    for (std::size_t i = 0; i < objects.list.size(); ++i) {
+      const Object& found = objects.list[i];
+      const Object& expected = candidates.list[i];
+      EXPECT_EQ(found.id, expected.id);
+      EXPECT_EQ(found.box_px, expected.box_px);
+      EXPECT_EQ(found.disparity_px, expected.disparity_px);
+      EXPECT_EQ(found.valid_share, expected.valid_share);
+      EXPECT_EQ(found.mean_colour, expected.mean_colour);
+      EXPECT_EQ(found.edge_share, expected.edge_share);
+      EXPECT_EQ(found.cut_share, expected.cut_share);
+    }
+    EXPECT_EQ(grids::numbers(objects.labels), grids::numbers(candidates.labels));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/grouping/choose_objects.hpp>
+#include <cairn/grouping/merge_tree.hpp>
+#include <cairn/grouping/region_cues.hpp>
+#include <cairn/grouping/superpixels.hpp>
+#include <set>
+
+/// The slow twins of the way from superpixels to objects: whatever they need they count anew from the pixels,
+/// and look through all that there is. Only for small images.
+namespace cairn::reference {
+
+Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
+                            int count);
+
+/// A region, by the superpixels that it consists of.
+using Members = std::set<std::int32_t>;
+
+RegionCues cues_of(const Members& members, const Superpixels& superpixels, const Cues& cues);
+/// Of a over b; its `length` is 0 where the two do not touch. Its own a and b are 0.
+ContactCues contact_of(const Members& a, const Members& b, const Superpixels& superpixels, const Cues& cues);
+MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing);
+ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
+                             const ChoiceLimits& limits);
+
+}  // namespace cairn::reference

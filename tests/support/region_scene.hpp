@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <algorithm>
+#include <cairn/grouping/region_features.hpp>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "support/grids.hpp"
+
+/// A picture of regions that one can read in a test's source, with all that is known of its pixels.
+namespace cairn::support {
+
+struct RegionScene {
+  Superpixels superpixels;
+  Image<Gray> gray;
+  Image<Rgb> rgb;  // empty at first
+  Image<float> disparity_px;
+  Image<float> evidence_px;
+  Ground ground;
+  Background background;
+
+  /// Plain grey, without edges and without a disparity.
+  explicit RegionScene(Image<RegionId> labels) {
+    const Size size = labels.size();
+    int last = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) last = std::max(last, number(labels(x, y)));
+    }
+    superpixels.labels = std::move(labels);
+    superpixels.count = last + 1;
+    superpixels.edges = Image<std::uint16_t>(size, std::uint16_t{0}, {});
+    gray = Image<Gray>(size, Gray{100}, {});
+    disparity_px = Image<float>(size, std::numeric_limits<float>::quiet_NaN(), {});
+    evidence_px = disparity_px.clone();
+  }
+
+  /// `shades[i]`: the grey of region i.
+  void paint(const std::vector<int>& shades) {
+    for_each_pixel([&](int x, int y, std::size_t region) { gray(x, y) = static_cast<Gray>(shades[region]); });
+  }
+  /// Disparities everywhere, evidence in every third pixel: at(x, y, region).
+  template <class At>
+  void place(At at) {
+    for_each_pixel([&](int x, int y, std::size_t region) {
+      disparity_px(x, y) = at(x, y, region);
+      if ((x + y) % 3 == 0) evidence_px(x, y) = disparity_px(x, y);
+    });
+  }
+  template <class Visit>
+  void for_each_pixel(Visit visit) {
+    for (int y = 0; y < gray.height(); ++y) {
+      for (int x = 0; x < gray.width(); ++x) visit(x, y, index(superpixels.labels(x, y)));
+    }
+  }
+
+  [[nodiscard]] Cues cues() const {
+    return {gray, rgb.empty() ? View<const Rgb>{} : rgb.view(), disparity_px, evidence_px, ground, background,
+            1};
+  }
+};
+
+}  // namespace cairn::support

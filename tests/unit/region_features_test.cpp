@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cairn/grouping/fitted_trees.hpp>
+#include <cairn/grouping/merge_tree.hpp>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "support/region_scene.hpp"
+
+namespace cairn {
+namespace {
+
+using grids::grid;
+using support::RegionScene;
+
+// ---- planes ----
+
+/// Of d = 20 + a·x + b·y in a rectangle, from the image's centre.
+PlaneMoments moments(Rect rect, double a, double b) {
+  PlaneMoments m;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x)
+      m.add(x, y, static_cast<int>(std::lround((20 + a * x + b * y) * kDisparitySteps)));
+  }
+  return m;
+}
+
+TEST(FitPlane, FindsTheSlopeOfALargeRegion) {
+  const FittedPlane plane = fit_plane(moments({-60, -40, 100, 90}, 0.125, -0.0625), 160);
+  ASSERT_TRUE(plane.any);
+  EXPECT_NEAR(plane.a, 0.125, 0.003);
+  EXPECT_NEAR(plane.b, -0.0625, 0.002);
+  EXPECT_NEAR(plane.x, -10.5, 1e-9);
+  EXPECT_NEAR(plane.y, 4.5, 1e-9);
+  EXPECT_NEAR(plane.d, 20 - 0.125 * 10.5 - 0.0625 * 4.5, 0.01);
+  EXPECT_NEAR(plane.at(30, 20), 20 + 0.125 * 30 - 0.0625 * 20, 0.15);
+  const auto pixels = 100 * 90;
+  EXPECT_LT(std::sqrt(plane.squares / pixels), 0.5) << "its slopes cost something";
+}
+
+TEST(FitPlane, SaysHowFarDisparitiesLieFromIt) {
+  PlaneMoments m;
+  for (int i = 0; i < 400; ++i)
+    m.add(i % 20 - 10, i / 20 - 10, (i % 2 == i / 20 % 2 ? 7 : 9) * kDisparitySteps);
+  const FittedPlane plane = fit_plane(m, 100);
+  EXPECT_NEAR(plane.d, 8, 1e-9);
+  EXPECT_NEAR(std::sqrt(plane.squares / 400), 1, 1e-3);
+}
+
+TEST(FitPlane, IsLevelWhereARegionIsSmall) {
+  const FittedPlane plane = fit_plane(moments({10, 10, 3, 3}, 0.5, 0), 640);
+  EXPECT_LT(std::abs(plane.a), 0.01);
+  EXPECT_EQ(plane.b, 0);
+  EXPECT_NEAR(plane.d, 25.5, 0.01);
+}
+
+TEST(FitPlane, OfNothingIsNone) {
+  const FittedPlane plane = fit_plane({}, 640);
+  EXPECT_FALSE(plane.any);
+  EXPECT_EQ(plane.at(3, 4), 0);
+}
+
+// ---- features ----
+
+std::size_t where(const std::vector<std::string_view>& names, std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(found, names.end()) << name;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+/// Of the first contact, and of a superpixel, by their names.
+struct Features {
+  MergeFeatures of_contact{};
+  std::vector<ObjectFeatures> of_regions;
+
+  explicit Features(const RegionScene& scene) {
+    bool first = true;
+    const MergeTree tree = grow_merge_tree(scene.superpixels, scene.cues(), {},
+                                           [&](std::int32_t, std::int32_t, const MergeFeatures& by) {
+                                             if (first) of_contact = by;
+                                             first = false;
+                                           });
+    for (const MergeNode& node : tree.nodes) of_regions.push_back(node.features);
+  }
+  [[nodiscard]] float contact(std::string_view name) const {
+    return of_contact.at(where(merge_feature_names(), name));
+  }
+  [[nodiscard]] float region(std::size_t i, std::string_view name) const {
+    return of_regions.at(i).at(where(object_feature_names(), name));
+  }
+};
+
+RegionScene box_on_a_wall() {
+  Image<RegionId> labels(Size{24, 16}, RegionId{0}, {});
+  for (int y = 4; y < 14; ++y) std::fill_n(labels.row(y) + 6, 8, RegionId{1});
+  RegionScene scene(std::move(labels));
+  scene.paint({60, 110});
+  scene.place(
+      [](int x, int, std::size_t region) { return region == 0 ? 5 + 0.05F * static_cast<float>(x) : 12; });
+  return scene;
+}
+
+TEST(FeatureNames, AreOneOfItsOwnForEachFeature) {
+  const auto merge = merge_feature_names();
+  const auto object = object_feature_names();
+  EXPECT_EQ(merge.size(), kMergeFeatures);
+  EXPECT_EQ(object.size(), kObjectFeatures);
+  EXPECT_EQ(std::set(merge.begin(), merge.end()).size(), merge.size());
+  EXPECT_EQ(std::set(object.begin(), object.end()).size(), object.size());
+}
+
+TEST(MergeFeatures, SayHowABoxDiffersFromItsWall) {
+  RegionScene scene = box_on_a_wall();
+  scene.for_each_pixel([&](int x, int y, std::size_t) {
+    const bool at_outline =
+        (x == 5 || x == 6 || x == 13 || x == 14) || (y == 3 || y == 4 || y == 13 || y == 14);
+    scene.superpixels.edges(x, y) = at_outline ? 100 : 0;
+  });
+  const Features features(scene);
+  EXPECT_FLOAT_EQ(features.contact("border length over the root of the smaller one's area"),
+                  36 / std::sqrt(80.0F));
+  EXPECT_EQ(features.contact("border length, share of the smaller one's outline"), 1);
+  EXPECT_EQ(features.contact("mean edge, grey levels"), 25);
+  EXPECT_EQ(features.contact("share of the border without an edge"), 0);
+  EXPECT_EQ(features.contact("difference of brightness, grey levels"), 50);
+  EXPECT_FLOAT_EQ(features.contact("distance of the colours' histograms"), 2);
+  EXPECT_NEAR(features.contact("step right at the border, px"), 6.5, 0.1);
+  EXPECT_NEAR(features.contact("step 3 px away from it, with its sign, px"), 6.5, 0.1)
+      << "the smaller is nearer";
+  EXPECT_NEAR(features.contact("step of the planes at the border, px"), 6.5, 0.1);
+  EXPECT_NEAR(features.contact("evidence: step of the planes at the border, px"), 6.5, 0.1);
+  EXPECT_EQ(features.contact("share of these that are level"), 0);
+  EXPECT_EQ(features.contact("disparities, share of the smaller one"), 1);
+  EXPECT_EQ(features.contact("both fill of their box"), 1);
+}
+
+TEST(MergeFeatures, DoNotDependOnWhichOfTheTwoIsFirst) {
+  RegionScene scene = box_on_a_wall();
+  const Features features(scene);
+  scene.for_each_pixel([&](int x, int y, std::size_t region) {
+    scene.superpixels.labels(x, y) = RegionId{region == 0 ? 1 : 0};
+  });
+  const Features turned(scene);
+  EXPECT_EQ(turned.of_contact, features.of_contact);
+}
+
+TEST(ObjectFeatures, SayHowARegionStands) {
+  RegionScene scene = box_on_a_wall();
+  scene.ground.plane = GroundPlane{0, 0.5F, 2};
+  scene.background.planes = {{0.05F, 0, 5}};
+  const Features features(scene);
+  EXPECT_FLOAT_EQ(features.region(1, "area, share of the image"), 80.0F / (24 * 16));
+  EXPECT_EQ(features.region(1, "fills of its box"), 1);
+  EXPECT_EQ(features.region(1, "borders of the image that it touches"), 0);
+  EXPECT_EQ(features.region(0, "borders of the image that it touches"), 4);
+  EXPECT_EQ(features.region(1, "neighbours"), 1);
+  EXPECT_NEAR(features.region(1, "step down around it, 3 px away, px"), 6.5, 0.1);
+  EXPECT_EQ(features.region(1, "share of these where it is nearer"), 1);
+  EXPECT_EQ(features.region(0, "share of these where it is farther"), 1);
+  EXPECT_NEAR(features.region(1, "height above the ground, px"), 12 - 0.5 * 8.5 - 2, 0.01);
+  EXPECT_NEAR(features.region(1, "before the background, px"), 12 - 5 - 0.05 * 9.5, 0.02);
+  EXPECT_EQ(features.region(0, "share in the background"), 1);
+  EXPECT_EQ(features.region(1, "a ground is known"), 1);
+  EXPECT_EQ(features.region(1, "disparity, share of the nearest"), 1);
+  EXPECT_EQ(features.region(1, "its parts were one thing"), 20) << "a superpixel";
+}
+
+TEST(Features, AreUnknownWhereNothingIsKnown) {
+  RegionScene scene(grid<RegionId>({{0, 0, 1, 1}, {0, 0, 1, 1}}));
+  const Features features(scene);
+  for (const char* name :
+       {"difference of colour, grey levels", "step right at the border, px", "step 3 px away from it, px",
+        "step 3 px away from it, with its sign, px", "share of these that are level",
+        "step of the planes at the border, px", "evidence: step of the means, relative",
+        "height of the smaller one above the ground, px", "share of the larger one on the ground",
+        "the smaller one before the background, px", "disparity of the smaller one, share of the nearest"})
+    EXPECT_EQ(features.contact(name), kUnknown) << name;
+  for (const char* name :
+       {"spread of colour, grey levels", "step down around it, 3 px away, px", "step at its foot, px",
+        "distance from its plane, px", "evidence: slope down, relative", "height above the ground, px",
+        "height above the ground, relative", "share on the ground", "share in the background",
+        "least step of the planes around, px", "evidence: height above the ground over its error",
+        "what is around it on the ground, share"})
+    EXPECT_EQ(features.region(0, name), kUnknown) << name;
+  EXPECT_EQ(features.contact("disparities, share of the smaller one"), 0);
+  EXPECT_EQ(features.region(0, "a ground is known"), 0);
+}
+
+TEST(Features, AllThatIsUnknownIsSaidOfARegionThatIsTheWholeImage) {
+  const Features features(RegionScene(Image<RegionId>(Size{3, 2}, RegionId{0}, {})));
+  for (const char* name :
+       {"mean edge around it, grey levels", "most alike neighbour", "how alike what is around is",
+        "its share of what it becomes a part of", "how alike it is to the rest of that"})
+    EXPECT_EQ(features.region(0, name), kUnknown) << name;
+  for (const float value : features.of_regions[0]) EXPECT_TRUE(std::isfinite(value));
+  EXPECT_EQ(features.region(0, "area, share of the image"), 1);
+  EXPECT_EQ(features.region(0, "neighbours"), 0);
+}
+
+TEST(TellEnd, FillsInTheLastTwo) {
+  ObjectFeatures features{};
+  tell_end(features, 0.25F, -1.5F);
+  const auto names = object_feature_names();
+  EXPECT_EQ(features.at(where(names, "its share of what it becomes a part of")), 0.25F);
+  EXPECT_EQ(features.at(where(names, "how alike it is to the rest of that")), -1.5F);
+  EXPECT_EQ(std::count(features.begin(), features.end(), 0.0F), std::ptrdiff_t{kObjectFeatures} - 2);
+}
+
+/// Every pixel as two by two of them, disparities twice as large.
+RegionScene doubled(const RegionScene& scene) {
+  const Size size{2 * scene.gray.width(), 2 * scene.gray.height()};
+  const auto twice = [&](const auto& image) {
+    std::remove_cvref_t<decltype(image)> result(size);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) result(x, y) = image(x / 2, y / 2);
+    }
+    return result;
+  };
+  RegionScene result(twice(scene.superpixels.labels));
+  result.superpixels.edges = twice(scene.superpixels.edges);
+  result.gray = twice(scene.gray);
+  result.disparity_px = twice(scene.disparity_px);
+  result.evidence_px = twice(scene.evidence_px);
+  for (Image<float>* image : {&result.disparity_px, &result.evidence_px}) {
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) (*image)(x, y) *= 2;
+    }
+  }
+  return result;
+}
+
+/// Features in px grow with the disparities; the others stay, but for the steps in which pixels go.
+template <class Values>
+void expect_same_but_px(const Values& large, const Values& small,
+                        const std::vector<std::string_view>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const float factor = names[i].ends_with(", px") && small[i] != kUnknown ? 2.0F : 1.0F;
+    EXPECT_NEAR(large[i], factor * small[i], 0.03F + 0.04F * std::abs(factor * small[i])) << names[i];
+  }
+}
+
+TEST(Features, StayWhenAPictureAndItsDisparitiesAreDoubled) {
+  RegionScene scene = box_on_a_wall();
+  scene.for_each_pixel([&](int x, int y, std::size_t) {
+    scene.superpixels.edges(x, y) = static_cast<std::uint16_t>(10 * ((3 * x + 5 * y) % 7));
+  });
+  const Features small(scene);
+  const Features large(doubled(scene));
+  expect_same_but_px(large.of_contact, small.of_contact, merge_feature_names());
+  for (const std::size_t region : {0U, 1U, 2U})
+    expect_same_but_px(large.of_regions[region], small.of_regions[region], object_feature_names());
+}
+
+// ---- trees ----
+
+TEST(FittedTrees, GoBelowWhereAFeatureIsLessAndElseToTheNodeAfter) {
+  const std::vector<FittedTrees::Node> nodes{{1, 1, 2.5F}, {-1, 0, 10}, {0, 3, -1}, {-1, 0, 20}, {-1, 0, 30}};
+  const std::vector<std::int16_t> roots{0};
+  const FittedTrees trees{0.5F, roots, nodes};
+  const auto score = [&](float first, float second) { return trees(std::array{first, second}); };
+  EXPECT_EQ(score(0, std::nextafter(2.5F, 0.0F)), 10.5F);
+  EXPECT_EQ(score(0, 2.5F), 30.5F);
+  EXPECT_EQ(score(-1, 3), 30.5F);
+  EXPECT_EQ(score(-1.5F, 3), 20.5F);
+  EXPECT_EQ(score(kUnknown, 3), 20.5F);
+}
+
+TEST(FittedTrees, AddUp) {
+  const std::vector<FittedTrees::Node> nodes{{0, 1, 0}, {-1, 0, 1},  {-1, 0, 2},
+                                             {0, 4, 5}, {-1, 0, 10}, {-1, 0, 20}};
+  const std::vector<std::int16_t> roots{0, 3, 0};
+  const FittedTrees trees{-1, roots, nodes};
+  EXPECT_EQ(trees(std::array{-1.0F}), -1 + 1 + 10 + 1);
+  EXPECT_EQ(trees(std::array{1.0F}), -1 + 2 + 10 + 2);
+  EXPECT_EQ(trees(std::array{6.0F}), -1 + 2 + 20 + 2);
+  EXPECT_EQ(FittedTrees{}(std::array{1.0F}), 0);
+}
+
+}  // namespace
+}  // namespace cairn

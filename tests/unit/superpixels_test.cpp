@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/grouping/superpixels.hpp>
+#include <limits>
+#include <set>
+
+#include "support/grids.hpp"
+
+namespace cairn {
+namespace {
+
+using grids::numbers;
+using grids::random_image;
+using Rows = std::vector<std::vector<std::int64_t>>;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// A picture in stripes of four columns each.
+Image<Gray> stripes(const std::vector<int>& shades, int height = 3) {
+  Image<Gray> gray({4 * static_cast<int>(shades.size()), height});
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < gray.width(); ++x) gray(x, y) = static_cast<Gray>(shades[slot(x / 4)]);
+  }
+  return gray;
+}
+
+Superpixels cut(const Image<Gray>& gray, int count, float disparity_px = kNaN) {
+  const Image<float> disparity(gray.size(), disparity_px, {});
+  return cut_superpixels(gray, {}, disparity, {count}, {});
+}
+
+std::vector<std::int64_t> first_row(const Superpixels& superpixels) {
+  return numbers(superpixels.labels).front();
+}
+
+TEST(Superpixels, APlainPictureIsOne) {
+  const Superpixels superpixels = cut(Image<Gray>(Size{9, 7}, Gray{80}, {}), 500);
+  EXPECT_EQ(superpixels.count, 1);
+  EXPECT_EQ(numbers(superpixels.labels), Rows(7, std::vector<std::int64_t>(9, 0)));
+}
+
+TEST(Superpixels, AnEdgeOfBrightnessCuts) {
+  const Superpixels superpixels = cut(stripes({50, 200}), 500);
+  EXPECT_EQ(superpixels.count, 2);
+  EXPECT_EQ(numbers(superpixels.labels), Rows(3, {0, 0, 0, 0, 1, 1, 1, 1}));
+}
+
+TEST(Superpixels, AnEdgeOfColourCutsWhereBrightnessIsTheSame) {
+  const Image<Gray> gray(Size{8, 3}, Gray{100}, {});
+  Image<Rgb> rgb(Size{8, 3}, Rgb{100, 100, 100}, {});
+  for (int y = 0; y < 3; ++y) std::fill_n(rgb.row(y) + 4, 4, Rgb{160, 100, 40});
+  const Image<float> holes(gray.size(), kNaN, {});
+  EXPECT_EQ(first_row(cut_superpixels(gray, rgb, holes, {}, {})),
+            (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1}));
+}
+
+TEST(Superpixels, AStepOfDisparityCutsWhereThePictureIsPlainAndHolesDoNot) {
+  const Image<Gray> gray(Size{8, 3}, Gray{100}, {});
+  Image<float> disparity(gray.size(), 5.0F, {});
+  for (int y = 0; y < 3; ++y) std::fill_n(disparity.row(y) + 4, 4, 9.0F);
+  const Superpixels superpixels = cut_superpixels(gray, {}, disparity, {}, {});
+  EXPECT_EQ(first_row(superpixels), (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(superpixels.edges(4, 1), 0) << "edges are of the picture alone";
+  for (int y = 0; y < 3; ++y) std::fill_n(disparity.row(y) + 4, 4, kNaN);
+  EXPECT_EQ(cut_superpixels(gray, {}, disparity, {}, {}).count, 1);
+}
+
+TEST(Superpixels, AreFewerThanCountWhereAPictureIsSmall) {
+  EXPECT_EQ(cut(stripes({50, 200, 90}), 500).count, 3);
+  EXPECT_EQ(cut(stripes({50}, 1), 500).count, 1);
+  EXPECT_EQ(cut(Image<Gray>(Size{1, 1}, Gray{0}, {}), 1).count, 1);
+}
+
+TEST(Superpixels, WhatIsMostAlikeFusesFirst) {
+  const Image<Gray> gray = stripes({50, 60, 200, 120});
+  EXPECT_EQ(first_row(cut(gray, 4)),
+            (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3}));
+  EXPECT_EQ(first_row(cut(gray, 3)),
+            (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
+  EXPECT_EQ(first_row(cut(gray, 2)),
+            (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1}));
+  EXPECT_EQ(cut(gray, 1).count, 1);
+}
+
+TEST(Superpixels, OfEqualBordersTheFirstGoes) {
+  // All alike and of one size: the border that the first row shows first.
+  EXPECT_EQ(first_row(cut(stripes({50, 90, 50, 90}), 3)),
+            (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
+}
+
+TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
+  const Image<Gray> gray = random_image<Gray>({40, 30}, 0, 255, 3);
+  const Superpixels superpixels = cut(gray, 25, 7.0F);
+  ASSERT_EQ(superpixels.count, 25);
+  std::int32_t next = 0;
+  std::vector<std::set<std::pair<int, int>>> pixels(25);
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const std::int32_t label = number(superpixels.labels(x, y));
+      ASSERT_LE(label, next);
+      next = std::max(next, label + 1);
+      pixels[slot(label)].insert({x, y});
+    }
+  }
+  EXPECT_EQ(next, 25);
+  for (std::set<std::pair<int, int>>& left : pixels) {
+    std::vector<std::pair<int, int>> at{*left.begin()};
+    left.erase(left.begin());
+    while (!at.empty()) {
+      const auto [x, y] = at.back();
+      at.pop_back();
+      for (const auto& to : {std::pair{x + 1, y}, {x - 1, y}, {x, y + 1}, {x, y - 1}}) {
+        if (left.erase(to) > 0) at.push_back(to);
+      }
+    }
+    EXPECT_TRUE(left.empty());
+  }
+}
+
+TEST(Superpixels, AsASegmentationHaveTheirGreyLevels) {
+  const Image<Gray> gray = stripes({50, 200});
+  const Segmentation segmentation = segmentation_of(cut(gray, 500), gray, {});
+  ASSERT_EQ(segmentation.regions.size(), 2U);
+  EXPECT_EQ(segmentation.regions[0].mean, 50);
+  EXPECT_EQ(segmentation.regions[1].mean, 200);
+  EXPECT_EQ(segmentation.regions[1].variance, 0);
+  EXPECT_EQ(segmentation.regions[1].pixel_count, 12);
+  EXPECT_EQ(segmentation.regions[1].box, (Rect{4, 0, 4, 3}));
+}
+
+}  // namespace
+}  // namespace cairn
