@@ -14,11 +14,10 @@ constexpr int kNoDisparity = std::numeric_limits<int>::min();
 constexpr int kLeastHeight = -8 * kDisparitySteps;
 constexpr int kMostHeight = 24 * kDisparitySteps;
 
-/// In 1/64 px, halves up. Only for |px| < 2^13; what is below the middle of a step by less than 1/32 of one
-/// may be rounded up, too. (Truncating what is positive is quicker than floor().)
+/// In 1/64 px, halves up. Truncating what is positive is quicker than floor(), and in doubles as exact.
 int in_steps(float px) {
-  constexpr int kPositive = 1 << 19;
-  return static_cast<int>(px * kDisparitySteps + (0.5F + kPositive)) - kPositive;
+  constexpr int kPositive = 1 << 20;
+  return static_cast<int>(double{px} * kDisparitySteps + (0.5 + kPositive)) - kPositive;
 }
 
 /// What a picture's gradient must reach to be an edge, in 1/4 grey level.

@@ -30,8 +30,8 @@ struct Superpixels {
 
 /// A watershed of the picture's edges (edge_strength(), σ = 0.7 px), to each pixel of which the largest step
 /// of disparity to one of its four neighbours adds 2 grey levels a px (at most 8, rounded to 1/4), so that
-/// depth cuts where brightness does not; what is then below 1 + noise_sigma grey levels counts as 0. Then
-/// basins fuse two by two, those of least
+/// depth cuts where brightness does not; what is then below 1 + noise_sigma grey levels (rounded down to 1/4)
+/// counts as 0. Then basins fuse two by two, those of least
 ///
 ///     (mean edge along the common border + 1/2 grey level) · sqrt(area of the smaller one)
 ///

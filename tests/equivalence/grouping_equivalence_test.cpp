@@ -16,6 +16,8 @@
 namespace cairn {
 namespace {
 
+constexpr float kNoise = 0.6F;  // grey levels
+
 using grids::numbers;
 using grids::random_image;
 using reference::Members;
@@ -76,7 +78,7 @@ struct Scene {
     return {gray, rgb(), disparity_px, evidence_px, ground, background, 1.25F};
   }
   [[nodiscard]] Superpixels superpixels(int count) const {
-    return cut_superpixels(gray, rgb(), disparity_px, {count}, {});
+    return cut_superpixels(gray, rgb(), disparity_px, kNoise, {count}, {});
   }
 };
 
@@ -88,7 +90,7 @@ TEST(CutSuperpixels, IsThatOfItsDefinition) {
       const Scene scene(size, seed);
       for (const int count : {1, 7, 30}) {
         const Superpixels expected =
-            reference::cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, count);
+            reference::cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, count);
         const Superpixels found = scene.superpixels(count);
         EXPECT_EQ(found.count, expected.count) << text(size) << ' ' << seed << ' ' << count;
         EXPECT_EQ(numbers(found.labels), numbers(expected.labels))
@@ -105,8 +107,9 @@ TEST(CutSuperpixels, IsThatOfItsDefinitionWhereMostBordersAreEqual) {
     const Image<Gray> gray = random_image<Gray>(size, 0, 1, seed);
     const Image<float> holes(size, kNaN, {});
     for (const int count : {2, 9}) {
-      const Superpixels found = cut_superpixels(gray, {}, holes, {count}, {});
-      EXPECT_EQ(numbers(found.labels), numbers(reference::cut_superpixels(gray, {}, holes, count).labels))
+      const Superpixels found = cut_superpixels(gray, {}, holes, kNoise, {count}, {});
+      EXPECT_EQ(numbers(found.labels),
+                numbers(reference::cut_superpixels(gray, {}, holes, kNoise, count).labels))
           << seed << ' ' << count;
     }
   }
@@ -117,8 +120,8 @@ TEST(CutSuperpixels, GivesTheSameOnAnyNumberOfThreads) {
   const Superpixels expected = scene.superpixels(40);
   EXPECT_EQ(expected.count, 40);
   for (const int threads : {2, 3, 8}) {
-    const Superpixels found =
-        cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, {40}, Exec::with_threads(threads));
+    const Superpixels found = cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, {40},
+                                              Exec::with_threads(threads));
     EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
     EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
   }
@@ -144,7 +147,7 @@ struct Stumps {
 Stumps random_stumps(const Superpixels& superpixels, const Cues& cues, int count, std::uint32_t seed) {
   std::vector<MergeFeatures> seen;
   const auto tell = [&](std::int32_t, std::int32_t, const MergeFeatures& by) { seen.push_back(by); };
-  static_cast<void>(grow_merge_tree(superpixels, cues, FittedTrees{}, tell));
+  static_cast<void>(grow_merge_tree(superpixels, cues, FittedTrees{}, {}, tell));
   std::mt19937 random(seed);
   Stumps stumps;
   for (int i = 0; i < count && !seen.empty(); ++i) {
@@ -198,9 +201,9 @@ TEST(RegionCues, OfEveryNodeOfATreeAreThoseOfItsPixelsCountedAnew) {
       const Cues cues = scene.cues();
       const Superpixels superpixels = scene.superpixels(24);
       const Stumps stumps = random_stumps(superpixels, cues, 10, seed);
-      const MergeTree tree = grow_merge_tree(superpixels, cues, stumps.trees());
+      const MergeTree tree = grow_merge_tree(superpixels, cues, stumps.trees(), {});
       const std::vector<Members> members = members_of(tree);
-      const RegionGraphCues graph = gather_cues(superpixels, cues);
+      const RegionGraphCues graph = gather_cues(superpixels, cues, {});
       std::vector<RegionCues> regions = graph.regions;
       Contacts contacts;
       for (const ContactCues& contact : graph.contacts) {
@@ -239,7 +242,8 @@ TEST(GatherCues, ListsContactsAsTheRowsShowThemFirst) {
   superpixels.edges = Image<std::uint16_t>(Size{3, 3}, std::uint16_t{0}, {});
   const Scene scene({3, 3}, 1);
   std::vector<std::pair<int, int>> ends;
-  for (const ContactCues& c : gather_cues(superpixels, scene.cues()).contacts) ends.emplace_back(c.a, c.b);
+  for (const ContactCues& c : gather_cues(superpixels, scene.cues(), {}).contacts)
+    ends.emplace_back(c.a, c.b);
   EXPECT_EQ(ends, (std::vector<std::pair<int, int>>{{0, 2}, {0, 1}, {1, 2}, {1, 3}, {2, 3}}));
 }
 
@@ -279,7 +283,7 @@ TEST(GrowMergeTree, IsThatOfItsDefinition) {
       // No stump: all are equally alike. One or two: many are.
       const Stumps stumps = random_stumps(superpixels, cues, static_cast<int>(seed * seed % 13), seed);
       SCOPED_TRACE(text(size) + ", seed " + std::to_string(seed));
-      expect_equal(grow_merge_tree(superpixels, cues, stumps.trees()),
+      expect_equal(grow_merge_tree(superpixels, cues, stumps.trees(), {}),
                    reference::grow_merge_tree(superpixels, cues, stumps.trees()));
     }
   }
@@ -300,7 +304,7 @@ TEST(GrowMergeTree, IsThatOfItsDefinitionBesideALargeBackground) {
     const Cues cues = scene.cues();
     const Stumps stumps = random_stumps(superpixels, cues, 12, seed);
     SCOPED_TRACE(seed);
-    expect_equal(grow_merge_tree(superpixels, cues, stumps.trees()),
+    expect_equal(grow_merge_tree(superpixels, cues, stumps.trees(), {}),
                  reference::grow_merge_tree(superpixels, cues, stumps.trees()));
   }
 }

@@ -29,7 +29,8 @@ void for_each_pair(Size size, Look look) {
 
 // ---- superpixels ----
 
-Image<std::uint16_t> with_depth(View<const std::uint16_t> edges, View<const float> disparity_px) {
+Image<std::uint16_t> with_depth(View<const std::uint16_t> edges, View<const float> disparity_px,
+                                float noise_sigma) {
   Image<std::uint16_t> sum(edges.size());
   for (int y = 0; y < edges.height(); ++y) {
     for (int x = 0; x < edges.width(); ++x) {
@@ -40,7 +41,9 @@ Image<std::uint16_t> with_depth(View<const std::uint16_t> edges, View<const floa
         if (!std::isnan(to)) step = std::max(step, to);
       }
       const double grey_levels = std::min(2 * step, 8.0);
-      sum(x, y) = static_cast<std::uint16_t>(edges(x, y) + std::floor(4 * grey_levels + 0.5));
+      const double edge = edges(x, y) + std::floor(4 * grey_levels + 0.5);
+      const bool is_one = edge / 4 >= std::floor(4 * (1 + double{noise_sigma})) / 4;
+      sum(x, y) = static_cast<std::uint16_t>(is_one ? edge : 0);
     }
   }
   return sum;
@@ -103,7 +106,7 @@ bool is_in(const Members& members, View<const RegionId> labels, Point p) {
 
 std::optional<int> steps_of(float px) {
   if (std::isnan(px)) return std::nullopt;
-  return static_cast<int>(std::floor(px * 64 + 0.5F));
+  return static_cast<int>(std::floor(double{px} * 64 + 0.5));
 }
 
 /// What is summed of one kind of disparities.
@@ -329,10 +332,10 @@ class Growing {
 }  // namespace
 
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            int count) {
+                            float noise_sigma, int count) {
   Superpixels result;
   result.edges = reference::edge_strength(gray, rgb, 0.7F);
-  const Image<std::uint16_t> edges = with_depth(result.edges, disparity_px);
+  const Image<std::uint16_t> edges = with_depth(result.edges, disparity_px, noise_sigma);
   Basins basins = reference::watershed(edges);
   for (int left = basins.count; left > count; --left) {
     const auto two = next_two(basins.labels, edges);

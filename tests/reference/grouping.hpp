@@ -13,7 +13,7 @@
 namespace cairn::reference {
 
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            int count);
+                            float noise_sigma, int count);
 
 /// A region, by the superpixels that it consists of.
 using Members = std::set<std::int32_t>;

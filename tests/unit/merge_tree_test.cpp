@@ -43,7 +43,7 @@ Parts parts_of(const MergeTree& tree) {
 }
 
 MergeTree grown(const RegionScene& scene) {
-  return grow_merge_tree(scene.superpixels, scene.cues(), ByBrightness().trees());
+  return grow_merge_tree(scene.superpixels, scene.cues(), ByBrightness().trees(), {});
 }
 
 TEST(MergeTree, OfOneSuperpixelIsThatOne) {
@@ -125,7 +125,7 @@ TEST(MergeTree, TellsWhatItJudges) {
   Parts told;
   std::vector<float> scores;
   const ByBrightness by;
-  static_cast<void>(grow_merge_tree(scene.superpixels, scene.cues(), by.trees(),
+  static_cast<void>(grow_merge_tree(scene.superpixels, scene.cues(), by.trees(), {},
                                     [&](std::int32_t a, std::int32_t b, const MergeFeatures& features) {
                                       told.push_back(std::minmax({a, b}));
                                       scores.push_back(by.trees()(features));

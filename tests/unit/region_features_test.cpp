@@ -79,7 +79,7 @@ struct Features {
 
   explicit Features(const RegionScene& scene) {
     bool first = true;
-    const MergeTree tree = grow_merge_tree(scene.superpixels, scene.cues(), {},
+    const MergeTree tree = grow_merge_tree(scene.superpixels, scene.cues(), {}, {},
                                            [&](std::int32_t, std::int32_t, const MergeFeatures& by) {
                                              if (first) of_contact = by;
                                              first = false;
