@@ -99,9 +99,10 @@ void expect_exec_changes_nothing(const std::string& name, const Config& preset) 
     return segment(sample.pair(), sample.calibration.rig, config, Exec::with_threads(threads, target));
   };
   const Frame expected = run(1, Target::scalar);
+  EXPECT_FALSE(expected.objects.list.empty()) << "there is little to compare";
   for (const Target target :
        {Target::best, Target::scalar, Target::sse4, Target::avx2, Target::avx512, Target::neon}) {
-    for (const int threads : {1, 2, 3}) {
+    for (const int threads : {1, 2, 8}) {
       SCOPED_TRACE(name + ", " + std::to_string(threads) + " threads, target " +
                    std::string(cairn::name(target)));
       expect_same(run(threads, target), expected);

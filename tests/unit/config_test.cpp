@@ -140,8 +140,10 @@ TEST(ActiveOptions, EachOtherOneIsRefusedInALineThatSaysWhatToSetFirst) {
             "match.prefilter_cap has no effect with match.method=semi_global; set match.method=window first");
   EXPECT_EQ(message_of([] { require_active({}, "texture.window_size"); }),
             "texture.window_size has no effect with texture.threshold=-1; set texture.threshold first");
-  EXPECT_EQ(message_of([] { require_active(Config::paper(), "figure.margin"); }),
-            "figure.margin has no effect with fusion.method=overlap; set fusion.method=evidence first");
+  EXPECT_EQ(message_of([] { require_active(Config::paper(), "superpixels.count"); }),
+            "superpixels.count has no effect with fusion.method=overlap; set fusion.method=hierarchy first");
+  EXPECT_EQ(message_of([] { require_active({}, "objects.max_area"); }),
+            "objects.max_area has no effect with fusion.method=hierarchy; set fusion.method=overlap first");
 }
 
 TEST(ActiveOptions, OfAStageByItselfOnlyItsOwnSectionsCount) {
@@ -156,7 +158,10 @@ TEST(GoneOptions, SayWhereTheyWent) {
             "(docs/formats.md)");
   EXPECT_NE(refusal("ground.points", "1,2,3,4").find("ground_points in its calibration"), std::string::npos);
   EXPECT_NE(refusal("match.evidence", "full").find("is gone"), std::string::npos);
-  EXPECT_NE(refusal("figure.skirting", "1").find("a constant of its stage"), std::string::npos);
+  EXPECT_NE(refusal("background.tolerance", "1").find("a constant of its stage"), std::string::npos);
+  for (const char* option : {"facets.edge_min", "figure.margin", "figure.skirting", "group.step"})
+    EXPECT_EQ(refusal(option, "1"),
+              "option " + std::string(option) + " is gone: fitted scores have replaced its stage");
 }
 
 TEST(Validate, AcceptsThePresets) {
