@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <utility>
-#include <vector>
 
 namespace {
 
@@ -89,14 +88,10 @@ void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, cons
               objects.list.size());
 }
 
-/// What cairn/pipeline/evidence.cpp does.
+/// What cairn/pipeline/hierarchy.cpp does.
 void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, const Config& config,
                  const Exec& exec) {
-  // [stages_by_evidence]
-  // What the left picture tells without a disparity: its noise, and pieces that no clear edge runs through.
-  const float noise = noise_sigma(given.left(), exec);
-  const Facets facets = segment_facets(given.left(), given.left_rgb(), noise, config.facets, exec);
-
+  // [stages_by_hierarchy]
   // A right picture that vibration has moved is moved back; then disparities, smooth along paths.
   const EpipolarCorrection aligned = correct_epipolar(given, config.match, config.epipolar_correction, exec);
   const StereoPair pair =
@@ -107,29 +102,34 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   DisparityMap disparity = combine(refine_subpixel(matches, config.subpixel, exec), {inconsistent}, exec);
 
   // Those that texture vouches for show the scene: its ground, what is reflected in it, its walls.
+  const float noise = noise_sigma(pair.left(), exec);
   const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
-  const Ground ground = fit_ground(evidence_px, rig, config.ground, exec);
-  disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
+  const Ground seen = fit_ground(evidence_px, rig, config.ground, exec);
+  disparity = reject_below_ground(std::move(disparity), seen, rig, config.ground, exec);
+  disparity = reject_speckles(std::move(disparity), config.speckle, exec);
+  const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec);
   const Background background = fit_background(evidence_px, ground, rig, config.background, exec);
 
-  // Which pieces stand before the background, and which of those belong together.
-  const std::vector<std::int32_t> figure = separate_figure(facets, pair.left(), pair.left_rgb(), evidence_px,
-                                                           background, noise, config.figure, exec);
-  const Segmentation groups = group_facets(facets, figure, disparity, evidence_px, background, rig,
-                                           config.figure, config.group, exec);
-  disparity = reject_speckles(std::move(disparity), config.speckle, exec);
+  // The picture in pieces, and all regions that they fuse to, the likeliest pair first.
+  const Superpixels superpixels =
+      cut_superpixels(pair.left(), pair.left_rgb(), disparity.disparity_px, noise, config.superpixels, exec);
+  const Cues cues{pair.left(), pair.left_rgb(), disparity.disparity_px, evidence_px, ground, background,
+                  noise};
+  const MergeTree tree = grow_merge_tree(superpixels, cues, kSameThing, exec);
 
-  // Which of the groups are objects, and where; how far each disparity is to be trusted.
-  const Objects objects = measure(groups.labels, background_of(groups), disparity, pair.left(),
-                                  pair.left_rgb(), noise, rig, config.objects, exec);
+  // Which of these regions are objects, and where; how far each disparity is to be trusted.
+  const ChosenObjects chosen = choose_objects(tree, kWholeObject, limits_of(config.objects, pair.size()));
+  const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
+  const Objects objects =
+      measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, rig, exec);
   const Image<float> confidence =
       estimate_confidence(matches, disparity, confidence_model(config.match.method), exec);
-  // [/stages_by_evidence]
+  // [/stages_by_hierarchy]
 
-  print_holes(disparity, ground);
-  std::printf("walls: %zu; superpixels: %d, groups: %zu; objects: %zu\n",
-              background.planes.size() - (background.has_floor ? 1 : 0), facets.count,
-              groups.regions.size() - 1, objects.list.size());
+  print_holes(disparity, seen);
+  std::printf("walls: %zu; superpixels: %d, regions in their tree: %zu; objects: %zu\n",
+              background.planes.size() - (background.has_floor ? 1 : 0), superpixels.count, tree.nodes.size(),
+              objects.list.size());
   std::printf("confidence of the disparities: %.2f in the mean\n", mean_where_known(confidence, disparity));
 }
 

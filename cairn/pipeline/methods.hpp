@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/match_and_check.hpp>
 #include <cairn/pipeline/segment.hpp>
 
@@ -18,8 +17,5 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
 /// that are likeliest whole objects are chosen.
 Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
                            const Exec& exec);
-
-/// What the options ask of an object in an image of this size.
-ChoiceLimits limits_of(const ObjectsConfig& config, Size image);
 
 }  // namespace cairn

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/config.hpp>
 
 namespace cairn {
@@ -32,6 +33,9 @@ struct Frame {
   EpipolarOffset epipolar{};
   Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
 };
+
+/// What the options ask of an object in an image of this size, for choose_objects().
+ChoiceLimits limits_of(const ObjectsConfig& config, Size image);
 
 /// The method's first half: a pair in, checked disparities out. Throws Error where validate() does.
 SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,

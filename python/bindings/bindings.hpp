@@ -12,8 +12,9 @@ void bind_rig(pybind11::module_& m);         // Rig, Calibration
 void bind_matching(pybind11::module_& m);    // correct_epipolar … refine_subpixel
 void bind_disparity(pybind11::module_& m);   // the checks, combine, evidence, confidence
 void bind_ground(pybind11::module_& m);      // floor and walls
-void bind_regions(pybind11::module_& m);     // watershed … segment_facets
-void bind_objects(pybind11::module_& m);     // separate_figure … measure
+void bind_regions(pybind11::module_& m);     // watershed … segment_disparity
+void bind_grouping(pybind11::module_& m);    // cut_superpixels … groups_of
+void bind_objects(pybind11::module_& m);     // fuse, measure
 void bind_frame(pybind11::module_& m);       // segment, estimate_disparity, Segmenter
 void bind_evaluation(pybind11::module_& m);  // comparison with truth
 void bind_diagnosis(pybind11::module_& m);   // what is wrong with a rig

@@ -254,16 +254,17 @@ void bind_frame_class(py::module_& m) {
       .def_property_readonly("ground", part(&Frame::ground), kInside,
                              "the floor as a plane, or why there is none")
       .def_property_readonly("by_intensity", part_of_some(&Frame::by_intensity), kInside,
-                             "Segmentation of the picture by intensity; None with fusion.method=evidence")
+                             "Segmentation of the picture by intensity; None with fusion.method=hierarchy")
       .def_property_readonly("by_disparity", part_of_some(&Frame::by_disparity), kInside,
-                             "Segmentation by disparity; None with fusion.method=evidence")
+                             "Segmentation by disparity; None with fusion.method=hierarchy")
       .def_property_readonly("fusion", part_of_some(&Frame::fusion), kInside,
-                             "both fused; None with fusion.method=evidence")
+                             "both fused; None with fusion.method=hierarchy")
       .def_property_readonly("superpixels", part_of_some(&Frame::superpixels), kInside,
-                             "the picture's facets as a Segmentation; None with fusion.method=overlap")
-      .def_property_readonly("groups", part_of_some(&Frame::groups), kInside,
-                             "Segmentation: the background, and the groups of facets before it; None with "
-                             "fusion.method=overlap")
+                             "the picture's superpixels as a Segmentation; None with fusion.method=overlap")
+      .def_property_readonly(
+          "groups", part_of_some(&Frame::groups), kInside,
+          "Segmentation: region 0 is the background, the others were chosen to be objects; None with "
+          "fusion.method=overlap")
       .def_property_readonly("epipolar", part(&Frame::epipolar), kInside,
                              "how far the right picture's rows were off")
       .def_property_readonly(

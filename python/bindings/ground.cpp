@@ -13,18 +13,36 @@
 namespace cairn::python {
 namespace {
 
+struct KnownRig {
+  std::optional<StereoRig> rig;
+  GroundConfig ground;
+};
+
+/// The options, with what the calibration says of the ground. Throws Error where they ask for more than that.
+KnownRig known_rig(const Config& config, const RigArgument& rig) {
+  const io::Calibration calibration = calibration_of(rig).calibration;
+  KnownRig known{calibration.rig, config.ground};
+  known.ground.known = calibration.ground;
+  validate(known.ground, known.rig.has_value());
+  return known;
+}
+
 Ground fit(const Config& config, const Exec& exec, const DisparityArgument& disparity,
            const RigArgument& rig) {
-  const io::Calibration calibration = calibration_of(rig).calibration;
-  GroundConfig ground = config.ground;
-  ground.known = calibration.ground;
-  validate(ground, calibration.rig.has_value());
+  const KnownRig known = known_rig(config, rig);
   if (py::isinstance<DisparityMap>(disparity)) {
     const auto& map = disparity.cast<const DisparityMap&>();
-    return released([&] { return fit_ground(map, calibration.rig, ground, exec); });
+    return released([&] { return fit_ground(map, known.rig, known.ground, exec); });
   }
   const BorrowedDisparities in(disparity, "disparity");
-  return released([&] { return fit_ground(in.view(), calibration.rig, ground, exec); });
+  return released([&] { return fit_ground(in.view(), known.rig, known.ground, exec); });
+}
+
+Ground likely(const Config& config, const Exec& exec, const Ground& ground,
+              const DisparityArgument& disparity, const RigArgument& rig) {
+  const KnownRig known = known_rig(config, rig);
+  const DisparityInput map(disparity, "disparity", exec);
+  return released([&] { return likely_ground(ground, map.map(), known.rig, known.ground, exec); });
 }
 
 DisparityMap without_reflections(const Config& config, const Exec& exec, const DisparityArgument& disparity,
@@ -110,6 +128,10 @@ void bind_ground(py::module_& m) {
             "label_floor is "
             "off.",
             &floor_of, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "likely_ground", {"ground"},
+            "The ground itself, or where it was refused for want of evidence, one fitted to all disparities: "
+            "good enough as one cue among others, not to reject matches by.",
+            &likely, "ground"_a, "disparity"_a, "rig"_a = py::none(), py::kw_only());
   def_stage(m, "fit_background", {"background"},
             "Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as "
             "find_evidence() "

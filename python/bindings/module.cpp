@@ -48,6 +48,7 @@ PYBIND11_MODULE(_cairn, m) {
   cairn::python::bind_disparity(m);
   cairn::python::bind_ground(m);
   cairn::python::bind_regions(m);
+  cairn::python::bind_grouping(m);
   cairn::python::bind_objects(m);
   cairn::python::bind_frame(m);
   cairn::python::bind_evaluation(m);

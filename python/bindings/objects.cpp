@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <cairn/grouping/figure.hpp>
-#include <cairn/grouping/group.hpp>
 #include <cairn/objects/fuse.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cstdio>
@@ -24,45 +22,24 @@ namespace {
 
 // ---- stages ----
 
-Array<std::int32_t> figure_of(const Config& config, const Exec& exec, const Facets& facets,
-                              const ImageArgument& left, const FloatsArgument& evidence_px,
-                              const Background& background, float noise_sigma, bool bgr) {
-  const Picture in(left, "left", bgr, exec.pool);
-  const BorrowedDisparities evidence(evidence_px, "evidence_px");
-  expect_size(in.size(), "left", facets.labels.size(), "facets");
-  expect_size(evidence.size(), "evidence_px", facets.labels.size(), "facets");
-  expect_noise(noise_sigma);
-  return array_from(released([&] {
-    return separate_figure(facets, in.gray(), in.rgb(), evidence.view(), background, noise_sigma,
-                           config.figure, exec);
-  }));
-}
-
-Segmentation groups_of(const Config& config, const Exec& exec, const Facets& facets,
-                       const std::vector<std::int32_t>& figure, const DisparityArgument& disparity,
-                       const FloatsArgument& evidence_px, const Background& background,
-                       const RigArgument& rig) {
-  const auto known = rig_of(rig);
-  const DisparityInput map(disparity, "disparity", exec);
-  const BorrowedDisparities evidence(evidence_px, "evidence_px");
-  expect_size(map.size(), "disparity", facets.labels.size(), "facets");
-  expect_size(evidence.size(), "evidence_px", facets.labels.size(), "facets");
-  const bool is_binary =
-      std::all_of(figure.begin(), figure.end(), [](std::int32_t f) { return f == 0 || f == 1; });
-  if (figure.size() != static_cast<std::size_t>(facets.count) || !is_binary) {
-    throw Error("figure: found " + std::to_string(figure.size()) + (is_binary ? "" : " other") +
-                " numbers, expected 0 or 1 for each of the " + std::to_string(facets.count) + " facets");
-  }
-  return released([&] {
-    return group_facets(facets, figure, map.map(), evidence.view(), background, known, config.figure,
-                        config.group, exec);
-  });
-}
-
 Fusion fused(const Config&, const Exec& exec, const Segmentation& by_intensity,
              const Segmentation& by_disparity) {
   expect_size(by_disparity.labels.size(), "by_disparity", by_intensity.labels.size(), "by_intensity");
   return released([&] { return fuse(by_intensity, by_disparity, exec); });
+}
+
+/// Throws Error unless every label is below `count`.
+void expect_labels(const Borrowed<std::int32_t>& labels, std::size_t count, const std::string& name,
+                   const std::string& counted) {
+  for (int y = 0; y < labels.size().height; ++y) {
+    const std::int32_t* const row = labels.view().row(y);
+    const bool fits = std::all_of(row, row + labels.size().width, [&](std::int32_t region) {
+      return region >= 0 && static_cast<std::size_t>(region) < count;
+    });
+    if (fits) continue;
+    throw Error(name + ": found a region without an entry in " + counted + ", expected 0 … " +
+                std::to_string(count) + " - 1");
+  }
 }
 
 Objects measured(const Config& config, const Exec& exec, const LabelsArgument& candidates,
@@ -75,18 +52,29 @@ Objects measured(const Config& config, const Exec& exec, const LabelsArgument& c
   expect_size(map.size(), "disparity", labels.size(), "candidates");
   expect_size(in.size(), "left", labels.size(), "candidates");
   expect_noise(noise_sigma);
-  for (int y = 0; y < labels.size().height; ++y) {
-    const std::int32_t* const row = labels.view().row(y);
-    const bool fits = std::all_of(row, row + labels.size().width, [&](std::int32_t region) {
-      return region >= 0 && static_cast<std::size_t>(region) < is_background.size();
-    });
-    if (fits) continue;
-    throw Error("candidates: found a region that is_background does not tell of, expected 0 … " +
-                std::to_string(is_background.size()) + " - 1");
-  }
+  expect_labels(labels, is_background.size(), "candidates", "is_background");
   return released([&] {
     return measure(as_regions(labels.view()), is_background, map.map(), in.gray(), in.rgb(), noise_sigma,
                    known, config.objects, exec);
+  });
+}
+
+Objects measured_chosen(const Config&, const Exec& exec, const LabelsArgument& chosen,
+                        const std::vector<float>& scores, const DisparityArgument& disparity,
+                        const ImageArgument& left, float noise_sigma, const RigArgument& rig, bool bgr) {
+  const auto known = rig_of(rig);
+  const Borrowed<std::int32_t> labels(chosen, "chosen");
+  const DisparityInput map(disparity, "disparity", exec);
+  const Picture in(left, "left", bgr, exec.pool);
+  expect_size(map.size(), "disparity", labels.size(), "chosen");
+  expect_size(in.size(), "left", labels.size(), "chosen");
+  expect_noise(noise_sigma);
+  expect_labels(labels, scores.size(), "chosen", "scores");
+  if (!std::all_of(scores.begin(), scores.end(), [](float score) { return score >= 0 && score <= 1; }))
+    throw Error("scores: found one outside 0 … 1, expected a confidence for each region");
+  return released([&] {
+    return measure(as_regions(labels.view()), scores, map.map(), in.gray(), in.rgb(), noise_sigma, known,
+                   exec);
   });
 }
 
@@ -232,28 +220,22 @@ void bind_objects(py::module_& m) {
   using py::literals::operator""_a;
   bind_classes(m);
 
-  def_stage(m, "separate_figure", {"figure"},
-            "For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, "
-            "one number for "
-            "each facet. noise_sigma as noise_sigma() gives it.",
-            &figure_of, "facets"_a, "left"_a, "evidence_px"_a, "background"_a, "noise_sigma"_a, py::kw_only(),
-            "bgr"_a = false);
-  def_stage(m, "group_facets", {"group", "figure"},
-            "Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the "
-            "background "
-            "(is_background), the others are groups. Means in px.",
-            &groups_of, "facets"_a, "figure"_a, "disparity"_a, "evidence_px"_a, "background"_a,
-            "rig"_a = py::none(), py::kw_only());
   def_stage(m, "fuse", {},
             "Each intensity region goes to the disparity region with the greatest overlap (paper, Eq. 4).",
             &fused, "by_intensity"_a, "by_disparity"_a, py::kw_only());
   def_stage(
       m, "measure", {"objects"},
       "Turns candidates into objects: what is background, too large, too small, unseen or unlikely is none. "
-      "candidates: (H, W) integers, the regions of a Fusion or of group_facets(); is_background: for each of "
-      "them, whether it is known to be no object; noise_sigma as noise_sigma() gives it.",
+      "candidates: (H, W) integers, the regions of a Fusion; is_background: for each of them, whether it is "
+      "known to be no object; noise_sigma as noise_sigma() gives it.",
       &measured, "candidates"_a, "is_background"_a, "disparity"_a, "left"_a, "noise_sigma"_a,
       "rig"_a = py::none(), py::kw_only(), "bgr"_a = false);
+  def_stage(m, "measure_chosen", {},
+            "Measures regions that were chosen to be objects: measure() of C++ with scores. chosen: (H, W) "
+            "integers, the labels of groups_of(); scores: for each region its confidence, 0 to 1, as "
+            "choose_objects() gives them; 0 = no object.",
+            &measured_chosen, "chosen"_a, "scores"_a, "disparity"_a, "left"_a, "noise_sigma"_a,
+            "rig"_a = py::none(), py::kw_only(), "bgr"_a = false);
 }
 
 }  // namespace cairn::python

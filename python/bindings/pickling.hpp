@@ -9,6 +9,7 @@
 #include <cairn/diagnosis/synchrony.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cairn/tuning/search.hpp>
@@ -86,8 +87,11 @@ CAIRN_PARTS(Segmentation, labels, regions)
 CAIRN_PARTS(Basins, labels, count)
 CAIRN_PARTS(RegionGraph::Node, pixel_count, valid_count, sum, squares, first_pixel, box, is_floor)
 CAIRN_PARTS(RegionGraph, nodes, first_arc, arcs)
-CAIRN_PARTS(Border, a, b, length, edge_sum, x2_sum, y2_sum)
-CAIRN_PARTS(Facets, labels, count, borders)
+CAIRN_PARTS(Superpixels, labels, count, edges)
+CAIRN_PARTS(Origin, same_thing, least_same_thing, larger_part)
+CAIRN_PARTS(MergeNode, part_a, part_b, whole, area, origin, features)
+CAIRN_PARTS(MergeTree, superpixels, nodes)
+CAIRN_PARTS(ChosenObjects, object_of, scores)
 CAIRN_PARTS(Fusion, labels, parts, disparity_region, is_floor)
 CAIRN_PARTS(Object, id, box, pixel_count, disparity, valid_share, colour, position, extent, edge_share,
             cut_share, confidence)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/disparity/gradient.hpp>
-#include <cairn/grouping/facets.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/grow_statistical.hpp>
@@ -161,20 +160,6 @@ Segmentation by_disparity(const Config& config, const Exec& exec, const Disparit
   return released([&] { return segment_disparity(map.map(), mask.view(), config.disparity, exec); });
 }
 
-Facets facets_of(const Config& config, const Exec& exec, const ImageArgument& left, float noise_sigma,
-                 bool bgr) {
-  const Picture in(left, "left", bgr, exec.pool);
-  expect_noise(noise_sigma);
-  return released([&] { return segment_facets(in.gray(), in.rgb(), noise_sigma, config.facets, exec); });
-}
-
-Segmentation facets_as_segmentation(const Config&, const Exec& exec, const Facets& facets,
-                                    const ImageArgument& left, bool bgr) {
-  const Picture in(left, "left", bgr, exec.pool);
-  expect_size(in.size(), "left", facets.labels.size(), "facets");
-  return released([&] { return as_segmentation(facets, in.gray(), exec); });
-}
-
 // ---- what the classes show ----
 
 std::vector<std::int32_t> neighbours(const RegionGraph& self, Whole region) {
@@ -206,7 +191,7 @@ void bind_classes(py::module_& m) {
                     "of its valid pixels (population), at least 0: grey levels squared, or px squared")
       .def_readonly("is_floor", &Region::is_floor, "the one floor region of a disparity segmentation")
       .def_readonly("is_background", &Region::is_background,
-                    "what groups of facets stand before: floor, walls and all that is no figure")
+                    "the region that holds all that is no object, in the groups of a frame")
       .def("__repr__", &region_repr)
       .def(pickled<Region>());
   py::class_<Segmentation>(m, "Segmentation", "Regions: every pixel belongs to one.")
@@ -240,16 +225,6 @@ void bind_classes(py::module_& m) {
                     std::to_string(self.arcs.size() / 2) + " borders>";
            })
       .def(pickled<RegionGraph>());
-  py::class_<Facets>(m, "Facets", "The picture cut into connected pieces that no clear edge runs through.")
-      .def_property_readonly("labels", always_shown(&Facets::labels),
-                             "(H, W) int32, read-only: 0 to count - 1")
-      .def_readonly("count", &Facets::count, "how many facets there are, 1 or more")
-      .def("__repr__",
-           [](const Facets& self) {
-             return "<cairn.Facets " + text(self.labels.size()) + ", " + std::to_string(self.count) +
-                    " facets>";
-           })
-      .def(pickled<Facets>());
 }
 
 }  // namespace
@@ -264,7 +239,8 @@ void bind_regions(py::module_& m) {
             "int16, in 1/16 px, 65535 in holes. (H, W) uint16, from one side of a pixel to the other.",
             &gradient_of, "image"_a, "smoothing_sigma"_a = 0.0F, py::kw_only());
   def_stage(m, "edge_strength", {},
-            "Edges between facets: central differences in 1/4 grey level, of colour the strongest channel's. "
+            "Edges that superpixels follow: central differences in 1/4 grey level, of colour the strongest "
+            "channel's. "
             "(H, W) uint16.",
             &edges, "left"_a, "smoothing_sigma"_a = 0.7F, py::kw_only(), "bgr"_a = false);
   def_stage(m, "quantised", {}, "Disparities in 1/16 px: (H, W) int16, HOLE_16 in holes.", &sixteenths,
@@ -303,12 +279,6 @@ void bind_regions(py::module_& m) {
             "floor: (H, W) "
             "uint8 as label_floor() gives it, one region of its own; or None.",
             &by_disparity, "disparity"_a, "floor"_a = py::none(), py::kw_only());
-  def_stage(m, "segment_facets", {"facets"},
-            "Cuts the picture into pieces that no clear edge runs through, by colour where there is colour. "
-            "noise_sigma as noise_sigma() gives it.",
-            &facets_of, "left"_a, "noise_sigma"_a, py::kw_only(), "bgr"_a = false);
-  def_stage(m, "as_segmentation", {}, "The facets as a segmentation, with their grey statistics.",
-            &facets_as_segmentation, "facets"_a, "left"_a, py::kw_only(), "bgr"_a = false);
 }
 
 }  // namespace cairn::python

@@ -62,7 +62,7 @@ def stages(left, right, rig):
 def tuned(folder, left, right, rig):
     # [tune]
     frames = cairn.load_tuning_frames(folder, truth=True)  # each with left.png, right.png, calib.txt, objects.png
-    tuning = cairn.tune(frames, options=["figure.margin", "group.*"], evaluations=5, holdout=0.25)
+    tuning = cairn.tune(frames, options=["superpixels.count", "objects.*"], evaluations=5, holdout=0.25)
     print(tuning)  # the losses before and after, on the frames held out, too
     better = cairn.segment(left, right, rig, config=tuning.config)
     # [/tune]

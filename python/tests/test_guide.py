@@ -30,4 +30,4 @@ def test_the_guide_runs(sample, source, capsys):
     assert guide.doctor(sample.right, sample.left, rig, [(sample.left, sample.right)] * 2) == 0
     assert capsys.readouterr().out.startswith("broken, cameras swapped: ")
     tuning, better = guide.tuned(source / "samples", sample.left, sample.right, rig)
-    assert capsys.readouterr().out == f"{tuning}\n" and better.config["group.step"] == tuning.config["group.step"]
+    assert capsys.readouterr().out == f"{tuning}\n" and better.config["superpixels.count"] == tuning.config["superpixels.count"]

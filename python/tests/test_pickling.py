@@ -68,7 +68,10 @@ FLOOR = [(10, 200, 4, 200), (300, 210, 293, 210), (20, 230, 12, 230), (280, 190,
 def one_of_each(sample):
     left, right = sample.left, sample.right
     matches = cairn.match(left, right, num_disparities=32)
-    facets = cairn.segment_facets(left, cairn.noise_sigma(left))
+    superpixels = cairn.cut_superpixels(left, sample.frame.disparity_map, 1, count=20)
+    walls = cairn.fit_background(sample.frame.disparity, sample.frame.ground)
+    cues = (left, sample.frame.disparity_map, sample.frame.disparity, sample.frame.ground, walls)
+    tree = cairn.grow_merge_tree(superpixels, *cues, noise_sigma=1)
     paper = cairn.segment(left, right, sample.calibration, preset="paper")
     basins = cairn.watershed(cairn.gradient(left))
     errors = cairn.object_errors(sample.frame.objects_map, cairn.load_labels(sample.folder / "objects.png"))
@@ -79,10 +82,12 @@ def one_of_each(sample):
         cairn.estimate_disparity(left, right, sample.calibration),
         sample.frame.disparity_map,
         sample.frame.ground,
-        cairn.fit_background(sample.frame.disparity, sample.frame.ground),
+        walls,
         basins,
         cairn.build_graph(basins.labels, sample.gray()[0]),
-        facets,
+        superpixels,
+        tree,
+        cairn.choose_objects(tree),
         paper,
         paper.fusion,
         sample.frame.groups,
@@ -131,6 +136,12 @@ def test_stages_and_segmenters_go_on_with_what_came_back(sample):
     graph = cairn.build_graph(basins.labels, sample.gray()[0])
     criteria = {"mean_difference_max": 10, "deviation_max": 3, "sigma_min": 1}
     assert same(cairn.grow_statistical(copy.deepcopy(graph), **criteria), cairn.grow_statistical(graph, **criteria))
+    superpixels = cairn.cut_superpixels(sample.left, sample.frame.disparity_map, 1, count=20)
+    walls = cairn.fit_background(sample.frame.disparity, sample.frame.ground)
+    cues = (sample.left, sample.frame.disparity_map, sample.frame.disparity, sample.frame.ground, walls, 1)
+    tree = cairn.grow_merge_tree(superpixels, *cues)
+    assert parts(cairn.grow_merge_tree(copy.deepcopy(superpixels), *cues)) == parts(tree)
+    assert parts(cairn.choose_objects(copy.deepcopy(tree))) == parts(cairn.choose_objects(tree))
     segmenter = pickle.loads(pickle.dumps(cairn.Segmenter(sample.calibration)))
     assert same_frame(segmenter.segment(sample.left, sample.right), sample.frame)
 

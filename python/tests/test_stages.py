@@ -16,7 +16,7 @@ def test_every_stage_of_the_umbrella_header_is_there(source):
     names = {name for words in re.findall(r"// ([a-z_, ]+)(?::.*)?$", text, re.M) for name in words.split(", ")}
     for header in (source / "cairn" / "disparity").glob("*.hpp"):  # the checks, which it has by way of Config
         names |= set(re.findall(r"^Image<Reject> (reject_\w+)\(", header.read_text(), re.M))
-    assert {"match", "fuse", "measure", "segment_facets", "segment", "diagnose", "reject_flat"} <= names
+    assert {"match", "fuse", "measure", "cut_superpixels", "segment", "diagnose", "reject_flat"} <= names
     assert [name for name in sorted(names) if not callable(getattr(cairn, name.strip(), None))] == []
 
 
@@ -45,10 +45,9 @@ def by_the_paper(sample):
     return disparity, confidence, {"by_intensity": by_intensity, "by_disparity": by_disparity, "fusion": fusion}, objects
 
 
-def by_evidence(sample):
+def by_hierarchy(sample):
     rig = sample.calibration.rig
     noise = cairn.noise_sigma(sample.left)
-    facets = cairn.segment_facets(sample.left, noise)
     offset = cairn.find_epipolar_offset(sample.left, sample.right, num_disparities=32)
     assert offset.outcome == "aligned"
     matches = cairn.match_semi_global(sample.left, sample.right, num_disparities=32)
@@ -56,17 +55,19 @@ def by_evidence(sample):
     evidence = cairn.find_evidence(sample.left, disparity, noise)
     ground = cairn.fit_ground(evidence, rig)
     disparity = cairn.reject_below_ground(disparity, ground, rig)
-    background = cairn.fit_background(evidence, ground, rig)
-    superpixels = cairn.as_segmentation(facets, sample.left)
-    figure = cairn.separate_figure(facets, sample.left, evidence, background, noise)
-    groups = cairn.group_facets(facets, figure, disparity, evidence, background, rig)
     disparity = cairn.reject_speckles(disparity)
-    is_background = [region.is_background for region in groups.regions]
-    objects = cairn.measure(groups.labels, is_background, disparity, sample.left, noise, rig)
-    return disparity, cairn.estimate_confidence(matches, disparity), {"superpixels": superpixels, "groups": groups}, objects
+    ground = cairn.likely_ground(ground, disparity, rig)
+    background = cairn.fit_background(evidence, ground, rig)
+    superpixels = cairn.cut_superpixels(sample.left, disparity, noise)
+    tree = cairn.grow_merge_tree(superpixels, sample.left, disparity, evidence, ground, background, noise)
+    chosen = cairn.choose_objects(tree)
+    groups = cairn.groups_of(superpixels, chosen, disparity)
+    objects = cairn.measure_chosen(groups.labels, chosen.scores, disparity, sample.left, noise, rig)
+    regions = {"superpixels": cairn.segmentation_of(superpixels, sample.left), "groups": groups}
+    return disparity, cairn.estimate_confidence(matches, disparity), regions, objects
 
 
-@pytest.mark.parametrize("preset, stages", [("paper", by_the_paper), ("default", by_evidence)])
+@pytest.mark.parametrize("preset, stages", [("paper", by_the_paper), ("default", by_hierarchy)])
 def test_stage_by_stage_gives_the_frame(sample, preset, stages):
     frame = cairn.segment(sample.left, sample.right, sample.calibration, preset=preset)
     disparity, confidence, regions, objects = stages(sample)
@@ -75,6 +76,22 @@ def test_stage_by_stage_gives_the_frame(sample, preset, stages):
     for name, made in regions.items():
         assert same(made.labels, getattr(frame, name).labels), name
     assert same(objects.labels, frame.objects_map) and repr(objects) == repr(frame.objects)
+
+
+def test_a_merge_tree_ends_in_the_whole_image(sample):
+    disparity = sample.frame.disparity_map
+    superpixels = cairn.cut_superpixels(sample.left, disparity, 1, count=50)
+    assert superpixels.count == 50 and superpixels.labels.max() == 49
+    evidence = cairn.find_evidence(sample.left, disparity, 1)
+    background = cairn.fit_background(evidence, sample.frame.ground)
+    tree = cairn.grow_merge_tree(superpixels, sample.left, disparity, evidence, sample.frame.ground, background, 1)
+    parents = tree.parents
+    assert tree.superpixels == 50 and len(tree) == len(parents) == 2 * 50 - 1
+    assert parents[-1] == -1 and (parents[:-1] > np.arange(len(tree) - 1)).all()
+    assert (np.bincount(parents[:-1])[50:] == 2).all()
+    chosen = cairn.choose_objects(tree, min_confidence=0, min_area=0)
+    assert len(chosen.object_of) == 50 and max(chosen.object_of) == len(chosen) == len(chosen.scores) - 1
+    assert len(cairn.choose_objects(tree, min_area=100)) <= 1
 
 
 def test_a_segmentation_is_gradient_watershed_graph_growing(sample):
@@ -146,22 +163,38 @@ def test_the_ground_takes_what_the_calibration_knows(sample):
 
 def test_what_does_not_belong_together_is_refused(sample):
     frame, half = sample.frame, sample.left[:, :160]
-    other = cairn.segment_facets(half, 1)
+    other = cairn.cut_superpixels(half, np.full(half.shape[:2], np.nan, np.float32), 1)
+    superpixels = cairn.cut_superpixels(sample.left, frame.disparity_map, 1)
+    walls = cairn.fit_background(frame.disparity, frame.ground)
+    grown = (frame.disparity_map, frame.disparity, frame.ground, walls)
+    chosen = cairn.choose_objects(cairn.grow_merge_tree(superpixels, sample.left, *grown, 1))
+    fewer = cairn.cut_superpixels(sample.left, frame.disparity_map, 1, count=9)
     labels, ground = frame.groups.labels, [False] * len(frame.groups)
+    scores = [0.5] * len(frame.groups)
     calls = [
         lambda: cairn.measure(labels, ground, frame.disparity_map, half, 1),
         lambda: cairn.measure(labels, ground[1:], frame.disparity_map, sample.left, 1),
         lambda: cairn.measure(labels - 1, ground, frame.disparity_map, sample.left, 1),
         lambda: cairn.measure(labels, ground, frame.disparity_map, sample.left, -1),
         lambda: cairn.measure(labels[:, 1:], ground, frame.disparity_map, sample.left, 1),
-        lambda: cairn.fuse(cairn.as_segmentation(other, half), frame.groups),
+        lambda: cairn.fuse(cairn.segmentation_of(other, half), frame.groups),
         lambda: cairn.find_evidence(half, frame.disparity_map, 1),
         lambda: cairn.find_evidence(sample.left, frame.disparity_map, float("nan")),
-        lambda: cairn.segment_facets(half, -1),
+        lambda: cairn.cut_superpixels(half, frame.disparity_map, 1),
+        lambda: cairn.cut_superpixels(sample.left, frame.disparity_map, -1),
+        lambda: cairn.segmentation_of(superpixels, half),
+        lambda: cairn.grow_merge_tree(other, sample.left, *grown, 1),
+        lambda: cairn.grow_merge_tree(superpixels, half, *grown, 1),
+        lambda: cairn.grow_merge_tree(superpixels, sample.left, *grown, -1),
+        lambda: cairn.groups_of(fewer, chosen, frame.disparity_map),
+        lambda: cairn.groups_of(superpixels, chosen, frame.disparity[1:]),
+        lambda: cairn.measure_chosen(labels, scores[1:], frame.disparity_map, sample.left, 1),
+        lambda: cairn.measure_chosen(labels, [2.0] * len(scores), frame.disparity_map, sample.left, 1),
+        lambda: cairn.measure_chosen(labels, scores, frame.disparity_map, half, 1),
+        lambda: cairn.measure_chosen(labels, scores, frame.disparity_map, sample.left, 1, min_area=1),
+        lambda: cairn.likely_ground(frame.ground, frame.disparity_map, source="points"),
         lambda: cairn.combine(frame.disparity, [frame.reject[:, 1:]]),
         lambda: cairn.segment_disparity(frame.disparity_map, frame.floor[1:]),
-        lambda: cairn.separate_figure(other, half, frame.disparity, cairn.fit_background(frame.disparity, frame.ground), 1),
-        lambda: cairn.group_facets(other, [2] * other.count, half, half, cairn.fit_background(frame.disparity, frame.ground)),
         lambda: cairn.build_graph(labels - 1, sample.gray()[0]),
         lambda: cairn.build_graph(labels * 2, sample.gray()[0]),
         lambda: cairn.build_graph(labels, sample.gray()[0][1:]),

@@ -16,7 +16,7 @@ import pytest
 import cairn
 from conftest import SOURCE, same
 
-SPOILT = {"figure": {"margin": 20}}
+SPOILT = {"objects": {"min_confidence": 0.95}}
 
 
 @pytest.fixture(scope="module")
@@ -26,15 +26,15 @@ def frames():
 
 def quick(frames, **more):
     """Twelve evaluations of two options, one of them spoilt."""
-    arguments = {"options": ["figure.margin", "group.step"], "evaluations": 12, "budget_s": 600, **SPOILT, **more}
+    arguments = {"options": ["objects.min_confidence", "objects.min_area"], "evaluations": 12, "budget_s": 600, **SPOILT, **more}
     return cairn.tune(frames, **arguments)
 
 
 def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
     tuning = quick(frames, holdout=0.25, seed=3)
     subprocess.run(
-        [command, "tune", SOURCE / "samples", "--truth", "--options", "figure.margin,group.step", "--evaluations", "12",
-         "--budget", "10m", "--holdout", "0.25", "--seed", "3", "--set", "figure.margin=20", "-o", tmp_path / "tuned.yaml",
+        [command, "tune", SOURCE / "samples", "--truth", "--options", "objects.min_confidence,objects.min_area", "--evaluations", "12",
+         "--budget", "10m", "--holdout", "0.25", "--seed", "3", "--set", "objects.min_confidence=0.95", "-o", tmp_path / "tuned.yaml",
          "--json", tmp_path / "found.json"], check=True, capture_output=True,
     )
     found = json.loads((tmp_path / "found.json").read_text())
@@ -53,9 +53,9 @@ def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
 def test_a_spoilt_option_is_mended(frames):
     tuning = quick(frames)
     assert tuning.after < tuning.before and tuning.kept_because is None
-    assert tuning.config["figure.margin"] < 15
-    assert tuning.changes["figure.margin"] == (20.0, tuning.config["figure.margin"])
-    assert tuning.options == ["figure.margin", "group.step"] and tuning.held_out_before is None
+    assert tuning.config["objects.min_confidence"] < 0.9
+    assert tuning.changes["objects.min_confidence"] == (0.95, tuning.config["objects.min_confidence"])
+    assert tuning.options == ["objects.min_confidence", "objects.min_area"] and tuning.held_out_before is None
     assert re.fullmatch(r"<cairn.Tuning objects: loss .*% -> .*%, \d+ evaluations, (converged|evaluations)>", repr(tuning))
     back = pickle.loads(pickle.dumps(tuning))
     assert back.config == tuning.config and repr(back) == repr(tuning) and back.changes == tuning.changes
@@ -145,7 +145,7 @@ def test_other_threads_run_meanwhile(frames):
 def test_names_that_can_be_searched():
     names = [option.name for option in cairn.options()]
     assert cairn.tunables() == names
-    assert cairn.tunables(["group.*"]) == [name for name in names if name.startswith("group.")]
+    assert cairn.tunables(["objects.*"]) == [name for name in names if name.startswith("objects.")]
 
 
 def test_what_cannot_be_tuned_is_refused(frames, sample):
@@ -160,10 +160,10 @@ def test_what_cannot_be_tuned_is_refused(frames, sample):
         "holdout: there is one frame": lambda: cairn.tune(frames[:1], holdout=0.5),
         "evaluations: found -1": lambda: cairn.tune(frames, evaluations=-1),
         "evaluations: found 2.5, expected a whole number": lambda: cairn.tune(frames, evaluations=2.5),
-        "options: found 'group.step', expected a list, each entry a str": lambda: cairn.tune(frames, options="group.step"),
+        "options: found 'superpixels.count', expected a list, each entry a str": lambda: cairn.tune(frames, options="superpixels.count"),
         "match.window_size": lambda: cairn.tune(frames, options=["match.windw_size"]),
         "match.cost has no effect with match.method=semi_global": lambda: cairn.tune(frames, options=["match.cost"]),
-        "changes no disparity": lambda: cairn.tune([(left, right)], options=["group.step"]),
+        "changes no disparity": lambda: cairn.tune([(left, right)], options=["superpixels.count"]),
         "progress: found 3, expected a function or None": lambda: cairn.tune(frames, progress=3),
         "objects: is 319x240, expected 320x240 as left is": lambda: cairn.TuningFrame(left, right, objects=np.zeros((240, 319), int)),
         "objects: found -2 at x 0, y 0": lambda: cairn.TuningFrame(left, right, objects=np.full((240, 320), -2)),
