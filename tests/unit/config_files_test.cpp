@@ -77,6 +77,12 @@ TEST_F(ConfigFiles, WhatMovedToTheCalibrationSaysSo) {
   EXPECT_TRUE(has(refused("ground.height: 2\n"), {"line 1", "camera_height"}));
 }
 
+TEST_F(ConfigFiles, OptionsOfStagesThatAreGoneAreRefusedWithTheirLine) {
+  EXPECT_TRUE(has(refused("facets:\n  edge_min: 2\n"), {"line 2", "facets.edge_min is gone", "scores"}));
+  EXPECT_TRUE(has(refused("match.window_size: 9\nfigure.margin: 1\n"), {"line 2", "figure.margin is gone"}));
+  EXPECT_TRUE(has(refused("\ngroup:\n  step: 20\n  min_area: 1\n"), {"line 3", "group.step is gone"}));
+}
+
 std::vector<std::string> active_values_of(const Config& config) {
   std::vector<std::string> values;
   for (const OptionInfo& option : active_options(config)) values.push_back(option.name + "=" + option.value);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cairn/core/error.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -378,6 +379,43 @@ TEST(GroundFromPose, AgreesWithARenderedCamera) {
     EXPECT_NEAR(ground.plane->b, truth[1], 1e-5) << frame;
     EXPECT_NEAR(ground.plane->c, truth[2], 5e-3) << frame;
   }
+}
+
+TEST(LikelyGround, IsTheGroundWhereThereIsOne) {
+  const DisparityMap map = matches_of({.boxes = kFurniture});
+  const Ground given{GroundPlane{0.1F, 0.2F, 3}, 0.4F, 0.5F, Refusal::none};
+  for (const GroundSource source : {GroundSource::automatic, GroundSource::points}) {
+    GroundConfig config;
+    config.source = source;
+    const Ground likely = likely_ground(given, map, std::nullopt, config, {});
+    ASSERT_TRUE(likely.plane);
+    EXPECT_EQ(likely.plane->b, 0.2F);
+    EXPECT_EQ(likely.support, 0.4F);
+  }
+}
+
+TEST(LikelyGround, IsThatOfAllDisparitiesWhereEvidenceIsWanting) {
+  const Room room{.boxes = kFurniture};
+  const DisparityMap map = matches_of(room);
+  const Image<float> nothing(room.size, kNaN, {});
+  const Ground refused = fit_ground(nothing, std::nullopt, {}, {});
+  ASSERT_EQ(refused.refusal, Refusal::too_few_matches);
+  const Ground likely = likely_ground(refused, map, std::nullopt, {}, {});
+  ASSERT_TRUE(likely.plane);
+  EXPECT_LT(error(likely, room), 0.25F);
+}
+
+TEST(LikelyGround, IsNoneWhereNoneIsWantedOrNoneIsSeen) {
+  const DisparityMap floor = matches_of({.boxes = kFurniture});
+  const Ground off{{}, 0, 0, Refusal::off};
+  GroundConfig config;
+  config.source = GroundSource::off;
+  EXPECT_EQ(likely_ground(off, floor, std::nullopt, config, {}).refusal, Refusal::off);
+  const DisparityMap wall = matches_of({.floor = {}, .wall_px = 11});
+  const Ground refused{{}, 0, 0, Refusal::too_few_matches};
+  const Ground likely = likely_ground(refused, wall, std::nullopt, {}, {});
+  EXPECT_FALSE(likely.plane);
+  EXPECT_EQ(likely.refusal, Refusal::implausible);
 }
 
 TEST(GroundSourceOff, SaysSo) {
