@@ -375,7 +375,7 @@ Work declare_tune(CLI::App& app) {
                "disparities)");
   app.add_option(
          "--options", options->patterns,
-         "what may be changed: names or beginnings, e.g. match.*,facets.*; default: a sensible choice")
+         "what may be changed: names or beginnings, e.g. match.*,superpixels.*; default: a sensible choice")
       ->type_name("NAMES")
       ->delimiter(',')
       ->expected(1)
