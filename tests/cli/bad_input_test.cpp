@@ -119,7 +119,12 @@ TEST_F(BadInput, OptionsThatAreGone) {
             {"ground." + name + " is gone", "calibration file"});
   refuses({"config", "--set", "match.evidence=full"}, {"match.evidence is gone"});
   refuses({"config", "--set", "confidence.enabled=true"}, {"confidence.enabled is gone"});
-  refuses({"config", "--set", "group.gap_share=3"}, {"group.gap_share is gone", "constant"});
+  refuses({"config", "--set", "background.tolerance=3"}, {"background.tolerance is gone", "constant"});
+  for (const std::string option : {"facets.edge_min", "figure.margin", "group.gap_share"}) {
+    refuses({"config", "--set", option + "=1"}, {option + " is gone", "fitted scores"});
+    write(at("gone.yaml"), "match.num_disparities: 64\n" + option + ": 1\n");
+    refuses({"config", "--config", path("gone.yaml")}, {"gone.yaml: line 2: ", option + " is gone"});
+  }
 }
 
 TEST_F(BadInput, TheEnvironmentsTargetIsCheckedLikeTheOption) {

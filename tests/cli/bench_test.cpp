@@ -56,9 +56,10 @@ TEST_F(Bench, JsonHoldsEveryStageInItsOrderWithItsTimes) {
   EXPECT_LT(position("match"), position("fit_ground"));
   EXPECT_LT(position("fit_ground"), position("measure"));
   ASSERT_NE(position("measure"), names.end());
-  for (const char* costly : {"noise_sigma", "fit_background", "segment_facets", "separate_figure"})
+  for (const char* costly :
+       {"noise_sigma", "fit_background", "cut_superpixels", "grow_merge_tree", "choose_objects"})
     EXPECT_LT(position(costly), position("measure")) << costly;
-  EXPECT_EQ(position("fuse"), names.end()) << "the way by evidence does not need it";
+  EXPECT_EQ(position("fuse"), names.end()) << "the hierarchy does not need it";
   double disparity_ms = 0;
   for (const Json& stage : found.at("stages")) {
     const Json& wall = stage.at("wall_ms");

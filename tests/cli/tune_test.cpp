@@ -32,8 +32,8 @@ class Tune : public CommandTest {
 };
 
 TEST_F(Tune, WritesAConfigThatIsReadBackAndATableOfBeforeAndAfter) {
-  const Outcome outcome = tune(samples(), {"--truth", "--options", "figure.*,group.step", "--evaluations",
-                                           "8", "--set", "figure.margin=20"});
+  const Outcome outcome = tune(samples(), {"--truth", "--options", "objects.min_confidence,superpixels.*",
+                                           "--evaluations", "8", "--set", "objects.min_confidence=0.9"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no bar where there is no terminal
   for (const char* words :
@@ -48,28 +48,28 @@ TEST_F(Tune, WritesAConfigThatIsReadBackAndATableOfBeforeAndAfter) {
   const Json& loss = j.at("tuned_on").at("loss");
   EXPECT_LE(loss.at("after"), loss.at("before"));
   const Config config = tuned();
-  const std::string margin = j.at("found").contains("figure.margin") && j.at("kept_because").is_null()
-                                 ? j.at("found").at("figure.margin").at("after")
-                                 : "20";
-  EXPECT_FLOAT_EQ(config.figure.margin, std::stof(margin));
+  const std::string least = j.at("found").contains("objects.min_confidence") && j.at("kept_because").is_null()
+                                ? j.at("found").at("objects.min_confidence").at("after")
+                                : "0.9";
+  EXPECT_FLOAT_EQ(config.objects.min_confidence, std::stof(least));
   EXPECT_EQ(config.match.num_disparities, Config{}.match.num_disparities);
   EXPECT_EQ(content(at("tuned.yaml")).find("num_disparities"), std::string::npos)
       << "would undo what each frame's calibration says";
 }
 
 TEST_F(Tune, MendsAnOptionThatWasSpoilt) {
-  const Outcome outcome = tune(samples(), {"--truth", "--options", "figure.margin,group.step",
-                                           "--evaluations", "12", "--set", "figure.margin=20"});
+  const Outcome outcome = tune(samples(), {"--truth", "--options", "objects.min_confidence,superpixels.count",
+                                           "--evaluations", "12", "--set", "objects.min_confidence=0.9"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json j = found();
   EXPECT_TRUE(j.at("kept_because").is_null()) << j;
   EXPECT_LT(j.at("tuned_on").at("loss").at("after"), j.at("tuned_on").at("loss").at("before")) << j;
-  EXPECT_LT(tuned().figure.margin, 15);
+  EXPECT_LT(tuned().objects.min_confidence, 0.8F);
 }
 
 TEST_F(Tune, WhatItSaysIsWhatEvaluateMeasuresWithTheConfigThatItWrote) {
-  ASSERT_EQ(tune(samples(), {"--truth", "--options", "figure.margin,left_right.max_diff", "--evaluations",
-                             "6", "--set", "figure.margin=20"})
+  ASSERT_EQ(tune(samples(), {"--truth", "--options", "objects.min_confidence,left_right.max_diff",
+                             "--evaluations", "6", "--set", "objects.min_confidence=0.9"})
                 .code,
             0);
   ASSERT_EQ(run({"segment", samples(), "--config", path("tuned.yaml"), "-o", path("out")}).code, 0);
@@ -87,7 +87,7 @@ TEST_F(Tune, TheSameNumberOfEvaluationsGivesTheSameFileOnAnyNumberOfThreads) {
   std::vector<std::string> files;
   for (const char* threads : {"1", "3"}) {
     ASSERT_EQ(
-        tune(samples(), {"--truth", "--options", "figure.*", "--evaluations", "6", "--threads", threads})
+        tune(samples(), {"--truth", "--options", "superpixels.*", "--evaluations", "6", "--threads", threads})
             .code,
         0);
     files.push_back(content(at("tuned.yaml")) + found().at("tuned_on").dump());
@@ -97,7 +97,8 @@ TEST_F(Tune, TheSameNumberOfEvaluationsGivesTheSameFileOnAnyNumberOfThreads) {
 
 TEST_F(Tune, HoldsOutTheShareAskedForAndJudgesIt) {
   ASSERT_EQ(
-      tune(samples(), {"--truth", "--options", "group.step", "--evaluations", "3", "--holdout", "0.5"}).code,
+      tune(samples(), {"--truth", "--options", "superpixels.count", "--evaluations", "3", "--holdout", "0.5"})
+          .code,
       0);
   const Json j = found();
   EXPECT_EQ(j.at("held_out").at("frames"), 2);
@@ -184,7 +185,7 @@ TEST_F(Tune, RefusesWhatDoesNotGoTogether) {
   for (const char* budget : {"5x", "-3s", "0", "", "1e99h", "nans"})
     refuses({"tune", frames, "--budget", budget}, {"--budget", "60s"});
   refuses({"tune", frames, "--options", "match.windw_size"}, {"match.window_size"});
-  refuses({"tune", frames, "--options", "figure.*"}, {"figure.*", "true objects"});
+  refuses({"tune", frames, "--options", "superpixels.*"}, {"superpixels.*", "true objects"});
   refuses({"tune", frames, "--set", "match.num_disparities=16", "--holdout", "0.5"},
           {"holdout", "one frame"});
   refuses({"tune", frames, "--holdout", "1.5"}, {"--holdout"});

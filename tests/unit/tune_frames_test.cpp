@@ -87,7 +87,7 @@ TEST_F(Tuned, WhatCannotBeTunedIsRefused) {
   EXPECT_THROW(tune(frames(), {.evaluations = -1}, Exec{}), Error);
   EXPECT_THROW(tune(frames(), {.holdout = 1}, Exec{}), Error);
   EXPECT_THROW(tune({frames()[0]}, {.holdout = 0.5}, Exec{}), Error);
-  EXPECT_THROW(tune(frames(), {.options = {"figure.*"}}, Exec{}), Error);  // no true objects judge it
+  EXPECT_THROW(tune(frames(), {.options = {"superpixels.*"}}, Exec{}), Error);  // no true objects judge it
   config_.match.window_size = 8;
   EXPECT_THROW(tune(frames(), {}, Exec{}), Error);
 }

@@ -85,10 +85,10 @@ TEST(Tunable, PatternsChooseEachOptionOnceAndInOrder) {
 
 TEST(Tunable, APatternThatNamesNothingIsRefusedWithTheNearestName) {
   try {
-    (void)tunables({"match.*", "facets.edge_mim"});
+    (void)tunables({"match.*", "superpixels.cuont"});
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("facets.edge_min"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("superpixels.count"), std::string::npos) << error.what();
   }
   EXPECT_THROW((void)tunables({"no_such.*"}), Error);
 }
@@ -99,11 +99,12 @@ TEST(Tunable, TheUsualOnesTakePartInWhatTheConfigComputes) {
       const Config config = Config::preset(preset);
       const Strings names = names_of(tunables(usual_tunables(config, objects)));
       const bool semi_global = config.match.method == MatchMethod::semi_global;
-      const bool evidence = config.fusion.method == FusionMethod::evidence;
+      const bool hierarchy = config.fusion.method == FusionMethod::hierarchy;
       EXPECT_EQ(has(names, "semi_global.penalty_small"), semi_global) << preset;
       EXPECT_EQ(has(names, "match.window_size"), !semi_global) << preset;
-      EXPECT_EQ(has(names, "figure.margin"), objects && evidence) << preset;
-      EXPECT_EQ(has(names, "intensity.sigma_min"), objects && !evidence) << preset;
+      EXPECT_EQ(has(names, "evidence.gradient_min"), objects && hierarchy) << preset;
+      EXPECT_EQ(has(names, "superpixels.count"), objects && hierarchy) << preset;
+      EXPECT_EQ(has(names, "intensity.sigma_min"), objects && !hierarchy) << preset;
       EXPECT_FALSE(has(names, "match.num_disparities")) << preset;
       if (objects) continue;
       for (const std::string& name : names) EXPECT_TRUE(changes_disparities(name)) << name;
@@ -112,8 +113,8 @@ TEST(Tunable, TheUsualOnesTakePartInWhatTheConfigComputes) {
 }
 
 TEST(Neighbours, ANumberGrowsAndShrinksByTheStepToThreeDigits) {
-  EXPECT_EQ(neighbours(named("figure.margin"), "1.6", 1.6), (Strings{"2.56", "1"}));
-  EXPECT_EQ(neighbours(named("figure.margin"), "1.2345", 1.1), (Strings{"1.36", "1.12"}));
+  EXPECT_EQ(neighbours(named("ground.margin"), "1.6", 1.6), (Strings{"2.56", "1"}));
+  EXPECT_EQ(neighbours(named("ground.margin"), "1.2345", 1.1), (Strings{"1.36", "1.12"}));
   EXPECT_EQ(neighbours(named("speckle.size"), "50", 1.1), (Strings{"55", "45", "-1"}));
   EXPECT_EQ(neighbours(named("background.max_walls"), "3", 1.1), (Strings{"4", "2"}));
 }
@@ -128,7 +129,7 @@ TEST(Neighbours, StayWithinTheLimitsAndOdd) {
 TEST(Neighbours, FromOffOrNothingWhatThePresetsGiveIsTried) {
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"5"}));
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "5", 2), (Strings{"10", "2.5", "-1"}));
-  EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.2"}));
+  EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.3"}));
   EXPECT_EQ(neighbours(named("left_right.method"), "true", 1.6), (Strings{"vote"}));
 }
 
@@ -171,7 +172,7 @@ double log_square(double value, double best) {
 
 /// A bowl in the logarithm of two options, the same for two frames, and a choice.
 std::vector<Loss> bowl(const std::vector<Setting>& settings) {
-  double loss = 1 + log_square(value_of(settings, "figure.margin"), 4) +
+  double loss = 1 + log_square(value_of(settings, "evidence.gradient_min"), 4) +
                 log_square(value_of(settings, "speckle.size"), 20);
   for (const Setting& setting : settings) {
     if (setting.option == "left_right.method" && setting.value == "true") loss += 1;
@@ -180,7 +181,8 @@ std::vector<Loss> bowl(const std::vector<Setting>& settings) {
 }
 
 const std::vector<Tunable>& bowl_tunables() {
-  static const auto all = tunables({"figure.margin", "speckle.size", "left_right.method", "group.step"});
+  static const auto all =
+      tunables({"evidence.gradient_min", "speckle.size", "left_right.method", "ground.margin"});
   return all;
 }
 
@@ -192,13 +194,13 @@ SearchResult search_bowl(const SearchConfig& config) {
 TEST(Search, FindsTheLeastOfABowlAndAChoice) {
   const SearchResult found = search_bowl({});
   EXPECT_EQ(found.end, SearchEnd::converged);
-  EXPECT_NEAR(value_of(found.best, "figure.margin"), 4, 0.6);
+  EXPECT_NEAR(value_of(found.best, "evidence.gradient_min"), 4, 0.6);
   EXPECT_NEAR(value_of(found.best, "speckle.size"), 20, 3);
   EXPECT_TRUE(std::find(found.best.begin(), found.best.end(), Setting{"left_right.method", "vote"}) !=
               found.best.end());
   EXPECT_LT(mean_loss(found.best_losses), 1.03);
   EXPECT_GT(mean_loss(found.start_losses), 2);
-  EXPECT_EQ(value_of(found.best, "group.step"), value_of(found.start, "group.step"));
+  EXPECT_EQ(value_of(found.best, "ground.margin"), value_of(found.start, "ground.margin"));
 }
 
 TEST(Search, TheSameNumberOfEvaluationsGivesTheSameResultAndAnotherSeedAnotherWay) {
@@ -272,28 +274,28 @@ TEST(Search, StoppedAtAnyTimeItReturnsTheBestSoFar) {
 }
 
 TEST(Search, KeepsNothingThatHasMoreFaultsThanTheStart) {
-  const auto all = tunables({"figure.margin"});
+  const auto all = tunables({"evidence.gradient_min"});
   const SearchResult found = search(all, settings_of(Config{}, all),
                                     [](const std::vector<Setting>& settings) -> std::vector<Loss> {
-                                      const double margin = value_of(settings, "figure.margin");
-                                      return {{log_square(margin, 4), 1, margin > 3 ? 2 : 1}};
+                                      const double least = value_of(settings, "evidence.gradient_min");
+                                      return {{log_square(least, 4), 1, least > 3 ? 2 : 1}};
                                     },
                                     {});
-  EXPECT_GT(value_of(found.best, "figure.margin"), 2.5);
-  EXPECT_LE(value_of(found.best, "figure.margin"), 3);
+  EXPECT_GT(value_of(found.best, "evidence.gradient_min"), 2.5);
+  EXPECT_LE(value_of(found.best, "evidence.gradient_min"), 3);
 }
 
 TEST(Search, LeavesSettingsThatContradictEachOther) {
-  const auto all = tunables({"figure.margin"});
-  const SearchResult found = search(all, settings_of(Config{}, all),
-                                    [](const std::vector<Setting>& settings) -> std::vector<Loss> {
-                                      const double margin = value_of(settings, "figure.margin");
-                                      const double loss = margin > 2 ? std::numeric_limits<double>::infinity()
-                                                                     : log_square(margin, 1);
-                                      return {{loss, 1}};
-                                    },
-                                    {});
-  EXPECT_NEAR(value_of(found.best, "figure.margin"), 1, 0.1);
+  const auto all = tunables({"evidence.gradient_min"});
+  const SearchResult found =
+      search(all, settings_of(Config{}, all),
+             [](const std::vector<Setting>& settings) -> std::vector<Loss> {
+               const double least = value_of(settings, "evidence.gradient_min");
+               const double loss = least > 2 ? std::numeric_limits<double>::infinity() : log_square(least, 1);
+               return {{loss, 1}};
+             },
+             {});
+  EXPECT_NEAR(value_of(found.best, "evidence.gradient_min"), 1, 0.1);
 }
 
 TEST(ClearlyBetter, AsksForMoreThanTheGainOfOneFrame) {
