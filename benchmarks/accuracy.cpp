@@ -205,6 +205,8 @@ struct Run {
 
 std::vector<Run> all_runs() {
   std::vector<Run> runs;
+  runs.push_back(
+      {"**" + std::string(kAsPrinted.meaning) + "**", ablated(kAsPrinted.settings).config, false, false});
   for (const Preset& preset : presets())
     runs.push_back({std::string("**") + preset.name + "**", preset.config, false, false});
   for (const auto& [settings, meaning] : all_ablations()) {
@@ -784,7 +786,8 @@ constexpr std::string_view kColumns =
     "these "
     "the share that is off by more than 2 px; rc_tabletop has no true disparity |\n"
     "| ms | of one core for the whole method, the median frame |\n\n"
-    "[evaluation](evaluation.md) defines each word. **paper** and **default** are the presets; each other "
+    "[evaluation](evaluation.md) defines each word. **paper** and **default** are the presets, and "
+    "**as printed** is `paper` without floor label and thresholds of the gradients; each other "
     "row is "
     "`default` with one thing undone: switched off, or as `paper` has it. "
     "The last digits are no differences: see below each title how much one object makes.\n\n";

@@ -22,7 +22,7 @@ set(private_headers
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
   image/gaussian image/sparse_points image/texture
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
-  regions/split_floor
+  regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
   io/calibration_forms io/raster io/read_file page/html_template)
 list(JOIN private_headers "|" private_headers)

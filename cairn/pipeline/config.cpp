@@ -290,20 +290,26 @@ Config Config::preset(std::string_view name) {
               (close.empty() ? "" : "; did you mean '" + close + "'?"));
 }
 
+// Fitted by fitting/search_paper.cpp.
 Config Config::paper() {
   Config c;
   c.epipolar_correction = {};
   c.match = {};
   c.subpixel = {};
   c.left_right = {};
-  c.uniqueness = {.ratio = 5.0F};
+  c.uniqueness = {.ratio = 10.0F};
   c.flatness = {};
-  c.texture = {.threshold = 1.0F};
-  c.ground.label_floor = false;
+  c.texture = {.threshold = 2.0F};
+  c.ground.margin = 0.75F;
   c.speckle.size = -1;
-  c.disparity.mean_difference_max = 0.75F;
+  c.intensity.smoothing_sigma = 1.5F;
+  c.intensity.gradient_threshold = 4.0F;
+  c.disparity.gradient_threshold = 0.25F;
+  c.disparity.mean_difference_max = 1.5F;
+  c.disparity.deviation_max = 1.5F;
+  c.disparity.min_region_area = 1.0F;
   c.fusion = {};
-  c.objects = {};
+  c.objects = {.min_area = 0.5F};
   return c;
 }
 

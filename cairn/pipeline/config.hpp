@@ -46,7 +46,7 @@ struct Config {
   SuperpixelsConfig superpixels;
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
 
-  /// Only what the paper describes.
+  /// Only what the paper describes; the thresholds are ours, fitted by fitting/search_paper.cpp.
   static Config paper();
   /// The presets by name: "default", "paper". Throws Error naming the known ones.
   static Config preset(std::string_view name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/core/disjoint_sets.hpp>
 #include <cairn/disparity/gradient.hpp>
+#include <cairn/regions/gradient_threshold.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/segment_disparity.hpp>
@@ -77,13 +78,46 @@ Basins split_floor(const Basins& basins, View<const std::uint8_t> floor, const E
   return result;
 }
 
+Image<std::uint8_t> floor_with_holes(const Basins& basins, View<const std::uint8_t> floor,
+                                     View<const std::int16_t> values, const Exec& exec) {
+  const Size size = basins.labels.size();
+  // Of each basin: pixels on the floor less pixels with another value.
+  std::vector<std::int32_t> balance(slot(basins.count));
+  for (int y = 0; y < size.height; ++y) {
+    const RegionId* const basin = basins.labels.row(y);
+    const std::uint8_t* const on_floor = floor.row(y);
+    const std::int16_t* const value = values.row(y);
+    for (int x = 0; x < size.width; ++x) {
+      const bool counts = value[x] != kHole16;
+      balance[index(basin[x])] += on_floor[x] != 0 ? 1 : counts ? -1 : 0;
+    }
+  }
+  Image<std::uint8_t> result(size, exec.pool);
+  for (int y = 0; y < size.height; ++y) {
+    const RegionId* const basin = basins.labels.row(y);
+    const std::uint8_t* const on_floor = floor.row(y);
+    const std::int16_t* const value = values.row(y);
+    std::uint8_t* const out = result.row(y);
+    for (int x = 0; x < size.width; ++x) {
+      const bool hole_in_floor = value[x] == kHole16 && balance[index(basin[x])] > 0;
+      out[x] = on_floor[x] != 0 || hole_in_floor ? std::uint8_t{255} : std::uint8_t{0};
+    }
+  }
+  return result;
+}
+
 Segmentation segment_disparity(const DisparityMap& disparity, View<const std::uint8_t> floor,
                                const DisparityConfig& config, const Exec& exec) {
   const Image<std::int16_t> values = quantised(disparity, exec);
-  const Image<std::uint16_t> edges = gradient(values, config.smoothing_sigma, exec);
+  Image<std::uint16_t> edges = gradient(values, config.smoothing_sigma, exec);
+  level_below(config.gradient_threshold * kPerPixel, edges, exec);
   Basins basins = watershed(edges, exec);
-  if (!floor.empty()) basins = split_floor(basins, floor, exec);
-  const RegionGraph graph = build_graph(basins.labels, basins.count, values, floor, exec);
+  Image<std::uint8_t> whole_floor;
+  if (!floor.empty()) {
+    whole_floor = floor_with_holes(basins, floor, values, exec);
+    basins = split_floor(basins, whole_floor, exec);
+  }
+  const RegionGraph graph = build_graph(basins.labels, basins.count, values, whole_floor, exec);
   const Merges merges =
       grow_near_to_far(graph,
                        {.mean_difference_max = config.mean_difference_max * kPerPixel,

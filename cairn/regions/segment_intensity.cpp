@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/image/gradient.hpp>
+#include <cairn/regions/gradient_threshold.hpp>
 #include <cairn/regions/grow_statistical.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/segment_intensity.hpp>
@@ -8,7 +9,8 @@
 
 namespace cairn {
 Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& config, const Exec& exec) {
-  const Image<std::uint16_t> edges = gradient(image, config.smoothing_sigma, exec);
+  Image<std::uint16_t> edges = gradient(image, config.smoothing_sigma, exec);
+  level_below(config.gradient_threshold, edges, exec);
   const Basins basins = watershed(edges, exec);
   const RegionGraph graph = build_graph(basins.labels, basins.count, image, exec);
   const Merges merges = grow_statistical(graph,

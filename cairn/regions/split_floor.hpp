@@ -6,6 +6,11 @@
 
 namespace cairn {
 
+/// The floor (`floor` non-zero) and, of every basin that has more floor pixels than others with a value, its
+/// holes (`values` kHole16): 255, else 0. `floor` and `values` have the size of the labels.
+Image<std::uint8_t> floor_with_holes(const Basins& basins, View<const std::uint8_t> floor,
+                                     View<const std::int16_t> values, const Exec& exec);
+
 /// Cuts basins along the floor: all floor pixels (`floor` non-zero) become one region, connected or not; what
 /// is left of a basin becomes one region for each of its connected parts. Numbered in raster order of the
 /// first pixel. `floor` has the size of the labels.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/target.hpp>
+#include <cairn/regions/gradient_threshold.hpp>
 #include <cairn/regions/split_floor.hpp>
 #include <random>
 
@@ -201,6 +202,35 @@ TEST(RegionsEquivalence, WatershedFollowsAWayThatTurnsWhereABlockOfRowsEnds) {
   }
 }
 
+TEST(RegionsEquivalence, LevellingIsItsTwin) {
+  for (const Size size : sizes()) {
+    const Image<std::uint16_t> image = random_image<std::uint16_t>(size, 0, 12, 25);
+    for (const double threshold : {-1.0, 0.0, 0.1, 1.0, 4.5, 12.0, 13.0, 1e9}) {
+      Image<std::uint16_t> levelled(size);
+      for (int y = 0; y < size.height; ++y) std::copy_n(image.row(y), size.width, levelled.row(y));
+      level_below(threshold, levelled, threads(3));
+      EXPECT_EQ(numbers(levelled), numbers(reference::levelled_below(threshold, image)))
+          << text(size) << " threshold " << threshold;
+    }
+  }
+}
+
+TEST(RegionsEquivalence, FloorWithHolesIsItsTwin) {
+  for (const Size size : sizes()) {
+    const Image<std::int16_t> values = random_disparity16(size, 26);
+    const Basins basins = basins_of(values);
+    for (const int share : {1, 3, 9}) {
+      Image<std::uint8_t> floor = random_image<std::uint8_t>(size, 0, share, 27);
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) floor(x, y) = values(x, y) == kHole16 ? 0 : floor(x, y);
+      }
+      EXPECT_EQ(numbers(floor_with_holes(basins, floor, values, threads(3))),
+                numbers(reference::floor_with_holes(basins, floor, values)))
+          << text(size);
+    }
+  }
+}
+
 TEST(RegionsEquivalence, SplitFloorIsItsTwin) {
   for (const Size size : sizes()) {
     const Basins basins = random_basins(size, 30);
@@ -373,9 +403,12 @@ TEST(RegionsEquivalence, FusingSmallRegionsIsItsTwin) {
 TEST(RegionsEquivalence, IntensitySegmentationIsItsTwin) {
   for (const Size size : {Size{1, 1}, Size{2, 1}, Size{47, 34}, Size{31, 45}}) {
     const Image<Gray> image = random_image<Gray>(size, 60, 120, 70);
-    const IntensityConfig config{.min_region_area = 1.0F};
-    for (const int n : {1, 3}) {
-      expect_equal(segment_intensity(image, config, threads(n)), reference::segment_intensity(image, config));
+    for (const float threshold : {0.0F, 9.5F}) {
+      const IntensityConfig config{.gradient_threshold = threshold, .min_region_area = 1.0F};
+      for (const int n : {1, 3}) {
+        expect_equal(segment_intensity(image, config, threads(n)),
+                     reference::segment_intensity(image, config));
+      }
     }
   }
 }
@@ -386,7 +419,7 @@ TEST(RegionsEquivalence, DisparitySegmentationIsItsTwin) {
     Image<std::uint8_t> floor = random_image<std::uint8_t>(size, 0, 1, 72);
     for (int y = 0; y < size.height / 2; ++y) std::fill_n(floor.row(y), size.width, std::uint8_t{0});
     for (const float area : {0.0F, 1.0F, 100.0F}) {
-      const DisparityConfig config{.min_region_area = area};
+      const DisparityConfig config{.gradient_threshold = area == 1.0F ? 0.3F : 0.0F, .min_region_area = area};
       for (const int n : {1, 3}) {
         expect_equal(segment_disparity(map, {}, config, threads(n)),
                      reference::segment_disparity(map, {}, config));

@@ -234,6 +234,15 @@ Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smooth
   return result;
 }
 
+Image<std::uint16_t> levelled_below(double threshold, View<const std::uint16_t> gradient) {
+  Image<std::uint16_t> result(gradient.size());
+  for (int y = 0; y < gradient.height(); ++y) {
+    for (int x = 0; x < gradient.width(); ++x)
+      result(x, y) = gradient(x, y) < threshold ? std::uint16_t{0} : gradient(x, y);
+  }
+  return result;
+}
+
 Basins watershed(View<const std::uint16_t> gradient) {
   constexpr int kFar = std::numeric_limits<int>::max();
   const Size size = gradient.size();
@@ -270,6 +279,28 @@ Basins watershed(View<const std::uint16_t> gradient) {
     const bool same_floor = distance(p.x, p.y) == kFar && distance(q.x, q.y) == kFar;
     return to(p.x, p.y) == q || to(q.x, q.y) == p || same_floor;
   }));
+}
+
+Image<std::uint8_t> floor_with_holes(const Basins& basins, View<const std::uint8_t> floor,
+                                     View<const std::int16_t> values) {
+  std::map<RegionId, int> floor_pixels, other_pixels;
+  Image<std::uint8_t> result(floor.size());
+  for (const bool counting : {true, false}) {
+    for (int y = 0; y < floor.height(); ++y) {
+      for (int x = 0; x < floor.width(); ++x) {
+        const RegionId basin = basins.labels(x, y);
+        const bool is_floor = floor(x, y) != 0, is_hole = values(x, y) == kHole16;
+        if (counting) {
+          if (is_floor) ++floor_pixels[basin];
+          if (!is_floor && !is_hole) ++other_pixels[basin];
+        } else {
+          const bool is_hole_in_floor = is_hole && floor_pixels[basin] > other_pixels[basin];
+          result(x, y) = is_floor || is_hole_in_floor ? 255 : 0;
+        }
+      }
+    }
+  }
+  return result;
 }
 
 Basins split_floor(const Basins& basins, View<const std::uint8_t> floor) {
@@ -406,7 +437,8 @@ Segmentation apply_merges(View<const RegionId> labels, const RegionGraph& graph,
 Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& config) {
   Image<std::int16_t> values(image.size());
   for (int y = 0; y < image.height(); ++y) std::copy_n(image.row(y), image.width(), values.row(y));
-  const Image<std::uint16_t> edges = gradient(image, config.smoothing_sigma);
+  const Image<std::uint16_t> steepness = gradient(image, config.smoothing_sigma);
+  const Image<std::uint16_t> edges = levelled_below(config.gradient_threshold, steepness);
   const Basins basins = watershed(edges);
   const RegionGraph graph = build_graph(basins.labels, basins.count, values, {});
   const Merges merges =
@@ -418,10 +450,15 @@ Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& co
 Segmentation segment_disparity(const DisparityMap& disparity, View<const std::uint8_t> floor,
                                const DisparityConfig& config) {
   const Image<std::int16_t> values = quantised(disparity);
-  const Image<std::uint16_t> edges = gradient(values, config.smoothing_sigma);
+  const Image<std::uint16_t> steepness = gradient(values, config.smoothing_sigma);
+  const Image<std::uint16_t> edges = levelled_below(double{config.gradient_threshold} * 16, steepness);
   Basins basins = watershed(edges);
-  if (!floor.empty()) basins = split_floor(basins, floor);
-  const RegionGraph graph = build_graph(basins.labels, basins.count, values, floor);
+  Image<std::uint8_t> whole_floor;
+  if (!floor.empty()) {
+    whole_floor = floor_with_holes(basins, floor, values);
+    basins = split_floor(basins, whole_floor);
+  }
+  const RegionGraph graph = build_graph(basins.labels, basins.count, values, whole_floor);
   const Merges merges = reference::grow_near_to_far(
       graph, {config.mean_difference_max * 16.0, config.deviation_max, config.sigma_min * 16.0,
               pixels_in(config.min_region_area, values.size())});

@@ -17,7 +17,10 @@ namespace cairn::reference {
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma);
 Image<std::int16_t> quantised(const DisparityMap& disparity);
 Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smoothing_sigma);
+Image<std::uint16_t> levelled_below(double threshold, View<const std::uint16_t> gradient);
 Basins watershed(View<const std::uint16_t> gradient);
+Image<std::uint8_t> floor_with_holes(const Basins& basins, View<const std::uint8_t> floor,
+                                     View<const std::int16_t> values);
 Basins split_floor(const Basins& basins, View<const std::uint8_t> floor);
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
                         View<const std::uint8_t> floor);

@@ -136,6 +136,21 @@ TEST(Ablations, CoverEveryOptionOfTheRunStagesOnWhichThePresetsDisagree) {
   }
 }
 
+TEST(Ablations, AsPrintedIsPaperWithoutFloorLabelAndThresholdsOfGradients) {
+  const Config as_printed = ablated(kAsPrinted.settings).config;
+  EXPECT_NO_THROW(validate(as_printed));
+  EXPECT_EQ(kAsPrinted.meaning, "as printed");
+  Config expected = Config::paper();
+  expected.ground.label_floor = false;
+  expected.intensity.gradient_threshold = 0;
+  expected.disparity.gradient_threshold = 0;
+  const auto theirs = options(as_printed);
+  const auto wanted = options(expected);
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_EQ(theirs[i].value, wanted[i].value) << wanted[i].name;
+  EXPECT_TRUE(Config::paper().ground.label_floor);
+}
+
 TEST(Ablations, AMisspeltOptionIsRefused) {
   EXPECT_THROW((void)ablated("speckle.sise=-1"), Error);
   EXPECT_THROW((void)ablated("speckle.size"), Error);

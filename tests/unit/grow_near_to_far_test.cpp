@@ -38,6 +38,18 @@ TEST(GrowNearToFar, DoesNotTryARefusedNeighbourAgain) {
   EXPECT_EQ(grow_near_to_far(given, criteria, {}), (Merges{0, 1, 1}));
 }
 
+TEST(GrowNearToFar, TriesTheEarlierOfTwoArcsThatAreEqual) {
+  // 60 is visited first and refuses 50, by which its mean would move by 8. Then 50 has 60 and 40 on both
+  // sides of it, 10 away either; with the one that it takes its mean moves off, and the other is beyond its
+  // reach.
+  const GrowCriteria criteria{.mean_difference_max = 10, .deviation_max = 4, .sigma_min = 1};
+  const chain::Member near{.mean = 60, .pixels = 4};
+  const chain::Member visited{.mean = 50, .pixels = 16};
+  const chain::Member far{.mean = 40, .pixels = 4};
+  EXPECT_EQ(grow_near_to_far(graph({near, visited, far}), criteria, {}), (Merges{1, 1, 2}));
+  EXPECT_EQ(grow_near_to_far(graph({far, visited, near}), criteria, {}), (Merges{1, 1, 2}));
+}
+
 TEST(GrowNearToFar, GoesOnWithTheNeighboursOfWhatItAbsorbed) {
   const RegionGraph given = graph({{.mean = 30}, {.mean = 29}, {.mean = 28}, {.mean = 27}});
   EXPECT_EQ(grow_near_to_far(given, kWithinFive, {}), (Merges{0, 0, 0, 0}));

@@ -69,6 +69,35 @@ TEST(SegmentDisparity, FloorIsOneRegionAndCutsABoardThatLiesOnIt) {
   EXPECT_EQ(result.regions[2].pixel_count, 20 * 60 - 6 * 15);
 }
 
+TEST(SegmentDisparity, HolesInTheFloorAreFloor) {
+  const DisparityMap map = scene({60, 40}, 10, {{{0, 0, 60, 12}, 4}, {{25, 24, 6, 5}, kNan}});
+  Image<std::uint8_t> floor(Size{60, 40}, std::uint8_t{0}, {});
+  for (int y = 12; y < 40; ++y) std::fill_n(floor.row(y), 60, std::uint8_t{255});
+  for (int y = 24; y < 29; ++y) std::fill_n(floor.row(y) + 25, 6, std::uint8_t{0});
+  const Segmentation result = segment_disparity(map, floor, {}, {});
+  ASSERT_EQ(result.regions.size(), 2U);
+  EXPECT_TRUE(result.regions[1].is_floor);
+  EXPECT_EQ(result.labels(27, 26), RegionId{1});
+  EXPECT_EQ(result.regions[1].pixel_count - result.regions[1].valid_count, 30);
+}
+
+TEST(SegmentDisparity, StepsBelowTheGradientThresholdMakeNoBasins) {
+  // Steps of 1/16 px every third column, and one of 3 px: without growing, regions are basins.
+  DisparityMap map = scene({24, 6}, 0, {});
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 24; ++x)
+      map.disparity_px(x, y) = (x / 3 % 2 == 0 ? 0.0F : 0.0625F) + (x < 12 ? 0.0F : 3.0F);
+  }
+  const auto basins = [&](float threshold) {
+    const DisparityConfig config{
+        .gradient_threshold = threshold, .mean_difference_max = 0, .deviation_max = 0, .min_region_area = 0};
+    return segment_disparity(map, {}, config, {}).regions.size();
+  };
+  EXPECT_EQ(basins(0), 8U);
+  EXPECT_EQ(basins(0.0625F), 8U);  // as steep is not below it
+  EXPECT_EQ(basins(0.07F), 2U);
+}
+
 TEST(SegmentDisparity, ThresholdsAreInPixelsOfDisparity) {
   const DisparityMap map = scene({60, 40}, 4, {{{20, 10, 20, 20}, 5}});
   const DisparityConfig loose{.mean_difference_max = 1.0F, .deviation_max = 100};

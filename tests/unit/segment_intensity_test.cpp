@@ -37,6 +37,21 @@ TEST(SegmentIntensity, ManyBasinsOfNoiseGrowToFewRegions) {
   EXPECT_NE(result.labels(55, 40), result.labels(5, 5));
 }
 
+TEST(SegmentIntensity, AGradientBelowItsThresholdMakesNoBasins) {
+  // Without growing, regions are basins: two of them, and a corner may make one of its own.
+  const Image<Gray> image = picture({60, 40}, {12, 8, 20, 15}, 2);
+  const auto basins = [&](float threshold) {
+    const IntensityConfig config{.smoothing_sigma = 0,
+                                 .gradient_threshold = threshold,
+                                 .mean_difference_max = 0,
+                                 .deviation_max = 0,
+                                 .min_region_area = 0};
+    return segment_intensity(image, config, {}).regions.size();
+  };
+  EXPECT_GT(basins(0), 100U);
+  EXPECT_LE(basins(10), 6U);
+}
+
 TEST(SegmentIntensity, LeavesNoRegionBelowTheLeastArea) {
   const Image<Gray> image = grids::random_image<Gray>({50, 40}, 0, 255, 3);
   const Segmentation result = segment_intensity(image, {.min_region_area = 1.0F}, {});

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/split_floor.hpp>
 #include <cairn/regions/watershed.hpp>
 
@@ -87,6 +88,30 @@ TEST(SplitFloor, WithoutFloorChangesNothing) {
   const Basins two{grid<RegionId>({{0, 0, 1}, {0, 1, 1}}), 2};
   const Image<std::uint8_t> floor = grid<std::uint8_t>({{0, 0, 0}, {0, 0, 0}});
   EXPECT_EQ(numbers(split_floor(two, floor, {}).labels), numbers(two.labels));
+}
+
+/// Of a row: what is floor once its holes are closed.
+std::vector<std::int64_t> closed(const Basins& basins, const Image<std::uint8_t>& floor,
+                                 const Image<std::int16_t>& values) {
+  return numbers(floor_with_holes(basins, floor, values, {})).front();
+}
+
+TEST(FloorWithHoles, AHoleGoesToTheFloorOfItsBasin) {
+  constexpr int kNone = kHole16;
+  const Basins two{grid<RegionId>({{0, 0, 0, 0, 1, 1, 1}}), 2};
+  const Image<std::uint8_t> floor = grid<std::uint8_t>({{255, 255, 0, 0, 0, 0, 0}});
+  EXPECT_EQ(closed(two, floor, grid<std::int16_t>({{70, 71, kNone, kNone, kNone, 90, 90}})),
+            (std::vector<std::int64_t>{255, 255, 255, 255, 0, 0, 0}));
+}
+
+TEST(FloorWithHoles, AHoleInABasinThatIsAtLeastHalfOtherStays) {
+  constexpr int kNone = kHole16;
+  const Basins one{grid<RegionId>({{0, 0, 0, 0}}), 1};
+  const Image<std::int16_t> values = grid<std::int16_t>({{70, 70, kNone, 72}});
+  EXPECT_EQ(closed(one, grid<std::uint8_t>({{255, 0, 0, 255}}), values),
+            (std::vector<std::int64_t>{255, 0, 255, 255}));
+  EXPECT_EQ(closed(one, grid<std::uint8_t>({{255, 0, 0, 0}}), values),
+            (std::vector<std::int64_t>{255, 0, 0, 0}));
 }
 
 }  // namespace
