@@ -70,13 +70,14 @@ class SpeckleOptions(TypedDict, total=False):
     range: float  # px, 0 … 64, read while speckle.size!=-1: largest step of disparity between neighbours of one island
 
 class EvidenceOptions(TypedDict, total=False):
-    gradient_min: float  # grey levels, 0 … 255, read while fusion.method=evidence: how far a pixel's horizontal gradient must exceed the image's noise to count as evidence
+    gradient_min: float  # grey levels, 0 … 255, read while fusion.method=hierarchy: how far a pixel's horizontal gradient must exceed the image's noise to count as evidence
 
 class BackgroundOptions(TypedDict, total=False):
-    max_walls: int  # 0 … 8, read while fusion.method=evidence: how many walls are looked for besides the floor
+    max_walls: int  # 0 … 8, read while fusion.method=hierarchy: how many walls are looked for besides the floor
 
 class IntensityOptions(TypedDict, total=False):
     smoothing_sigma: float  # px, 0 … 5, read while fusion.method=overlap: Gaussian smoothing before the gradient
+    gradient_threshold: float  # grey levels, 0 … 255, read while fusion.method=overlap: 0 = off; a lower gradient counts as 0: no basins of noise
     mean_difference_max: float  # grey levels, 0 … 255, read while fusion.method=overlap: Eq. 1: largest difference of two means that fuse
     deviation_max: float  # σ, 0 … 100, read while fusion.method=overlap: Eq. 2: how many deviations a fusion may move the mean
     sigma_min: float  # grey levels, 0.01 … 255, read while fusion.method=overlap: least deviation used in Eq. 2
@@ -84,28 +85,21 @@ class IntensityOptions(TypedDict, total=False):
 
 class DisparityOptions(TypedDict, total=False):
     smoothing_sigma: float  # px, 0 … 5, read while fusion.method=overlap: Gaussian smoothing before the gradient
+    gradient_threshold: float  # px, 0 … 64, read while fusion.method=overlap: 0 = off; a lower gradient counts as 0: no basins of noise
     mean_difference_max: float  # px, 0 … 64, read while fusion.method=overlap: Eq. 1: largest difference of two means that fuse
     deviation_max: float  # σ, 0 … 100, read while fusion.method=overlap: Eq. 2: how many deviations a fusion may move the mean
     sigma_min: float  # px, 0.01 … 64, read while fusion.method=overlap: least deviation used in Eq. 2
     min_region_area: float  # % of the image, 0 … 100, read while fusion.method=overlap: smaller regions fuse with the most similar neighbour
 
 class FusionOptions(TypedDict, total=False):
-    method: Literal["overlap", "evidence"]  # overlap|evidence: overlap: the paper's two segmentations; evidence: facets that texture vouches for
+    method: Literal["overlap", "hierarchy"]  # overlap|hierarchy: overlap: the paper's two segmentations; hierarchy: the likeliest objects in a tree of regions
 
-class FacetsOptions(TypedDict, total=False):
-    edge_min: float  # grey levels, 0 … 255, read while fusion.method=evidence: basins fuse across borders whose mean edge is weaker than this, the image's noise and a share of its clear edges together
-
-class FigureOptions(TypedDict, total=False):
-    margin: float  # ‰ of the width, 0 … 100, read while fusion.method=evidence: how far a disparity must stand before the background to be figure
-    agreement: float  # ‰ of the width, 0 … 100, read while fusion.method=evidence: largest difference of the disparities on both sides of a plain stretch that still belongs to one surface
-
-class GroupOptions(TypedDict, total=False):
-    step: float  # ‰ of the width, 0 … 1000, read while fusion.method=evidence: largest step of disparity across a border within one object
-    min_area: float  # % of the image, 0 … 100, read while fusion.method=evidence: smaller groups join a neighbour
+class SuperpixelsOptions(TypedDict, total=False):
+    count: int  # 1 … 100000, read while fusion.method=hierarchy: how many pieces the image is cut into at most; more follow small things, and take longer
 
 class ObjectsOptions(TypedDict, total=False):
     min_area: float  # % of the image, 0 … 100: smaller regions are no objects
-    max_area: float  # % of the image, 0 … 100: larger regions are background
+    max_area: float  # % of the image, 0 … 100, read while fusion.method=overlap: larger regions are background
     min_confidence: float  # 0 … 1: regions less likely than this to be an object are none
 
 class ArgumentError:
@@ -193,6 +187,16 @@ class Calibration:
         rectified with it
         """
 
+class ChosenObjects:
+    """The regions of a MergeTree that are objects."""
+    @property
+    def object_of(self) -> List[int]:
+        """for each superpixel its object, 1 to len(scores) - 1; 0 = none"""
+    @property
+    def scores(self) -> List[float]:
+        """for each object how likely it is one, 0 to 1; scores[0] = 0"""
+    def __len__(self) -> int: ...
+
 class Config:
     """What is computed: every option's value. Made from a preset, then a file (as `cairn config` prints it), then keywords; later ones win:
         cairn.Config('paper', match={'window_size': 11})
@@ -217,9 +221,7 @@ class Config:
         intensity: IntensityOptions = ...,
         disparity: DisparityOptions = ...,
         fusion: FusionOptions = ...,
-        facets: FacetsOptions = ...,
-        figure: FigureOptions = ...,
-        group: GroupOptions = ...,
+        superpixels: SuperpixelsOptions = ...,
         objects: ObjectsOptions = ...,
     ) -> None:
         """preset: one of preset_names(). file: a configuration file's name, or None. Then a dict for each
@@ -330,15 +332,6 @@ class Exposure:
     def contrast(self) -> float:
         """grey levels between the darkest and the brightest hundredth of the pixels"""
 
-class Facets:
-    """The picture cut into connected pieces that no clear edge runs through."""
-    @property
-    def labels(self) -> NDArray[numpy.int32]:
-        """(H, W) int32, read-only: 0 to count - 1"""
-    @property
-    def count(self) -> int:
-        """how many facets there are, 1 or more"""
-
 class Finding:
     """One thing that is wrong with a rig."""
     @property
@@ -411,19 +404,21 @@ class Frame:
         """the floor as a plane, or why there is none"""
     @property
     def by_intensity(self) -> Optional[Segmentation]:
-        """Segmentation of the picture by intensity; None with fusion.method=evidence"""
+        """Segmentation of the picture by intensity; None with fusion.method=hierarchy"""
     @property
     def by_disparity(self) -> Optional[Segmentation]:
-        """Segmentation by disparity; None with fusion.method=evidence"""
+        """Segmentation by disparity; None with fusion.method=hierarchy"""
     @property
     def fusion(self) -> Optional[Fusion]:
-        """both fused; None with fusion.method=evidence"""
+        """both fused; None with fusion.method=hierarchy"""
     @property
     def superpixels(self) -> Optional[Segmentation]:
-        """the picture's facets as a Segmentation; None with fusion.method=overlap"""
+        """the picture's superpixels as a Segmentation; None with fusion.method=overlap"""
     @property
     def groups(self) -> Optional[Segmentation]:
-        """Segmentation: the background, and the groups of facets before it; None with fusion.method=overlap"""
+        """Segmentation: region 0 is the background, the others were chosen to be objects; None with
+        fusion.method=overlap
+        """
     @property
     def epipolar(self) -> EpipolarOffset:
         """how far the right picture's rows were off"""
@@ -526,6 +521,16 @@ class Matches:
     @property
     def cost_after(self) -> Optional[NDArray[numpy.float32]]:
         """float32, at best + 1; inf = no such candidate"""
+
+class MergeTree:
+    """All regions that superpixels fuse to, from the superpixels to the whole image; its length is the number of its nodes. Every node comes after its parts."""
+    @property
+    def superpixels(self) -> int:
+        """number of superpixels: node i below it is superpixel i"""
+    @property
+    def parents(self) -> NDArray[numpy.int32]:
+        """int32, for each node the node that it is a part of; -1 = none"""
+    def __len__(self) -> int: ...
 
 NO_MATCH: int
 
@@ -709,7 +714,7 @@ class Region:
         """the one floor region of a disparity segmentation"""
     @property
     def is_background(self) -> bool:
-        """what groups of facets stand before: floor, walls and all that is no figure"""
+        """the region that holds all that is no object, in the groups of a frame"""
 
 class RegionGraph:
     """Regions and which of them touch (4-neighbourhood)."""
@@ -848,9 +853,7 @@ class Segmenter:
         intensity: IntensityOptions = ...,
         disparity: DisparityOptions = ...,
         fusion: FusionOptions = ...,
-        facets: FacetsOptions = ...,
-        figure: FigureOptions = ...,
-        group: GroupOptions = ...,
+        superpixels: SuperpixelsOptions = ...,
         objects: ObjectsOptions = ...,
     ) -> None:
         """The arguments are those of segment()."""
@@ -874,6 +877,15 @@ class Sharpness:
     @property
     def edge_px(self) -> float:
         """px, a quarter of them are narrower; 1 = a step; 0 = too few edges"""
+
+class Superpixels:
+    """The image cut into connected pieces that no clear edge of brightness, colour or depth runs through."""
+    @property
+    def labels(self) -> NDArray[numpy.int32]:
+        """(H, W) int32, read-only: 0 to count - 1"""
+    @property
+    def count(self) -> int:
+        """number of superpixels, 1 or more"""
 
 class Synchrony:
     """Whether the two cameras of a sequence took their pictures at the same moments."""
@@ -1029,16 +1041,6 @@ def apply_merges(
     disparities).
     """
 
-def as_segmentation(
-    facets: Facets,
-    left: ImageLike,
-    *,
-    bgr: bool = False,
-    config: Optional[Config] = None,
-    exec: Optional[Exec] = None,
-) -> Segmentation:
-    """The facets as a segmentation, with their grey statistics."""
-
 def build_graph(
     labels: LabelsLike,
     values: NumbersLike,
@@ -1050,6 +1052,19 @@ def build_graph(
     """Counts and links regions. labels: (H, W) integers from 0 on; values: what the statistics are of, (H,
     W) uint8 grey levels, or int16 as quantised() gives them, then with floor: (H, W) uint8, not 0 =
     floor, or None.
+    """
+
+def choose_objects(
+    tree: MergeTree,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    min_area: float = ...,
+    max_area: float = ...,
+    min_confidence: float = ...,
+) -> ChosenObjects:
+    """Chooses the regions of the tree that are likeliest whole objects; no two share a superpixel. Of the
+    options only min_area and min_confidence count.
     """
 
 def combine(
@@ -1084,6 +1099,20 @@ def correct_epipolar(
     prefilter_cap: int = ...,
 ) -> EpipolarCorrection:
     """Both: compensates a small misalignment of the cameras, as vibration makes it, before the matching."""
+
+def cut_superpixels(
+    left: ImageLike,
+    disparity: DisparityLike,
+    noise_sigma: float,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    count: int = ...,
+) -> Superpixels:
+    """Cuts the image into connected pieces that no clear edge runs through, by brightness, colour (where
+    there is colour) and steps of disparity. noise_sigma as noise_sigma() gives it.
+    """
 
 @overload
 def diagnose(
@@ -1137,8 +1166,8 @@ def edge_strength(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
 ) -> NDArray[numpy.uint16]:
-    """Edges between facets: central differences in 1/4 grey level, of colour the strongest channel's. (H,
-    W) uint16.
+    """Edges that superpixels follow: central differences in 1/4 grey level, of colour the strongest
+    channel's. (H, W) uint16.
     """
 
 def estimate_confidence(
@@ -1184,9 +1213,7 @@ def estimate_disparity(
     intensity: IntensityOptions = ...,
     disparity: DisparityOptions = ...,
     fusion: FusionOptions = ...,
-    facets: FacetsOptions = ...,
-    figure: FigureOptions = ...,
-    group: GroupOptions = ...,
+    superpixels: SuperpixelsOptions = ...,
     objects: ObjectsOptions = ...,
 ) -> SceneDisparity:
     """The method's first half: matching and every check, ground and speckle included. Returns a
@@ -1291,23 +1318,34 @@ def gradient(
     other.
     """
 
-def group_facets(
-    facets: Facets,
-    figure: List[int],
+def groups_of(
+    superpixels: Superpixels,
+    chosen: ChosenObjects,
     disparity: DisparityLike,
-    evidence_px: FloatsLike,
-    background: Background,
-    rig: RigLike = None,
     *,
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
-    step: float = ...,
-    min_area: float = ...,
-    margin: float = ...,
-    agreement: float = ...,
 ) -> Segmentation:
-    """Groups figure facets to objects, from near to far, by planes. Region 0 of the result is the
-    background (is_background), the others are groups. Means in px.
+    """The chosen objects as a Segmentation: region 0 is all else (is_background), the others are the
+    objects. Means in px.
+    """
+
+def grow_merge_tree(
+    superpixels: Superpixels,
+    left: ImageLike,
+    disparity: DisparityLike,
+    evidence_px: FloatsLike,
+    ground: Ground,
+    background: Background,
+    noise_sigma: float,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> MergeTree:
+    """Fuses the two neighbouring regions that are likeliest one thing, by every cue and by fitted trees,
+    until none are left. evidence_px as find_evidence() gives it, ground as likely_ground(), noise_sigma
+    as noise_sigma().
     """
 
 def grow_near_to_far(
@@ -1351,6 +1389,21 @@ def label_floor(
 ) -> Optional[NDArray[numpy.uint8]]:
     """(H, W) uint8: 255 where the disparity is the floor's, else 0. None where there is no ground or
     label_floor is off.
+    """
+
+def likely_ground(
+    ground: Ground,
+    disparity: DisparityLike,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    source: Literal["off", "automatic", "points", "pose"] = ...,
+    margin: float = ...,
+    label_floor: bool = ...,
+) -> Ground:
+    """The ground itself, or where it was refused for want of evidence, one fitted to all disparities: good
+    enough as one cue among others, not to reject matches by.
     """
 
 def load_calibration(path: PathLike) -> Calibration:
@@ -1463,8 +1516,25 @@ def measure(
     min_confidence: float = ...,
 ) -> Objects:
     """Turns candidates into objects: what is background, too large, too small, unseen or unlikely is none.
-    candidates: (H, W) integers, the regions of a Fusion or of group_facets(); is_background: for each
-    of them, whether it is known to be no object; noise_sigma as noise_sigma() gives it.
+    candidates: (H, W) integers, the regions of a Fusion; is_background: for each of them, whether it is
+    known to be no object; noise_sigma as noise_sigma() gives it.
+    """
+
+def measure_chosen(
+    chosen: LabelsLike,
+    scores: List[float],
+    disparity: DisparityLike,
+    left: ImageLike,
+    noise_sigma: float,
+    rig: RigLike = None,
+    *,
+    bgr: bool = False,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> Objects:
+    """Measures regions that were chosen to be objects: measure() of C++ with scores. chosen: (H, W)
+    integers, the labels of groups_of(); scores: for each region its confidence, 0 to 1, as
+    choose_objects() gives them; 0 = no object.
     """
 
 def measure_pair(
@@ -1627,9 +1697,7 @@ def segment(
     intensity: IntensityOptions = ...,
     disparity: DisparityOptions = ...,
     fusion: FusionOptions = ...,
-    facets: FacetsOptions = ...,
-    figure: FigureOptions = ...,
-    group: GroupOptions = ...,
+    superpixels: SuperpixelsOptions = ...,
     objects: ObjectsOptions = ...,
 ) -> Frame:
     """Objects from a stereo pair: the whole method. Returns a Frame.
@@ -1650,6 +1718,7 @@ def segment_disparity(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     smoothing_sigma: float = ...,
+    gradient_threshold: float = ...,
     mean_difference_max: float = ...,
     deviation_max: float = ...,
     sigma_min: float = ...,
@@ -1659,19 +1728,6 @@ def segment_disparity(
     (H, W) uint8 as label_floor() gives it, one region of its own; or None.
     """
 
-def segment_facets(
-    left: ImageLike,
-    noise_sigma: float,
-    *,
-    bgr: bool = False,
-    config: Optional[Config] = None,
-    exec: Optional[Exec] = None,
-    edge_min: float = ...,
-) -> Facets:
-    """Cuts the picture into pieces that no clear edge runs through, by colour where there is colour.
-    noise_sigma as noise_sigma() gives it.
-    """
-
 def segment_intensity(
     left: ImageLike,
     *,
@@ -1679,6 +1735,7 @@ def segment_intensity(
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     smoothing_sigma: float = ...,
+    gradient_threshold: float = ...,
     mean_difference_max: float = ...,
     deviation_max: float = ...,
     sigma_min: float = ...,
@@ -1688,22 +1745,15 @@ def segment_intensity(
     W, 3) uint8.
     """
 
-def separate_figure(
-    facets: Facets,
+def segmentation_of(
+    superpixels: Superpixels,
     left: ImageLike,
-    evidence_px: FloatsLike,
-    background: Background,
-    noise_sigma: float,
     *,
     bgr: bool = False,
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
-    margin: float = ...,
-    agreement: float = ...,
-) -> NDArray[numpy.int32]:
-    """For each facet, is it figure (1: before the background) or ground (0)? A minimum cut. int32, one
-    number for each facet. noise_sigma as noise_sigma() gives it.
-    """
+) -> Segmentation:
+    """The superpixels as a Segmentation, with their grey statistics."""
 
 def shift_rows(
     right: ImageLike,
@@ -1753,9 +1803,7 @@ def tune(
     intensity: IntensityOptions = ...,
     disparity: DisparityOptions = ...,
     fusion: FusionOptions = ...,
-    facets: FacetsOptions = ...,
-    figure: FigureOptions = ...,
-    group: GroupOptions = ...,
+    superpixels: SuperpixelsOptions = ...,
     objects: ObjectsOptions = ...,
 ) -> Tuning:
     """Searches the options that do best on frames of yours, as `cairn tune` does (docs/tune.md). Returns a

@@ -163,7 +163,7 @@ def test_the_ground_takes_what_the_calibration_knows(sample):
 
 def test_what_does_not_belong_together_is_refused(sample):
     frame, half = sample.frame, sample.left[:, :160]
-    other = cairn.cut_superpixels(half, np.full(half.shape[:2], np.nan, np.float32), 1)
+    other = cairn.cut_superpixels(half, np.ones(half.shape[:2], np.float32), 1)
     superpixels = cairn.cut_superpixels(sample.left, frame.disparity_map, 1)
     walls = cairn.fit_background(frame.disparity, frame.ground)
     grown = (frame.disparity_map, frame.disparity, frame.ground, walls)

@@ -16,7 +16,7 @@ import pytest
 import cairn
 from conftest import SOURCE, same
 
-SPOILT = {"objects": {"min_confidence": 0.95}}
+SPOILT = {"objects": {"min_area": 10}}
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
     tuning = quick(frames, holdout=0.25, seed=3)
     subprocess.run(
         [command, "tune", SOURCE / "samples", "--truth", "--options", "objects.min_confidence,objects.min_area", "--evaluations", "12",
-         "--budget", "10m", "--holdout", "0.25", "--seed", "3", "--set", "objects.min_confidence=0.95", "-o", tmp_path / "tuned.yaml",
+         "--budget", "10m", "--holdout", "0.25", "--seed", "3", "--set", "objects.min_area=10", "-o", tmp_path / "tuned.yaml",
          "--json", tmp_path / "found.json"], check=True, capture_output=True,
     )
     found = json.loads((tmp_path / "found.json").read_text())
@@ -53,9 +53,9 @@ def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
 def test_a_spoilt_option_is_mended(frames):
     tuning = quick(frames)
     assert tuning.after < tuning.before and tuning.kept_because is None
-    assert tuning.config["objects.min_confidence"] < 0.9
-    assert tuning.changes["objects.min_confidence"] == (0.95, tuning.config["objects.min_confidence"])
-    assert tuning.options == ["objects.min_confidence", "objects.min_area"] and tuning.held_out_before is None
+    assert tuning.config["objects.min_area"] < 7
+    assert tuning.changes["objects.min_area"] == (10, tuning.config["objects.min_area"])
+    assert tuning.options == ["objects.min_area", "objects.min_confidence"] and tuning.held_out_before is None
     assert re.fullmatch(r"<cairn.Tuning objects: loss .*% -> .*%, \d+ evaluations, (converged|evaluations)>", repr(tuning))
     back = pickle.loads(pickle.dumps(tuning))
     assert back.config == tuning.config and repr(back) == repr(tuning) and back.changes == tuning.changes

@@ -58,13 +58,13 @@ TEST_F(Tune, WritesAConfigThatIsReadBackAndATableOfBeforeAndAfter) {
 }
 
 TEST_F(Tune, MendsAnOptionThatWasSpoilt) {
-  const Outcome outcome = tune(samples(), {"--truth", "--options", "objects.min_confidence,superpixels.count",
-                                           "--evaluations", "12", "--set", "objects.min_confidence=0.9"});
+  const Outcome outcome = tune(samples(), {"--truth", "--options", "objects.min_area,superpixels.count",
+                                           "--evaluations", "12", "--set", "objects.min_area=10"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json j = found();
   EXPECT_TRUE(j.at("kept_because").is_null()) << j;
   EXPECT_LT(j.at("tuned_on").at("loss").at("after"), j.at("tuned_on").at("loss").at("before")) << j;
-  EXPECT_LT(tuned().objects.min_confidence, 0.8F);
+  EXPECT_LT(tuned().objects.min_area, 7.0F);
 }
 
 TEST_F(Tune, WhatItSaysIsWhatEvaluateMeasuresWithTheConfigThatItWrote) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
+#include <cmath>
 
 #include <algorithm>
 #include <cairn/image/gradient.hpp>
@@ -139,6 +140,7 @@ TEST(RegionsProperties, OnlyTheFloorMayBeInPieces) {
   EXPECT_EQ(floors, 1);
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
+      if (std::isnan(w.disparity.disparity_px(x, y))) continue;  // holes go with what is around them
       ASSERT_EQ(s.regions[index(s.labels(x, y))].is_floor, speckled(x, y) != 0);
     }
   }

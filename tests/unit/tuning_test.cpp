@@ -127,7 +127,7 @@ TEST(Neighbours, StayWithinTheLimitsAndOdd) {
 }
 
 TEST(Neighbours, FromOffOrNothingWhatThePresetsGiveIsTried) {
-  EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"5"}));
+  EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"10"}));
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "5", 2), (Strings{"10", "2.5", "-1"}));
   EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.3"}));
   EXPECT_EQ(neighbours(named("left_right.method"), "true", 1.6), (Strings{"vote"}));
