@@ -8,7 +8,6 @@
 #include <cairn/core/target.hpp>
 #include <cairn/disparity/left_right.hpp>
 #include <cairn/image/prefilter.hpp>
-#include <cairn/matching/kernels.hpp>
 #include <cairn/matching/semi_global.hpp>
 #include <cairn/matching/subpixel.hpp>
 #include <random>

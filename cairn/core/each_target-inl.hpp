@@ -7,7 +7,7 @@
 //   gradient_kernels-inl.hpp  the functions, in namespace cairn::kernels::CAIRN_KERNEL_TARGET, and a constant
 //   of the
 //                             struct that lists them
-//   gradient_kernels.cpp      #define CAIRN_KERNELS <cairn/image/gradient_kernels-inl.hpp>
+//   gradient_kernels.cpp      #define CAIRN_KERNELS "cairn/image/gradient_kernels-inl.hpp"
 //                             #include <cairn/core/each_target-inl.hpp>
 //                             CAIRN_CHOOSE_KERNELS(GradientKernels, gradient_kernels, kGradientKernels)
 //

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#define CAIRN_KERNELS <cairn/disparity/confidence_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/disparity/confidence_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(ConfidenceKernels, confidence_kernels, kConfidenceKernels)

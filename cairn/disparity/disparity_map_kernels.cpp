@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#define CAIRN_KERNELS <cairn/disparity/disparity_map_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/disparity/disparity_map_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(DisparityMapKernels, disparity_map_kernels, kDisparityMapKernels)

@@ -3,7 +3,7 @@
 #include <cairn/disparity/flatness_kernels.hpp>
 #include <cairn/matching/match.hpp>
 
-#define CAIRN_KERNELS <cairn/disparity/flatness_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/disparity/flatness_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(FlatnessKernels, flatness_kernels, kFlatnessKernels)

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#define CAIRN_KERNELS <cairn/disparity/gradient_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/disparity/gradient_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(DisparityGradientKernels, disparity_gradient_kernels, kDisparityGradientKernels)

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#define CAIRN_KERNELS <cairn/disparity/left_right_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/disparity/left_right_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(LeftRightKernels, left_right_kernels, kLeftRightKernels)

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-#define CAIRN_KERNELS <cairn/grouping/evidence_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/grouping/evidence_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(EvidenceKernels, evidence_kernels, kEvidenceKernels)

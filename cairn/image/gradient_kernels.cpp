@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#define CAIRN_KERNELS <cairn/image/gradient_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/image/gradient_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(GradientKernels, gradient_kernels, kGradientKernels)

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#define CAIRN_KERNELS <cairn/matching/semi_global_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/matching/semi_global_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

@@ -4,7 +4,7 @@
 #include <cairn/matching/subpixel_kernels.hpp>
 #include <limits>
 
-#define CAIRN_KERNELS <cairn/matching/subpixel_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/matching/subpixel_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

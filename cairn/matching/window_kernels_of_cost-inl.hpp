@@ -16,7 +16,7 @@
 #include <type_traits>
 #include <vector>
 
-#define CAIRN_KERNELS <cairn/matching/window_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/matching/window_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

@@ -3,7 +3,7 @@
 #include <cairn/objects/measure_kernels.hpp>
 #include <limits>
 
-#define CAIRN_KERNELS <cairn/objects/measure_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/objects/measure_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(MeasureKernels, measure_kernels, kMeasureKernels)

@@ -3,7 +3,7 @@
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/label_kernels_plain.hpp>
 
-#define CAIRN_KERNELS <cairn/regions/label_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/regions/label_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

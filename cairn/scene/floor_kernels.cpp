@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#define CAIRN_KERNELS <cairn/scene/floor_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/scene/floor_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(FloorKernels, floor_kernels, kFloorKernels)

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#define CAIRN_KERNELS <cairn/scene/plane_kernels-inl.hpp>
+#define CAIRN_KERNELS "cairn/scene/plane_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(PlaneKernels, plane_kernels, kPlaneKernels)
