@@ -381,20 +381,24 @@ void run_band(const MatchTask& task, int first, int last) {
   Band<CAIRN_COST, Width, kDouble>(task, first, last).run();
 }
 
+[[maybe_unused]] int pixels_of_window(const MatchConfig& config) {
+  return config.window_size * config.window_size;
+}
+
 void match_rows(const MatchTask& task, int first, int last) {
   const MatchConfig& config = task.config;
-  const int n = config.window_size * config.window_size;
   // The largest n for which n²·255² (zssd), n²·127.5² (zncc) are below 2^31.
   constexpr int kSingleZssd = 181;
   constexpr int kSingleZncc = 363;
   if constexpr (CAIRN_COST == Cost::sad) {
+    const int n = pixels_of_window(config);
     const int levels = config.prefilter == Prefilter::xsobel ? 2 * config.prefilter_cap : 255;
     if (levels <= Tagged::kLargestDifference && n * levels <= Tagged::kLargestSum)
       return run_band<Tagged>(task, first, last);
     return n * levels <= Narrow::kLargestSum ? run_band<Narrow>(task, first, last)
                                              : run_band<>(task, first, last);
   } else if constexpr (takes_covariance(CAIRN_COST)) {
-    return n <= (CAIRN_COST == Cost::zssd ? kSingleZssd : kSingleZncc)
+    return pixels_of_window(config) <= (CAIRN_COST == Cost::zssd ? kSingleZssd : kSingleZncc)
                ? run_band<>(task, first, last)
                : run_band<Wide, true>(task, first, last);
   } else {
