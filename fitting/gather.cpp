@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // fitting --names: the features' names.
-// fitting JOBS [--pairs FILE] [--regions FILE] [--min-score S] [--pictures DIR]: what fit.py fits to, and how
+// fitting JOBS [--pairs FILE] [--regions FILE] [--min-score S]: what fit.py fits to, and how
 // well what it has fitted does.
 //
 // Each line of JOBS is a frame's folder, `colour` or `grey`, and two files of fitted trees, `-` for those
@@ -13,7 +13,6 @@
 #include <cairn/cairn.hpp>
 #include <cairn/grouping/choose_objects.hpp>
 #include <cairn/image/noise.hpp>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -192,7 +191,7 @@ void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, co
 }
 
 void work(int job, const std::string& folder, bool grey, const FittedTrees& same_thing,
-          const FittedTrees& whole_object, float min_score, Files& files, const std::string& pictures) {
+          const FittedTrees& whole_object, float min_score, Files& files) {
   const TrueFrame frame = load_true_frame(io::find_frames(folder).front());
   Config config;
   config.match.num_disparities = frame.num_disparities;
@@ -214,9 +213,8 @@ void work(int job, const std::string& folder, bool grey, const FittedTrees& same
   if (files.pairs.is_open())
     told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
   const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing, exec, told);
-  const auto least = static_cast<std::int64_t>(
-      std::ceil(static_cast<double>(left.size().area()) * double{config.objects.min_area} / 100));
-  const ChosenObjects chosen = choose_objects(tree, whole_object, {min_score, least});
+  config.objects.min_confidence = min_score;
+  const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
   const double milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
   const Truth truth(frame, superpixels, tree);
   if (files.pairs.is_open()) record_pairs(files.pairs, job, pairs, truth);
@@ -227,18 +225,6 @@ void work(int job, const std::string& folder, bool grey, const FittedTrees& same
       ours(x, y) = ObjectId{chosen.object_of[index(superpixels.labels(x, y))]};
   }
   print_found(job, frame, object_errors(ours, frame.objects, {}), chosen, milliseconds);
-  if (!pictures.empty()) {
-    Image<Rgb> picture(left.size());
-    for (int y = 0; y < left.height(); ++y) {
-      for (int x = 0; x < left.width(); ++x) {
-        const int id = number(ours(x, y));
-        const Gray g = left(x, y);
-        const auto part = [&](int k) { return static_cast<std::uint8_t>((g + 2 * ((id * k) % 256)) / 3); };
-        picture(x, y) = id == 0 ? Rgb{g, g, g} : Rgb{part(97), part(181), part(53)};
-      }
-    }
-    io::save_png(pictures + "/" + frame.name + (grey ? "_grey.png" : ".png"), picture);
-  }
 }
 
 /// The features, one a line: pairs', an empty line, regions'.
@@ -252,7 +238,6 @@ int print_names() {
 int run(std::span<char*> arguments) {
   if (std::string_view(arguments[1]) == "--names") return print_names();
   Files files;
-  std::string pictures;
   float min_score = Config{}.objects.min_confidence;
   for (std::size_t i = 2; i + 1 < arguments.size(); i += 2) {
     const std::string option = arguments[i];
@@ -260,7 +245,6 @@ int run(std::span<char*> arguments) {
     if (option == "--pairs") files.pairs.open(value, std::ios::binary);
     if (option == "--regions") files.regions.open(value, std::ios::binary);
     if (option == "--min-score") min_score = std::stof(value);
-    if (option == "--pictures") pictures = value;
   }
   std::ifstream jobs(arguments[1]);
   Trees trees;
@@ -270,7 +254,7 @@ int run(std::span<char*> arguments) {
   std::string whole_object;
   for (int job = 0; jobs >> folder >> colour >> same_thing >> whole_object; ++job) {
     work(job, folder, colour == "grey", trees.at(same_thing, kSameThing),
-         trees.at(whole_object, kWholeObject), min_score, files, pictures);
+         trees.at(whole_object, kWholeObject), min_score, files);
   }
   return 0;
 }

@@ -7,8 +7,8 @@
 namespace cairn {
 namespace {
 
-/// 1/(1 + e^−x) in steps of 1/4096, the same bits everywhere: what exp() gives in the last place differs
-/// between processors.
+/// 1/(1 + e^−x) in steps of 1/4096: what exp() gives in the last place may differ between processors, and is
+/// rounded away here.
 float likelihood(float odds_logarithm) {
   return static_cast<float>(std::floor(4096.0 / (1.0 + std::exp(-double{odds_logarithm})) + 0.5) / 4096.0);
 }
