@@ -4,6 +4,7 @@
 """Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--out FOLDER] [--page FILE]
+fit.py TOOL DATA --ablation FILE: fits anew without one kind of cues after the other, and says what each brings.
 
 Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
 the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
@@ -23,13 +24,22 @@ import zlib
 import numpy as np
 import xgboost
 
-WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
+WEIGHTS = {"rc_tabletop": 4.0, "middlebury": 10.0}  # of a frame: there are few of these
 PAIRS_KEPT = 0.4  # of all that are met: there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
-REGION_TREES, REGION_DEPTH = 250, 3
+REGION_TREES, REGION_DEPTH = 400, 4
 SEED = 7
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
               "2006/Lampshade1"]
+
+
+CUES = {  # by what their features' names hold
+    "colours and brightness": ("colour", "brightness"), "edges": ("edge",), "steps of disparity": ("step",),
+    "planes of disparity": ("plane", "slope", "spread of disparity", "spread, relative"),
+    "the ground": ("ground", "floor"), "the background": ("background",), "evidence": ("evidence",),
+    "shape and place": ("box", "outline over", "outline of", "longer than before", "area", "extent", "middle",
+                        "width", "height, share", "its foot", "image's", "borders of"),
+    "the tree": ("alike", "one thing", "becomes a part", "likely the same")}
 
 
 def frames_in(folder):
@@ -118,10 +128,10 @@ def by_edges():
     return trees
 
 
-def fitted(labels, weights, features, trees, depth, least_weight):
+def fitted(labels, weights, features, trees, depth, least_weight, eta):
     data = xgboost.DMatrix(features, label=labels, weight=weights)
     model = xgboost.train(
-        {"objective": "binary:logistic", "base_score": 0.5, "max_depth": depth, "eta": 0.12, "subsample": 0.7,
+        {"objective": "binary:logistic", "base_score": 0.5, "max_depth": depth, "eta": eta, "subsample": 0.7,
          "colsample_bytree": 0.6, "min_child_weight": least_weight, "tree_method": "hist", "lambda": 2.0, "seed": SEED,
          "nthread": 2}, data, trees)
     nodes = Nodes(0.0)
@@ -137,6 +147,7 @@ class Fitting:
         names = subprocess.run([tool, "--names"], capture_output=True, text=True, check=True).stdout
         self.pair_features, self.region_features = (part.splitlines() for part in names.split("\n\n"))
         self.gains = {}
+        self.without = ()
         self.jobs = [(frame, colour, name) for name, frames in sets.items() for frame in frames
                      for colour in ("colour", "grey")]
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
@@ -172,7 +183,12 @@ class Fitting:
             head[:, 0] = 2 * head[:, 0] + part
             heads.append(head)
             values.append(all_[:, 3:])
-        return np.concatenate(heads), np.concatenate(values)
+        values = np.concatenate(values)
+        names = self.pair_features if name == "pairs" else self.region_features
+        for i, feature in enumerate(names):
+            if any(word in feature for word in self.without):
+                values[:, i] = 0  # alike everywhere: no tree looks at it
+        return np.concatenate(heads), values
 
     def model(self, kind, fold):
         return self.work / f"{kind}_{fold}"
@@ -190,7 +206,7 @@ class Fitting:
             weights = head[:, 2] * self.weight[job]
             for fold in [*range(self.folds), *(["all"] if round_ == 1 else [])]:
                 take = self.fold[job] != fold if fold != "all" else job >= 0
-                model = fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20)
+                model = fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20, 0.12)
                 model.write(self.model("same_thing", fold))
                 self.gains["same_thing"] = shares_of(model.gains, self.pair_features)
                 say(f"pairs, round {round_ + 1}, without fold {fold}: {take.sum()} of them")
@@ -209,7 +225,8 @@ class Fitting:
         labels = 0.5 * (head[:, 1] >= 0.5) + 0.5 * (head[:, 1] >= 0.75)
         for fold in [*range(self.folds), "all"]:
             take = self.fold[job] != fold if fold != "all" else job >= 0
-            model = fitted(labels[take], self.weight[job][take], features[take], REGION_TREES, REGION_DEPTH, 10)
+            model = fitted(labels[take], self.weight[job][take], features[take], REGION_TREES, REGION_DEPTH, 15,
+                           0.07)
             model.write(self.model("whole_object", fold))
             self.gains["whole_object"] = shares_of(model.gains, self.region_features)
             say(f"regions, without fold {fold}: {take.sum()} of them")
@@ -222,15 +239,25 @@ def shares_of(gains, names):
     return sorted(shares, key=lambda item: (-item[0], item[1]))
 
 
+def runs_of(numbers):
+    """1 to 4, 6, 8 to 9"""
+    runs = []
+    for number in numbers:
+        if runs and number == runs[-1][1] + 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return ", ".join(f"{a} to {b}" if a < b else str(a) for a, b in runs)
+
+
 def page(fitting, sets, reports, score):
     def table(kind, header):
         rows = [f"| {name} | {100 * share:.1f} |" for share, name in fitting.gains[kind] if share >= 0.005]
         return f"| {header} | share of the gain, % |\n|---|---:|\n" + "\n".join(rows)
 
     counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
-    rooms = [int(frame.name.rsplit("s", 1)[1]) for frame in sets.get("more rooms", [])]
-    more = (f"The more rooms are those that the generator calls {min(rooms)} to {max(rooms)} "
-            f"(`rooms.py jobs.json {min(rooms)} {max(rooms) + 1}`).\n" if rooms else "")
+    rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get("more rooms", []))
+    more = f"The more rooms are the generator's numbers {runs_of(rooms)} (`rooms.py jobs.json FIRST LAST+1`).\n" if rooms else ""
     return f"""# What was fitted
 
 <!-- Written by ./dev fit; do not edit. -->
@@ -238,7 +265,7 @@ def page(fitting, sets, reports, score):
 `./dev fit` fits the two sums of small trees that the preset `default` judges regions by ([grouping](stages/grouping.md)), and writes them and this page: the same frames give the same numbers.
 Fitted to: {counts}; each frame once in colour and once in grey.
 {more}Frames of the fit set are judged by trees that were fitted without their scene, in {fitting.folds} folds; frames to validate by those that the library has, and nothing was chosen on them.
-In brackets: Wilson's interval of 95 %. ms: of one core, the median frame, from the noise to the choice of objects, without matching; on a machine that did other things meanwhile.
+In brackets: Wilson's interval of 95 %. ms: of one core, the median frame, from the superpixels to the choice of objects; on a machine that did other things meanwhile.
 `objects.min_confidence` = {score}.
 
 {reports}
@@ -288,6 +315,40 @@ def report(rows, jobs):
     return "\n".join(lines)
 
 
+def ablation(fitting, validation, path):
+    """What is found on the validation frames when one kind of cues is left out, and all is fitted anew."""
+    names = {"all frames": lambda name: True, "rooms": lambda name: "x" in name, "tabletops": lambda name: "rc" in name,
+             "Middlebury": lambda name: "middlebury" in name}
+    lines = ["| without | " + " | ".join(f"{name}, {colour}" for name in names for colour in ("colour", "grey")) +
+             " | precision |", "|---|" + "---|" * (2 * len(names) + 1)]
+    for cue, words in {"–": (), **CUES}.items():
+        fitting.without = words
+        fitting.fit_pairs()
+        fitting.fit_regions()
+        rows = fitting.run(lambda i: (fitting.model("same_thing", "all"), fitting.model("whole_object", "all")),
+                           "--min-score", "0.3", jobs=validation)
+        cells = []
+        for chosen in names.values():
+            for colour in ("colour", "grey"):
+                iou = np.array([float(v) for row, job in zip(rows, validation) if chosen(job[2]) and job[1] == colour
+                                for v in row[6][1:].split(",") if v])
+                cells.append(f"{(iou >= .5).sum()}/{len(iou)} = {(iou >= .5).mean():.2f}")
+        complete = [row for row in rows if row[2] == "0"]
+        right, ours = sum(int(row[4]) for row in complete), sum(int(row[3]) for row in complete)
+        lines.append(f"| {cue} | " + " | ".join(cells) + f" | {right}/{ours} = {right / max(1, ours):.2f} |")
+        say(lines[-1])
+    path.write_text(f"""# What each cue brings
+
+<!-- Written by fitting/fit.py --ablation; do not edit. -->
+
+Objects found (IoU ≥ 0.5) on the frames to validate, of colour and of grey pictures, when the features of one kind of cues are left out and both sets of trees are fitted anew without them.
+Fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so that the first row lies below [what was fitted](fitting.md). Below three objects' difference there is none.
+
+""" + "\n".join(lines) + "\n\n" + "\n".join(
+        f"- **{cue}**: features whose names hold " + ", ".join(f"“{word}”" for word in words) + "."
+        for cue, words in CUES.items()) + "\n")
+
+
 begin = time.time()
 
 
@@ -304,16 +365,19 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn/grouping)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
+    parser.add_argument("--ablation", type=pathlib.Path, help="where the report on single cues is written")
     parser.add_argument("--min-scores", default="0.3", help="for the report; the first for the page")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     sets = fit_sets(arguments.data, arguments.rooms)
     fitting = Fitting(arguments.tool, arguments.work, arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
-    fitting.fit_pairs()
-    fitting.fit_regions()
     validation = [(frame, colour, name) for name, frames in validation_sets(arguments.data).items() for frame in frames
                   for colour in ("colour", "grey")]
+    if arguments.ablation:
+        return ablation(fitting, validation, arguments.ablation)
+    fitting.fit_pairs()
+    fitting.fit_regions()
     for score in arguments.min_scores.split(","):
         rows = fitting.run(fitting.of_fold, "--min-score", score)
         checked = fitting.run(lambda i: (fitting.model("same_thing", "all"), fitting.model("whole_object", "all")),

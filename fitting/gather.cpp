@@ -12,7 +12,7 @@
 // a true object, whether the truth is partial, the features).
 #include <cairn/cairn.hpp>
 #include <cairn/grouping/choose_objects.hpp>
-#include <cairn/image/noise.hpp>
+#include <cairn/pipeline/methods.hpp>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -198,21 +198,16 @@ void work(int job, const std::string& folder, bool grey, const FittedTrees& same
   const Exec exec;
   const View<const Gray> left = frame.pictures.left.gray;
   const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.pictures.left.rgb.view();
-  const SceneDisparity scene =
-      estimate_disparity(StereoPair::from(left, frame.pictures.right.gray, rgb), frame.rig, config, exec);
-  const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
-  const float noise = noise_sigma(left, exec);
-  const Image<float> evidence = find_evidence(left, scene.disparity, noise, config.evidence, exec);
-  const Ground ground = likely_ground(scene.ground, scene.disparity, frame.rig, config.ground, exec);
-  const Background background = fit_background(evidence, ground, frame.rig, config.background, exec);
-  const Superpixels superpixels =
-      cut_superpixels(left, rgb, scene.disparity.disparity_px, noise, config.superpixels, exec);
-  const Cues cues{left, rgb, scene.disparity.disparity_px, evidence, ground, background, noise};
+  Observed stage(exec);
+  Given given{left, rgb, frame.pictures.right.gray, {}};
+  const SuperpixelScene cut = cut_scene(given, frame.rig, config, exec, stage);
+  const Superpixels& superpixels = cut.superpixels;
   std::vector<Pair> pairs;
   JudgedPair told;
   if (files.pairs.is_open())
     told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
-  const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing, exec, told);
+  const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
+  const MergeTree tree = grow_merge_tree(superpixels, cut.cues(given), same_thing, exec, told);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
   const double milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;

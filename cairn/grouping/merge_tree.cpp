@@ -12,29 +12,6 @@ namespace {
 constexpr float kOneSuperpixel = 20.0F;  // how alike the parts of a superpixel are
 constexpr int kMuch = 8;                 // a part of less than 1/8 of the other's area changes little
 
-FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
-  FrameCues frame{.width = cues.gray.width(),
-                  .height = cues.gray.height(),
-                  .has_colour = !cues.rgb.empty(),
-                  .has_ground = cues.ground.plane.has_value(),
-                  .walls_and_floor = static_cast<int>(cues.background.planes.size()),
-                  .noise_sigma = cues.noise_sigma};
-  std::int64_t matched = 0;
-  std::int64_t textured = 0;
-  for (const RegionCues& region : graph.regions) {
-    matched += region.matched.n;
-    textured += region.textured.n;
-    if (region.matched.n == 0) continue;
-    frame.nearest_px =
-        std::max(frame.nearest_px, static_cast<double>(region.matched.d) /
-                                       static_cast<double>(region.matched.n) / kDisparitySteps);
-  }
-  const auto area = static_cast<float>(cues.gray.size().area());
-  frame.matched_share = static_cast<float>(matched) / area;
-  frame.evidence_share = static_cast<float>(textured) / area;
-  return frame;
-}
-
 class Growing {
  public:
   Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing, const Exec& exec,
@@ -43,7 +20,7 @@ class Growing {
         frame_(frame_cues(graph_, cues)),
         same_thing_(same_thing),
         told_(told),
-        planes_(graph_.regions.size()),
+        fits_(graph_.regions.size()),
         nodes_(graph_.regions.size()),
         contacts_of_(graph_.regions.size()),
         common_(graph_.regions.size(), -1),
@@ -97,7 +74,7 @@ class Growing {
   };
 
   [[nodiscard]] RegionSide side(std::int32_t region) const {
-    return {graph_.regions[slot(region)], planes_[slot(region)]};
+    return {graph_.regions[slot(region)], fits_[slot(region)]};
   }
   [[nodiscard]] std::int32_t other_end(std::int32_t contact, std::int32_t region) const {
     const ContactCues& c = graph_.contacts[slot(contact)];
@@ -109,8 +86,7 @@ class Growing {
   }
 
   void fit(std::size_t region) {
-    const RegionCues& r = graph_.regions[region];
-    planes_[region] = {fit_plane(r.matched, frame_.width), fit_plane(r.textured, frame_.width)};
+    fits_[region] = fit_region(graph_.regions[region], frame_);
   }
 
   void judge(std::int32_t contact) {
@@ -217,7 +193,7 @@ class Growing {
   FrameCues frame_;
   const FittedTrees& same_thing_;
   const JudgedPair& told_;
-  std::vector<RegionPlanes> planes_;
+  std::vector<RegionFits> fits_;
   std::vector<std::int32_t> nodes_;  // of each region
   std::vector<std::vector<std::int32_t>> contacts_of_;
   std::vector<std::int32_t> common_;   // while two fuse: the contact with the one that is kept; −1 = none

@@ -53,6 +53,9 @@ struct Heights {
 /// what lies outside in the first or the last.
 inline constexpr std::size_t kColourBins = 16;
 
+/// So many pixels of each step: of brightness, blue − green, red − green.
+using Histogram = std::array<std::int32_t, 3 * kColourBins>;
+
 struct RegionCues {
   std::int64_t area = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   int left = std::numeric_limits<int>::max(), top = std::numeric_limits<int>::max();
@@ -60,7 +63,7 @@ struct RegionCues {
   std::array<std::int64_t, 4> at_image_border{};  // pixels at its left, right, top, bottom
   // Brightness, (red + 2 green + blue)/4 rounded down, blue − green, red − green; without colours grey, 0, 0.
   std::array<std::int64_t, 3> colour{}, colour_squares{};
-  std::array<std::int32_t, 3 * kColourBins> histogram{};
+  Histogram histogram{};
   std::int64_t texture = 0;                         // sum of the edges inside, in 1/4 grey level
   std::int64_t perimeter = 0;                       // pairs of 4-neighbours of which one lies outside
   PlaneMoments matched{}, textured{};               // all disparities; those of the evidence

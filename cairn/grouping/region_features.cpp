@@ -13,6 +13,11 @@ constexpr double kLevelling = 4e-4;  // of a plane: the spread that its slopes a
 constexpr std::int64_t kLeastTextured = 6;  // disparities that a plane is believed from
 constexpr std::int64_t kLeastMatched = 12;
 
+/// More than half of the region.
+bool mostly(std::int64_t part, const RegionCues& region) {
+  return 2 * part > region.area;
+}
+
 /// Takes the features in turn, each with its name.
 struct Values {
   std::span<float> out;
@@ -54,7 +59,8 @@ double colour_difference(const RegionCues& p, const RegionCues& q) {
   return std::sqrt(blue * blue + red * red);
 }
 /// χ² of the shares of each bin.
-double histogram_distance(const RegionCues& p, const RegionCues& q) {
+template <class P, class Q>
+double histogram_distance(const P& p, const Q& q) {
   const float of_p = 1.0F / static_cast<float>(p.area);
   const float of_q = 1.0F / static_cast<float>(q.area);
   float sum = 0;
@@ -119,8 +125,8 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   const bool swapped = a.cues.area > b.cues.area;
   const RegionCues& s = swapped ? b.cues : a.cues;
   const RegionCues& l = swapped ? a.cues : b.cues;
-  const RegionPlanes& planes_s = swapped ? b.planes : a.planes;
-  const RegionPlanes& planes_l = swapped ? a.planes : b.planes;
+  const RegionFits& fits_s = swapped ? b.fits : a.fits;
+  const RegionFits& fits_l = swapped ? a.fits : b.fits;
   const double image = static_cast<double>(frame.width) * frame.height;
   const auto length = static_cast<double>(contact.length);
   const auto area_s = static_cast<double>(s.area);
@@ -143,9 +149,9 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("step 3 px away from it, px", mean_px(contact.far_abs, contact.far_n));
   out("share of the border with disparities there", share(contact.far_n, contact.length));
   out("share of these that are level", share(contact.level, contact.far_n));
-  depth_features(kTexturedNames, s.textured, planes_s.textured, l.textured, planes_l.textured, kLeastTextured,
+  depth_features(kTexturedNames, s.textured, fits_s.textured, l.textured, fits_l.textured, kLeastTextured,
                  contact, frame.width, out);
-  depth_features(kMatchedNames, s.matched, planes_s.matched, l.matched, planes_l.matched, kLeastMatched,
+  depth_features(kMatchedNames, s.matched, fits_s.matched, l.matched, fits_l.matched, kLeastMatched,
                  contact, frame.width, out);
   out("evidence, share of the smaller one", share(s.textured.n, s.area));
   out("evidence, share of the larger one", share(l.textured.n, l.area));
@@ -175,7 +181,11 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
       std::abs(static_cast<double>(s.texture) / area_s - static_cast<double>(l.texture) / area_l) / 4);
   out("noise, grey levels", frame.noise_sigma);
   out("disparity of the smaller one, share of the nearest",
-      planes_s.matched.any ? planes_s.matched.d / frame.nearest_px : double{kUnknown});
+      fits_s.matched.any ? fits_s.matched.d / frame.nearest_px : double{kUnknown});
+  out("the smaller one's colours beside the floor's", fits_s.to_floor);
+  out("the larger one's colours beside the floor's", fits_l.to_floor);
+  out("the smaller one's colours beside the background's", fits_s.to_background);
+  out("the larger one's colours beside the background's", fits_l.to_background);
 }
 
 template <class Out>
@@ -256,16 +266,16 @@ struct Surroundings {
           weight * share(o.before_background.on + o.before_background.behind, o.before_background.n);
       on_background_length += weight;
     }
-    if (region.planes.matched.any && n.side.planes.matched.any) {
-      step += weight * (region.planes.matched.d - n.side.planes.matched.d);
+    if (region.fits.matched.any && n.side.fits.matched.any) {
+      step += weight * (region.fits.matched.d - n.side.fits.matched.d);
       step_length += weight;
     }
     if (r.textured.n >= kLeastTextured && o.textured.n >= kLeastTextured) {
-      textured_step += weight * (region.planes.textured.at(x, y) - n.side.planes.textured.at(x, y));
+      textured_step += weight * (region.fits.textured.at(x, y) - n.side.fits.textured.at(x, y));
       textured_length += weight;
     }
     if (r.matched.n >= kLeastMatched && o.matched.n >= kLeastMatched) {
-      const double to = region.planes.matched.at(x, y) - n.side.planes.matched.at(x, y);
+      const double to = region.fits.matched.at(x, y) - n.side.fits.matched.at(x, y);
       matched_step += weight * to;
       matched_length += weight;
       least_step = std::min(least_step, to);
@@ -342,13 +352,13 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   list_shape(r, frame, out);
   Surroundings around;
   for (const Neighbour& neighbour : neighbours) around.add(region, neighbour);
-  const double own_px = region.planes.matched.any ? region.planes.matched.d : 0;
+  const double own_px = region.fits.matched.any ? region.fits.matched.d : 0;
   list_surroundings(around, neighbours.size(), own_px, frame, out);
   out("evidence, share", share(r.textured.n, r.area));
   out("disparities, share", share(r.matched.n, r.area));
   out("disparity, share of the nearest", own_px / frame.nearest_px);
-  list_plane(kTexturedPlane, r.textured, region.planes.textured, frame.width, out);
-  list_plane(kMatchedPlane, r.matched, region.planes.matched, frame.width, out);
+  list_plane(kTexturedPlane, r.textured, region.fits.textured, frame.width, out);
+  list_plane(kMatchedPlane, r.matched, region.fits.matched, frame.width, out);
   const Heights& ground = r.above_ground;
   out("height above the ground, px", mean_px(ground.sum, ground.n));
   out("height above the ground, relative",
@@ -381,6 +391,8 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("its least alike parts", origin.least_same_thing);
   out("disparities in the image, share", frame.matched_share);
   out("evidence in the image, share", frame.evidence_share);
+  out("its colours beside the floor's", region.fits.to_floor);
+  out("its colours beside the background's", region.fits.to_background);
   out("its share of what it becomes a part of", kUnknown);
   out("how alike it is to the rest of that", kUnknown);
 }
@@ -411,6 +423,44 @@ FittedPlane fit_plane(const PlaneMoments& m, int width) {
   return plane;
 }
 
+FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
+  FrameCues frame;
+  frame.width = cues.gray.width();
+  frame.height = cues.gray.height();
+  frame.has_colour = !cues.rgb.empty();
+  frame.has_ground = cues.ground.plane.has_value();
+  frame.walls_and_floor = static_cast<int>(cues.background.planes.size());
+  frame.noise_sigma = cues.noise_sigma;
+  std::int64_t matched = 0;
+  std::int64_t textured = 0;
+  for (const RegionCues& region : graph.regions) {
+    matched += region.matched.n;
+    textured += region.textured.n;
+    if (mostly(region.above_ground.on, region)) frame.floor.add(region);
+    if (mostly(region.before_background.on + region.before_background.behind, region)) frame.background.add(region);
+    if (region.matched.n == 0) continue;
+    frame.nearest_px =
+        std::max(frame.nearest_px, static_cast<double>(region.matched.d) /
+                                       static_cast<double>(region.matched.n) / kDisparitySteps);
+  }
+  const auto area = static_cast<float>(cues.gray.size().area());
+  frame.matched_share = static_cast<float>(matched) / area;
+  frame.evidence_share = static_cast<float>(textured) / area;
+  return frame;
+}
+
+void SceneColours::add(const RegionCues& region) {
+  area += region.area;
+  for (std::size_t i = 0; i < histogram.size(); ++i) histogram[i] += region.histogram[i];
+}
+
+RegionFits fit_region(const RegionCues& region, const FrameCues& frame) {
+  RegionFits fits{fit_plane(region.matched, frame.width), fit_plane(region.textured, frame.width)};
+  if (frame.floor.area > 0) fits.to_floor = histogram_distance(region, frame.floor);
+  if (frame.background.area > 0) fits.to_background = histogram_distance(region, frame.background);
+  return fits;
+}
+
 MergeFeatures merge_features(const RegionSide& a, const RegionSide& b, const ContactCues& contact,
                              const FrameCues& frame) {
   MergeFeatures features{};
@@ -437,20 +487,20 @@ void tell_end(ObjectFeatures& features, float share_of_it, float same_thing) {
 std::vector<std::string_view> merge_feature_names() {
   RegionCues region;
   region.area = 1;
-  const RegionPlanes planes;
+  const RegionFits fits;
   ContactCues contact;
   contact.length = 1;
   Names names;
-  list_merge_features({region, planes}, {region, planes}, contact, {}, names);
+  list_merge_features({region, fits}, {region, fits}, contact, {}, names);
   return names.out;
 }
 
 std::vector<std::string_view> object_feature_names() {
   RegionCues region;
   region.area = 1;
-  const RegionPlanes planes;
+  const RegionFits fits;
   Names names;
-  list_object_features({region, planes}, {}, {}, {}, names);
+  list_object_features({region, fits}, {}, {}, {}, names);
   return names.out;
 }
 

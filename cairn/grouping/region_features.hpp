@@ -25,9 +25,18 @@ struct FittedPlane {
 /// `width`: of the image.
 FittedPlane fit_plane(const PlaneMoments& moments, int width);
 
-/// The two planes of a region: through all its disparities, and through its evidence.
-struct RegionPlanes {
+/// Of a region: the two planes through all its disparities and through its evidence, and how far its colours
+/// are from those of the floor and of the background.
+struct RegionFits {
   FittedPlane matched, textured;
+  double to_floor = kUnknown, to_background = kUnknown;  // χ², 0 … 6
+};
+
+/// The colours of the superpixels that lie on the ground, or in the background, for the most part.
+struct SceneColours {
+  std::int64_t area = 0;  // px
+  Histogram histogram{};
+  void add(const RegionCues& region);
 };
 
 /// What all regions of a frame share.
@@ -41,17 +50,20 @@ struct FrameCues {
   float matched_share = 0;
   float evidence_share = 0;
   double nearest_px = 1;  // the greatest mean disparity of a superpixel, at least 1
+  SceneColours floor, background;
 };
+FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues);
+RegionFits fit_region(const RegionCues& region, const FrameCues& frame);
 
-inline constexpr std::size_t kMergeFeatures = 44;
-inline constexpr std::size_t kObjectFeatures = 74;
+inline constexpr std::size_t kMergeFeatures = 48;
+inline constexpr std::size_t kObjectFeatures = 76;
 using MergeFeatures = std::array<float, kMergeFeatures>;
 using ObjectFeatures = std::array<float, kObjectFeatures>;
 
 /// One end of a contact.
 struct RegionSide {
   const RegionCues& cues;
-  const RegionPlanes& planes;
+  const RegionFits& fits;
 };
 
 /// Of two regions that touch: what tells whether they show one thing. `a`, `b`: those of the contact.

@@ -12,7 +12,7 @@
 namespace cairn {
 
 struct SuperpixelsConfig {
-  int count = 400;  // pieces; more of them follow small things, and take longer
+  int count = 250;  // pieces; more of them follow small things, and take longer
 };
 template <class V>
 void fields(SuperpixelsConfig& c, V&& v) {

@@ -4,7 +4,6 @@
 // The method by hierarchy, one call a stage, in the order in which data flows.
 #include <cairn/core/later.hpp>
 #include <cairn/disparity/confidence.hpp>
-#include <cairn/image/noise.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cmath>
 #include <utility>
@@ -17,50 +16,55 @@ ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
   return {config.min_confidence, static_cast<std::int64_t>(least)};
 }
 
+SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
+                          const Exec& exec, Observed& stage) {
+  SuperpixelScene cut;
+
+  // Disparities, those that texture vouches for, and what speaks against them.
+  cut.scene = match_scene(given, rig, config, exec, stage);
+  const MatchedScene& scene = cut.scene;
+  const SceneDisparity& found = scene.found;
+
+  // What bounds the scene: its walls, and the floor, also where it mirrors.
+  cut.background = stage("fit_background",
+                         fit_background(scene.evidence_px, found.ground, rig, config.background, exec));
+  cut.seen_px = stage("floor_under_reflections", floor_under_reflections(found.disparity, found.ground, exec));
+
+  // The picture in pieces.
+  cut.superpixels = stage("cut_superpixels", cut_superpixels(given.left, given.left_rgb, cut.seen_px,
+                                                             scene.noise_sigma, config.superpixels, exec));
+  return cut;
+}
+
 Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
                            const Exec& exec) {
   Observed stage(exec);
-  Frame frame;
-
-  // Disparities, and what speaks against them pixel by pixel; those that texture vouches for.
-  const float noise = stage("noise_sigma", noise_sigma(given.left, exec));
-  Matched matched = match_and_check(given, config, exec, stage);
-  frame.epipolar = matched.epipolar;
-  const Image<float> evidence_px =
-      stage("find_evidence", find_evidence(given.left, matched.disparity, noise, config.evidence, exec));
-
-  // The scene: its ground, what is reflected in it, its walls.
-  frame.ground = stage("fit_ground", fit_ground(evidence_px, rig, config.ground, exec));
-  frame.disparity = stage("reject_below_ground", reject_below_ground(std::move(matched.disparity),
-                                                                     frame.ground, rig, config.ground, exec));
-  frame.disparity =
-      stage("reject_speckles", reject_speckles(std::move(frame.disparity), config.speckle, exec));
-  frame.floor = stage("label_floor", label_floor(frame.disparity, frame.ground, rig, config.ground, exec));
+  SuperpixelScene cut = cut_scene(given, rig, config, exec, stage);
+  SceneDisparity& found = cut.scene.found;
+  const Superpixels& superpixels = cut.superpixels;
   Later<Image<float>> confidence(exec, [&](const Exec& beside) {
-    return estimate_confidence(matched.matches, frame.disparity, confidence_model(config.match.method),
+    return estimate_confidence(cut.scene.matches, found.disparity, confidence_model(config.match.method),
                                beside);
   });
-  const Ground ground =
-      stage("likely_ground", likely_ground(frame.ground, frame.disparity, rig, config.ground, exec));
-  const Background background =
-      stage("fit_background", fit_background(evidence_px, ground, rig, config.background, exec));
 
-  // The picture in pieces, and all that they may fuse to, by every cue.
-  const Superpixels superpixels =
-      stage("cut_superpixels", cut_superpixels(given.left, given.left_rgb, frame.disparity.disparity_px,
-                                               noise, config.superpixels, exec));
-  const Cues cues{given.left, given.left_rgb, frame.disparity.disparity_px, evidence_px, ground,
-                  background, noise};
-  const MergeTree tree = stage("grow_merge_tree", grow_merge_tree(superpixels, cues, kSameThing, exec));
+  // All that the pieces may fuse to, by every cue …
+  const MergeTree tree =
+      stage("grow_merge_tree", grow_merge_tree(superpixels, cut.cues(given), kSameThing, exec));
 
-  // Which of these regions are objects, and where.
+  // … and which of these regions are objects, and where.
   const ChosenObjects chosen = stage(
       "choose_objects", choose_objects(tree, kWholeObject, limits_of(config.objects, given.left.size())));
-  frame.superpixels = segmentation_of(superpixels, given.left, exec);
-  frame.groups = groups_of(superpixels, chosen, frame.disparity, exec);
-  frame.objects = stage("measure", measure(frame.groups.labels, chosen.scores, frame.disparity, given.left,
-                                           given.left_rgb, noise, rig, exec));
+  Frame frame;
+  frame.superpixels = stage("superpixels", segmentation_of(superpixels, given.left, exec));
+  frame.groups = stage("groups", groups_of(superpixels, chosen, found.disparity, exec));
+  frame.objects =
+      stage("measure", measure(frame.groups.labels, chosen.scores, found.disparity, given.left,
+                               given.left_rgb, cut.scene.noise_sigma, rig, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
+  frame.disparity = std::move(found.disparity);
+  frame.ground = found.ground;
+  frame.floor = std::move(found.floor);
+  frame.epipolar = found.epipolar;
   return frame;
 }
 

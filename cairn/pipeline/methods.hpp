@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/pipeline/match_and_check.hpp>
-#include <cairn/pipeline/segment.hpp>
+#include <cairn/grouping/region_cues.hpp>
+#include <cairn/pipeline/matched_scene.hpp>
 
 /// The methods, a page each; segment() chooses. Private to the library.
 namespace cairn {
@@ -12,6 +12,21 @@ namespace cairn {
 /// they overlap.
 Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const Config& config,
                          const Exec& exec);
+
+/// What the tree of regions is grown from.
+struct SuperpixelScene {
+  MatchedScene scene;
+  Image<float> seen_px;  // floor_under_reflections()
+  Background background;
+  Superpixels superpixels;
+  [[nodiscard]] Cues cues(const Given& given) const {
+    return {given.left, given.left_rgb, seen_px, scene.evidence_px, scene.found.ground, background,
+            scene.noise_sigma};
+  }
+};
+/// The first half of segment_by_hierarchy(). What is fitted is fitted to this.
+SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
+                          const Exec& exec, Observed& stage);
 
 /// fusion.method=hierarchy, hierarchy.cpp: superpixels fuse by every cue to a tree of regions, of which those
 /// that are likeliest whole objects are chosen.

@@ -4,7 +4,6 @@
 // The paper's method, one call a stage, in the order in which data flows.
 #include <cairn/core/later.hpp>
 #include <cairn/disparity/confidence.hpp>
-#include <cairn/image/noise.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <utility>
 
@@ -15,26 +14,20 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   Observed stage(exec);
   Frame frame;
 
-  // Disparities, and what speaks against them: pixel by pixel …
-  Matched matched = match_and_check(given, config, exec, stage);
-  frame.epipolar = matched.epipolar;
+  // Disparities, and what speaks against them: pixel by pixel, and once they are seen together.
+  MatchedScene scene = match_scene(given, rig, config, exec, stage);
+  frame.epipolar = scene.found.epipolar;
+  frame.ground = scene.found.ground;
+  frame.disparity = std::move(scene.found.disparity);
+  frame.floor = std::move(scene.found.floor);
 
-  // (Matching keeps all threads busy, growing by disparity only one: the left image is segmented beside
-  // that.)
+  // (Growing by disparity keeps one thread busy: the left image is segmented beside that.)
   Later<Segmentation> by_intensity(
       exec, [&](const Exec& beside) { return segment_intensity(given.left, config.intensity, beside); });
 
-  // … and once they are seen together: the ground, what is reflected in it, islands.
-  frame.ground = stage("fit_ground", fit_ground(matched.disparity, rig, config.ground, exec));
-  frame.disparity = stage("reject_below_ground", reject_below_ground(std::move(matched.disparity),
-                                                                     frame.ground, rig, config.ground, exec));
-  frame.disparity =
-      stage("reject_speckles", reject_speckles(std::move(frame.disparity), config.speckle, exec));
-  frame.floor = stage("label_floor", label_floor(frame.disparity, frame.ground, rig, config.ground, exec));
-
   // (The first pool beside may still be that of the left image's regions.)
   Later<Image<float>> confidence(exec.beside(), [&](const Exec& beside) {
-    return estimate_confidence(matched.matches, frame.disparity, confidence_model(config.match.method),
+    return estimate_confidence(scene.matches, frame.disparity, confidence_model(config.match.method),
                                beside);
   });
 
@@ -45,9 +38,8 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   frame.fusion = stage("fuse", fuse(frame.by_intensity, frame.by_disparity, exec));
 
   // Which of the fused regions are objects, and where.
-  const float noise = stage("noise_sigma", noise_sigma(given.left, exec));
   frame.objects = stage("measure", measure(frame.fusion.labels, frame.fusion.is_floor, frame.disparity,
-                                           given.left, given.left_rgb, noise, rig, config.objects, exec));
+                                           given.left, given.left_rgb, scene.noise_sigma, rig, config.objects, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
   return frame;
 }

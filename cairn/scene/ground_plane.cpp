@@ -121,6 +121,22 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
   return disparity;
 }
 
+Image<float> floor_under_reflections(const DisparityMap& disparity, const Ground& ground, const Exec& exec) {
+  Image<float> seen_px = disparity.disparity_px.clone(exec.pool);
+  if (!ground.plane) return seen_px;
+  parallel_for(exec, seen_px.height(), 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const Reject* const reject = disparity.reject.row(y);
+      float* const seen = seen_px.row(y);
+      for (int x = 0; x < seen_px.width(); ++x) {
+        if (has(reject[x], Reject::below_ground))
+          seen[x] = ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
+      }
+    }
+  });
+  return seen_px;
+}
+
 Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& ground,
                                 const std::optional<StereoRig>& rig, const GroundConfig& config,
                                 const Exec& exec) {

@@ -78,8 +78,8 @@ Ground ground_from_points(const std::vector<PointPair>& points);
 /// Throws Error where `source` is points or pose and `known` does not say it, or not soundly.
 void validate(const GroundConfig& config, bool has_rig);
 
-/// `ground` itself, or where it was refused for want of evidence a ground fitted to all disparities: good
-/// enough as one cue among others, not to reject matches by.
+/// `ground` itself, or where it was refused for want of evidence a ground fitted to all disparities: a plain
+/// floor has no texture that would vouch for it.
 Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                      const GroundConfig& config, const Exec& exec);
 
@@ -89,6 +89,10 @@ Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const 
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const std::optional<StereoRig>& rig, const GroundConfig& config,
                                  const Exec& exec);
+
+/// The disparities of what is seen, px: where a match was rejected as below the ground, what is seen is the
+/// ground, which mirrors it. Holes else. `disparity` as reject_below_ground() leaves it.
+Image<float> floor_under_reflections(const DisparityMap& disparity, const Ground& ground, const Exec& exec);
 
 /// 255 where |d − d_ground| ≤ margin under the horizon, else 0. Empty where there is no ground or label_floor
 /// is off.

@@ -52,6 +52,12 @@ DisparityMap without_reflections(const Config& config, const Exec& exec, const D
   return released([&] { return reject_below_ground(map.taken(exec), ground, known, config.ground, exec); });
 }
 
+ArrayOf<float> seen_of(const Config& /*config*/, const Exec& exec, const DisparityArgument& disparity,
+                       const Ground& ground) {
+  const DisparityInput map(disparity, "disparity", exec);
+  return array_from(released([&] { return floor_under_reflections(map.map(), ground, exec); }));
+}
+
 std::optional<ArrayOf<std::uint8_t>> floor_of(const Config& config, const Exec& exec,
                                               const DisparityArgument& disparity, const Ground& ground,
                                               const RigArgument& rig) {
@@ -130,8 +136,12 @@ void bind_ground(py::module_& m) {
             &floor_of, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
   def_stage(m, "likely_ground", {"ground"},
             "The ground itself, or where it was refused for want of evidence, one fitted to all disparities: "
-            "good enough as one cue among others, not to reject matches by.",
+            "a plain floor has no texture that would vouch for it.",
             &likely, "ground"_a, "disparity"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "floor_under_reflections", {},
+            "(H, W) float32, px: the disparities of what is seen: those of the ground where a match was "
+            "rejected as below it, NaN in other holes.",
+            &seen_of, "disparity"_a, "ground"_a, py::kw_only());
   def_stage(m, "fit_background", {"background"},
             "Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as "
             "find_evidence() "

@@ -38,8 +38,8 @@ class MatchOptions(TypedDict, total=False):
     prefilter_cap: int  # grey levels, 1 … 63, read while match.prefilter=xsobel: clip the x-Sobel response to ±cap
 
 class SemiGlobalOptions(TypedDict, total=False):
-    penalty_small: float  # greatest cost, 0 … 2.3, read while match.method=semi_global: for a change of disparity by one pixel
-    penalty_large: float  # greatest cost, 0 … 2.3, read while match.method=semi_global: for a larger change of disparity
+    penalty_small: float  # greatest cost, 0 … 2, read while match.method=semi_global: for a change of disparity by one pixel
+    penalty_large: float  # greatest cost, 0 … 2, read while match.method=semi_global: for a larger change of disparity
     penalty_edge: float  # 1/grey level, 0 … 10, read while match.method=semi_global: how fast the large penalty falls where the intensity changes
 
 class SubpixelOptions(TypedDict, total=False):
@@ -1297,6 +1297,17 @@ def fit_ground(
 ) -> Ground:
     """Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve trust)."""
 
+def floor_under_reflections(
+    disparity: DisparityLike,
+    ground: Ground,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> NDArray[numpy.float32]:
+    """(H, W) float32, px: the disparities of what is seen: those of the ground where a match was rejected
+    as below it, NaN in other holes.
+    """
+
 def fuse(
     by_intensity: Segmentation,
     by_disparity: Segmentation,
@@ -1402,8 +1413,8 @@ def likely_ground(
     margin: float = ...,
     label_floor: bool = ...,
 ) -> Ground:
-    """The ground itself, or where it was refused for want of evidence, one fitted to all disparities: good
-    enough as one cue among others, not to reject matches by.
+    """The ground itself, or where it was refused for want of evidence, one fitted to all disparities: a
+    plain floor has no texture that would vouch for it.
     """
 
 def load_calibration(path: PathLike) -> Calibration:

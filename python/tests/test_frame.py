@@ -52,7 +52,7 @@ def test_a_frame_shows_itself(sample, tmp_path):
     assert same(shown, frame.overlay())
     assert same(shown, cairn.draw_objects(sample.left, frame.objects, frame.floor))
     assert same(frame.disparity_view(), cairn.draw_disparity(frame.disparity_map, sample.calibration))
-    assert repr(frame).startswith("<cairn.Frame 320x240, 4 objects, ground found\n")
+    assert repr(frame).startswith("<cairn.Frame 320x240, 3 objects, ground found\n")
     assert frame.ground and frame.ground.refusal == "none" and 0 < frame.ground.support <= 1
     a, b, c = frame.ground.plane
     assert frame.ground.plane.disparity_px(10, 20) == pytest.approx(a * 10 + b * 20 + c, rel=1e-5)

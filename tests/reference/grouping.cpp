@@ -168,15 +168,26 @@ FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
   frame.walls_and_floor = static_cast<int>(cues.background.planes.size());
   frame.noise_sigma = cues.noise_sigma;
   Members all;
+  Members floor;
+  Members background;
   for (std::int32_t i = 0; i < superpixels.count; ++i) {
     all.insert(i);
-    const PlaneMoments m = cues_of({i}, superpixels, cues).matched;
+    const RegionCues one = cues_of({i}, superpixels, cues);
+    const PlaneMoments& m = one.matched;
+    if (2 * one.above_ground.on > one.area) floor.insert(i);
+    if (2 * (one.before_background.on + one.before_background.behind) > one.area) background.insert(i);
     if (m.n > 0)
       frame.nearest_px = std::max(frame.nearest_px, static_cast<double>(m.d) / static_cast<double>(m.n) / 64);
   }
   const RegionCues image = cues_of(all, superpixels, cues);
   frame.matched_share = static_cast<float>(image.matched.n) / static_cast<float>(image.area);
   frame.evidence_share = static_cast<float>(image.textured.n) / static_cast<float>(image.area);
+  const auto colours = [&](const Members& members) {
+    const RegionCues region = cues_of(members, superpixels, cues);
+    return SceneColours{region.area, region.histogram};
+  };
+  frame.floor = colours(floor);
+  frame.background = colours(background);
   return frame;
 }
 
@@ -220,7 +231,7 @@ class Growing {
   struct Known {
     Members members;
     RegionCues cues;
-    RegionPlanes planes;
+    RegionFits fits;
   };
   struct Contact {
     std::int32_t a;  // nodes
@@ -241,11 +252,10 @@ class Growing {
 
   void count_anew(Known& region) const {
     region.cues = cues_of(region.members, superpixels_, cues_);
-    region.planes = {fit_plane(region.cues.matched, frame_.width),
-                     fit_plane(region.cues.textured, frame_.width)};
+    region.fits = fit_region(region.cues, frame_);
   }
   [[nodiscard]] RegionSide side(std::int32_t node) const {
-    return {regions_.at(node).cues, regions_.at(node).planes};
+    return {regions_.at(node).cues, regions_.at(node).fits};
   }
   void judge(Contact& c) const {
     c.cues = contact_of(regions_.at(c.a).members, regions_.at(c.b).members, superpixels_, cues_);

@@ -460,6 +460,22 @@ TEST(BelowGround, WithoutGroundNothingHappens) {
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0}, {0}}));
 }
 
+TEST(FloorUnderReflections, IsWhatIsSeenWhereAMatchWasBelow) {
+  const auto map = reject_below_ground(column({{-9}, {-9}, {-9}, {1}, {2.9F}}), kFloorFromRow2, {}, {}, {});
+  const Image<float> seen = floor_under_reflections(map, kFloorFromRow2, {});
+  for (int y = 0; y < 5; ++y) {
+    const bool mirrored = has(map.reject(0, y), Reject::below_ground);
+    EXPECT_EQ(mirrored, y == 4);
+    if (mirrored) {
+      EXPECT_EQ(seen(0, y), kFloorFromRow2.plane->disparity_px(0, static_cast<float>(y)));
+    } else {
+      EXPECT_EQ(seen(0, y), map.disparity_px(0, y));
+    }
+  }
+  const Image<float> without = floor_under_reflections(map, Ground{}, {});
+  EXPECT_TRUE(std::isnan(without(0, 4)));
+}
+
 TEST(LabelFloor, MarksMatchesWithinTheMarginUnderTheHorizon) {
   GroundConfig config;
   config.margin = 0.5F;

@@ -167,6 +167,11 @@ TEST(ObjectFeatures, SayHowARegionStands) {
   EXPECT_EQ(features.region(1, "a ground is known"), 1);
   EXPECT_EQ(features.region(1, "disparity, share of the nearest"), 1);
   EXPECT_EQ(features.region(1, "its parts were one thing"), 20) << "a superpixel";
+  EXPECT_EQ(features.region(0, "its colours beside the background's"), 0) << "it is all of that";
+  EXPECT_FLOAT_EQ(features.region(1, "its colours beside the background's"), 2);
+  EXPECT_EQ(features.contact("the smaller one's colours beside the background's"), 2);
+  EXPECT_EQ(features.contact("the larger one's colours beside the background's"), 0);
+  EXPECT_EQ(features.region(1, "its colours beside the floor's"), kUnknown) << "nothing lies on the floor";
 }
 
 TEST(Features, AreUnknownWhereNothingIsKnown) {
@@ -184,7 +189,8 @@ TEST(Features, AreUnknownWhereNothingIsKnown) {
         "distance from its plane, px", "evidence: slope down, relative", "height above the ground, px",
         "height above the ground, relative", "share on the ground", "share in the background",
         "least step of the planes around, px", "evidence: height above the ground over its error",
-        "what is around it on the ground, share"})
+        "what is around it on the ground, share", "its colours beside the floor's",
+        "its colours beside the background's"})
     EXPECT_EQ(features.region(0, name), kUnknown) << name;
   EXPECT_EQ(features.contact("disparities, share of the smaller one"), 0);
   EXPECT_EQ(features.region(0, "a ground is known"), 0);
