@@ -56,7 +56,7 @@ def test_a_frame_shows_itself(sample, tmp_path):
     assert frame.ground and frame.ground.refusal == "none" and 0 < frame.ground.support <= 1
     a, b, c = frame.ground.plane
     assert frame.ground.plane.disparity_px(10, 20) == pytest.approx(a * 10 + b * 20 + c, rel=1e-5)
-    assert list(frame.timings)[:3] == ["noise_sigma", "correct_epipolar", "match"] and min(frame.timings.values()) >= 0
+    assert list(frame.timings)[:3] == ["correct_epipolar", "match", "refine_subpixel"] and min(frame.timings.values()) >= 0
     assert json.loads(frame.to_json())["objects"][0]["id"] == 1
     assert frame.epipolar.outcome == "aligned"
 
