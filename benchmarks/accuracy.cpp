@@ -305,7 +305,7 @@ void add_splits(Page& page, const fs::path& data, int threads) {
   page.text +=
       "Options, features and trees were chosen on the sets that say so; what they reach there is no promise. "
       "[What was fitted](fitting.md) has the same sets judged by trees that were fitted without their "
-      "scenes. "
+      "scenes, and [what is lost](failures.md) what fails. "
       "The other sets are reported only. In brackets: Wilson's interval of 95 %. Middlebury's objects are "
       "labelled in part, which leaves no precision there.\n\n";
   page.text += table.text() + "\n";

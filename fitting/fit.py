@@ -24,7 +24,7 @@ import zlib
 import numpy as np
 import xgboost
 
-WEIGHTS = {"rc_tabletop": 4.0, "middlebury": 10.0}  # of a frame: there are few of these
+WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
 PAIRS_KEPT = 0.4  # of all that are met: there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
