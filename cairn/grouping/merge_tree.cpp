@@ -85,9 +85,7 @@ class Growing {
     return fusions_[slot(c.a)] + fusions_[slot(c.b)];
   }
 
-  void fit(std::size_t region) {
-    fits_[region] = fit_region(graph_.regions[region], frame_);
-  }
+  void fit(std::size_t region) { fits_[region] = fit_region(graph_.regions[region], frame_); }
 
   void judge(std::int32_t contact) {
     const ContactCues& c = graph_.contacts[slot(contact)];

@@ -11,8 +11,6 @@ namespace {
 
 constexpr int kFar = 3;  // px to either side of a contact
 constexpr int kNoDisparity = std::numeric_limits<int>::min();
-constexpr int kLeastHeight = -8 * kDisparitySteps;
-constexpr int kMostHeight = 24 * kDisparitySteps;
 
 /// In 1/64 px, halves up. Truncating what is positive is quicker than floor(), and in doubles as exact.
 int in_steps(float px) {
@@ -24,6 +22,23 @@ int in_steps(float px) {
 float weakest_edge(float noise_sigma) {
   return 4.0F * (1.5F + 0.8F * noise_sigma);
 }
+
+/// The sums of a run of pixels in one row, in registers.
+struct RunMoments {
+  std::int64_t n = 0, x = 0, xx = 0, d = 0, xd = 0, dd = 0;
+  void add(std::int64_t at_x, std::int64_t disparity) {
+    ++n;
+    x += at_x;
+    xx += at_x * at_x;
+    d += disparity;
+    xd += at_x * disparity;
+    dd += disparity * disparity;
+  }
+  /// As the sums of pixels in row y.
+  [[nodiscard]] PlaneMoments in_row(std::int64_t y) const {
+    return {n, x, n * y, xx, x * y, n * y * y, d, xd, d * y, dd};
+  }
+};
 
 class Gathering {
  public:
@@ -135,26 +150,35 @@ class Gathering {
   void add_depth(RegionCues& region, int y, int first, int last) const {
     const std::int32_t* const d = steps_.row(y);
     const float* const evidence = cues_.evidence_px.row(y);
-    PlaneMoments matched;
-    PlaneMoments textured;
+    RunMoments matched;
+    RunMoments textured;
     for (int x = first; x < last; ++x) {
-      const bool is_textured = !std::isnan(evidence[x]);
-      const int e = is_textured ? in_steps(evidence[x]) : kNoDisparity;
-      if (is_textured) textured.add(x - width_ / 2, 0, e);
-      if (d[x] != kNoDisparity) matched.add(x - width_ / 2, 0, d[x]);
-      if (cues_.ground.plane && ground_[slot(x)] != kNoDisparity) {
-        if (d[x] != kNoDisparity) region.above_ground.add(d[x] - ground_[slot(x)]);
-        if (is_textured) region.textured_above_ground.add(e - ground_[slot(x)]);
-      }
-      if (!cues_.background.planes.empty()) {
-        if (d[x] != kNoDisparity) region.before_background.add(d[x] - background_[slot(x)]);
-        if (is_textured) region.textured_before_background.add(e - background_[slot(x)]);
-      }
+      if (d[x] != kNoDisparity) matched.add(x - width_ / 2, d[x]);
+      if (!std::isnan(evidence[x])) textured.add(x - width_ / 2, in_steps(evidence[x]));
     }
-    matched.move_down(y - height_ / 2);
-    textured.move_down(y - height_ / 2);
-    region.matched.add(matched);
-    region.textured.add(textured);
+    region.matched.add(matched.in_row(y - height_ / 2));
+    region.textured.add(textured.in_row(y - height_ / 2));
+    if (cues_.ground.plane)
+      add_heights(ground_, d, evidence, first, last, region.above_ground, region.textured_above_ground);
+    if (!cues_.background.planes.empty()) {
+      add_heights(background_, d, evidence, first, last, region.before_background,
+                  region.textured_before_background);
+    }
+  }
+
+  /// Of a run's disparities and of its evidence, over what lies behind.
+  static void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d,
+                          const float* evidence, int first, int last, Heights& all, Heights& textured) {
+    Heights of_all;
+    Heights of_textured;
+    for (int x = first; x < last; ++x) {
+      const std::int32_t base = behind[slot(x)];
+      if (base == kNoDisparity) continue;
+      if (d[x] != kNoDisparity) of_all.add(d[x] - base);
+      if (!std::isnan(evidence[x])) of_textured.add(in_steps(evidence[x]) - base);
+    }
+    all.add(of_all);
+    textured.add(of_textured);
   }
 
   ContactCues& contact(std::int32_t a, std::int32_t b) {
@@ -248,13 +272,6 @@ void PlaneMoments::add(int at_x, int at_y, int disparity) {
   dd += pd * pd;
 }
 
-void PlaneMoments::move_down(int by) {  // from row 0
-  y += n * by;
-  xy += x * by;
-  yy += n * by * by;
-  yd += d * by;
-}
-
 void PlaneMoments::add(const PlaneMoments& other) {
   n += other.n;
   x += other.x;
@@ -266,15 +283,6 @@ void PlaneMoments::add(const PlaneMoments& other) {
   xd += other.xd;
   yd += other.yd;
   dd += other.dd;
-}
-
-void Heights::add(int height) {
-  const std::int64_t h = std::clamp(height, kLeastHeight, kMostHeight);
-  ++n;
-  sum += h;
-  squares += h * h;
-  behind += h < -kDisparitySteps ? 1 : 0;
-  on += std::abs(h) <= kDisparitySteps ? 1 : 0;
 }
 
 void Heights::add(const Heights& other) {

@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cairn/core/exec.hpp>
 #include <cairn/grouping/superpixels.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <vector>
 
@@ -35,8 +37,6 @@ struct PlaneMoments {
   std::int64_t n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, d = 0, xd = 0, yd = 0, dd = 0;
   void add(int at_x, int at_y, int disparity);
   void add(const PlaneMoments& other);
-  /// Sums of points in row 0 become those of points `by` rows below.
-  void move_down(int by);
   friend bool operator==(const PlaneMoments&, const PlaneMoments&) = default;
 };
 
@@ -44,7 +44,14 @@ struct PlaneMoments {
 struct Heights {
   std::int64_t n = 0, sum = 0, squares = 0;
   std::int64_t behind = 0, on = 0;  // farther behind than 1 px; within 1 px
-  void add(int height);
+  void add(int height) {
+    const std::int64_t h = std::clamp(height, -8 * kDisparitySteps, 24 * kDisparitySteps);
+    ++n;
+    sum += h;
+    squares += h * h;
+    behind += h < -kDisparitySteps ? 1 : 0;
+    on += std::abs(h) <= kDisparitySteps ? 1 : 0;
+  }
   void add(const Heights& other);
   friend bool operator==(const Heights&, const Heights&) = default;
 };

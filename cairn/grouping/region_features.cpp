@@ -151,8 +151,8 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("share of these that are level", share(contact.level, contact.far_n));
   depth_features(kTexturedNames, s.textured, fits_s.textured, l.textured, fits_l.textured, kLeastTextured,
                  contact, frame.width, out);
-  depth_features(kMatchedNames, s.matched, fits_s.matched, l.matched, fits_l.matched, kLeastMatched,
-                 contact, frame.width, out);
+  depth_features(kMatchedNames, s.matched, fits_s.matched, l.matched, fits_l.matched, kLeastMatched, contact,
+                 frame.width, out);
   out("evidence, share of the smaller one", share(s.textured.n, s.area));
   out("evidence, share of the larger one", share(l.textured.n, l.area));
   out("disparities, share of the smaller one", share(s.matched.n, s.area));
@@ -437,7 +437,8 @@ FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
     matched += region.matched.n;
     textured += region.textured.n;
     if (mostly(region.above_ground.on, region)) frame.floor.add(region);
-    if (mostly(region.before_background.on + region.before_background.behind, region)) frame.background.add(region);
+    if (mostly(region.before_background.on + region.before_background.behind, region))
+      frame.background.add(region);
     if (region.matched.n == 0) continue;
     frame.nearest_px =
         std::max(frame.nearest_px, static_cast<double>(region.matched.d) /

@@ -82,8 +82,13 @@ class Fusing {
     while (left_ > count && !queue_.empty()) {
       const Entry next = queue_.top();
       queue_.pop();
-      const Link& link = links_[slot(next.link)];
-      if (link.version == next.version) fuse(next.link);
+      if (links_[slot(next.link)].version != next.version) continue;
+      // A key only grows while its two regions do, so that what was queued is never too late.
+      if (key_of(next.link) == next.key) {
+        fuse(next.link);
+      } else {
+        queue(next.link);
+      }
     }
   }
 
@@ -137,16 +142,15 @@ class Fusing {
     return links_.back();
   }
 
-  void queue(std::int32_t i) {
+  [[nodiscard]] double key_of(std::int32_t i) const {
     const Link& link = links_[slot(i)];
     const auto area = static_cast<double>(std::min(areas_[slot(link.a)], areas_[slot(link.b)]));
     const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
-    queue_.push({(edge + kEvenWithoutEdge) * std::sqrt(area), link.first, i, link.version});
+    return (edge + kEvenWithoutEdge) * std::sqrt(area);
   }
-
-  void queue_anew(std::int32_t i) {
-    ++links_[slot(i)].version;
-    queue(i);
+  void queue(std::int32_t i) {
+    const Link& link = links_[slot(i)];
+    queue_.push({key_of(i), link.first, i, link.version});
   }
 
   void fuse(std::int32_t across) {
@@ -155,7 +159,6 @@ class Fusing {
     if (links_of_[slot(kept)].size() < links_of_[slot(lost)].size()) std::swap(kept, lost);
     links_[slot(across)].version = -1;
     parents_[slot(lost)] = kept;
-    const std::int64_t before = areas_[slot(kept)];
     areas_[slot(kept)] += areas_[slot(lost)];
     --left_;
     std::vector<std::int32_t>& links = links_of_[slot(kept)];
@@ -171,19 +174,15 @@ class Fusing {
         both.length += link.length;
         both.edge_sum += link.edge_sum;
         link.version = -1;
-        queue_anew(known);
+        ++both.version;
+        queue(known);
       } else {
         (link.a == lost ? link.a : link.b) = kept;
         links.push_back(i);
-        queue_anew(i);
       }
     }
     links_of_[slot(lost)] = {};
-    for (const std::int32_t i : links) {
-      const std::int32_t other = links_[slot(i)].other(kept);
-      common_[slot(other)] = -1;
-      if (areas_[slot(other)] > before) queue_anew(i);  // the smaller of the two may have grown
-    }
+    for (const std::int32_t i : links) common_[slot(links_[slot(i)].other(kept))] = -1;
   }
 
   int left_;

@@ -11,8 +11,8 @@ namespace cairn {
 struct SemiGlobalConfig {
   float penalty_small = 0.6F;  // greatest costs, 0 … 2; by one pixel: less for slanted and curved surfaces
   float penalty_large = 2.0F;  // greatest costs, 0 … 2; by more: less for thin objects, more for noise
-  float penalty_edge = 0.1F;   // 1/grey level, 0 … 10; how fast the large penalty falls with the intensity's
-                               // step: more where objects stand out by their grey level
+  float penalty_edge = 0.1F;  // 1/grey level, 0 … 10; how fast the large penalty falls with the intensity's
+                              // step: more where objects stand out by their grey level
 };
 template <class V>
 void fields(SemiGlobalConfig& c, V&& v) {
@@ -34,8 +34,8 @@ void fields(SemiGlobalConfig& c, V&& v) {
 /// 1. census(x, y): 24 bits, one for each other pixel of the 5x5 window, 1 where it is darker than the centre
 /// by 2 grey levels or more: less is noise. (Zabih & Woodfill 1994) g(x, y): the steps of grey levels from
 /// (x − 1, y) to (x + 1, y) and from (x, y − 1) to (x, y + 1), as far as they lie within ±127.
-/// 2. h(x, y, d): in how many bits left (x, y) and right (x − d, y) differ, and by how much either g does, but
-/// 12 at most; 24 where the latter lies outside.
+/// 2. h(x, y, d): in how many bits left (x, y) and right (x − d, y) differ, and by how much either g does,
+/// but 12 at most; 24 where the latter lies outside.
 /// 3. r(x, y, d) = (Σh + 2) / 4 over the five pixels across, C = min(255, Σr + 2) / 4 over five rows, both
 /// rounded down: 0 … 63.
 /// 4. Along each of four paths (rightward, leftward, down, up), p being the pixel after q, and from C alone

@@ -53,7 +53,8 @@ class PaddedRows {
   Scratch<std::uint8_t> rows_;
 };
 
-/// The five smoothed rows around a row of a picture, which may be mirrored. Rows are loaded from the top down.
+/// The five smoothed rows around a row of a picture, which may be mirrored. Rows are loaded from the top
+/// down.
 class SmoothedRows {
  public:
   SmoothedRows(View<const Gray> image, bool mirrored)
@@ -380,8 +381,7 @@ class Descent {
     for (int i = 0; i < lanes; i += lane_count(d)) {
       auto sum = bytes::Set(d, std::uint8_t{2});
       CAIRN_UNROLL
-      for (const std::uint8_t* row : around)
-        sum = bytes::SaturatedAdd(sum, bytes::Load(d, row + at + i));
+      for (const std::uint8_t* row : around) sum = bytes::SaturatedAdd(sum, bytes::Load(d, row + at + i));
       bytes::Store(bytes::Or(bytes::ShiftRight<2>(sum), bytes::Load(d, beyond + i)), d, costs + i);
     }
   }

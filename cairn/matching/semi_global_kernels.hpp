@@ -58,10 +58,10 @@ struct SemiGlobalTask {
   MatchMaps maps;
   View<const Gray> left;
   View<const Gray> right;
-  View<Gray> smooth;                // the left image, smoothed
-  View<std::uint8_t> left_signs;    // three rows of census, the gradients across and down: bytes side by side,
-                                    // round_up(width, 64) each
-  View<std::uint8_t> right_signs;   // the same reversed, layout.length() each
+  View<Gray> smooth;               // the left image, smoothed
+  View<std::uint8_t> left_signs;   // three rows of census, the gradients across and down: bytes side by side,
+                                   // round_up(width, 64) each
+  View<std::uint8_t> right_signs;  // the same reversed, layout.length() each
   View<const std::uint8_t> inside;  // one reversed row: 255 where there is a pixel
   View<std::uint8_t> costs;         // C: width·lanes in a row; 255 in lanes ≥ count
   View<std::uint8_t> steps;  // L − C of the path down; with that of the path up added once that is known

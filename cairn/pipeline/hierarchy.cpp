@@ -26,9 +26,10 @@ SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, con
   const SceneDisparity& found = scene.found;
 
   // What bounds the scene: its walls, and the floor, also where it mirrors.
-  cut.background = stage("fit_background",
-                         fit_background(scene.evidence_px, found.ground, rig, config.background, exec));
-  cut.seen_px = stage("floor_under_reflections", floor_under_reflections(found.disparity, found.ground, exec));
+  cut.background =
+      stage("fit_background", fit_background(scene.evidence_px, found.ground, rig, config.background, exec));
+  cut.seen_px =
+      stage("floor_under_reflections", floor_under_reflections(found.disparity, found.ground, exec));
 
   // The picture in pieces.
   cut.superpixels = stage("cut_superpixels", cut_superpixels(given.left, given.left_rgb, cut.seen_px,
@@ -57,9 +58,8 @@ Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, con
   Frame frame;
   frame.superpixels = stage("superpixels", segmentation_of(superpixels, given.left, exec));
   frame.groups = stage("groups", groups_of(superpixels, chosen, found.disparity, exec));
-  frame.objects =
-      stage("measure", measure(frame.groups.labels, chosen.scores, found.disparity, given.left,
-                               given.left_rgb, cut.scene.noise_sigma, rig, exec));
+  frame.objects = stage("measure", measure(frame.groups.labels, chosen.scores, found.disparity, given.left,
+                                           given.left_rgb, cut.scene.noise_sigma, rig, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
   frame.disparity = std::move(found.disparity);
   frame.ground = found.ground;

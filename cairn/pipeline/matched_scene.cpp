@@ -53,7 +53,8 @@ MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, cons
                                                              config.evidence, exec));
   }
 
-  // What speaks against disparities once they are seen together: the ground, what is reflected in it, islands.
+  // What speaks against disparities once they are seen together: the ground, what is reflected in it,
+  // islands.
   SceneDisparity& found = scene.found;
   found.epipolar = matched.epipolar;
   const View<const float> trusted_px =

@@ -18,10 +18,10 @@ struct Given {
 
 /// Disparities that every check has passed, what they were judged by, and the ground.
 struct MatchedScene {
-  Matches matches;          // empty where the disparities come from elsewhere
-  float noise_sigma = 0;    // grey levels
+  Matches matches;           // empty where the disparities come from elsewhere
+  float noise_sigma = 0;     // grey levels
   Image<float> evidence_px;  // fusion.method=hierarchy: what texture vouches for, see find_evidence()
-  SceneDisparity found;     // its confidence is empty
+  SceneDisparity found;      // its confidence is empty
 };
 
 /// Both methods begin with this. Takes the disparities of `given` where there is nothing to match. Private to

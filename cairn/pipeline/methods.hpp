@@ -20,8 +20,8 @@ struct SuperpixelScene {
   Background background;
   Superpixels superpixels;
   [[nodiscard]] Cues cues(const Given& given) const {
-    return {given.left, given.left_rgb, seen_px, scene.evidence_px, scene.found.ground, background,
-            scene.noise_sigma};
+    return {given.left,         given.left_rgb, seen_px,          scene.evidence_px,
+            scene.found.ground, background,     scene.noise_sigma};
   }
 };
 /// The first half of segment_by_hierarchy(). What is fitted is fitted to this.

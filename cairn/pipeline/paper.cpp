@@ -27,8 +27,7 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
 
   // (The first pool beside may still be that of the left image's regions.)
   Later<Image<float>> confidence(exec.beside(), [&](const Exec& beside) {
-    return estimate_confidence(scene.matches, frame.disparity, confidence_model(config.match.method),
-                               beside);
+    return estimate_confidence(scene.matches, frame.disparity, confidence_model(config.match.method), beside);
   });
 
   // Two segmentations, united.
@@ -38,8 +37,9 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   frame.fusion = stage("fuse", fuse(frame.by_intensity, frame.by_disparity, exec));
 
   // Which of the fused regions are objects, and where.
-  frame.objects = stage("measure", measure(frame.fusion.labels, frame.fusion.is_floor, frame.disparity,
-                                           given.left, given.left_rgb, scene.noise_sigma, rig, config.objects, exec));
+  frame.objects =
+      stage("measure", measure(frame.fusion.labels, frame.fusion.is_floor, frame.disparity, given.left,
+                               given.left_rgb, scene.noise_sigma, rig, config.objects, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
   return frame;
 }

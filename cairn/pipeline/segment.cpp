@@ -27,9 +27,9 @@ SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<St
   Observed stage(exec);
   Given given = given_as(pair);
   MatchedScene scene = match_scene(given, rig, config, exec, stage);
-  scene.found.confidence =
-      stage("estimate_confidence", estimate_confidence(scene.matches, scene.found.disparity,
-                                                       confidence_model(config.match.method), exec));
+  scene.found.confidence = stage(
+      "estimate_confidence",
+      estimate_confidence(scene.matches, scene.found.disparity, confidence_model(config.match.method), exec));
   return std::move(scene.found);
 }
 

@@ -28,8 +28,8 @@ std::vector<std::vector<std::vector<std::int64_t>>> costs_and_winners(const Matc
 
 TEST(SemiGlobal, AddsUpFourPathsAsOneCanByHand) {
   // Two pixels without a difference; candidates 0 and 1. Of (0, d = 1) the partner lies outside: h = 24. So
-  // r(0, 1) = (3·24 + 2) / 4 = 18, C(0, 1) = (5·18 + 2) / 4 = 23, r(1, 1) = (2·24 + 2) / 4 = 12, C(1, 1) = 15,
-  // C(·, 0) = 0; P1 = 63·0.6 = 38. S(1, 1) = 15 down + 15 up + 15 leftward + 15 + min(23, P1) rightward.
+  // r(0, 1) = (3·24 + 2) / 4 = 18, C(0, 1) = (5·18 + 2) / 4 = 23, r(1, 1) = (2·24 + 2) / 4 = 12, C(1, 1) =
+  // 15, C(·, 0) = 0; P1 = 63·0.6 = 38. S(1, 1) = 15 down + 15 up + 15 leftward + 15 + min(23, P1) rightward.
   const Image<Gray> plain({2, 1}, 77, Pool{});
   const Matches m = matched(StereoPair::from(plain, plain), 2, {.penalty_small = 0.6F});
   EXPECT_EQ(m.best(1, 0), 0);
