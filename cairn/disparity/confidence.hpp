@@ -22,13 +22,13 @@ struct ConfidenceModel {
 /// benchmarks/confidence_study.cpp.
 constexpr ConfidenceModel confidence_model(MatchMethod method) {
   return method == MatchMethod::semi_global
-             ? ConfidenceModel{.bias = 2.51F,
-                               .margin = 1.90F,
-                               .cost = -1.14F,
-                               .jumps = -6.41F,
-                               .holes = -2.88F}
+             ? ConfidenceModel{.bias = 4.55F,
+                               .margin = 0.82F,
+                               .cost = -2.58F,
+                               .jumps = -6.16F,
+                               .holes = -3.89F}
              : ConfidenceModel{
-                   .bias = 4.43F, .margin = 0.49F, .cost = 1.65F, .jumps = -11.27F, .holes = -4.58F};
+                   .bias = 4.94F, .margin = 0.04F, .cost = 1.51F, .jumps = -9.82F, .holes = -5.72F};
 }
 
 /// Side of the square window that jumps and holes are counted in, clipped at the image's border, px.

@@ -64,9 +64,6 @@ T Sub(T a, T b) {
 inline std::uint8_t SaturatedAdd(std::uint8_t a, std::uint8_t b) {
   return static_cast<std::uint8_t>(std::min(255, a + b));
 }
-inline std::uint8_t SaturatedSub(std::uint8_t a, std::uint8_t b) {
-  return static_cast<std::uint8_t>(std::max(0, a - b));
-}
 template <int kBits>
 std::uint8_t ShiftRight(std::uint8_t a) {
   return static_cast<std::uint8_t>(a >> kBits);

@@ -81,8 +81,8 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   Matches matches = make_matches(size, config.maps, exec.pool);
   const Size volume{size.width * layout.lanes, size.height};
   Image<Gray> smooth(size, exec.pool);
-  Image<std::uint8_t> left_signs({5 * kernels::round_up(size.width, 64), size.height}, exec.pool);
-  Image<std::uint8_t> right_signs({5 * layout.length(), size.height}, exec.pool);
+  Image<std::uint8_t> left_bits({3 * kernels::round_up(size.width, 64), size.height}, exec.pool);
+  Image<std::uint8_t> right_bits({3 * layout.length(), size.height}, exec.pool);
   const Image<std::uint8_t> inside = inside_row(layout, exec.pool);
   Image<std::uint8_t> costs(volume, exec.pool);
   Image<std::uint8_t> steps(volume, exec.pool);
@@ -91,7 +91,7 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   const SemiGlobalTask task{layout,       table_of(penalties),
                             config.maps,  pair.left(),
                             pair.right(), smooth,
-                            left_signs,   right_signs,
+                            left_bits,    right_bits,
                             inside,       costs,
                             steps,        along,
                             least,        matches};

@@ -9,17 +9,17 @@ namespace cairn {
 /// What it costs a path when the disparity changes, in units of the greatest cost that one pixel's match can
 /// have.
 struct SemiGlobalConfig {
-  float penalty_small = 0.6F;  // greatest costs, 0 … 2; by one pixel: less for slanted and curved surfaces
-  float penalty_large = 2.0F;  // greatest costs, 0 … 2; by more: less for thin objects, more for noise
-  float penalty_edge = 0.1F;  // 1/grey level, 0 … 10; how fast the large penalty falls with the intensity's
-                              // step: more where objects stand out by their grey level
+  float penalty_small = 0.6F;  // greatest costs, 0 … 2.3; by one pixel: less for slanted and curved surfaces
+  float penalty_large = 2.2F;  // greatest costs, 0 … 2.3; by more: less for thin objects, more for noise
+  float penalty_edge = 0.15F;  // 1/grey level, 0 … 10; how fast the large penalty falls with the intensity's
+                               // step: more where objects stand out by their grey level
 };
 template <class V>
 void fields(SemiGlobalConfig& c, V&& v) {
   constexpr Condition kSemiGlobal = when("match.method", "semi_global");
   v("penalty_small", c.penalty_small, "greatest cost", "for a change of disparity by one pixel",
-    range(0.0F, 2.0F), kSemiGlobal);
-  v("penalty_large", c.penalty_large, "greatest cost", "for a larger change of disparity", range(0.0F, 2.0F),
+    range(0.0F, 2.3F), kSemiGlobal);
+  v("penalty_large", c.penalty_large, "greatest cost", "for a larger change of disparity", range(0.0F, 2.3F),
     kSemiGlobal);
   v("penalty_edge", c.penalty_edge, "1/grey level",
     "how fast the large penalty falls where the intensity changes", range(0.0F, 10.0F), kSemiGlobal);
@@ -29,15 +29,11 @@ void fields(SemiGlobalConfig& c, V&& v) {
 /// texture, the answer comes from where there is some, and rims stay sharp because no window lies across
 /// them. (Hirschmüller 2008, "Stereo processing by semiglobal matching and mutual information")
 ///
-/// All of this on both images smoothed by the weights 6 58 128 58 6 (σ = 0.8) across and down, in whole grey
-/// levels; their borders, as those of what follows, are replicated.
-/// 1. census(x, y): 24 bits, one for each other pixel of the 5x5 window, 1 where it is darker than the centre
-/// by 2 grey levels or more: less is noise. (Zabih & Woodfill 1994) g(x, y): the steps of grey levels from
-/// (x − 1, y) to (x + 1, y) and from (x, y − 1) to (x, y + 1), as far as they lie within ±127.
-/// 2. h(x, y, d): in how many bits left (x, y) and right (x − d, y) differ, and by how much either g does,
-/// but 12 at most; 24 where the latter lies outside.
-/// 3. r(x, y, d) = (Σh + 2) / 4 over the five pixels across, C = min(255, Σr + 2) / 4 over five rows, both
-/// rounded down: 0 … 63.
+/// 1. census(x, y): 24 bits, one for each other pixel of the 5x5 window, 1 where it is darker than the
+/// centre.
+///    (Zabih & Woodfill 1994) The border is replicated, here and below.
+/// 2. h(x, y, d): in how many bits left (x, y) and right (x − d, y) differ; 12 where the latter lies outside.
+/// 3. C(x, y, d) = (Σh + 2) / 4 over the 3x3 pixels around (x, y), rounded down: 0 … 54.
 /// 4. Along each of four paths (rightward, leftward, down, up), p being the pixel after q, and from C alone
 /// at
 ///    its first pixel:

@@ -5,7 +5,7 @@
 //
 // How paths are followed. Vectors run along the disparity, one byte for each candidate. Lanes beyond the last
 // candidate have a cost of 255; sums saturate, so that their L stays 255, and no real lane ever takes
-// anything from them: a real L is at most 63 + 127. For the same reason a saturated L + P1 changes nothing.
+// anything from them: a real L is at most 54 + 127. For the same reason a saturated L + P1 changes nothing.
 //
 // What a path adds to C is at most P2. Only that is kept of the vertical paths, both in the same byte.
 #include <cairn/matching/byte_lanes-inl.hpp>
@@ -15,7 +15,7 @@ namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
 constexpr std::uint8_t kNoLane = 255;
-constexpr int kOutsideCost = 24;        // half of the greatest
+constexpr int kOutsideCost = 12;        // of 24 bits
 constexpr std::int16_t kNoSum = 32767;  // of a candidate that does not exist
 constexpr int kBlock = 32;              // left pixels whose sums are held at a time
 constexpr int kBlockMargin = 32;        // lanes without candidate before, between and after pixels' sums
@@ -32,95 +32,41 @@ CAIRN_LANES_INLINE int lane_count(D d) {
 class PaddedRows {
  public:
   static constexpr int kBorder = 2;
-  explicit PaddedRows(int width)
-      : width_(width), stride_(round_up(width + 2 * kBorder + 64, 64)), rows_(5 * stride_) {}
+  PaddedRows(View<const Gray> image, bool mirrored)
+      : image_(image),
+        mirrored_(mirrored),
+        stride_(round_up(image.width() + 2 * kBorder + 64, 64)),
+        rows_(5 * stride_) {}
 
+  void load(int y) {
+    const Gray* from = image_.row(std::clamp(y, 0, image_.height() - 1));
+    std::uint8_t* to = slot(y);
+    const int width = image_.width();
+    if (mirrored_) {
+      std::reverse_copy(from, from + width, to + kBorder);
+    } else {
+      std::copy_n(from, width, to + kBorder);
+    }
+    std::fill_n(to, kBorder, to[kBorder]);
+    std::fill_n(to + kBorder + width, kBorder, to[kBorder + width - 1]);
+  }
   /// Its first real pixel.
-  [[nodiscard]] std::uint8_t* row(int y) { return rows_.data() + (y + 5) % 5 * stride_ + kBorder; }
-  [[nodiscard]] const std::uint8_t* row(int y) const {
-    return rows_.data() + (y + 5) % 5 * stride_ + kBorder;
-  }
-  /// Once row y is written.
-  void pad(int y) {
-    std::uint8_t* const at = row(y);
-    std::fill_n(at - kBorder, kBorder, at[0]);
-    std::fill_n(at + width_, kBorder, at[width_ - 1]);
-  }
+  [[nodiscard]] const std::uint8_t* row(int y) const { return slot(y) + kBorder; }
 
  private:
-  int width_;
+  [[nodiscard]] std::uint8_t* slot(int y) const { return rows_.data() + (y + 5) % 5 * stride_; }
+  View<const Gray> image_;
+  bool mirrored_;
   int stride_;
   Scratch<std::uint8_t> rows_;
 };
 
-/// The five smoothed rows around a row of a picture, which may be mirrored. Rows are loaded from the top
-/// down.
-class SmoothedRows {
- public:
-  SmoothedRows(View<const Gray> image, bool mirrored)
-      : image_(image),
-        mirrored_(mirrored),
-        given_(image.width()),
-        smooth_(image.width()),
-        down_(image.width() + 2 * PaddedRows::kBorder) {}
-
-  void load(int y) {
-    const int real = std::clamp(y, 0, image_.height() - 1);
-    if (real == smoothed_) {
-      std::copy_n(smooth_.row(y - 1), image_.width(), smooth_.row(y));
-    } else {
-      for (int v = smoothed_ < 0 ? real - 2 : real + 2; v <= real + 2; ++v) take(v);
-      smooth(real, smooth_.row(y));
-      smoothed_ = real;
-    }
-    smooth_.pad(y);
-  }
-  [[nodiscard]] const std::uint8_t* row(int y) const { return smooth_.row(y); }
-
- private:
-  void take(int y) {
-    const Gray* const from = image_.row(std::clamp(y, 0, image_.height() - 1));
-    const int width = image_.width();
-    if (mirrored_) {
-      std::reverse_copy(from, from + width, given_.row(y));
-    } else {
-      std::copy_n(from, width, given_.row(y));
-    }
-    given_.pad(y);
-  }
-
-  void smooth(int y, std::uint8_t* CAIRN_RESTRICT out) {
-    const int width = image_.width();
-    const std::uint8_t* const rows[5] = {given_.row(y - 2), given_.row(y - 1), given_.row(y),
-                                         given_.row(y + 1), given_.row(y + 2)};
-    std::uint16_t* const CAIRN_RESTRICT down = down_.data();
-    for (int x = -2; x < width + 2; ++x) {
-      const int outer = rows[0][x] + rows[4][x];
-      const int inner = rows[1][x] + rows[3][x];
-      down[x + 2] = static_cast<std::uint16_t>(6 * outer + 58 * inner + 128 * rows[2][x]);
-    }
-    for (int x = 0; x < width; ++x) {
-      const std::uint16_t* v = down + x;
-      const int sum = 6 * (v[0] + v[4]) + 58 * (v[1] + v[3]) + 128 * v[2];
-      out[x] = static_cast<std::uint8_t>((sum + (1 << 15)) >> 16);
-    }
-  }
-
-  View<const Gray> image_;
-  bool mirrored_;
-  int smoothed_ = -1;  // the last row
-  PaddedRows given_;
-  PaddedRows smooth_;
-  Scratch<std::uint16_t> down_;
-};
-
 /// Eight of the window's comparisons make a byte; the centre is none of them.
 template <bool kMirrored>
-void census_row(const SmoothedRows& rows, int y, int width, std::uint8_t* signs, int plane) {
+void census_row(const PaddedRows& rows, int y, int width, std::uint8_t* bits, int plane) {
   const bytes::CappedTag<std::uint8_t, 64> d;
-  const auto tolerance = bytes::Set(d, std::uint8_t{kCensusTolerance - 1});
   for (int x = 0; x < width; x += lane_count(d)) {
-    const auto centre = bytes::SaturatedSub(bytes::LoadU(d, rows.row(y) + x), tolerance);
+    const auto centre = bytes::LoadU(d, rows.row(y) + x);
     auto byte = bytes::Zero(d);
     int k = 0;
     for (int v = -2; v <= 2; ++v) {
@@ -130,46 +76,38 @@ void census_row(const SmoothedRows& rows, int y, int width, std::uint8_t* signs,
         const auto bit = bytes::Set(d, static_cast<std::uint8_t>(1 << k % 8));
         byte = bytes::Or(byte, bytes::IfThenZeroElse(bytes::Eq(bytes::Max(other, centre), other), bit));
         if (++k % 8 != 0) continue;
-        bytes::StoreU(byte, d, signs + (k / 8 - 1) * plane + x);
+        bytes::StoreU(byte, d, bits + (k / 8 - 1) * plane + x);
         byte = bytes::Zero(d);
       }
     }
   }
 }
 
-/// 128 + the step from `before` to `after`, as far as it fits a byte.
-inline void gradient_row(const std::uint8_t* before, const std::uint8_t* after, int width,
-                         std::uint8_t* out) {
-  const bytes::CappedTag<std::uint8_t, 64> d;
-  const auto most = bytes::Set(d, std::uint8_t{127});
-  for (int x = 0; x < width; x += lane_count(d)) {
-    const auto a = bytes::LoadU(d, before + x);
-    const auto b = bytes::LoadU(d, after + x);
-    const auto up = bytes::Min(bytes::SaturatedSub(b, a), most);
-    const auto down = bytes::Min(bytes::SaturatedSub(a, b), most);
-    bytes::StoreU(bytes::Sub(bytes::Add(bytes::Set(d, std::uint8_t{128}), up), down), d, out + x);
+inline void smooth_row(const PaddedRows& rows, int y, int width, std::uint16_t* down, Gray* smooth) {
+  for (int x = -2; x < width + 2; ++x) {
+    const int outer = rows.row(y - 2)[x] + rows.row(y + 2)[x];
+    const int inner = rows.row(y - 1)[x] + rows.row(y + 1)[x];
+    down[x + 2] = static_cast<std::uint16_t>(6 * outer + 58 * inner + 128 * rows.row(y)[x]);
   }
-}
-
-template <bool kMirrored>
-void describe_row(const SmoothedRows& rows, int y, int width, std::uint8_t* signs, int plane) {
-  census_row<kMirrored>(rows, y, width, signs, plane);
-  constexpr int kRight = kMirrored ? -1 : 1;
-  gradient_row(rows.row(y) - kRight, rows.row(y) + kRight, width, signs + 3 * plane);
-  gradient_row(rows.row(y - 1), rows.row(y + 1), width, signs + 4 * plane);
+  for (int x = 0; x < width; ++x) {
+    const std::uint16_t* v = down + x;
+    const int sum = 6 * (v[0] + v[4]) + 58 * (v[1] + v[3]) + 128 * v[2];
+    smooth[x] = static_cast<Gray>((sum + (1 << 15)) >> 16);
+  }
 }
 
 inline void describe_rows(const SemiGlobalTask& task, int first, int last) {
   const int width = task.layout.width;
-  SmoothedRows left(task.left, false);
-  SmoothedRows right(task.right, true);
+  PaddedRows left(task.left, false);
+  PaddedRows right(task.right, true);
+  Scratch<std::uint16_t> down(width + 2 * PaddedRows::kBorder);
   for (int y = first - 2; y < first + 2; ++y) left.load(y), right.load(y);
   for (int y = first; y < last; ++y) {
     left.load(y + 2);
     right.load(y + 2);
-    std::copy_n(left.row(y), width, task.smooth.row(y));
-    describe_row<false>(left, y, width, task.left_signs.row(y), round_up(width, 64));
-    describe_row<true>(right, y, width, task.right_signs.row(y) + task.layout.pad(), task.layout.length());
+    census_row<false>(left, y, width, task.left_bits.row(y), round_up(width, 64));
+    census_row<true>(right, y, width, task.right_bits.row(y) + task.layout.pad(), task.layout.length());
+    smooth_row(left, y, width, down.data(), task.smooth.row(y));
   }
 }
 
@@ -269,7 +207,7 @@ class Descent {
         g_(task.layout),
         first_(first),
         last_(last),
-        sums_(kRowsAround * (last - first) * g_.lanes),
+        sums_(3 * (last - first) * g_.lanes),
         along_((last - first) * g_.lanes),
         least_(last - first),
         beyond_(g_.lanes) {
@@ -277,19 +215,17 @@ class Descent {
   }
 
   void run() {
-    for (int y = 0; y < std::min(2, g_.height); ++y) sum_rows(y);
+    sum_rows(0);
     for (int y = 0; y < g_.height; ++y) {
-      if (y + 2 < g_.height) sum_rows(y + 2);
+      if (y + 1 < g_.height) sum_rows(y + 1);
       go_down(y);
     }
   }
 
  private:
-  static constexpr int kRowsAround = 5;
-
-  /// A quarter of Σh over five neighbours in row y.
+  /// Σh over three neighbours of row y.
   [[nodiscard]] std::uint8_t* sums(int y) const {
-    return sums_.data() + std::clamp(y, 0, g_.height - 1) % kRowsAround * (last_ - first_) * g_.lanes;
+    return sums_.data() + std::clamp(y, 0, g_.height - 1) % 3 * (last_ - first_) * g_.lanes;
   }
 
   // What is reached through a pointer is copied first, here and below: as far as the compiler knows, a vector
@@ -297,8 +233,8 @@ class Descent {
 
   void sum_rows(int y) {
     const D d;
-    const std::uint8_t* const left = task_.left_signs.row(y);
-    const std::uint8_t* const right = task_.right_signs.row(y) + g_.first_lane(0);
+    const std::uint8_t* const left = task_.left_bits.row(y);
+    const std::uint8_t* const right = task_.right_bits.row(y) + g_.first_lane(0);
     const std::uint8_t* const inside = task_.inside.row(0) + g_.first_lane(0);
     const int left_plane = round_up(g_.width, 64);
     const int right_plane = g_.length();
@@ -315,32 +251,17 @@ class Descent {
                                     bytes::Set(d, l[2 * left_plane])};
         const bytes::Vec<D> b[3] = {bytes::LoadU(d, r), bytes::LoadU(d, r + right_plane),
                                     bytes::LoadU(d, r + 2 * right_plane)};
-        const auto most = bytes::Set(d, std::uint8_t{kMostOfGradient});
-        auto sum = bytes::CountDifferentBits(d, a, b);
-        for (int k = 3; k < 5; ++k) {
-          const auto here = bytes::Set(d, l[k * left_plane]);
-          const auto there = bytes::LoadU(d, r + k * right_plane);
-          const auto by = bytes::Or(bytes::SaturatedSub(here, there), bytes::SaturatedSub(there, here));
-          sum = bytes::Add(sum, bytes::Min(by, most));
-        }
         const auto exists = bytes::LoadU(d, inside - x + i);
         const auto half = bytes::Set(d, static_cast<std::uint8_t>(kOutsideCost));
-        return bytes::Or(bytes::And(sum, exists), bytes::AndNot(exists, half));
+        return bytes::Or(bytes::And(bytes::CountDifferentBits(d, a, b), exists), bytes::AndNot(exists, half));
       };
-      auto second_before = differences(std::max(0, first - 2));
       auto before = differences(std::max(0, first - 1));
       auto here = differences(first);
-      auto after = differences(std::min(first + 1, most_x));
-      const auto two = bytes::Set(d, std::uint8_t{2});
       for (int x = first; x < last; ++x) {
-        const auto second_after = differences(std::min(x + 2, most_x));
-        const auto sides = bytes::Add(bytes::Add(before, after), bytes::Add(second_before, second_after));
-        const auto sum = bytes::Add(bytes::Add(sides, here), two);
-        bytes::Store(bytes::ShiftRight<2>(sum), d, out + (x - first) * lanes + i);
-        second_before = before;
+        const auto after = differences(std::min(x + 1, most_x));
+        bytes::Store(bytes::Add(bytes::Add(before, here), after), d, out + (x - first) * lanes + i);
         before = here;
         here = after;
-        after = second_after;
       }
     }
   }
@@ -353,8 +274,9 @@ class Descent {
     const int count = last_ - first_;
     const Gray* const smooth = task_.smooth.row(y) + first_;
     const Gray* const smooth_above = task_.smooth.row(std::max(0, y - 1)) + first_;
-    const std::uint8_t* const around[kRowsAround] = {sums(y - 2), sums(y - 1), sums(y), sums(y + 1),
-                                                     sums(y + 2)};
+    const std::uint8_t* const above = sums(y - 1);
+    const std::uint8_t* const here = sums(y);
+    const std::uint8_t* const below = sums(y + 1);
     const std::uint8_t* const beyond = beyond_.data();
     std::uint8_t* const costs = task_.costs.row(y) + first_ * lanes;
     std::uint8_t* const steps = task_.steps.row(y) + first_ * lanes;
@@ -367,7 +289,7 @@ class Descent {
       const int at = x * lanes;
       expect_writes(next_costs + at, lanes);
       expect_writes(next_steps + at, lanes);
-      average(around, at, beyond, lanes, costs + at);
+      average(above + at, here + at, below + at, beyond, lanes, costs + at);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
       const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty,
                              lanes, Keep<D>{d, steps + at});
@@ -375,13 +297,13 @@ class Descent {
     }
   }
 
-  static CAIRN_LANES_INLINE void average(const std::uint8_t* const (&around)[kRowsAround], int at,
-                                         const std::uint8_t* beyond, int lanes, std::uint8_t* costs) {
+  static CAIRN_LANES_INLINE void average(const std::uint8_t* above, const std::uint8_t* here,
+                                         const std::uint8_t* below, const std::uint8_t* beyond, int lanes,
+                                         std::uint8_t* costs) {
     const D d;
     for (int i = 0; i < lanes; i += lane_count(d)) {
-      auto sum = bytes::Set(d, std::uint8_t{2});
-      CAIRN_UNROLL
-      for (const std::uint8_t* row : around) sum = bytes::SaturatedAdd(sum, bytes::Load(d, row + at + i));
+      const auto sum = bytes::Add(bytes::Add(bytes::Load(d, above + i), bytes::Load(d, here + i)),
+                                  bytes::Add(bytes::Load(d, below + i), bytes::Set(d, std::uint8_t{2})));
       bytes::Store(bytes::Or(bytes::ShiftRight<2>(sum), bytes::Load(d, beyond + i)), d, costs + i);
     }
   }
@@ -390,7 +312,7 @@ class Descent {
   const SearchLayout& g_;
   int first_;
   int last_;
-  Scratch<std::uint8_t> sums_;  // of five rows
+  Scratch<std::uint8_t> sums_;  // of three rows
   Scratch<std::uint8_t> along_;
   Scratch<std::uint8_t> least_;
   Scratch<std::uint8_t> beyond_;  // 255 in lanes without candidate
@@ -438,7 +360,7 @@ class Crossing {
   static constexpr int kSums = static_cast<int>(lanes::MaxLanes(Sums()));
   static constexpr int kTileBits = 6;
   static constexpr int kTile = 1 << kTileBits;
-  static constexpr std::int16_t kMostSum = 1023;  // four times 63 + 127 are less
+  static constexpr std::int16_t kMostSum = 1023;  // four times 54 + 127 are less
 
  public:
   explicit Crossing(const SemiGlobalTask& task)

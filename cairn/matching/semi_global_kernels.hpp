@@ -13,12 +13,8 @@
 /// library.
 namespace cairn::kernels {
 
-/// What differs by so many grey levels is darker.
-inline constexpr int kCensusTolerance = 2;
-/// What a gradient that differs can add to h.
-inline constexpr int kMostOfGradient = 12;
-/// C is a fourth of what a byte holds.
-inline constexpr int kGreatestCost = 63;
+/// C of a box of nine pixels whose 24 bits all differ.
+inline constexpr int kGreatestCost = (9 * 24 + 2) / 4;
 /// Two paths' penalties together fit a byte.
 inline constexpr int kGreatestPenalty = 127;
 
@@ -58,10 +54,9 @@ struct SemiGlobalTask {
   MatchMaps maps;
   View<const Gray> left;
   View<const Gray> right;
-  View<Gray> smooth;               // the left image, smoothed
-  View<std::uint8_t> left_signs;   // three rows of census, the gradients across and down: bytes side by side,
-                                   // round_up(width, 64) each
-  View<std::uint8_t> right_signs;  // the same reversed, layout.length() each
+  View<Gray> smooth;                // the left image, smoothed
+  View<std::uint8_t> left_bits;     // census: three rows of bytes side by side, round_up(width, 64) each
+  View<std::uint8_t> right_bits;    // the same reversed, layout.length() each
   View<const std::uint8_t> inside;  // one reversed row: 255 where there is a pixel
   View<std::uint8_t> costs;         // C: width·lanes in a row; 255 in lanes ≥ count
   View<std::uint8_t> steps;  // L − C of the path down; with that of the path up added once that is known
@@ -73,7 +68,7 @@ struct SemiGlobalTask {
 struct SemiGlobalKernels {
   /// How many lanes `count` candidates take.
   int (*lanes)(int count);
-  /// Census and gradients of both images, and the smoothed left one, for the rows first … last − 1.
+  /// Census of both images and the smoothed left one, for the rows first … last − 1.
   void (*describe_rows)(const SemiGlobalTask& task, int first, int last);
   /// Costs and the path down, for the columns first … last − 1 of all rows.
   void (*match_down)(const SemiGlobalTask& task, int first, int last);

@@ -38,8 +38,8 @@ class MatchOptions(TypedDict, total=False):
     prefilter_cap: int  # grey levels, 1 … 63, read while match.prefilter=xsobel: clip the x-Sobel response to ±cap
 
 class SemiGlobalOptions(TypedDict, total=False):
-    penalty_small: float  # greatest cost, 0 … 2, read while match.method=semi_global: for a change of disparity by one pixel
-    penalty_large: float  # greatest cost, 0 … 2, read while match.method=semi_global: for a larger change of disparity
+    penalty_small: float  # greatest cost, 0 … 2.3, read while match.method=semi_global: for a change of disparity by one pixel
+    penalty_large: float  # greatest cost, 0 … 2.3, read while match.method=semi_global: for a larger change of disparity
     penalty_edge: float  # 1/grey level, 0 … 10, read while match.method=semi_global: how fast the large penalty falls where the intensity changes
 
 class SubpixelOptions(TypedDict, total=False):

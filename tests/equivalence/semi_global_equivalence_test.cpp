@@ -106,8 +106,8 @@ TEST(SemiGlobalEquivalence, HoldsWhereThePicturesAreCutIntoChunksOfRows) {
 }
 
 TEST(SemiGlobalEquivalence, HoldsForEveryPenalty) {
-  for (const float small : {0.0F, 0.01F, 0.42F, 1.0F, 2.0F}) {
-    for (const float large : {0.0F, 0.6F, 1.7F, 2.0F}) {
+  for (const float small : {0.0F, 0.01F, 0.42F, 1.0F, 2.3F}) {
+    for (const float large : {0.0F, 0.6F, 1.7F, 2.3F}) {
       for (const float edge : {0.0F, 0.15F, 10.0F}) {
         expect_equal_to_reference({45, 7}, search(0, 20), {small, large, edge});
       }

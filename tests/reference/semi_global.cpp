@@ -21,7 +21,7 @@ std::uint32_t census(View<const Gray> image, int x, int y) {
   for (int v = -2; v <= 2; ++v) {
     for (int u = -2; u <= 2; ++u) {
       if (u == 0 && v == 0) continue;
-      bits = bits << 1 | (at(image, x + u, y + v) <= at(image, x, y) - 2 ? 1U : 0U);
+      bits = bits << 1 | (at(image, x + u, y + v) < at(image, x, y) ? 1U : 0U);
     }
   }
   return bits;
@@ -40,23 +40,6 @@ Image<Gray> smoothed(View<const Gray> image) {
     }
   }
   return out;
-}
-
-int step(int before, int after) {
-  return std::clamp(after - before, -127, 127);
-}
-
-/// h, of two smoothed images.
-int difference(View<const Gray> left, View<const Gray> right, int x, int x_right, int y) {
-  const auto across = [y](View<const Gray> image, int u) {
-    return step(at(image, u - 1, y), at(image, u + 1, y));
-  };
-  const auto down = [y](View<const Gray> image, int u) {
-    return step(at(image, u, y - 1), at(image, u, y + 1));
-  };
-  return std::popcount(census(left, x, y) ^ census(right, x_right, y)) +
-         std::min(12, std::abs(across(left, x) - across(right, x_right))) +
-         std::min(12, std::abs(down(left, x) - down(right, x_right)));
 }
 
 /// A number for every pixel and disparity.
@@ -85,28 +68,28 @@ class Volume {
 
 Volume costs_of(const StereoPair& pair, const MatchConfig& config) {
   const auto [width, height] = pair.size();
-  const Image<Gray> left = smoothed(pair.left());
-  const Image<Gray> right = smoothed(pair.right());
   Volume different(pair.size(), config.min_disparity, config.num_disparities);
   Volume costs = different;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      for (int d = costs.first(); d < costs.end(); ++d)
-        different(x, y, d) = x - d >= 0 && x - d < width ? difference(left, right, x, x - d, y) : 24;
+      for (int d = costs.first(); d < costs.end(); ++d) {
+        const std::uint32_t bits = x - d >= 0 && x - d < width
+                                       ? census(pair.left(), x, y) ^ census(pair.right(), x - d, y)
+                                       : (1U << 12) - 1;
+        different(x, y, d) = std::popcount(bits);
+      }
     }
   }
-  const auto across = [&](int x, int y, int d) {
-    int sum = 0;
-    for (int u = x - 2; u <= x + 2; ++u)
-      sum += different(std::clamp(u, 0, width - 1), std::clamp(y, 0, height - 1), d);
-    return (sum + 2) / 4;
-  };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int d = costs.first(); d < costs.end(); ++d) {
         int sum = 0;
-        for (int v = y - 2; v <= y + 2; ++v) sum += across(x, v, d);
-        costs(x, y, d) = std::min(255, sum + 2) / 4;
+        for (int v = y - 1; v <= y + 1; ++v) {
+          for (int u = x - 1; u <= x + 1; ++u) {
+            sum += different(std::clamp(u, 0, width - 1), std::clamp(v, 0, height - 1), d);
+          }
+        }
+        costs(x, y, d) = (sum + 2) / 4;
       }
     }
   }
@@ -115,14 +98,14 @@ Volume costs_of(const StereoPair& pair, const MatchConfig& config) {
 
 int large_penalty(const SemiGlobalConfig& penalties, int step) {
   const float falling = penalties.penalty_large / (1.0F + penalties.penalty_edge * static_cast<float>(step));
-  return static_cast<int>(std::lround(63.0F * std::max({0.5F, falling, penalties.penalty_small})));
+  return static_cast<int>(std::lround(54.0F * std::max({0.5F, falling, penalties.penalty_small})));
 }
 
 /// Adds the L of the paths that run by (dx, dy) to `sums`.
 void add_paths(Volume& costs, const Image<Gray>& smooth, const SemiGlobalConfig& penalties, int dx, int dy,
                Volume& sums) {
   const auto [width, height] = smooth.size();
-  const int p1 = static_cast<int>(std::lround(63.0F * penalties.penalty_small));
+  const int p1 = static_cast<int>(std::lround(54.0F * penalties.penalty_small));
   Volume path = costs;
   for (int i = 0; i < height; ++i) {
     for (int j = 0; j < width; ++j) {

@@ -27,24 +27,24 @@ std::vector<std::vector<std::vector<std::int64_t>>> costs_and_winners(const Matc
 }
 
 TEST(SemiGlobal, AddsUpFourPathsAsOneCanByHand) {
-  // Two pixels without a difference; candidates 0 and 1. Of (0, d = 1) the partner lies outside: h = 24. So
-  // r(0, 1) = (3·24 + 2) / 4 = 18, C(0, 1) = (5·18 + 2) / 4 = 23, r(1, 1) = (2·24 + 2) / 4 = 12, C(1, 1) =
-  // 15, C(·, 0) = 0; P1 = 63·0.6 = 38. S(1, 1) = 15 down + 15 up + 15 leftward + 15 + min(23, P1) rightward.
+  // Two pixels without a difference; candidates 0 and 1. Of (0, d = 1) the partner lies outside: 12 bits. So
+  // C(0, 1) = (3·12 + 3·12 + 0 + 2) / 4 = 18, C(1, 1) = (3·12 + 2) / 4 = 9, C(·, 0) = 0; P1 = 54·0.6 = 32.
+  // S(1, 1) = 9 down + 9 up + 9 leftward + 9 + min(18, P1) rightward.
   const Image<Gray> plain({2, 1}, 77, Pool{});
   const Matches m = matched(StereoPair::from(plain, plain), 2, {.penalty_small = 0.6F});
   EXPECT_EQ(m.best(1, 0), 0);
   EXPECT_EQ(m.cost(1, 0), 0.0F);
   EXPECT_EQ(m.cost_before(1, 0), kNoCost);
-  EXPECT_EQ(m.cost_after(1, 0), 83.0F);
-  EXPECT_EQ(m.mean_cost(1, 0), 41.5F);
+  EXPECT_EQ(m.cost_after(1, 0), 54.0F);
+  EXPECT_EQ(m.mean_cost(1, 0), 27.0F);
   EXPECT_EQ(m.runner_up(1, 0), kNoCost);
   EXPECT_EQ(m.best_right(0, 0), 0);
   // The left pixel's second candidate lies outside the right image.
   EXPECT_EQ(m.cost_after(0, 0), kNoCost);
   EXPECT_EQ(m.mean_cost(0, 0), 0.0F);
-  // P1 = 63·0.1 = 6: the step from 0 to 1 is the cheaper way rightward.
+  // P1 = 54·0.1 = 5: the step from 0 to 1 is the cheaper way rightward.
   const Matches cheap = matched(StereoPair::from(plain, plain), 2, {.penalty_small = 0.1F});
-  EXPECT_EQ(cheap.cost_after(1, 0), 66.0F);
+  EXPECT_EQ(cheap.cost_after(1, 0), 41.0F);
 }
 
 TEST(SemiGlobal, RecoversBoardsBeforeAWall) {
@@ -98,35 +98,20 @@ TEST(SemiGlobal, CostsNothingWhereEverythingFits) {
   EXPECT_GE(m.runner_up(30, 20), 40.0F);
 }
 
-/// The picture of a camera of another gain and offset.
-Image<Gray> otherwise_exposed(View<const Gray> image, float gain, float offset) {
-  Image<Gray> out(image.size());
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x)
-      out(x, y) = static_cast<Gray>(gain * static_cast<float>(image(x, y)) + offset);
-  }
-  return out;
-}
-
-TEST(SemiGlobal, IsBlindToTheRightCamerasOffset) {
+TEST(SemiGlobal, IsBlindToTheRightCamerasGainAndOffset) {
   const auto scene = synthetic::make_scene({.size = {60, 30}, .boxes = {{{25, 8, 20, 15}, 11}}});
-  const Image<Gray> left = otherwise_exposed(scene.left, 0.5F, 0);
-  const Image<Gray> right = otherwise_exposed(scene.right, 0.5F, 0);
-  const Image<Gray> brighter = otherwise_exposed(right, 1, 60);
+  Image<Gray> left = scene.left.clone();
+  Image<Gray> right = scene.right.clone();
+  Image<Gray> brighter(right.size());
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x) {
+      left(x, y) = static_cast<Gray>(left(x, y) / 3);
+      right(x, y) = static_cast<Gray>(right(x, y) / 3);
+      brighter(x, y) = static_cast<Gray>(2 * right(x, y) + 40);
+    }
+  }
   EXPECT_EQ(costs_and_winners(matched(StereoPair::from(left, brighter), 16)),
             costs_and_winners(matched(StereoPair::from(left, right), 16)));
-}
-
-TEST(SemiGlobal, BearsTheRightCamerasGain) {
-  const auto scene = synthetic::make_scene({.size = {60, 30}, .boxes = {{{25, 8, 20, 15}, 11}}});
-  const Matches even = matched(scene.pair(), 16);
-  const Image<Gray> flatter = otherwise_exposed(scene.right, 0.75F, 20);
-  const Matches other = matched(StereoPair::from(scene.left, flatter), 16);
-  int changed = 0;
-  for (int y = 0; y < 30; ++y) {
-    for (int x = 16; x < 60; ++x) changed += even.best(x, y) != other.best(x, y) ? 1 : 0;
-  }
-  EXPECT_LT(changed, 30 * 44 / 20);  // the rims only
 }
 
 TEST(SemiGlobal, KeepsLargeStepsToWhereTheIntensityChanges) {
@@ -140,9 +125,9 @@ TEST(SemiGlobal, KeepsLargeStepsToWhereTheIntensityChanges) {
     }
     return count;
   };
-  EXPECT_LT(steps({.penalty_large = 2.0F, .penalty_edge = 0}),
-            steps({.penalty_large = 2.0F, .penalty_edge = 10}));
-  EXPECT_LT(steps({.penalty_large = 2.0F, .penalty_edge = 0}),
+  EXPECT_LT(steps({.penalty_large = 2.3F, .penalty_edge = 0}),
+            steps({.penalty_large = 2.3F, .penalty_edge = 10}));
+  EXPECT_LT(steps({.penalty_large = 2.3F, .penalty_edge = 0}),
             steps({.penalty_small = 0.1F, .penalty_large = 0}));
 }
 

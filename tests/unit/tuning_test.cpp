@@ -123,7 +123,7 @@ TEST(Neighbours, StayWithinTheLimitsAndOdd) {
   EXPECT_EQ(neighbours(named("match.window_size"), "9", 1.1), (Strings{"11", "7"}));
   EXPECT_EQ(neighbours(named("match.window_size"), "3", 1.6), (Strings{"5"}));
   EXPECT_EQ(neighbours(named("match.window_size"), "31", 1.6), (Strings{"19"}));
-  EXPECT_EQ(neighbours(named("semi_global.penalty_large"), "2", 1.6), (Strings{"1.25"}));
+  EXPECT_EQ(neighbours(named("semi_global.penalty_large"), "2.3", 1.6), (Strings{"1.44"}));
 }
 
 TEST(Neighbours, FromOffOrNothingWhatThePresetsGiveIsTried) {
