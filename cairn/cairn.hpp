@@ -21,6 +21,7 @@
 #include <cairn/image/noise.hpp>                 // noise_sigma
 #include <cairn/grouping/evidence.hpp>          // find_evidence
 #include <cairn/scene/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
+#include <cairn/scene/floor_frame.hpp>       // floor_frame
 #include <cairn/disparity/speckle.hpp>           // reject_speckles
 #include <cairn/disparity/confidence.hpp>        // estimate_confidence
 #include <cairn/scene/background.hpp>        // fit_background
@@ -37,6 +38,8 @@
 #include <cairn/grouping/choose_objects.hpp>    // choose_objects, groups_of
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
+#include <cairn/objects/locate.hpp>              // locate
+#include <cairn/objects/space.hpp>               // label_space, scan_obstacles, map_obstacles, left_out_of
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above
 #include <cairn/pipeline/segmenter.hpp>          // Segmenter: the same for video

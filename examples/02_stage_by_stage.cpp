@@ -78,8 +78,9 @@ void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, cons
 
   // Which of the fused regions are objects, and where.
   const float noise = noise_sigma(pair.left(), exec);
-  const Objects objects = measure(fusion.labels, fusion.is_floor, disparity, pair.left(), pair.left_rgb(),
-                                  noise, rig, config.objects, exec);
+  Objects objects = measure(fusion.labels, fusion.is_floor, disparity, pair.left(), pair.left_rgb(), noise,
+                            config.objects, exec);
+  objects = locate(std::move(objects), disparity, ground, rig, exec);
   // [/stages]
 
   print_holes(disparity, ground);
@@ -105,28 +106,29 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const float noise = noise_sigma(pair.left(), exec);
   const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
   const Ground seen = fit_ground(evidence_px, rig, config.ground, exec);
-  disparity = reject_below_ground(std::move(disparity), seen, rig, config.ground, exec);
-  disparity = reject_speckles(std::move(disparity), config.speckle, exec);
   const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec);
+  disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
+  disparity = reject_speckles(std::move(disparity), config.speckle, exec);
   const Background background = fit_background(evidence_px, ground, rig, config.background, exec);
+  const Image<float> seen_px = floor_under_reflections(disparity, ground, exec);
 
   // The picture in pieces, and all regions that they fuse to, the likeliest pair first.
   const Superpixels superpixels =
-      cut_superpixels(pair.left(), pair.left_rgb(), disparity.disparity_px, noise, config.superpixels, exec);
-  const Cues cues{pair.left(), pair.left_rgb(), disparity.disparity_px, evidence_px, ground, background,
-                  noise};
+      cut_superpixels(pair.left(), pair.left_rgb(), seen_px, noise, config.superpixels, exec);
+  const Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
   const MergeTree tree = grow_merge_tree(superpixels, cues, kSameThing, exec);
 
   // Which of these regions are objects, and where; how far each disparity is to be trusted.
   const ChosenObjects chosen = choose_objects(tree, kWholeObject, limits_of(config.objects, pair.size()));
   const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
-  const Objects objects =
-      measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, rig, exec);
+  Objects objects =
+      measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, exec);
+  objects = locate(std::move(objects), disparity, ground, rig, exec);
   const Image<float> confidence =
       estimate_confidence(matches, disparity, confidence_model(config.match.method), exec);
   // [/stages_by_hierarchy]
 
-  print_holes(disparity, seen);
+  print_holes(disparity, ground);
   std::printf("walls: %zu; superpixels: %d, regions in their tree: %zu; objects: %zu\n",
               background.planes.size() - (background.has_floor ? 1 : 0), superpixels.count, tree.nodes.size(),
               objects.list.size());

@@ -156,6 +156,10 @@ void save_png(const fs::path& path, View<const Reject> image) {
   save(path, image, 1);
 }
 
+void save_png(const fs::path& path, View<const Space> image) {
+  save(path, image, 1);
+}
+
 std::string png_bytes(View<const Rgb> image) {
   return encoded(image, 3);
 }

@@ -4,6 +4,7 @@
 
 #include <cairn/core/image.hpp>
 #include <cairn/disparity/reject.hpp>
+#include <cairn/objects/space.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -55,6 +56,7 @@ void save_png(const std::filesystem::path& path, View<const std::uint8_t> image)
 void save_png(const std::filesystem::path& path, View<const std::uint16_t> image);
 void save_png(const std::filesystem::path& path, View<const Rgb> image);
 void save_png(const std::filesystem::path& path, View<const Reject> image);
+void save_png(const std::filesystem::path& path, View<const Space> image);
 
 /// The bytes of a PNG file that shows `image`. Throws Error where that is empty.
 std::string png_bytes(View<const Rgb> image);

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cairn/core/error.hpp>
+#include <cairn/scene/floor_frame.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -43,6 +45,21 @@ Json json(const std::optional<Vec3>& v) {
   return Json::array({json(v->x), json(v->y), json(v->z)});
 }
 
+Json json(const std::optional<Interval>& i) {
+  if (!i) return nullptr;
+  return Json::array({json(i->low), json(i->high)});
+}
+
+Json json(const std::optional<FloorBox>& box) {
+  if (!box) return nullptr;
+  Json covariance = Json::array();
+  for (const float entry : box->centre_covariance_m2) covariance.push_back(json(entry));
+  return {{"centre_m", json(std::optional(box->centre_in_floor_m))},
+          {"size_m", json(std::optional(box->size_m))},
+          {"yaw_rad", json(box->yaw_rad)},
+          {"centre_covariance_m2", covariance}};
+}
+
 Json json(const std::optional<StereoRig>& rig) {
   if (!rig) return nullptr;
   return {{"focal_px", json(rig->focal_px)},
@@ -50,6 +67,23 @@ Json json(const std::optional<StereoRig>& rig) {
           {"cy_px", json(rig->cy_px)},
           {"baseline_m", json(rig->baseline_m)},
           {"doffs_px", json(rig->doffs_px)}};
+}
+
+/// Where the floor is, in metres.
+std::optional<FloorFrame> floor_of(const Frame& frame, const Provenance& provenance) {
+  if (!frame.ground.plane || !provenance.rig) return std::nullopt;
+  return floor_frame(*frame.ground.plane, *provenance.rig);
+}
+
+Json floor_json(const Frame& frame, const Provenance& provenance) {
+  const auto floor = floor_of(frame, provenance);
+  if (!floor) return nullptr;
+  Json matrix = Json::array();
+  for (const float entry : floor->floor_from_camera()) matrix.push_back(json(entry));
+  return {{"camera_height_m", json(floor->camera_height_m)},
+          {"camera_pitch_rad", json(floor->pitch_rad())},
+          {"camera_roll_rad", json(floor->roll_rad())},
+          {"floor_from_camera", matrix}};
 }
 
 Json json(const Ground& ground) {
@@ -74,6 +108,33 @@ Json json(const EpipolarOffset& epipolar) {
     if (outcome.value == epipolar.outcome) j["outcome"] = std::string(outcome.name);
   }
   return j;
+}
+
+Json json(const LeftOut& left) {
+  const Rect box = left.box_px;
+  Json j;
+  for (const auto& reason : kLeftOutReasons) {
+    if (reason.value == left.reason) j["reason"] = std::string(reason.name);
+  }
+  j["bbox"] = {box.x, box.y, box.width, box.height};
+  j["area"] = left.pixel_count;
+  j["disparity_px"] = json(left.disparity_px);
+  j["position_m"] = json(left.position_in_camera_m);
+  j["confidence"] = json(left.confidence);
+  return j;
+}
+
+/// null where nothing is known of a floor in metres.
+Json scan_json(const Frame& frame, const Provenance& provenance) {
+  const auto floor = floor_of(frame, provenance);
+  if (!floor) return nullptr;
+  const ObstacleScan scan = scan_obstacles(frame.space, frame.disparity.disparity_px, *floor, *provenance.rig,
+                                           provenance.config.space);
+  Json ranges = Json::array();
+  for (const float range : scan.ranges_m) ranges.push_back(json(range));
+  return {{"angle_min_rad", json(scan.angle_min_rad)},
+          {"angle_increment_rad", json(scan.angle_increment_rad)},
+          {"ranges_m", ranges}};
 }
 
 Json option_value(const OptionInfo& option) {
@@ -107,8 +168,11 @@ Json json(const Object& object, View<const ObjectId> labels) {
   j["area"] = object.pixel_count;
   j["segmentation"] = {{"size", {rle.size.height, rle.size.width}}, {"counts", rle.counts}};
   j["disparity_px"] = json(object.disparity_px);
+  j["disparity_sigma_px"] = json(object.disparity_sigma_px);
   j["position_m"] = json(object.position_in_camera_m);
+  j["depth_interval_m"] = json(object.depth_interval_m);
   j["extent_m"] = json(object.extent_in_camera_m);
+  j["box_on_floor"] = json(object.box_on_floor);
   j["mean_colour"] = {object.mean_colour.r, object.mean_colour.g, object.mean_colour.b};
   j["valid_share"] = json(object.valid_share);
   j["edge_share"] = json(object.edge_share);
@@ -205,6 +269,86 @@ void write_cloud(const fs::path& path, const Result& r) {
            *r.provenance.rig);
 }
 
+// ---- depth and the grid of obstacles ----
+
+bool wants_depth(const Result& r) {
+  return r.extras.depth && r.provenance.rig.has_value();
+}
+
+Image<float> depth_m(const Result& r) {
+  const View<const float> d = r.frame.disparity.disparity_px;
+  Image<float> depth(d.size());
+  for (int y = 0; y < d.height(); ++y) {
+    for (int x = 0; x < d.width(); ++x) {
+      const auto point =
+          r.provenance.rig->point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d(x, y));
+      depth(x, y) = point ? point->z : std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return depth;
+}
+
+/// Millimetres; 0 where there is no depth, and beyond what 16 bits hold.
+void save_depth(const fs::path& path, const Image<float>& depth) {
+  Image<std::uint16_t> millimetres(depth.size());
+  for (int y = 0; y < depth.height(); ++y) {
+    std::transform(depth.row(y), depth.row(y) + depth.width(), millimetres.row(y), [](float metres) {
+      const float whole = std::round(metres * 1000);
+      return whole > 0 && whole <= 65535 ? static_cast<std::uint16_t>(whole) : std::uint16_t{0};
+    });
+  }
+  save_png(path, View<const std::uint16_t>(millimetres));
+}
+
+/// numpy's form, version 1.0, of a matrix of 32-bit floats.
+std::string npy_bytes(View<const float> image) {
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+                       std::to_string(image.height()) + ", " + std::to_string(image.width()) + "), }";
+  constexpr std::size_t kBefore = 10;  // bytes, and the whole a multiple of 64
+  header.resize((kBefore + header.size() + 1 + 63) / 64 * 64 - kBefore - 1, ' ');
+  header += '\n';
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  bytes += static_cast<char>(header.size() & 0xff);
+  bytes += static_cast<char>(header.size() >> 8);
+  bytes += header;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const auto bits = std::bit_cast<std::uint32_t>(image(x, y));
+      for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 0xff);
+    }
+  }
+  return bytes;
+}
+
+bool wants_grid(const Result& r) {
+  return r.extras.grid && !r.frame.space.empty() && floor_of(r.frame, r.provenance).has_value();
+}
+
+ObstacleGrid grid_of(const Result& r) {
+  return map_obstacles(r.frame.space, r.frame.disparity.disparity_px, *floor_of(r.frame, r.provenance),
+                       *r.provenance.rig, r.provenance.config.space);
+}
+
+/// As ROS' map_server reads it: the row with the greatest y first.
+std::string grid_pgm(const ObstacleGrid& grid) {
+  constexpr char kUnknown = static_cast<char>(205);
+  constexpr char kFree = static_cast<char>(254);
+  std::string bytes = "P5\n" + std::to_string(grid.width) + " " + std::to_string(grid.height) + "\n255\n";
+  for (int row = grid.height; row-- > 0;) {
+    for (int column = 0; column < grid.width; ++column) {
+      const std::int8_t cell = grid.cells[slot(row) * slot(grid.width) + slot(column)];
+      bytes += cell == ObstacleGrid::kUnknown ? kUnknown : cell == ObstacleGrid::kFree ? kFree : '\0';
+    }
+  }
+  return bytes;
+}
+
+std::string grid_yaml(const ObstacleGrid& grid) {
+  return "image: grid.pgm\nresolution: " + json(grid.cell_size_m).dump() + "\norigin: [" +
+         json(grid.origin_x_m).dump() + ", " + json(grid.origin_y_m).dump() +
+         ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+}
+
 bool always(const Result&) {
   return true;
 }
@@ -235,6 +379,20 @@ constexpr std::array kResultFiles{
                [](const fs::path& path, const Result& r) {
                  save_png(path, View<const std::uint8_t>(r.frame.floor));
                }},
+    ResultFile{
+        "space.png", [](const Result& r) { return !r.frame.space.empty(); },
+        [](const fs::path& path, const Result& r) { save_png(path, View<const Space>(r.frame.space)); }},
+    ResultFile{"depth.png", wants_depth,
+               [](const fs::path& path, const Result& r) { save_depth(path, depth_m(r)); }},
+    ResultFile{"depth.npy", wants_depth,
+               [](const fs::path& path, const Result& r) {
+                 const Image<float> depth = depth_m(r);
+                 write_file(path, npy_bytes(depth));
+               }},
+    ResultFile{"grid.pgm", wants_grid,
+               [](const fs::path& path, const Result& r) { write_file(path, grid_pgm(grid_of(r))); }},
+    ResultFile{"grid.yaml", wants_grid,
+               [](const fs::path& path, const Result& r) { write_file(path, grid_yaml(grid_of(r))); }},
     ResultFile{"overlay.png", always,
                [](const fs::path& path, const Result& r) {
                  const Image<Rgb> picture = draw_objects(r.left, r.left_rgb, r.frame.objects, r.frame.floor);
@@ -291,8 +449,12 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   }
   j["epipolar"] = json(frame.epipolar);
   j["ground"] = json(frame.ground);
+  j["floor_frame"] = floor_json(frame, provenance);
   j["objects"] = Json::array();
   for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));
+  j["left_out"] = Json::array();
+  for (const LeftOut& left : frame.left_out) j["left_out"].push_back(json(left));
+  j["obstacle_scan"] = frame.space.empty() ? Json(nullptr) : scan_json(frame, provenance);
   return j.dump(1) + "\n";
 }
 

@@ -29,7 +29,7 @@ std::string config_json(const Config& config);
 
 /// The form of objects.json: a reader of 1.x may rely on all that docs/schema/objects.schema.json says
 /// of 1.0; the number behind the dot grows with what is added.
-inline constexpr const char* kObjectsSchema = "1.0";
+inline constexpr const char* kObjectsSchema = "1.1";
 
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);
@@ -44,6 +44,8 @@ void save_confidence(const std::filesystem::path& path, View<const float> confid
 /// What a result holds on request.
 struct Extras {
   bool point_cloud = false;  // cloud.ply, see save_ply(); needs provenance.rig
+  bool depth = false;        // depth.png (16 bits, mm) and depth.npy (m); needs provenance.rig
+  bool grid = false;         // grid.pgm, grid.yaml: the obstacles as a map of ROS; needs a ground, too
 };
 
 /// Writes the files that docs/formats.md lists for a frame's result, each where the frame has what it shows,

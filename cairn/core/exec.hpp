@@ -24,12 +24,15 @@ struct ChosenObjects;
 struct Segmentation;
 struct Fusion;
 struct Objects;
+struct LeftOut;
+enum class Space : std::uint8_t;  // defined in objects/space.hpp
 
 /// What a stage made, as an observer sees it: borrowed, valid during the call only.
 using Artifact =
     std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
                  const Ground*, const Image<std::uint8_t>*, const Background*, const Superpixels*,
-                 const MergeTree*, const ChosenObjects*, const Segmentation*, const Fusion*, const Objects*>;
+                 const MergeTree*, const ChosenObjects*, const Segmentation*, const Fusion*, const Objects*,
+                 const Image<Space>*, const std::vector<LeftOut>*>;
 
 /// Called after each stage on the calling thread: the stage's name (as the function's), its result, its time.
 using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <cairn/grouping/choose_objects.hpp>
 #include <cairn/grouping/segmentation_of.hpp>
 #include <cmath>
@@ -30,7 +31,7 @@ ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_obj
     taken[i] = gain > 0 && gain >= best[i];
     if (taken[i]) best[i] = gain;
   }
-  ChosenObjects chosen{{}, {0.0F}};
+  ChosenObjects chosen{{}, {0.0F}, {}};
   std::vector<std::int32_t> object(count, 0);
   for (std::size_t i = count; i-- > 0;) {
     const std::int32_t whole = tree.nodes[i].whole;
@@ -40,6 +41,12 @@ ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_obj
     chosen.scores.push_back(scores[i]);
   }
   chosen.object_of.assign(object.begin(), object.begin() + tree.superpixels);
+  // From the whole tree down, each region has what those that hold it have.
+  for (std::size_t i = count; i-- > 0;) {
+    const std::int32_t whole = tree.nodes[i].whole;
+    if (whole >= 0) scores[i] = std::max(scores[i], scores[slot(whole)]);
+  }
+  chosen.likeliest.assign(scores.begin(), scores.begin() + tree.superpixels);
   return chosen;
 }
 

@@ -5,7 +5,6 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
 #include <cairn/objects/measure.hpp>
-#include <cairn/objects/measure_kernels.hpp>
 #include <cairn/objects/ranks.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
@@ -64,7 +63,6 @@ struct Inputs {
   const Image<float>& disparity_px;
   View<const Gray> left;
   View<const Rgb> left_rgb;
-  const std::optional<StereoRig>& rig;
   int edge_min;  // grey levels: what differs by more across an outline is an edge
 };
 
@@ -203,14 +201,6 @@ bool may_be_object(const Outline& outline, Size image, const ObjectsConfig& conf
   return percent >= config.min_area && percent <= config.max_area && borders_touched(outline.box, image) < 3;
 }
 
-/// The 2nd to the 98th percentile: the values of ranks ⌊(p·(n−1) + 50)/100⌋ in ascending order. Reorders
-/// `values`, which are not empty.
-float span_without_tails(std::span<float> values, const Exec& exec) {
-  const auto rank = [&](std::size_t percent) { return (percent * (values.size() - 1) + 50) / 100; };
-  const auto [lowest, highest] = values_at_ranks(values, rank(2), rank(98), exec);
-  return highest - lowest;
-}
-
 /// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.
 float median(std::span<float> values, const Exec& exec) {
   const std::size_t upper = values.size() / 2;
@@ -219,78 +209,30 @@ float median(std::span<float> values, const Exec& exec) {
   return (above + below) / 2;
 }
 
-/// Coordinates of points in the camera's frame, one list per axis.
-using PerAxis = std::array<std::vector<float>, 3>;
-
-/// The disparities of an object, and where there is a rig its points before infinity, gathered run by run.
+/// The valid disparities of an object, gathered run by run.
 class Gathered {
  public:
   /// How many floats an object needs.
-  static std::size_t room_for(const Inputs& in, std::size_t pixels) {
-    return (in.rig ? 4 : 1) * (pixels + kernels::kListSlack);
-  }
-  Gathered(const Inputs& in, std::size_t pixels, float* room, const Exec& exec)
-      : in_(in),
-        labels_(kernels::label_kernels(exec)),
-        points_(kernels::measure_kernels(exec)),
-        room_(room),
-        length_(pixels + kernels::kListSlack) {}
+  static std::size_t room_for(std::size_t pixels) { return pixels + kernels::kListSlack; }
+  Gathered(const Inputs& in, float* room, const Exec& exec)
+      : in_(in), labels_(kernels::label_kernels(exec)), room_(room) {}
 
-  /// `of_run`: working memory, a row for each axis.
-  void add(const Run& run, PerAxis& of_run) {
+  void add(const Run& run) {
     const float* const disparity = in_.disparity_px.row(run.y);
-    valid_count_ += slot(labels_.keep_known(disparity, disparity, run.first, run.last, room_ + valid_count_));
-    if (!in_.rig) return;
-    points_.points_in_camera(*in_.rig, run.y, run.first, run.last, disparity, of_run[0].data(),
-                             of_run[1].data(), of_run[2].data());
-    int found = 0;
-    for (std::size_t i = 0; i < of_run.size(); ++i) {
-      found = labels_.keep_known(of_run[i].data(), of_run.back().data(), run.first, run.last,
-                                 axis(i) + point_count_);
-    }
-    point_count_ += slot(found);
+    count_ += slot(labels_.keep_known(disparity, disparity, run.first, run.last, room_ + count_));
   }
-
-  [[nodiscard]] std::span<float> disparities() { return {room_, valid_count_}; }
-  [[nodiscard]] std::array<std::span<float>, 3> points() {
-    if (!in_.rig) return {};
-    return {std::span(axis(0), point_count_), std::span(axis(1), point_count_),
-            std::span(axis(2), point_count_)};
-  }
+  [[nodiscard]] std::span<float> disparities() const { return {room_, count_}; }
 
  private:
-  [[nodiscard]] float* axis(std::size_t i) { return room_ + (i + 1) * length_; }
-
   const Inputs& in_;
   const kernels::LabelKernels& labels_;
-  const kernels::MeasureKernels& points_;
-  float* room_;  // lists of length_: the disparities, then one for each axis
-  std::size_t length_;
-  std::size_t valid_count_ = 0;
-  std::size_t point_count_ = 0;
+  float* room_;
+  std::size_t count_ = 0;
 };
 
 Rgb mean_colour(const std::array<std::int64_t, 3>& sum, std::int64_t pixels) {
   const auto mean = [&](std::size_t c) { return static_cast<std::uint8_t>((sum[c] + pixels / 2) / pixels); };
   return {mean(0), mean(1), mean(2)};
-}
-
-/// Position and extent from the coordinates of an object's points, one list per axis.
-void place(Object& object, const std::array<std::span<float>, 3>& points, const Exec& exec) {
-  const auto& [x, y, z] = points;
-  if (x.empty()) return;
-  std::array<double, 3> sum{};
-  // Three chains, of which each alone would wait for its additions.
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sum[0] += x[i];
-    sum[1] += y[i];
-    sum[2] += z[i];
-  }
-  const auto count = static_cast<double>(x.size());
-  const auto mean = [&](std::size_t axis) { return static_cast<float>(sum.at(axis) / count); };
-  object.position_in_camera_m = Vec3{mean(0), mean(1), mean(2)};
-  object.extent_in_camera_m =
-      Vec3{span_without_tails(x, exec), span_without_tails(y, exec), span_without_tails(z, exec)};
 }
 
 int weakest_edge(float noise_sigma) {
@@ -305,7 +247,8 @@ float confidence_of(const Object& object, Size image) {
 }
 
 /// nullopt where no pixel has a disparity.
-std::optional<Object> measured(const Outline& outline, Gathered& gathered, Size image, const Exec& exec) {
+std::optional<Object> measured(const Outline& outline, const Gathered& gathered, Size image,
+                               const Exec& exec) {
   const std::span<float> disparities = gathered.disparities();
   if (disparities.empty()) return std::nullopt;
   Object object;
@@ -320,7 +263,6 @@ std::optional<Object> measured(const Outline& outline, Gathered& gathered, Size 
   object.edge_share = share(rim.at_edge);
   object.cut_share = share(rim.cut);
   object.confidence = confidence_of(object, image);
-  place(object, gathered.points(), exec);
   object.disparity_px = median(disparities, exec);
   return object;
 }
@@ -344,14 +286,11 @@ void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std
   gathered.reserve(range.size());
   std::vector<Gathered*> of_region(outline.size(), nullptr);
   for (const Candidate& candidate : range) {
-    of_region[candidate.region] =
-        &gathered.emplace_back(in, pixels_of(candidate, outline), room + candidate.room, exec);
+    of_region[candidate.region] = &gathered.emplace_back(in, room + candidate.room, exec);
   }
-  PerAxis of_run;
-  for (std::vector<float>& axis : of_run) axis.resize(in.rig ? slot(in.left.width()) : 0);
   for (const Survey& band : bands) {
     for (const Run& run : band.runs()) {
-      if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run, of_run);
+      if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
     }
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
@@ -388,7 +327,7 @@ Objects measure_those(const Inputs& in, MayBe may_be, Is is, const Exec& exec) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     if (!may_be(i, outline[i])) continue;
     found.push_back({i, room});
-    room += Gathered::room_for(in, pixels_of(found.back(), outline));
+    room += Gathered::room_for(pixels_of(found.back(), outline));
   }
   Scratch<float> lists(room, exec.pool);
   const std::vector<std::size_t> begins = shares(found, outline, exec);
@@ -426,10 +365,9 @@ Objects measure_those(const Inputs& in, MayBe may_be, Is is, const Exec& exec) {
 
 Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
                 const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
-                float noise_sigma, const std::optional<StereoRig>& rig, const ObjectsConfig& config,
-                const Exec& exec) {
-  const Inputs in{candidates, is_background.size(),     disparity.disparity_px, left, left_rgb,
-                  rig,        weakest_edge(noise_sigma)};
+                float noise_sigma, const ObjectsConfig& config, const Exec& exec) {
+  const Inputs in{candidates, is_background.size(),     disparity.disparity_px, left,
+                  left_rgb,   weakest_edge(noise_sigma)};
   const auto may_be = [&](std::size_t region, const Outline& outline) {
     return !is_background[region] && may_be_object(outline, candidates.size(), config);
   };
@@ -440,10 +378,8 @@ Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_bac
 }
 
 Objects measure(View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
-                View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma,
-                const std::optional<StereoRig>& rig, const Exec& exec) {
-  const Inputs in{chosen,   scores.size(), disparity.disparity_px,   left,
-                  left_rgb, rig,           weakest_edge(noise_sigma)};
+                View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma, const Exec& exec) {
+  const Inputs in{chosen, scores.size(), disparity.disparity_px, left, left_rgb, weakest_edge(noise_sigma)};
   const auto may_be = [&](std::size_t region, const Outline&) { return scores[region] > 0; };
   const auto is = [&](Candidate& candidate) {
     candidate.object->confidence = scores[candidate.region];

@@ -15,6 +15,7 @@
 #include <cairn/matching/subpixel.hpp>
 #include <cairn/objects/fuse.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/objects/space.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
 #include <cairn/scene/background.hpp>
@@ -45,6 +46,7 @@ struct Config {
   FusionConfig fusion{.method = FusionMethod::hierarchy};
   SuperpixelsConfig superpixels;
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
+  SpaceConfig space;
 
   /// Only what the paper describes; the thresholds are ours, fitted by fitting/search_paper.cpp.
   static Config paper();
@@ -72,6 +74,7 @@ void for_each_section(C& c, F&& visit) {
   visit("fusion", c.fusion);
   visit("superpixels", c.superpixels);
   visit("objects", c.objects);
+  visit("space", c.space);
 }
 
 /// One option as the reference page, the command line and bindings present it.

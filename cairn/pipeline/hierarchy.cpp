@@ -4,6 +4,7 @@
 // The method by hierarchy, one call a stage, in the order in which data flows.
 #include <cairn/core/later.hpp>
 #include <cairn/disparity/confidence.hpp>
+#include <cairn/objects/locate.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cmath>
 #include <utility>
@@ -59,8 +60,19 @@ Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, con
   frame.superpixels = stage("superpixels", segmentation_of(superpixels, given.left, exec));
   frame.groups = stage("groups", groups_of(superpixels, chosen, found.disparity, exec));
   frame.objects = stage("measure", measure(frame.groups.labels, chosen.scores, found.disparity, given.left,
-                                           given.left_rgb, cut.scene.noise_sigma, rig, exec));
+                                           given.left_rgb, cut.scene.noise_sigma, exec));
+  frame.objects = stage("locate", locate(std::move(frame.objects), found.disparity, found.ground, rig, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
+
+  // What else stands in the way, and where the floor is free.
+  const SpaceCues seen{found.disparity, cut.seen_px,        frame.confidence,    found.ground,
+                       cut.background,  superpixels.labels, frame.objects.labels};
+  frame.space = stage("label_space", label_space(seen, rig, config.ground, exec));
+  frame.left_out = stage("left_out_of", left_out_of(frame.space, seen, chosen.likeliest, rig,
+                                                    {limits_of(config.objects, given.left.size()).min_area,
+                                                     wall_tolerance_px(config.background, given.left.size())},
+                                                    exec));
+  if (!found.floor.empty()) found.floor = floor_of(frame.space, exec);
   frame.disparity = std::move(found.disparity);
   frame.ground = found.ground;
   frame.floor = std::move(found.floor);

@@ -4,6 +4,7 @@
 // The paper's method, one call a stage, in the order in which data flows.
 #include <cairn/core/later.hpp>
 #include <cairn/disparity/confidence.hpp>
+#include <cairn/objects/locate.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <utility>
 
@@ -39,8 +40,17 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   // Which of the fused regions are objects, and where.
   frame.objects =
       stage("measure", measure(frame.fusion.labels, frame.fusion.is_floor, frame.disparity, given.left,
-                               given.left_rgb, scene.noise_sigma, rig, config.objects, exec));
+                               given.left_rgb, scene.noise_sigma, config.objects, exec));
+  frame.objects = stage("locate", locate(std::move(frame.objects), frame.disparity, frame.ground, rig, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
+
+  // What else stands in the way.
+  const Background none;
+  const SpaceCues seen{frame.disparity, {}, frame.confidence, frame.ground, none, {}, frame.objects.labels};
+  frame.space = stage("label_space", label_space(seen, rig, config.ground, exec));
+  frame.left_out =
+      stage("left_out_of", left_out_of(frame.space, seen, {}, rig,
+                                       {limits_of(config.objects, given.left.size()).min_area, 1}, exec));
   return frame;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/grouping/choose_objects.hpp>
+#include <cairn/objects/space.hpp>
 #include <cairn/pipeline/config.hpp>
 
 namespace cairn {
@@ -20,7 +21,7 @@ struct SceneDisparity {
 struct Frame {
   DisparityMap disparity;
   Ground ground;
-  Image<std::uint8_t> floor;  // 255 = floor; empty where there is none
+  Image<std::uint8_t> floor;  // 255 = floor; empty where there is none; of hierarchy where `space` says so
   // With fusion.method=overlap: the left picture's regions, the disparities', and what unites them.
   Segmentation by_intensity;
   Segmentation by_disparity;
@@ -30,6 +31,9 @@ struct Frame {
   Segmentation superpixels;
   Segmentation groups;
   Objects objects;
+  // What a robot may hit, object or not.
+  Image<Space> space;             // obstacle, floor or unknown
+  std::vector<LeftOut> left_out;  // obstacles that are no objects, nearest first, and why
   EpipolarOffset epipolar{};
   Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
 };

@@ -314,7 +314,7 @@ Background fit_background(View<const float> evidence_px, const Ground& ground,
   PoolMemory memory(exec.pool);
   std::vector<GroundPlane> planes;
   if (ground.plane) planes.push_back(*ground.plane);
-  const float tolerance = config.tolerance * 0.001F * static_cast<float>(width);
+  const float tolerance = wall_tolerance_px(config, evidence_px.size());
   WallSearch search(points_of(evidence_px, ground.plane, tolerance, &memory), std::move(planes),
                     ground.plane ? rig : std::nullopt, width, config, exec, &memory);
   for (int i = 0; i < config.max_walls && (search.find_next() || search.find_next_square()); ++i) {

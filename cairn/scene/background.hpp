@@ -22,6 +22,11 @@ void fields(BackgroundConfig& c, V&& v) {
     when("fusion.method", "hierarchy"));
 }
 
+/// How far a disparity may lie from a wall that it supports, px.
+inline float wall_tolerance_px(const BackgroundConfig& config, Size image) {
+  return config.tolerance * 0.001F * static_cast<float>(image.width);
+}
+
 /// The planes that bound the scene from behind: the floor, if there is one, and walls. A room seen from
 /// inside is convex, so a pixel's background is the nearest of them, and nothing but reflections lies behind
 /// it.

@@ -10,6 +10,7 @@
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
 #include <cairn/disparity/reject.hpp>
+#include <cairn/objects/space.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -142,6 +143,11 @@ struct NumbersOf<Reject> {
 template <>
 struct NumbersOf<RegionId> {
   using Type = std::int32_t;
+  static constexpr int kCount = 1;
+};
+template <>
+struct NumbersOf<Space> {
+  using Type = std::uint8_t;
   static constexpr int kCount = 1;
 };
 template <>

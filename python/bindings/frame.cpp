@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segmenter.hpp>
 #include <functional>
 #include <io/image_files.hpp>
 #include <io/overlay.hpp>
 #include <io/results.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -206,6 +208,89 @@ void save(const PyFrame& self, const std::filesystem::path& folder) {
   released([&] { io::write_result(folder, self.left.gray(), self.left.rgb(), self.frame, self.provenance); });
 }
 
+// ---- in metres ----
+
+const StereoRig& rig_of_frame(const PyFrame& self) {
+  if (!self.provenance.rig) throw Error("rig: found none, expected one: a frame without a rig has no metres");
+  return *self.provenance.rig;
+}
+
+std::optional<FloorFrame> floor_frame_of(const PyFrame& self) {
+  if (!self.provenance.rig || !self.frame.ground.plane) return std::nullopt;
+  return floor_frame(*self.frame.ground.plane, *self.provenance.rig);
+}
+
+std::optional<ObstacleScan> scan_of(const PyFrame& self) {
+  const auto floor = floor_frame_of(self);
+  if (!floor) return std::nullopt;
+  return scan_obstacles(self.frame.space, self.frame.disparity.disparity_px, *floor, *self.provenance.rig,
+                        self.provenance.config.space);
+}
+
+std::optional<ObstacleGrid> grid_of(const PyFrame& self) {
+  const auto floor = floor_frame_of(self);
+  if (!floor) return std::nullopt;
+  return map_obstacles(self.frame.space, self.frame.disparity.disparity_px, *floor, *self.provenance.rig,
+                       self.provenance.config.space);
+}
+
+py::array_t<float> depth_of(const PyFrame& self) {
+  const StereoRig& rig = rig_of_frame(self);
+  const View<const float> d = self.frame.disparity.disparity_px;
+  py::array_t<float> depth({d.height(), d.width()});
+  auto out = depth.mutable_unchecked<2>();
+  for (int y = 0; y < d.height(); ++y) {
+    for (int x = 0; x < d.width(); ++x) {
+      const auto point = rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d(x, y));
+      out(y, x) = point ? point->z : std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return depth;
+}
+
+py::array_t<float> all_points(const PyFrame& self) {
+  const StereoRig& rig = rig_of_frame(self);
+  const View<const float> d = self.frame.disparity.disparity_px;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  py::array_t<float> points({d.height(), d.width(), 3});
+  auto out = points.mutable_unchecked<3>();
+  for (int y = 0; y < d.height(); ++y) {
+    for (int x = 0; x < d.width(); ++x) {
+      const Vec3 point = rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d(x, y))
+                             .value_or(Vec3{kNan, kNan, kNan});
+      out(y, x, 0) = point.x;
+      out(y, x, 1) = point.y;
+      out(y, x, 2) = point.z;
+    }
+  }
+  return points;
+}
+
+py::array_t<float> points_of(const PyFrame& self, const py::object& object) {
+  if (object.is_none()) return all_points(self);
+  const auto id = ObjectId{py::isinstance<py::int_>(object) ? object.cast<std::int32_t>()
+                                                            : object.attr("id").cast<std::int32_t>()};
+  const auto count = static_cast<std::int32_t>(self.frame.objects.list.size());
+  if (number(id) < 1 || number(id) > count) {
+    throw Error("object: found id " + std::to_string(number(id)) + ", expected 1 … " + std::to_string(count));
+  }
+  const StereoRig& rig = rig_of_frame(self);
+  const View<const float> d = self.frame.disparity.disparity_px;
+  std::vector<float> all;
+  for (int y = 0; y < d.height(); ++y) {
+    for (int x = 0; x < d.width(); ++x) {
+      if (self.frame.objects.labels(x, y) != id) continue;
+      const auto point = rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d(x, y));
+      if (point) all.insert(all.end(), {point->x, point->y, point->z});
+    }
+  }
+  py::array_t<float> points({static_cast<py::ssize_t>(all.size() / 3), py::ssize_t{3}});
+  std::copy(all.begin(), all.end(), points.mutable_data());
+  return points;
+}
+
+// ---- what the classes show, continued ----
+
 template <class Member>
 auto part(Member Frame::*member) {
   return [member](const PyFrame& self) -> const Member& { return self.frame.*member; };
@@ -249,6 +334,22 @@ void bind_frame_class(py::module_& m) {
           "int32, the object that each pixel belongs to; 0 = none. `frame.objects_map == object.id` is a "
           "mask")
       .def_property_readonly("objects", part(&Frame::objects), kInside, "the Objects, nearest first")
+      .def_property_readonly(
+          "space", image_of<Space>([](const PyFrame& f) -> auto& { return f.frame.space; }),
+          "uint8, what each pixel shows: 255 = obstacle, object or not; 128 = floor; 0 = unknown")
+      .def_property_readonly("left_out", part(&Frame::left_out), kInside,
+                             "a list of LeftOut: obstacles that are no objects, nearest first, and why")
+      .def_property_readonly("floor_frame", &floor_frame_of,
+                             "the FloorFrame: where the floor is, in metres; None without a rig or a ground")
+      .def("scan", &scan_of,
+           "The nearest obstacle in each direction: an ObstacleScan. None without a rig or a ground.")
+      .def("grid", &grid_of,
+           "What stands where on the floor: an ObstacleGrid. None without a rig or a ground.")
+      .def("depth_m", &depth_of, "(H, W) float32, m: how far each pixel is along the view; NaN = hole.")
+      .def(
+          "points", &points_of, py::arg("object") = py::none(),
+          "Points in the camera's frame, m, x right, y down, z forward: (H, W, 3) float32, NaN = hole; of an "
+          "Object or of its id alone (N, 3), without holes.")
       .def_property_readonly("disparity_map", part(&Frame::disparity), kInside,
                              "disparity and reject as the DisparityMap that stages take")
       .def_property_readonly("ground", part(&Frame::ground), kInside,

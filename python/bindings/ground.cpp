@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
 #include <cairn/scene/background.hpp>
+#include <cairn/scene/floor_frame.hpp>
 #include <cairn/scene/ground_plane.hpp>
+#include <optional>
 #include <string>
 
 #include "bindings.hpp"
@@ -112,6 +115,38 @@ void bind_ground(py::module_& m) {
                     ">";
            })
       .def(pickled<Ground>());
+  py::class_<FloorFrame>(
+      m, "FloorFrame",
+      "Where the floor is, in metres: its frame has its origin on the floor below the left "
+      "camera, x forward, y left, z up.")
+      .def_readonly("camera_height_m", &FloorFrame::camera_height_m, "of the left camera above the floor, m")
+      .def_property_readonly("pitch_rad", &FloorFrame::pitch_rad, "of the camera: positive looks down")
+      .def_property_readonly("roll_rad", &FloorFrame::roll_rad,
+                             "of the camera: positive lowers its right side")
+      .def_property_readonly(
+          "floor_from_camera",
+          [](const FloorFrame& self) {
+            const std::array<float, 16> all = self.floor_from_camera();
+            std::array<std::array<float, 4>, 4> rows{};
+            for (std::size_t i = 0; i < all.size(); ++i) rows[i / 4][i % 4] = all[i];
+            return rows;
+          },
+          "4 rows of 4: takes homogeneous points from the camera's frame to the floor's")
+      .def("__repr__",
+           [](const FloorFrame& self) {
+             return "<cairn.FloorFrame camera " + std::to_string(self.camera_height_m) +
+                    " m above the floor>";
+           })
+      .def(pickled<FloorFrame>());
+  m.def(
+      "floor_frame",
+      [](const GroundPlane& ground, const RigArgument& rig) -> std::optional<FloorFrame> {
+        const auto known = rig_of(rig);
+        if (!known) throw Error("rig: found none, expected one: where the floor is is said in metres");
+        return floor_frame(ground, *known);
+      },
+      "ground"_a, "rig"_a,
+      "Where the floor is: a FloorFrame, or None for a plane that no floor below a camera can show.");
   py::class_<Background>(m, "Background", "The planes that bound the scene from behind: floor and walls.")
       .def_readonly("planes", &Background::planes, "a list of GroundPlane")
       .def_readonly("has_floor", &Background::has_floor, "whether the first of them is the floor")

@@ -122,6 +122,8 @@ void bind_grouping(py::module_& m) {
                     "for each superpixel its object, 1 to len(scores) - 1; 0 = none")
       .def_readonly("scores", &ChosenObjects::scores,
                     "for each object how likely it is one, 0 to 1; scores[0] = 0")
+      .def_readonly("likeliest", &ChosenObjects::likeliest,
+                    "for each superpixel how likely the likeliest region that holds it is an object, 0 to 1")
       .def("__len__", [](const ChosenObjects& self) { return self.scores.size() - 1; })
       .def("__repr__",
            [](const ChosenObjects& self) {

@@ -6,7 +6,9 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/objects/fuse.hpp>
+#include <cairn/objects/locate.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/objects/space.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -44,8 +46,7 @@ void expect_labels(const Borrowed<std::int32_t>& labels, std::size_t count, cons
 
 Objects measured(const Config& config, const Exec& exec, const LabelsArgument& candidates,
                  const std::vector<bool>& is_background, const DisparityArgument& disparity,
-                 const ImageArgument& left, float noise_sigma, const RigArgument& rig, bool bgr) {
-  const auto known = rig_of(rig);
+                 const ImageArgument& left, float noise_sigma, bool bgr) {
   const Borrowed<std::int32_t> labels(candidates, "candidates");
   const DisparityInput map(disparity, "disparity", exec);
   const Picture in(left, "left", bgr, exec.pool);
@@ -55,14 +56,13 @@ Objects measured(const Config& config, const Exec& exec, const LabelsArgument& c
   expect_labels(labels, is_background.size(), "candidates", "is_background");
   return released([&] {
     return measure(as_regions(labels.view()), is_background, map.map(), in.gray(), in.rgb(), noise_sigma,
-                   known, config.objects, exec);
+                   config.objects, exec);
   });
 }
 
 Objects measured_chosen(const Config&, const Exec& exec, const LabelsArgument& chosen,
                         const std::vector<float>& scores, const DisparityArgument& disparity,
-                        const ImageArgument& left, float noise_sigma, const RigArgument& rig, bool bgr) {
-  const auto known = rig_of(rig);
+                        const ImageArgument& left, float noise_sigma, bool bgr) {
   const Borrowed<std::int32_t> labels(chosen, "chosen");
   const DisparityInput map(disparity, "disparity", exec);
   const Picture in(left, "left", bgr, exec.pool);
@@ -73,8 +73,17 @@ Objects measured_chosen(const Config&, const Exec& exec, const LabelsArgument& c
   if (!std::all_of(scores.begin(), scores.end(), [](float score) { return score >= 0 && score <= 1; }))
     throw Error("scores: found one outside 0 … 1, expected a confidence for each region");
   return released([&] {
-    return measure(as_regions(labels.view()), scores, map.map(), in.gray(), in.rgb(), noise_sigma, known,
-                   exec);
+    return measure(as_regions(labels.view()), scores, map.map(), in.gray(), in.rgb(), noise_sigma, exec);
+  });
+}
+
+Objects located(const Config&, const Exec& exec, const Objects& objects, const DisparityArgument& disparity,
+                const Ground& ground, const RigArgument& rig) {
+  const auto known = rig_of(rig);
+  const DisparityInput map(disparity, "disparity", exec);
+  expect_size(map.size(), "disparity", objects.labels.size(), "objects");
+  return released([&] {
+    return locate({objects.labels.clone({}), objects.list}, map.map(), ground, known, exec);
   });
 }
 
@@ -133,6 +142,36 @@ void bind_classes(py::module_& m) {
            })
       .def(pickled<Fusion>());
 
+  py::class_<FloorBox>(
+      m, "FloorBox",
+      "A box about what is seen of an object, upright on the floor and turned as it is. In the "
+      "floor's frame: x forward, y left, z up, from the floor below the left camera.")
+      .def_property_readonly(
+          "centre_in_floor_m", [](const FloorBox& self) { return triple(self.centre_in_floor_m); },
+          "(x, y, z), m")
+      .def_property_readonly(
+          "size_m", [](const FloorBox& self) { return triple(self.size_m); },
+          "(along its longer side, along its shorter one, up), m")
+      .def_readonly("yaw_rad", &FloorBox::yaw_rad,
+                    "-pi/2 to pi/2: of the longer side, counter-clockwise from x as seen from above")
+      .def_property_readonly(
+          "centre_covariance_m2",
+          [](const FloorBox& self) {
+            const auto& [xx, xy, xz, yy, yz, zz] = self.centre_covariance_m2;
+            return std::array{std::array{xx, xy, xz}, std::array{xy, yy, yz}, std::array{xz, yz, zz}};
+          },
+          "3 rows of 3, m^2: how well the centre is known")
+      .def("__repr__",
+           [](const FloorBox& self) {
+             const Vec3 at = self.centre_in_floor_m;
+             const Vec3 size = self.size_m;
+             return "<cairn.FloorBox " + decimal("%.2f x ", double(size.x)) +
+                    decimal("%.2f x ", double(size.y)) + decimal("%.2f m at (", double(size.z)) +
+                    decimal("%.2f, ", double(at.x)) + decimal("%.2f, ", double(at.y)) +
+                    decimal("%.2f) m, ", double(at.z)) + decimal("yaw %.2f rad>", double(self.yaw_rad));
+           })
+      .def(pickled<FloorBox>());
+
   py::class_<Object>(m, "Object", "Something that stands or hangs in front of the background.")
       .def_property_readonly(
           "id", [](const Object& self) { return number(self.id); },
@@ -150,10 +189,24 @@ void bind_classes(py::module_& m) {
           "(red, green, blue), 0 to 255; grey where the input had no colour")
       .def_property_readonly(
           "position_in_camera_m", [](const Object& self) { return triple(self.position_in_camera_m); },
-          "(x right, y down, z forward), m: mean of its valid points; None without a rig")
+          "(x right, y down, z forward), m: in the middle of its main part, at the depth of disparity_px; "
+          "None "
+          "without a rig")
+      .def_readonly("disparity_sigma_px", &Object::disparity_sigma_px,
+                    "standard deviation of disparity_px, px")
+      .def_property_readonly(
+          "depth_interval_m",
+          [](const Object& self) -> std::optional<std::pair<float, float>> {
+            if (!self.depth_interval_m) return std::nullopt;
+            return std::pair{self.depth_interval_m->low, self.depth_interval_m->high};
+          },
+          "(nearest, farthest), m: where its depth lies with 95 %; None without a rig")
       .def_property_readonly(
           "extent_in_camera_m", [](const Object& self) { return triple(self.extent_in_camera_m); },
-          "(x, y, z), m: the box around its points, 2nd to 98th percentile; None without a rig")
+          "(x, y, z), m: the box around the points of its main part, 2nd to 98th percentile; None without a "
+          "rig")
+      .def_readonly("box_on_floor", &Object::box_on_floor,
+                    "its box, upright on the floor: a FloorBox; None without a rig or a ground")
       .def_property_readonly(
           "distance_m",
           [](const Object& self) -> std::optional<float> {
@@ -169,6 +222,72 @@ void bind_classes(py::module_& m) {
                     "0 to 1: how likely it covers a true object by more than half")
       .def("__repr__", &object_repr)
       .def(pickled<Object>());
+
+  py::class_<LeftOut>(m, "LeftOut", "An obstacle that is no object, and why.")
+      .def_property_readonly(
+          "reason",
+          [](const LeftOut& self) {
+            const auto* const found =
+                std::find_if(kLeftOutReasons.begin(), kLeftOutReasons.end(),
+                             [&](const auto& reason) { return reason.value == self.reason; });
+            return std::string(found->name);
+          },
+          "'background', 'too small' or 'low confidence'")
+      .def_property_readonly(
+          "box_px", [](const LeftOut& self) { return box(self.box_px); }, "(x, y, width, height), px")
+      .def_readonly("pixel_count", &LeftOut::pixel_count, "area, px")
+      .def_readonly("disparity_px", &LeftOut::disparity_px, "mean of its pixels, px")
+      .def_property_readonly(
+          "position_in_camera_m", [](const LeftOut& self) { return triple(self.position_in_camera_m); },
+          "(x right, y down, z forward), m: of its middle; None without a rig")
+      .def_readonly("confidence", &LeftOut::confidence,
+                    "0 to 1: the best of a region that holds its middle; 0 where none was judged")
+      .def("__repr__",
+           [](const LeftOut& self) {
+             std::string reason;
+             for (const auto& known : kLeftOutReasons) {
+               if (known.value == self.reason) reason = known.name;
+             }
+             return "<cairn.LeftOut " + reason + ": " + std::to_string(self.pixel_count) + " px in box (" +
+                    std::to_string(self.box_px.x) + ", " + std::to_string(self.box_px.y) + ", " +
+                    std::to_string(self.box_px.width) + ", " + std::to_string(self.box_px.height) + ")>";
+           })
+      .def(pickled<LeftOut>());
+
+  py::class_<ObstacleScan>(m, "ObstacleScan",
+                           "The nearest obstacle in each direction, as a laser scanner has it, seen from the "
+                           "floor below the left camera.")
+      .def_readonly("angle_min_rad", &ObstacleScan::angle_min_rad,
+                    "of the first; counter-clockwise from straight ahead")
+      .def_readonly("angle_increment_rad", &ObstacleScan::angle_increment_rad, "from one to the next")
+      .def_property_readonly(
+          "ranges_m",
+          [](const ObstacleScan& self) {
+            return py::array_t<float>(static_cast<py::ssize_t>(self.ranges_m.size()), self.ranges_m.data());
+          },
+          "(N,) float32, m; NaN: no obstacle is seen there, which does not say that there is none")
+      .def("__len__", [](const ObstacleScan& self) { return self.ranges_m.size(); })
+      .def(pickled<ObstacleScan>());
+
+  py::class_<ObstacleGrid>(
+      m, "ObstacleGrid",
+      "What stands where on the floor: rows along y, from the right to the left, of cells "
+      "along x, from the camera forward.")
+      .def_readonly("cell_size_m", &ObstacleGrid::cell_size_m, "side of a cell, m")
+      .def_property_readonly(
+          "origin_in_floor_m",
+          [](const ObstacleGrid& self) {
+            return std::pair{self.origin_x_m, self.origin_y_m};
+          },
+          "(x, y), m: corner of the first cell")
+      .def_property_readonly(
+          "cells",
+          [](const ObstacleGrid& self) {
+            return py::array_t<std::int8_t>(std::vector<py::ssize_t>{self.height, self.width},
+                                            self.cells.data());
+          },
+          "(height, width) int8: -1 = unknown, 0 = free, 100 = occupied")
+      .def(pickled<ObstacleGrid>());
 
   py::class_<Objects>(m, "Objects",
                       "The objects of a frame, nearest first: a sequence of Object, and their map.")
@@ -228,14 +347,19 @@ void bind_objects(py::module_& m) {
       "Turns candidates into objects: what is background, too large, too small, unseen or unlikely is none. "
       "candidates: (H, W) integers, the regions of a Fusion; is_background: for each of them, whether it is "
       "known to be no object; noise_sigma as noise_sigma() gives it.",
-      &measured, "candidates"_a, "is_background"_a, "disparity"_a, "left"_a, "noise_sigma"_a,
-      "rig"_a = py::none(), py::kw_only(), "bgr"_a = false);
+      &measured, "candidates"_a, "is_background"_a, "disparity"_a, "left"_a, "noise_sigma"_a, py::kw_only(),
+      "bgr"_a = false);
+  def_stage(
+      m, "locate", {},
+      "Where objects are: the uncertainty of their disparity and, with a rig, position, interval of depth, "
+      "extent, and with a ground their box on the floor. Returns Objects.",
+      &located, "objects"_a, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
   def_stage(m, "measure_chosen", {},
             "Measures regions that were chosen to be objects: measure() of C++ with scores. chosen: (H, W) "
             "integers, the labels of groups_of(); scores: for each region its confidence, 0 to 1, as "
             "choose_objects() gives them; 0 = no object.",
-            &measured_chosen, "chosen"_a, "scores"_a, "disparity"_a, "left"_a, "noise_sigma"_a,
-            "rig"_a = py::none(), py::kw_only(), "bgr"_a = false);
+            &measured_chosen, "chosen"_a, "scores"_a, "disparity"_a, "left"_a, "noise_sigma"_a, py::kw_only(),
+            "bgr"_a = false);
 }
 
 }  // namespace cairn::python

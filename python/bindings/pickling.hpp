@@ -12,6 +12,7 @@
 #include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <cairn/scene/floor_frame.hpp>
 #include <cairn/tuning/search.hpp>
 #include <filesystem>
 #include <io/results.hpp>
@@ -81,6 +82,7 @@ CAIRN_PARTS(Matches, best, best_right, row_offset, cost, runner_up, mean_cost, c
 CAIRN_PARTS(DisparityMap, disparity, reject)
 CAIRN_PARTS(GroundPlane, a, b, c)
 CAIRN_PARTS(Ground, plane, support, residual, refusal)
+CAIRN_PARTS(FloorFrame, forward, left, up, height)
 CAIRN_PARTS(Background, planes, has_floor)
 CAIRN_PARTS(Region, pixel_count, valid_count, box, mean, variance, is_floor, is_background)
 CAIRN_PARTS(Segmentation, labels, regions)
@@ -91,14 +93,19 @@ CAIRN_PARTS(Superpixels, labels, count, edges)
 CAIRN_PARTS(Origin, same_thing, least_same_thing, larger_part)
 CAIRN_PARTS(MergeNode, part_a, part_b, whole, area, origin, features)
 CAIRN_PARTS(MergeTree, superpixels, nodes)
-CAIRN_PARTS(ChosenObjects, object_of, scores)
+CAIRN_PARTS(ChosenObjects, object_of, scores, likeliest)
 CAIRN_PARTS(Fusion, labels, parts, disparity_region, is_floor)
-CAIRN_PARTS(Object, id, box, pixel_count, disparity, valid_share, colour, position, extent, edge_share,
-            cut_share, confidence)
+CAIRN_PARTS(Interval, low, high)
+CAIRN_PARTS(FloorBox, centre, size, yaw, covariance)
+CAIRN_PARTS(Object, id, box, pixel_count, disparity, valid_share, colour, edge_share, cut_share, confidence,
+            sigma, position, interval, extent, box_on_floor)
 CAIRN_PARTS(Objects, labels, list)
 CAIRN_PARTS(SceneDisparity, disparity, ground, floor, epipolar, confidence)
+CAIRN_PARTS(LeftOut, reason, box, pixel_count, disparity, position, confidence)
+CAIRN_PARTS(ObstacleScan, angle_min, angle_increment, ranges)
+CAIRN_PARTS(ObstacleGrid, cell_size, width, height, origin_x, origin_y, cells)
 CAIRN_PARTS(Frame, disparity, ground, floor, by_intensity, by_disparity, fusion, superpixels, groups, objects,
-            epipolar, confidence)
+            space, left_out, epipolar, confidence)
 CAIRN_PARTS(io::StageTime, stage, milliseconds)
 CAIRN_PARTS(io::Provenance, preset, config, rig, timings, external_disparity)
 CAIRN_PARTS(DisparityErrors, known, matched, bad, absolute_sum, square_sum)

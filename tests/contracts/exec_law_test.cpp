@@ -64,10 +64,17 @@ void expect_same_objects(const Objects& a, const Objects& b) {
     EXPECT_EQ(a.list[i].pixel_count, b.list[i].pixel_count);
     EXPECT_EQ(a.list[i].disparity_px, b.list[i].disparity_px);
     EXPECT_EQ(a.list[i].valid_share, b.list[i].valid_share);
+    EXPECT_EQ(a.list[i].confidence, b.list[i].confidence);
     EXPECT_EQ(a.list[i].mean_colour, b.list[i].mean_colour);
     EXPECT_EQ(a.list[i].position_in_camera_m, b.list[i].position_in_camera_m);
     EXPECT_EQ(a.list[i].extent_in_camera_m, b.list[i].extent_in_camera_m);
-    EXPECT_EQ(a.list[i].confidence, b.list[i].confidence);
+    EXPECT_EQ(a.list[i].disparity_sigma_px, b.list[i].disparity_sigma_px);
+    ASSERT_EQ(a.list[i].box_on_floor.has_value(), b.list[i].box_on_floor.has_value());
+    if (!a.list[i].box_on_floor) continue;
+    EXPECT_EQ(a.list[i].box_on_floor->centre_in_floor_m, b.list[i].box_on_floor->centre_in_floor_m);
+    EXPECT_EQ(a.list[i].box_on_floor->size_m, b.list[i].box_on_floor->size_m);
+    EXPECT_EQ(a.list[i].box_on_floor->yaw_rad, b.list[i].box_on_floor->yaw_rad);
+    EXPECT_EQ(a.list[i].box_on_floor->centre_covariance_m2, b.list[i].box_on_floor->centre_covariance_m2);
   }
 }
 

@@ -351,6 +351,7 @@ TEST(ChooseObjects, GainsMostOfAllThatMayBeChosen) {
     const ChosenObjects expected = reference::choose_objects(tree, stumps.trees(), limits);
     EXPECT_EQ(found.object_of, expected.object_of) << seed;
     EXPECT_EQ(found.scores, expected.scores) << seed;
+    EXPECT_EQ(found.likeliest, expected.likeliest) << seed;
     objects += static_cast<int>(found.scores.size()) - 1;
     wholes += found.scores.size() == 2 && tree.superpixels > 1 ? 1 : 0;
   }

@@ -7,6 +7,7 @@
 #include <cairn/image/gradient.hpp>
 #include <cairn/image/noise.hpp>
 #include <cairn/objects/fuse.hpp>
+#include <cairn/objects/locate.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
@@ -189,7 +190,8 @@ Objects objects_of(const World& w, float baseline_m) {
   const Segmentation by_disparity = segment_disparity(w.disparity, {}, {}, {});
   const StereoRig rig{.focal_px = 80, .cx_px = 48, .cy_px = 35, .baseline_m = baseline_m};
   const Fusion fusion = fuse(by_intensity, by_disparity, {});
-  return measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), rig, {}, {});
+  return locate(measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), {}, {}),
+                w.disparity, {}, rig, {});
 }
 
 TEST(RegionsProperties, DoublingTheBaselineDoublesDepthAndExtent) {
@@ -215,20 +217,27 @@ TEST(RegionsProperties, ObjectsAreThoseOfTheWorldNearestFirst) {
   }
 }
 
-TEST(RegionsProperties, MeasureDoesNotDependOnThreads) {
+TEST(RegionsProperties, MeasureAndLocateDoNotDependOnThreads) {
   const World w = world(30);
   const Segmentation by_intensity = segment_intensity(w.left, {}, {});
   const Segmentation by_disparity = segment_disparity(w.disparity, {}, {}, {});
   const Fusion fusion = fuse(by_intensity, by_disparity, {});
   const StereoRig rig{.focal_px = 80, .cx_px = 48, .cy_px = 35, .baseline_m = 0.1F};
-  const Objects one =
-      measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), rig, {}, {});
-  const Objects three = measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left),
-                                rig, {}, Exec::with_threads(3));
+  const auto found = [&](const Exec& exec) {
+    return locate(
+        measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), {}, exec),
+        w.disparity, {GroundPlane{0, 0.1F, 2}, 1, 0, Refusal::none}, rig, exec);
+  };
+  const Objects one = found({});
+  const Objects three = found(Exec::with_threads(3));
   EXPECT_EQ(numbers(three.labels), numbers(one.labels));
   ASSERT_EQ(three.list.size(), one.list.size());
   for (std::size_t i = 0; i < one.list.size(); ++i) {
     EXPECT_EQ(three.list[i].position_in_camera_m, one.list[i].position_in_camera_m);
+    EXPECT_EQ(three.list[i].disparity_sigma_px, one.list[i].disparity_sigma_px);
+    ASSERT_TRUE(one.list[i].box_on_floor);
+    EXPECT_EQ(three.list[i].box_on_floor->centre_in_floor_m, one.list[i].box_on_floor->centre_in_floor_m);
+    EXPECT_EQ(three.list[i].box_on_floor->size_m, one.list[i].box_on_floor->size_m);
     EXPECT_EQ(three.list[i].disparity_px, one.list[i].disparity_px);
   }
 }

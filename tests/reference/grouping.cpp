@@ -492,7 +492,15 @@ ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_obj
     best = nodes;
     best_rank = rank;
   }
-  ChosenObjects chosen{std::vector<std::int32_t>(slot(tree.superpixels), 0), {0.0F}};
+  ChosenObjects chosen{std::vector<std::int32_t>(slot(tree.superpixels), 0),
+                       {0.0F},
+                       std::vector<float>(slot(tree.superpixels), 0.0F)};
+  for (std::size_t s = 0; s < chosen.likeliest.size(); ++s) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (lies_in(s, i) && tree.nodes[i].area >= limits.min_area)
+        chosen.likeliest[s] = std::max(chosen.likeliest[s], scores[i]);
+    }
+  }
   for (const std::size_t i : best) {
     for (std::size_t s = 0; s < chosen.object_of.size(); ++s) {
       if (lies_in(s, i)) chosen.object_of[s] = static_cast<std::int32_t>(chosen.scores.size());

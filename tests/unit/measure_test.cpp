@@ -13,7 +13,6 @@ namespace cairn {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr StereoRig kRig{.focal_px = 100, .cx_px = 20, .cy_px = 10, .baseline_m = 0.1F, .doffs_px = 0};
 
 /// A background of region 0 with rectangles as regions 1, 2, …; each region has one disparity.
 struct Scene {
@@ -39,14 +38,14 @@ struct Scene {
       is_background.push_back(false);
     }
   }
-  [[nodiscard]] Objects measured(const ObjectsConfig& config = {}, std::optional<StereoRig> rig = {}) const {
-    return measure(labels, is_background, disparity, left, {}, noise_sigma(left), rig, config, {});
+  [[nodiscard]] Objects measured(const ObjectsConfig& config = {}) const {
+    return measure(labels, is_background, disparity, left, {}, noise_sigma(left), config, {});
   }
   [[nodiscard]] Objects measured_as_chosen(const std::vector<float>& scores, int threads = 1) const {
-    return measure(labels, scores, disparity, left, {}, noise_sigma(left), {}, Exec::with_threads(threads));
+    return measure(labels, scores, disparity, left, {}, noise_sigma(left), Exec::with_threads(threads));
   }
   [[nodiscard]] Objects measured_in_colour(View<const Rgb> rgb) const {
-    return measure(labels, is_background, disparity, left, rgb, noise_sigma(left), {}, {}, {});
+    return measure(labels, is_background, disparity, left, rgb, noise_sigma(left), {}, {});
   }
 };
 
@@ -186,42 +185,6 @@ TEST(Measure, TakesTheMeanColourOfTheMask) {
   rgb(3, 2) = {20, 40, 60};
   const Objects objects = scene.measured_in_colour(rgb);
   EXPECT_EQ(objects.list[0].mean_colour, (Rgb{15, 30, 46}));
-}
-
-TEST(Measure, PlacesAnObjectInMetresWhereARigIsKnown) {
-  // Z = 100 · 0.1 / 5 = 2 m; a pixel is 2 cm wide there. The board's middle is at (24.5, 9.5).
-  const Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
-  EXPECT_FALSE(scene.measured().list[0].position_in_camera_m);
-  const Object object = scene.measured({}, kRig).list[0];
-  ASSERT_TRUE(object.position_in_camera_m);
-  EXPECT_NEAR(object.position_in_camera_m->x, 4.5 * 0.02, 1e-5);
-  EXPECT_NEAR(object.position_in_camera_m->y, -0.5 * 0.02, 1e-5);
-  EXPECT_NEAR(object.position_in_camera_m->z, 2, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->x, 9 * 0.02, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->y, 9 * 0.02, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
-}
-
-TEST(Measure, AFewWildMatchesDoNotStretchTheExtent) {
-  Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
-  scene.disparity.disparity_px(22, 7) = 0.5F;  // 20 m
-  EXPECT_NEAR(scene.measured({}, kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
-  for (int i = 0; i < 4; ++i) scene.disparity.disparity_px(21 + i, 8) = 0.5F;
-  EXPECT_NEAR(scene.measured({}, kRig).list[0].extent_in_camera_m->z, 18, 1e-4);
-}
-
-TEST(Measure, AnObjectFartherThanAFloatHoldsHasNoPosition) {
-  constexpr StereoRig kFar{.focal_px = 1e30F, .cx_px = 20, .cy_px = 10, .baseline_m = 1e20F, .doffs_px = 0};
-  const Objects objects = Scene({120, 60}, {{{10, 10, 30, 20}, 8}}).measured({}, kFar);
-  ASSERT_EQ(objects.list.size(), 1U);
-  EXPECT_FALSE(objects.list[0].position_in_camera_m);
-  EXPECT_FALSE(objects.list[0].extent_in_camera_m);
-}
-
-TEST(Measure, AnObjectAtInfinityHasNoPosition) {
-  const Scene scene({60, 20}, {{{20, 5, 10, 10}, 0}});
-  ASSERT_EQ(scene.measured({}, kRig).list.size(), 1U);
-  EXPECT_FALSE(scene.measured({}, kRig).list[0].position_in_camera_m);
 }
 
 TEST(MeasureChosen, TakesTheScoresForConfidences) {

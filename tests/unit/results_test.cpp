@@ -2,9 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <io/dataset.hpp>
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
 #include <io/results.hpp>
@@ -12,6 +15,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 namespace cairn::io {
 namespace {
@@ -19,7 +23,15 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+using namespace std::string_literals;
+
 constexpr Size kSize{60, 40};
+
+std::string text_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
 
 /// A folder of the test's own, gone after it.
 class ResultFolder : public testing::Test {
@@ -40,6 +52,18 @@ class ResultFolder : public testing::Test {
 
   fs::path root_;
 };
+
+/// All but a strip of obstacle is floor.
+void add_space(Frame& frame) {
+  frame.space = Image<Space>(kSize, Space::floor, {});
+  for (int y = 10; y < 22; ++y) std::fill_n(frame.space.row(y) + 20, 15, Space::obstacle);
+  LeftOut left;
+  left.reason = LeftOutReason::too_small;
+  left.box_px = {1, 2, 3, 4};
+  left.pixel_count = 12;
+  left.disparity_px = 5;
+  frame.left_out.push_back(left);
+}
 
 Frame frame_with_one_object(bool with_floor) {
   Frame frame;
@@ -86,6 +110,38 @@ Provenance some_provenance() {
 void write(const fs::path& folder, const Frame& frame, const Provenance& provenance) {
   const Image<Gray> left(kSize, Gray{90}, {});
   write_result(folder, left, {}, frame, provenance);
+}
+
+TEST(ObjectsJson, SaysWhatStandsInTheWayAndWhyItIsNoObject) {
+  Frame frame = frame_with_one_object(true);
+  EXPECT_TRUE(Json::parse(objects_json(frame, some_provenance())).at("obstacle_scan").is_null());
+  add_space(frame);
+  const Json j = Json::parse(objects_json(frame, some_provenance()));
+  ASSERT_EQ(j.at("left_out").size(), 1U);
+  EXPECT_EQ(j.at("left_out").at(0).at("reason"), "too small");
+  EXPECT_EQ(j.at("left_out").at(0).at("bbox"), (Json{1, 2, 3, 4}));
+  EXPECT_TRUE(j.at("left_out").at(0).at("position_m").is_null());
+  const Json& ranges = j.at("obstacle_scan").at("ranges_m");
+  EXPECT_TRUE(std::any_of(ranges.begin(), ranges.end(), [](const Json& r) { return r.is_number(); }));
+  EXPECT_NEAR(j.at("floor_frame").at("camera_height_m").get<double>(), 0.12 / std::hypot(0.1, 0.0), 0.2);
+  Provenance without_rig = some_provenance();
+  without_rig.rig.reset();
+  EXPECT_TRUE(Json::parse(objects_json(frame, without_rig)).at("obstacle_scan").is_null());
+  EXPECT_TRUE(Json::parse(objects_json(frame, without_rig)).at("floor_frame").is_null());
+}
+
+TEST(ObjectsJson, SaysWhereAnObjectStands) {
+  Frame frame = frame_with_one_object(true);
+  Object& object = frame.objects.list[0];
+  object.disparity_sigma_px = 0.25F;
+  object.depth_interval_m = Interval{1.4F, std::numeric_limits<float>::infinity()};
+  object.box_on_floor = FloorBox{{1.5F, 0.5F, 0.25F}, {0.5F, 0.25F, 0.5F}, -0.5F, {1, 2, 3, 4, 5, 6}};
+  const Json j = Json::parse(objects_json(frame, some_provenance())).at("objects").at(0);
+  EXPECT_EQ(j.at("disparity_sigma_px"), 0.25);
+  EXPECT_EQ(j.at("depth_interval_m"), (Json{1.4, nullptr}));
+  EXPECT_EQ(j.at("box_on_floor").at("centre_m"), (Json{1.5, 0.5, 0.25}));
+  EXPECT_EQ(j.at("box_on_floor").at("yaw_rad"), -0.5);
+  EXPECT_EQ(j.at("box_on_floor").at("centre_covariance_m2"), (Json{1, 2, 3, 4, 5, 6}));
 }
 
 TEST(ObjectsJson, SaysWhatWasFoundAndHow) {
@@ -265,6 +321,31 @@ TEST_F(ResultFolder, ObjectsJsonOfAnotherKindIsRefused) {
   EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
   std::ofstream(root_ / "objects.json") << "{";
   EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
+}
+
+TEST_F(ResultFolder, HoldsDepthAndGridOnRequest) {
+  Frame frame = frame_with_one_object(true);
+  add_space(frame);
+  const Image<Gray> left(kSize, Gray{90}, {});
+  write_result(root_ / "with", left, {}, frame, some_provenance(), {.depth = true, .grid = true});
+  // Z = 500 · 0.12 / 10 = 6 m; a hole at (0, 0), infinity at (1, 0).
+  const Labels depth = load_labels(root_ / "with" / "depth.png");
+  EXPECT_EQ(depth.ids(5, 5), 6000);
+  EXPECT_EQ(depth.ids(0, 0), 0);
+  EXPECT_EQ(depth.ids(1, 0), 0);
+  const std::string npy = text_of(root_ / "with" / "depth.npy");
+  ASSERT_EQ(npy.size() % 64, static_cast<std::size_t>(kSize.area()) * 4 % 64);
+  EXPECT_EQ(npy.substr(0, 6), "\x93NUMPY");
+  EXPECT_NE(npy.find("'shape': (40, 60)"), std::string::npos);
+  const std::string pgm = text_of(root_ / "with" / "grid.pgm");
+  EXPECT_EQ(pgm.substr(0, 15), "P5\n120 240\n255\n"s.substr(0, 15));
+  EXPECT_NE(text_of(root_ / "with" / "grid.yaml").find("resolution: 0.05\norigin: [0.0, -6.0, 0.0]"),
+            std::string::npos);
+  EXPECT_TRUE(names(root_ / "with").count("space.png"));
+
+  write_result(root_ / "with", left, {}, frame, some_provenance());
+  for (const char* name : {"depth.png", "depth.npy", "grid.pgm", "grid.yaml"})
+    EXPECT_FALSE(names(root_ / "with").count(name)) << name;
 }
 
 }  // namespace

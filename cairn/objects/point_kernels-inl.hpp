@@ -22,7 +22,7 @@ inline void points_in_camera(const StereoRig& given, int y, int first, int last,
   }
 }
 
-inline constexpr MeasureKernels kMeasureKernels{points_in_camera};
+inline constexpr PointKernels kPointKernels{points_in_camera};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

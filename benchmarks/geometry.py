@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""How true is what a robot is told in metres: geometry.py DATA (with PYTHONPATH at the built module)
+
+On the rendered rooms, of which all is known: floor and obstacles by pixel; depth, its stated interval, extent and
+box of each object that is found (IoU of 0.5 and more). Prints a table of fit and validation sets side by side.
+"""
+import math
+import pathlib
+import sys
+
+import numpy as np
+
+import cairn
+
+SETS = {
+    "fit": ["dev/320x240", "dev/640x480", "train/320x240"],
+    "validate": ["validate/320x240", "validate/640x480"],
+}
+
+
+class Truth:
+    def __init__(self, folder):
+        self.left, self.right = cairn.load_pair(folder / "left.png", folder / "right.png")
+        self.calibration = cairn.load_calibration(folder / "calib.txt")
+        self.disparity = cairn.load_disparity(folder / "disp_left.png")
+        self.objects = cairn.load_labels(folder / "objects.png")
+        self.is_floor = cairn.load_labels(folder / "ground.png") == 255
+        numbers = [line.split() for line in (folder / "ground.txt").read_text().splitlines() if line and line[0] != "#"]
+        self.plane = [float(number) for number in numbers[-1]]
+        rig = self.calibration.rig
+        self.rig = rig
+        rows, columns = np.mgrid[: self.disparity.shape[0], : self.disparity.shape[1]]
+        self.floor_px = self.plane[0] * columns + self.plane[1] * rows + self.plane[2]
+        depth = rig.focal_px * rig.baseline_m / (self.disparity + rig.doffs_px)
+        self.points = np.stack([(columns - rig.cx_px) * depth / rig.focal_px, (rows - rig.cy_px) * depth / rig.focal_px, depth], -1)
+        self.floor_frame = cairn.floor_frame(true_plane(self), rig)
+
+
+def true_plane(truth):
+    """The true floor as a GroundPlane: the one that a fit to the truth finds."""
+    return cairn.fit_ground(np.where(np.isnan(truth.disparity), np.nan, truth.floor_px).astype(np.float32), truth.rig).plane
+
+
+def span(values):
+    low, high = np.percentile(values, [2, 98])
+    return high - low
+
+
+def box_size(points, frame):
+    """Longer side, shorter side and height of the upright box whose sides are closest to the points."""
+    matrix = np.array(frame.floor_from_camera)
+    x, y, z = matrix[:3, :3] @ points.T
+    best = None
+    for yaw in np.radians(np.arange(90)):
+        u, v = x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw)
+        off = [np.abs(a - np.percentile(a, p)) for a in (u, v) for p in (2, 98)]
+        distance = np.min(off, axis=0).sum()
+        if best is None or distance < best[0]:
+            best = distance, sorted([span(u), span(v)], reverse=True)
+    return [*best[1], span(z)]
+
+
+def found_objects(truth, frame):
+    """Pairs of what was found and the mask of what it is."""
+    labels = frame.objects_map
+    for found in frame.objects:
+        mask = labels == found.id
+        ids, counts = np.unique(truth.objects[mask], return_counts=True)
+        for k, shared in zip(ids, counts):
+            true = truth.objects == k
+            if 0 < k < 255 and shared >= 0.5 * (mask.sum() + true.sum() - shared):
+                yield found, true & ~np.isnan(truth.disparity)
+
+
+def measure(folders):
+    pixels = dict.fromkeys(["floor", "called_floor", "floor_right", "obstacle_called", "obstacle_right", "object", "object_obstacle", "object_floor"], 0)
+    rows, frames, grounds, right_grounds = [], 0, 0, 0
+    for folder in folders:
+        truth = Truth(folder)
+        frame = cairn.segment(truth.left, truth.right, truth.calibration)
+        frames += 1
+        if frame.ground.plane:
+            grounds += 1
+            a, b, c = frame.ground.plane
+            height, width = truth.disparity.shape
+            columns, lines = np.arange(width)[None, :], np.arange(height)[:, None]
+            off = np.abs(a * columns + b * lines + c - truth.floor_px)
+            right_grounds += np.median(off[truth.is_floor] if truth.is_floor.any() else off) <= 1
+        space, is_object = frame.space, (truth.objects > 0) & (truth.objects < 255)
+        called, obstacle = space == 128, space == 255
+        for name, mask in dict(floor=truth.is_floor, called_floor=called, floor_right=called & truth.is_floor, obstacle_called=obstacle,
+                               obstacle_right=obstacle & ~truth.is_floor, object=is_object, object_obstacle=is_object & obstacle,
+                               object_floor=is_object & called).items():
+            pixels[name] += int(mask.sum())
+        for found, mask in found_objects(truth, frame):
+            rig = truth.rig
+            depth = rig.focal_px * rig.baseline_m / (np.median(truth.disparity[mask]) + rig.doffs_px)
+            low, high = found.depth_interval_m
+            points = truth.points[mask]
+            row = dict(depth=depth, off=abs(found.distance_m - depth), inside=low <= depth <= high,
+                       extent=[e / (p.max() - p.min()) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
+            if found.box_on_floor and truth.floor_frame:
+                row["box"] = [ours / true for ours, true in zip(found.box_on_floor.size_m, box_size(points, truth.floor_frame))]
+            rows.append(row)
+    share = lambda part, whole: 100 * pixels[part] / max(pixels[whole], 1)
+    near = np.array([row["off"] for row in rows if 2 <= row["depth"] <= 4])
+    boxes = np.array([row["box"] for row in rows if row["box"]])
+    extents = np.array([row["extent"] for row in rows])
+    return {
+        "frames": f"{frames}",
+        "ground found / right within 1 px, frames": f"{grounds} / {right_grounds}",
+        "floor, precision / recall": f"{share('floor_right', 'called_floor'):.1f} / {share('floor_right', 'floor'):.1f} %",
+        "obstacles, precision": f"{share('obstacle_right', 'obstacle_called'):.1f} %",
+        "pixels of objects that are obstacles / floor": f"{share('object_obstacle', 'object'):.1f} / {share('object_floor', 'object'):.1f} %",
+        "objects found": f"{len(rows)}",
+        "depth at 2–4 m, objects": f"{len(near)}",
+        "… error, median / 90th percentile": f"{100 * np.median(near):.1f} / {100 * np.quantile(near, 0.9):.1f} cm",
+        "true depth in the 95 % interval": f"{100 * np.mean([row['inside'] for row in rows]):.1f} %",
+        "extent more than twice too large, width / height / depth": " / ".join(f"{100 * s:.0f}" for s in (extents > 2).mean(0)) + " %",
+        "size of the box on the floor, median error": f"{100 * np.median(np.abs(boxes - 1)):.1f} %",
+        "… of its longer side / shorter side / height": " / ".join(f"{100 * e:.1f}" for e in np.median(np.abs(boxes - 1), 0)) + " %",
+    }
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    rendered = pathlib.Path(sys.argv[1]) / "rendered"
+    if not rendered.is_dir():
+        sys.exit(f"geometry: {rendered}: no folder, expected the rendered rooms of the data collection")
+    found = {name: measure([f for s in sets for f in sorted((rendered / s).iterdir()) if f.is_dir()]) for name, sets in SETS.items()}
+    print("| | " + " | ".join(found) + " |\n|---|" + "---:|" * len(found))
+    for key in next(iter(found.values())):
+        print(f"| {key} | " + " | ".join(table[key] for table in found.values()) + " |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <array>
+#include <cairn/core/parallel.hpp>
+#include <cairn/disparity/islands.hpp>
+#include <cairn/objects/locate.hpp>
+#include <cairn/objects/point_kernels.hpp>
+#include <cairn/objects/ranks.hpp>
+#include <cairn/scene/floor_frame.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+// Neighbours of one surface differ by less, those of two seldom: as reject_speckles() has it.
+constexpr float kStep = 1.0F;  // px
+
+// ln σ = kBias + kSpread · ln(interquartile range + 0.1 px) + kSeen · valid share, fitted to how far the
+// median disparities of found objects were from the true ones: fitting/fit_distances.py.
+constexpr double kBias = 1.58;
+constexpr double kSpread = 0.441;
+constexpr double kSeen = -2.693;
+constexpr double kWidth95 = 1.96;   // standard deviations on either side that hold 95 %
+constexpr double kSideSigma = 2.0;  // px: how well a mask tells where the middle of an object is …
+constexpr double kEndShare = 0.2;   // … and of each side of a box: how well it tells where it ends
+
+/// Pixels of one object with disparities of one surface.
+struct SurfaceRow {
+  const ObjectId* object;
+  const float* d;
+  [[nodiscard]] bool is_pixel(int x) const { return object[x] != ObjectId::none && d[x] == d[x]; }
+  [[nodiscard]] bool follows(int x) const {
+    return object[x] == object[x - 1] && std::abs(d[x] - d[x - 1]) <= kStep;
+  }
+  [[nodiscard]] bool joins(const SurfaceRow& above, int x) const {
+    return object[x] == above.object[x] && std::abs(d[x] - above.d[x]) <= kStep;
+  }
+};
+
+struct Stretch {
+  int y;
+  int first;
+  int last;
+};
+
+/// The pixels of each object: its main part, and the valid disparities of the whole mask.
+struct Part {
+  std::vector<Stretch> main;
+  std::vector<float> disparities_px;
+};
+
+std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_px, const Exec& exec) {
+  const auto rows = [&](int y) { return SurfaceRow{objects.labels.row(y), disparity_px.row(y)}; };
+  const Islands islands(disparity_px.size(), rows, exec);
+  std::vector<std::int32_t> main(objects.list.size(), -1);
+  std::vector<Part> parts(objects.list.size());
+  const auto object_at = [&](int x, int y) { return slot(number(objects.labels(x, y)) - 1); };
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
+      const std::size_t i = object_at(begin, y);
+      if (main[i] < 0 || islands.pixels(island) > islands.pixels(main[i])) main[i] = island;
+      std::vector<float>& all = parts[i].disparities_px;
+      all.insert(all.end(), disparity_px.row(y) + begin, disparity_px.row(y) + end);
+    });
+  }
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
+      const std::size_t i = object_at(begin, y);
+      if (island == main[i]) parts[i].main.push_back({y, begin, end});
+    });
+  }
+  return parts;
+}
+
+std::size_t rank_of(std::size_t percent, std::size_t count) {
+  return (percent * (count - 1) + 50) / 100;
+}
+
+/// The values of the ranks ⌊(p·(n−1) + 50)/100⌋ for p = 2 and 98, in ascending order: few wild matches do not
+/// stretch what lies between them. Reorders `values`, which are not empty.
+Interval without_tails(std::span<float> values, const Exec& exec) {
+  const std::size_t n = values.size();
+  const auto [low, high] = values_at_ranks(values, rank_of(2, n), rank_of(98, n), exec);
+  return {low, high};
+}
+
+float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& exec) {
+  const std::size_t n = disparities_px.size();
+  const auto [low, high] = values_at_ranks(disparities_px, rank_of(25, n), rank_of(75, n), exec);
+  const double logarithm =
+      kBias + kSpread * std::log(double{high} - double{low} + 0.1) + kSeen * double{valid_share};
+  // What exp() gives in the last place may differ between processors, and is rounded away here.
+  return static_cast<float>(std::floor(std::exp(logarithm) * 1024 + 0.5) / 1024);
+}
+
+/// Points of a surface, one list per axis.
+struct Points {
+  std::array<std::vector<float>, 3> axis;
+  [[nodiscard]] std::size_t size() const { return axis[0].size(); }
+  void push_back(Vec3 p) {
+    axis[0].push_back(p.x);
+    axis[1].push_back(p.y);
+    axis[2].push_back(p.z);
+  }
+};
+
+Points points_of(const Part& part, const Image<float>& disparity_px, const StereoRig& rig, const Exec& exec) {
+  const kernels::PointKernels& run = kernels::point_kernels(exec);
+  std::array<std::vector<float>, 3> row;
+  for (auto& axis : row) axis.resize(slot(disparity_px.width()));
+  Points points;
+  for (const auto& [y, first, last] : part.main) {
+    run.points_in_camera(rig, y, first, last, disparity_px.row(y), row[0].data(), row[1].data(),
+                         row[2].data());
+    for (auto x = slot(first); x < slot(last); ++x) {
+      if (!std::isnan(row[2][x])) points.push_back({row[0][x], row[1][x], row[2][x]});
+    }
+  }
+  return points;
+}
+
+// ---- boxes on the floor ----
+
+/// Points as they lie on the floor, seen from above, every so many of them with their axes turned.
+void turn(const Points& points, std::size_t step, float yaw_rad, std::array<std::vector<float>, 2>& room) {
+  const float c = std::cos(yaw_rad);
+  const float s = std::sin(yaw_rad);
+  for (auto& axis : room) axis.clear();
+  for (std::size_t i = step / 2; i < points.size(); i += step) {
+    const float x = points.axis[0][i];
+    const float y = points.axis[1][i];
+    room[0].push_back(c * x + s * y);
+    room[1].push_back(c * y - s * x);
+  }
+}
+
+float length(Interval i) {
+  return i.high - i.low;
+}
+float middle(Interval i) {
+  return (i.low + i.high) / 2;
+}
+/// How far a value lies from the nearer end.
+float from_end(Interval i, float value) {
+  return std::min(std::abs(value - i.low), std::abs(i.high - value));
+}
+float radians(int degrees) {
+  return static_cast<float>(degrees) * std::numbers::pi_v<float> / 180;
+}
+
+/// How the rectangle is turned of which the sides are closest to the points, degrees from 0 to 89. (What is
+/// seen of a box from above is an L, about which the rectangle of the least area may lie askew. Zhang, Xu,
+/// Dong, Dolan: Efficient L-shape fitting, 2017.)
+int closest_yaw(const Points& points, std::array<std::vector<float>, 2>& room, const Exec& exec) {
+  constexpr std::size_t kEnough = 512;  // points, to tell a direction by
+  constexpr int kCoarse = 6;            // degrees
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kEnough);
+  std::array<std::vector<float>, 2> ranked;
+  const auto distance = [&](int degrees) {
+    turn(points, step, radians(degrees), room);
+    ranked = room;
+    const Interval u = without_tails(ranked[0], exec);
+    const Interval v = without_tails(ranked[1], exec);
+    double sum = 0;
+    for (std::size_t i = 0; i < room[0].size(); ++i)
+      sum += double{std::min(from_end(u, room[0][i]), from_end(v, room[1][i]))};
+    return sum;
+  };
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  const auto try_one = [&](int degrees) {
+    const double found = distance(degrees);
+    if (found < least) {
+      least = found;
+      best = degrees;
+    }
+  };
+  for (int degrees = 0; degrees < 90; degrees += kCoarse) try_one(degrees);
+  const int about = best;
+  for (int off = 1; off < kCoarse; ++off) {
+    try_one((about + off) % 90);
+    try_one((about + 90 - off) % 90);
+  }
+  return best;
+}
+
+/// What is not known of a box's centre: along the ray from the camera the depth, across it the mask, and
+/// along each of its sides where it ends.
+std::array<float, 6> covariance(const FloorBox& box, double sigma_z_m, double sigma_side_m,
+                                const FloorFrame& floor) {
+  const Vec3 at_m = box.centre_in_floor_m;
+  const Vec3 in_camera = floor.to_camera(at_m);
+  const Vec3 ray{at_m.x, at_m.y, at_m.z - floor.camera_height_m};
+  const double c = std::cos(double{box.yaw_rad});
+  const double s = std::sin(double{box.yaw_rad});
+  const auto end = [](float size) { return kEndShare * kEndShare * size * size; };
+  const double longer = end(box.size_m.x);
+  const double shorter = end(box.size_m.y);
+  const double square = double{ray.x} * ray.x + double{ray.y} * ray.y + double{ray.z} * ray.z;
+  const double far = square / (double{in_camera.z} * in_camera.z);  // a step of z along the ray, squared
+  const double along = sigma_z_m * sigma_z_m * far;
+  const double across = sigma_side_m * sigma_side_m;
+  const auto entry = [&](float p, float q, double more) {
+    return static_cast<float>((along - across) * p * q / square + more);
+  };
+  return {entry(ray.x, ray.x, across + c * c * longer + s * s * shorter),
+          entry(ray.x, ray.y, c * s * (longer - shorter)),
+          entry(ray.x, ray.z, 0),
+          entry(ray.y, ray.y, across + s * s * longer + c * c * shorter),
+          entry(ray.y, ray.z, 0),
+          entry(ray.z, ray.z, across + end(box.size_m.z))};
+}
+
+FloorBox box_on(const FloorFrame& floor, const Points& in_camera, const Exec& exec) {
+  Points points;
+  for (std::size_t i = 0; i < in_camera.size(); ++i)
+    points.push_back(floor.to_floor({in_camera.axis[0][i], in_camera.axis[1][i], in_camera.axis[2][i]}));
+  std::array<std::vector<float>, 2> room;
+  int degrees = closest_yaw(points, room, exec);
+  const float yaw = radians(degrees);
+  turn(points, 1, yaw, room);
+  const Interval u = without_tails(room[0], exec);
+  const Interval v = without_tails(room[1], exec);
+  const Interval up = without_tails(points.axis[2], exec);
+  const float c = std::cos(yaw);
+  const float s = std::sin(yaw);
+  FloorBox box;
+  box.centre_in_floor_m = {c * middle(u) - s * middle(v), s * middle(u) + c * middle(v), middle(up)};
+  box.size_m = {std::max(length(u), length(v)), std::min(length(u), length(v)), length(up)};
+  if (length(v) > length(u)) degrees -= degrees > 0 ? 90 : -90;
+  box.yaw_rad = radians(degrees);
+  return box;
+}
+
+// ---- objects ----
+
+void place(Object& object, const Part& part, const Image<float>& disparity_px,
+           const std::optional<FloorFrame>& floor, const StereoRig& rig, const Exec& exec) {
+  std::int64_t sum_x = 0;
+  std::int64_t sum_y = 0;
+  std::int64_t count = 0;
+  for (const auto& [y, first, last] : part.main) {
+    const std::int64_t run = last - first;
+    count += run;
+    sum_x += run * (first + last - 1);
+    sum_y += run * y;
+  }
+  const double x = static_cast<double>(sum_x) / (2.0 * static_cast<double>(count));
+  const double y = static_cast<double>(sum_y) / static_cast<double>(count);
+  object.position_in_camera_m =
+      rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), object.disparity_px);
+  if (!object.position_in_camera_m) return;
+
+  const double focal_baseline = double{rig.focal_px} * rig.baseline_m;
+  const double before_infinity = double{object.disparity_px} + rig.doffs_px;
+  const double either_side = kWidth95 * double{object.disparity_sigma_px};
+  object.depth_interval_m = {static_cast<float>(focal_baseline / (before_infinity + either_side)),
+                             before_infinity > either_side
+                                 ? static_cast<float>(focal_baseline / (before_infinity - either_side))
+                                 : std::numeric_limits<float>::infinity()};
+
+  Points points = points_of(part, disparity_px, rig, exec);
+  if (points.size() == 0) return;
+  if (floor) {
+    object.box_on_floor = box_on(*floor, points, exec);
+    const double z = object.position_in_camera_m->z;
+    object.box_on_floor->centre_covariance_m2 =
+        covariance(*object.box_on_floor, z * z * object.disparity_sigma_px / focal_baseline,
+                   kSideSigma * z / rig.focal_px, *floor);
+  }
+  const auto span = [&](std::size_t axis) { return length(without_tails(points.axis.at(axis), exec)); };
+  object.extent_in_camera_m = Vec3{span(0), span(1), span(2)};
+}
+
+}  // namespace
+
+Objects locate(Objects objects, const DisparityMap& disparity, const Ground& ground,
+               const std::optional<StereoRig>& rig, const Exec& exec) {
+  if (objects.list.empty()) return objects;
+  std::vector<Part> parts = parts_of(objects, disparity.disparity_px, exec);
+  const auto floor = rig && ground.plane ? floor_frame(*ground.plane, *rig) : std::nullopt;
+  parallel_for(exec, static_cast<int>(parts.size()), 1, [&](int first, int last) {
+    for (auto i = slot(first); i < slot(last); ++i) {
+      Object& object = objects.list[i];
+      if (parts[i].main.empty()) continue;
+      object.disparity_sigma_px = sigma_px(parts[i].disparities_px, object.valid_share, exec);
+      if (rig) place(object, parts[i], disparity.disparity_px, floor, *rig, exec);
+    }
+  });
+  return objects;
+}
+
+}  // namespace cairn

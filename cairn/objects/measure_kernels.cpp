@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-// SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/objects/measure_kernels.hpp>
-#include <limits>
-
-#define CAIRN_KERNELS "cairn/objects/measure_kernels-inl.hpp"
-#include <cairn/core/each_target-inl.hpp>
-
-CAIRN_CHOOSE_KERNELS(MeasureKernels, measure_kernels, kMeasureKernels)

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/objects/point_kernels.hpp>
+#include <limits>
+
+#define CAIRN_KERNELS "cairn/objects/point_kernels-inl.hpp"
+#include <cairn/core/each_target-inl.hpp>
+
+CAIRN_CHOOSE_KERNELS(PointKernels, point_kernels, kPointKernels)

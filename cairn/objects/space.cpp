@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/parallel.hpp>
+#include <cairn/disparity/islands.hpp>
+#include <cairn/objects/space.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace cairn {
+namespace {
+
+constexpr int kGrain = 64;  // rows
+constexpr float kRatherRight = 0.5F;
+constexpr std::int64_t kKnownPart = 5;  // a fifth of a superpixel
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// The planes behind a pixel.
+class Behind {
+ public:
+  Behind(const SpaceCues& cues, const std::optional<StereoRig>& rig)
+      : floor_(cues.ground.plane), infinity_(rig ? rig->doffs_px : 0.0F) {
+    const auto& planes = cues.background.planes;
+    walls_.assign(planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end());
+  }
+  [[nodiscard]] bool has_floor() const { return floor_.has_value(); }
+  [[nodiscard]] bool has_any() const { return has_floor() || !walls_.empty(); }
+  /// NaN above the horizon and where there is no floor.
+  [[nodiscard]] float floor_px(int x, int y) const {
+    if (!floor_) return kNan;
+    const float d = floor_->disparity_px(static_cast<float>(x), static_cast<float>(y));
+    return d + infinity_ > 0 ? d : kNan;
+  }
+  /// −∞ where there is none.
+  [[nodiscard]] float wall_px(int x, int y) const {
+    float nearest = -std::numeric_limits<float>::infinity();
+    for (const GroundPlane& wall : walls_)
+      nearest = std::max(nearest, wall.disparity_px(static_cast<float>(x), static_cast<float>(y)));
+    return nearest;
+  }
+  /// What an obstacle stands before: the floor; where none is known, the walls.
+  [[nodiscard]] float barrier_px(int x, int y) const {
+    const float floor = floor_px(x, y);
+    if (!std::isnan(floor)) return floor;
+    return has_floor() ? -infinity_ : std::max(wall_px(x, y), -infinity_);
+  }
+
+ private:
+  std::optional<GroundPlane> floor_;
+  std::vector<GroundPlane> walls_;
+  float infinity_;
+};
+
+/// Where the floor is the nearest of the planes, and how far what is seen lies above it; NaN elsewhere.
+float above_floor(const Behind& behind, View<const float> seen_px, int x, int y) {
+  const float floor = behind.floor_px(x, y);
+  return floor >= behind.wall_px(x, y) ? seen_px(x, y) - floor : kNan;
+}
+
+struct Tally {
+  std::int64_t pixels = 0;
+  std::int64_t known = 0;
+  std::int64_t on_floor = 0;
+  [[nodiscard]] bool is_floor() const {
+    return on_floor > 0 && kKnownPart * known >= pixels && 5 * on_floor >= 3 * known;
+  }
+};
+
+/// For each superpixel whether it is floor; one for all pixels where there are none.
+std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px, const Behind& behind,
+                               float margin) {
+  if (cues.superpixels.empty()) return {};
+  std::vector<Tally> pieces;
+  for (int y = 0; y < seen_px.height(); ++y) {
+    for (int x = 0; x < seen_px.width(); ++x) {
+      const std::size_t i = index(cues.superpixels(x, y));
+      if (i >= pieces.size()) pieces.resize(i + 1);
+      Tally& piece = pieces[i];
+      ++piece.pixels;
+      if (std::isnan(seen_px(x, y))) continue;
+      ++piece.known;
+      piece.on_floor += std::abs(above_floor(behind, seen_px, x, y)) <= margin ? 1 : 0;
+    }
+  }
+  std::vector<bool> floor(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) floor[i] = pieces[i].is_floor();
+  return floor;
+}
+
+/// A place that obstacles are counted at.
+struct Place {
+  Vec3 in_floor_m;
+  [[nodiscard]] float distance_m() const { return std::hypot(in_floor_m.x, in_floor_m.y); }
+};
+
+/// Calls visit(place) for every pixel of an obstacle that stands in the way.
+template <class Visit>
+void for_each_place(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
+                    const StereoRig& rig, const SpaceConfig& config, Visit visit) {
+  for (int y = 0; y < space.height(); ++y) {
+    for (int x = 0; x < space.width(); ++x) {
+      if (space(x, y) != Space::obstacle || std::isnan(disparity_px(x, y))) continue;
+      const auto point =
+          rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px(x, y));
+      if (!point) continue;
+      const Place place{floor.to_floor(*point)};
+      if (place.in_floor_m.z <= config.max_height && place.distance_m() <= config.range) visit(place);
+    }
+  }
+}
+
+/// Obstacles that are no objects: pixels with disparities of one surface.
+struct RestRow {
+  const Space* space;
+  const ObjectId* object;
+  const float* d;
+  [[nodiscard]] bool is_pixel(int x) const {
+    return space[x] == Space::obstacle && object[x] == ObjectId::none && d[x] == d[x];
+  }
+  [[nodiscard]] bool follows(int x) const {
+    return is_pixel(x) && is_pixel(x - 1) && std::abs(d[x] - d[x - 1]) <= 1;
+  }
+  [[nodiscard]] bool joins(const RestRow& above, int x) const { return std::abs(d[x] - above.d[x]) <= 1; }
+};
+
+struct Gathered {
+  Rect box;
+  std::int64_t pixels = 0;
+  std::int64_t on_wall = 0;
+  double disparity_px = 0;
+  double x = 0;
+  double y = 0;
+};
+
+}  // namespace
+
+Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
+                         const GroundConfig& config, const Exec& exec) {
+  const View<const float> disparity_px = cues.disparity.disparity_px;
+  const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
+  const Behind behind(cues, rig);
+  const std::vector<bool> floor = floor_pieces(cues, seen_px, behind, config.margin);
+  Image<Space> space(disparity_px.size(), exec.pool);
+  const auto label = [&](int x, int y) {
+    if (cues.objects(x, y) != ObjectId::none) return Space::obstacle;
+    if (!behind.has_any()) return Space::unknown;
+    const float above = above_floor(behind, seen_px, x, y);
+    const bool piece = floor.empty() ? !std::isnan(above) : floor[index(cues.superpixels(x, y))];
+    const bool off = !std::isnan(seen_px(x, y)) && !(std::abs(above) <= config.margin);
+    const float under = behind.floor_px(x, y);
+    if (piece && !off && under >= behind.wall_px(x, y)) return Space::floor;
+    const bool believed = cues.confidence.empty() || cues.confidence(x, y) >= kRatherRight;
+    if (believed && disparity_px(x, y) - behind.barrier_px(x, y) > config.margin) return Space::obstacle;
+    return Space::unknown;
+  };
+  parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < space.width(); ++x) space(x, y) = label(x, y);
+    }
+  });
+  return space;
+}
+
+Image<std::uint8_t> floor_of(View<const Space> space, const Exec& exec) {
+  Image<std::uint8_t> floor(space.size(), exec.pool);
+  for (int y = 0; y < space.height(); ++y) {
+    std::transform(space.row(y), space.row(y) + space.width(), floor.row(y),
+                   [](Space s) { return s == Space::floor ? std::uint8_t{255} : std::uint8_t{0}; });
+  }
+  return floor;
+}
+
+ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
+                            const StereoRig& rig, const SpaceConfig& config) {
+  constexpr float kIncrement = std::numbers::pi_v<float> / 180;
+  constexpr std::size_t kRank = 3;  // from 0
+  const float to_left = rig.cx_px + 0.5F;
+  const float to_right = static_cast<float>(space.width()) - 0.5F - rig.cx_px;
+  // As wide as what a level camera sees; what a tilted one sees beyond counts at the ends.
+  const float widest = std::atan(std::max(to_left, to_right) / rig.focal_px);
+  const int half = std::clamp(static_cast<int>(std::ceil(widest / kIncrement)), 1, 180);
+  ObstacleScan scan{-kIncrement * static_cast<float>(half), kIncrement, {}};
+  std::vector<std::vector<float>> ranges(slot(2 * half + 1));
+  for_each_place(space, disparity_px, floor, rig, config, [&](const Place& place) {
+    const float bearing = std::atan2(place.in_floor_m.y, place.in_floor_m.x);
+    const int bin = std::clamp(static_cast<int>(std::lround(bearing / kIncrement)) + half, 0, 2 * half);
+    ranges[slot(bin)].push_back(place.distance_m());
+  });
+  for (std::vector<float>& found : ranges) {
+    if (found.size() <= kRank) {
+      scan.ranges_m.push_back(kNan);
+      continue;
+    }
+    std::nth_element(found.begin(), found.begin() + kRank, found.end());
+    scan.ranges_m.push_back(found[kRank]);
+  }
+  return scan;
+}
+
+ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
+                           const StereoRig& rig, const SpaceConfig& config) {
+  constexpr int kEnough = 3;  // pixels
+  // A grid as large as memory would be no one's wish: 4096 cells from the camera on at most.
+  const int reach = std::clamp(static_cast<int>(std::ceil(config.range / config.cell_size)), 1, 4096);
+  ObstacleGrid grid{config.cell_size, reach, 2 * reach, 0, -config.cell_size * static_cast<float>(reach), {}};
+  grid.cells.assign(slot(grid.width) * slot(grid.height), ObstacleGrid::kUnknown);
+  const auto at = [&](int column, int row) { return slot(row) * slot(grid.width) + slot(column); };
+
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const Vec3 middle{(static_cast<float>(column) + 0.5F) * grid.cell_size_m,
+                        grid.origin_y_m + (static_cast<float>(row) + 0.5F) * grid.cell_size_m, 0};
+      const Vec3 point = floor.to_camera(middle);
+      if (!(point.z > 0)) continue;
+      const float x = rig.cx_px + rig.focal_px * point.x / point.z;
+      const float y = rig.cy_px + rig.focal_px * point.y / point.z;
+      const bool inside = x > -0.5F && y > -0.5F && x < static_cast<float>(space.width()) - 0.5F &&
+                          y < static_cast<float>(space.height()) - 0.5F;
+      if (inside && space(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y))) == Space::floor)
+        grid.cells[at(column, row)] = ObstacleGrid::kFree;
+    }
+  }
+
+  std::vector<std::int32_t> counts(grid.cells.size());
+  for_each_place(space, disparity_px, floor, rig, config, [&](const Place& place) {
+    const auto column = static_cast<int>(std::floor(place.in_floor_m.x / grid.cell_size_m));
+    const auto row = static_cast<int>(std::floor((place.in_floor_m.y - grid.origin_y_m) / grid.cell_size_m));
+    if (column >= 0 && row >= 0 && column < grid.width && row < grid.height) ++counts[at(column, row)];
+  });
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] >= kEnough) grid.cells[i] = ObstacleGrid::kOccupied;
+  }
+  return grid;
+}
+
+std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
+                                 const std::vector<float>& likeliest, const std::optional<StereoRig>& rig,
+                                 const LeftOutLimits& limits, const Exec& exec) {
+  constexpr double kLeastShare = 0.0005;
+  const View<const float> d = cues.disparity.disparity_px;
+  const Behind behind(cues, rig);
+  const auto rows = [&](int y) { return RestRow{space.row(y), cues.objects.row(y), d.row(y)}; };
+  const Islands islands(space.size(), rows, exec);
+  std::vector<Gathered> found(islands.count());
+  for (int y = 0; y < space.height(); ++y) {
+    islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
+      Gathered& of = found[slot(island)];
+      of.box = united(of.box, {begin, y, end - begin, 1});
+      for (int x = begin; x < end; ++x) {
+        ++of.pixels;
+        of.on_wall += std::abs(d(x, y) - behind.wall_px(x, y)) <= limits.wall_tolerance_px ? 1 : 0;
+        of.disparity_px += double{d(x, y)};
+        of.x += x;
+        of.y += y;
+      }
+    });
+  }
+
+  std::vector<LeftOut> all;
+  for (const Gathered& of : found) {
+    if (static_cast<double>(of.pixels) < kLeastShare * static_cast<double>(space.size().area())) continue;
+    const auto count = static_cast<double>(of.pixels);
+    const auto x = static_cast<float>(of.x / count);
+    const auto y = static_cast<float>(of.y / count);
+    LeftOut left{LeftOutReason::low_confidence,
+                 of.box,
+                 static_cast<int>(of.pixels),
+                 static_cast<float>(of.disparity_px / count),
+                 std::nullopt,
+                 0};
+    if (rig) left.position_in_camera_m = rig->point_in_camera_m(x, y, left.disparity_px);
+    if (!likeliest.empty()) {
+      const RegionId piece =
+          cues.superpixels(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)));
+      left.confidence = likeliest[index(piece)];
+    }
+    if (of.pixels < limits.min_area) left.reason = LeftOutReason::too_small;
+    if (2 * of.on_wall >= of.pixels) left.reason = LeftOutReason::background;
+    all.push_back(left);
+  }
+  // Stable: of equals the first in raster order.
+  std::stable_sort(all.begin(), all.end(),
+                   [](const LeftOut& p, const LeftOut& q) { return p.disparity_px > q.disparity_px; });
+  return all;
+}
+
+}  // namespace cairn

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/objects/space.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace cairn {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr Size kSize{80, 60};
+// 1 m above the floor, looking ahead: the horizon is row 20, d = 0.2·(y − 20).
+constexpr StereoRig kRig{.focal_px = 100, .cx_px = 40, .cy_px = 20, .baseline_m = 0.2F, .doffs_px = 0};
+constexpr GroundPlane kFloor{0, 0.2F, -4};
+constexpr GroundPlane kWall{0, 0, 2};  // 10 m ahead, from row 30 up
+
+/// A room: floor and a wall, with all disparities right.
+struct Room {
+  DisparityMap disparity{Image<float>(kSize, kNan, {}), Image<Reject>(kSize, Reject::none, {})};
+  Image<float> confidence{kSize, 0.9F, {}};
+  Image<RegionId> superpixels{kSize, RegionId{0}, {}};
+  Image<ObjectId> objects{kSize, ObjectId::none, {}};
+  Ground ground{kFloor, 1, 0, Refusal::none};
+  Background background{{kFloor, kWall}, true};
+  bool by_pieces = true;
+
+  Room() {
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        disparity.disparity_px(x, y) = std::max(2.0F, kFloor.disparity_px(0, static_cast<float>(y)));
+        superpixels(x, y) = RegionId{y / 10 * 8 + x / 10};  // squares of 10 px
+      }
+    }
+  }
+  void board(Rect box, float d) {
+    for (int y = box.y; y < box.y + box.height; ++y) {
+      std::fill_n(disparity.disparity_px.row(y) + box.x, box.width, d);
+    }
+  }
+  [[nodiscard]] SpaceCues cues() const {
+    return {disparity, {},         confidence,
+            ground,    background, by_pieces ? superpixels.view() : View<const RegionId>{},
+            objects};
+  }
+  [[nodiscard]] Image<Space> space(int threads = 1) const {
+    return label_space(cues(), kRig, {}, Exec::with_threads(threads));
+  }
+  [[nodiscard]] ObstacleScan scan(const SpaceConfig& config) const {
+    const Image<Space> shown = space();
+    return scan_obstacles(shown, disparity.disparity_px, *floor_frame(kFloor, kRig), kRig, config);
+  }
+  [[nodiscard]] ObstacleGrid grid(const SpaceConfig& config) const {
+    const Image<Space> shown = space();
+    return map_obstacles(shown, disparity.disparity_px, *floor_frame(kFloor, kRig), kRig, config);
+  }
+  [[nodiscard]] std::vector<LeftOut> left_out(const std::vector<float>& likeliest,
+                                              const std::optional<StereoRig>& rig, int threads = 1) const {
+    const Image<Space> shown = space();
+    return left_out_of(shown, cues(), likeliest, rig, {.min_area = 50, .wall_tolerance_px = 1},
+                       Exec::with_threads(threads));
+  }
+};
+
+TEST(LabelSpace, TheFloorIsFreeAndWallsAreObstacles) {
+  const Image<Space> space = Room().space();
+  EXPECT_EQ(space(5, 55), Space::floor);
+  EXPECT_EQ(space(40, 35), Space::floor);
+  EXPECT_EQ(space(40, 5), Space::obstacle);  // the wall, above the horizon
+  EXPECT_EQ(space(40, 22), Space::obstacle);
+}
+
+TEST(LabelSpace, WhatStandsOnTheFloorIsAnObstacleThoughNoObject) {
+  Room room;
+  room.board({30, 35, 8, 12}, 8);
+  const Image<Space> space = room.space();
+  EXPECT_EQ(space(33, 36), Space::obstacle);
+  EXPECT_EQ(space(33, 52), Space::floor);
+}
+
+TEST(LabelSpace, HolesAreUnknownUnlessTheFloorIsAroundThem) {
+  Room room;
+  room.disparity.disparity_px(45, 55) = kNan;  // one pixel of a square of floor
+  for (int y = 50; y < 60; ++y) std::fill_n(room.disparity.disparity_px.row(y), 10, kNan);  // a whole square
+  const Image<Space> space = room.space();
+  EXPECT_EQ(space(45, 55), Space::floor);
+  EXPECT_EQ(space(5, 55), Space::unknown);
+  room.by_pieces = false;
+  EXPECT_EQ(room.space()(45, 55), Space::unknown);
+}
+
+TEST(LabelSpace, APieceIsFloorByThreeFifthsOfWhatIsKnown) {
+  Room room;
+  room.board({0, 50, 4, 10}, 20);  // two fifths of a square of 10 px
+  EXPECT_EQ(room.space()(8, 55), Space::floor);
+  EXPECT_EQ(room.space()(2, 55), Space::obstacle);
+  room.board({0, 50, 5, 10}, 20);
+  EXPECT_EQ(room.space()(8, 55), Space::unknown);
+}
+
+TEST(LabelSpace, WhatIsRatherWrongIsNoObstacle) {
+  Room room;
+  room.board({30, 35, 8, 12}, 8);
+  room.confidence(33, 38) = 0.4F;
+  const Image<Space> space = room.space();
+  EXPECT_EQ(space(33, 38), Space::unknown);
+  EXPECT_EQ(space(34, 38), Space::obstacle);
+}
+
+TEST(LabelSpace, AnObjectIsAnObstacleWithItsHoles) {
+  Room room;
+  room.objects(45, 55) = ObjectId{1};
+  room.disparity.disparity_px(45, 55) = kNan;
+  EXPECT_EQ(room.space()(45, 55), Space::obstacle);
+}
+
+TEST(LabelSpace, WithoutAnyPlaneOnlyObjectsAreKnownToStandInTheWay) {
+  Room room;
+  room.ground = {};
+  room.background = {};
+  room.objects(45, 55) = ObjectId{1};
+  const Image<Space> space = room.space();
+  EXPECT_EQ(space(45, 55), Space::obstacle);
+  EXPECT_EQ(space(46, 55), Space::unknown);
+  EXPECT_EQ(space(40, 5), Space::unknown);
+}
+
+TEST(LabelSpace, WithoutAFloorObstaclesStandBeforeTheWalls) {
+  Room room;
+  room.ground = {};
+  room.background = {{kWall}, false};
+  room.board({30, 2, 8, 8}, 5);
+  const Image<Space> space = room.space();
+  EXPECT_EQ(space(33, 5), Space::obstacle);
+  EXPECT_EQ(space(60, 5), Space::unknown);
+}
+
+TEST(LabelSpace, DoesNotDependOnThreads) {
+  Room room;
+  room.board({30, 35, 8, 12}, 8);
+  const Image<Space> one = room.space();
+  const Image<Space> three = room.space(3);
+  for (int y = 0; y < kSize.height; ++y)
+    EXPECT_TRUE(std::equal(one.row(y), one.row(y) + kSize.width, three.row(y)));
+}
+
+TEST(FloorOf, IsTheFloorOfTheSpace) {
+  const Image<Space> space = Room().space();
+  const Image<std::uint8_t> floor = floor_of(space, {});
+  EXPECT_EQ(floor(5, 55), 255);
+  EXPECT_EQ(floor(40, 5), 0);
+}
+
+// ---- scan and grid ----
+
+TEST(ScanObstacles, SaysTheNearestInEachDirection) {
+  Room room;
+  room.board({60, 30, 10, 20}, 10);  // 2 m ahead and (65 − 40)·2/100 = 0.5 m to the right
+  const ObstacleScan scan = room.scan({.max_height = 3, .range = 20, .cell_size = 0.05F});
+  const auto range_at = [&](double x, double y) {
+    const double angle = std::atan2(y, x);
+    return scan.ranges_m.at(
+        static_cast<std::size_t>(std::lround((angle - scan.angle_min_rad) / scan.angle_increment_rad)));
+  };
+  EXPECT_NEAR(range_at(2, -0.5), std::hypot(2, 0.5), 0.02);
+  EXPECT_NEAR(range_at(10, 1), 10, 0.2);  // the wall
+}
+
+TEST(ScanObstacles, WhatIsAboveTheHeightOrBeyondTheRangeIsNotInTheWay) {
+  Room room;
+  room.board({60, 5, 10, 10}, 10);  // 0.1 to 0.3 m above the camera, which is 1 m above the floor
+  const auto scan = [&](float height, float range) {
+    return room.scan({.max_height = height, .range = range, .cell_size = 0.05F});
+  };
+  const auto seen = [](const ObstacleScan& s) {
+    return std::count_if(s.ranges_m.begin(), s.ranges_m.end(), [](float r) { return !std::isnan(r); });
+  };
+  EXPECT_GT(seen(scan(2, 5)), 3);
+  EXPECT_EQ(seen(scan(1, 5)), 0);
+  EXPECT_EQ(seen(scan(2, 1)), 0);
+}
+
+TEST(ScanObstacles, ThreeWrongPixelsAreNoObstacle) {
+  Room room;
+  room.board({60, 40, 1, 3}, 30);
+  const auto scan = [&] { return room.scan({.max_height = 2, .range = 3, .cell_size = 0.05F}); };
+  for (const float range : scan().ranges_m) EXPECT_TRUE(std::isnan(range));
+  room.board({60, 40, 1, 4}, 30);
+  const std::vector<float> ranges = scan().ranges_m;
+  EXPECT_TRUE(std::any_of(ranges.begin(), ranges.end(), [](float r) { return r < 1; }));
+}
+
+TEST(MapObstacles, KnowsFreeOccupiedAndUnknown) {
+  Room room;
+  room.board({36, 25, 8, 25}, 10);  // 2 m ahead
+  const ObstacleGrid grid = room.grid({.max_height = 2, .range = 5, .cell_size = 0.1F});
+  EXPECT_EQ(grid.width, 50);
+  EXPECT_EQ(grid.height, 100);
+  const auto at = [&](float x, float y) {
+    const auto column = static_cast<std::size_t>((x - grid.origin_x_m) / grid.cell_size_m);
+    const auto row = static_cast<std::size_t>((y - grid.origin_y_m) / grid.cell_size_m);
+    return grid.cells.at(row * static_cast<std::size_t>(grid.width) + column);
+  };
+  EXPECT_EQ(at(2.05F, 0.05F), ObstacleGrid::kOccupied);
+  EXPECT_EQ(at(3.05F, 1.05F), ObstacleGrid::kFree);     // floor beside it
+  EXPECT_EQ(at(4.05F, 0.05F), ObstacleGrid::kUnknown);  // hidden behind it
+  EXPECT_EQ(at(0.55F, 0.05F), ObstacleGrid::kUnknown);  // nearer than the picture shows
+  EXPECT_EQ(at(1.05F, 4.05F), ObstacleGrid::kUnknown);  // outside of the view
+}
+
+// ---- what is left out ----
+
+TEST(LeftOutOf, SaysWhyEachObstacleIsNoObject) {
+  Room room;
+  room.board({30, 32, 12, 14}, 12);  // an obstacle: 168 px
+  room.board({60, 40, 4, 3}, 14);    // a small one: 12 px
+  room.board({10, 32, 10, 10}, 16);  // an object
+  for (int y = 32; y < 42; ++y) std::fill_n(room.objects.row(y) + 10, 10, ObjectId{1});
+  const std::vector<float> likeliest(48, 0.125F);
+  const auto left = room.left_out(likeliest, kRig);
+  ASSERT_EQ(left.size(), 3U);
+  EXPECT_EQ(left[0].reason, LeftOutReason::too_small);  // nearest first
+  EXPECT_EQ(left[0].box_px, (Rect{60, 40, 4, 3}));
+  EXPECT_EQ(left[1].reason, LeftOutReason::low_confidence);
+  EXPECT_EQ(left[1].box_px, (Rect{30, 32, 12, 14}));
+  EXPECT_EQ(left[1].pixel_count, 12 * 14);
+  EXPECT_EQ(left[1].confidence, 0.125F);
+  ASSERT_TRUE(left[1].position_in_camera_m);
+  EXPECT_NEAR(left[1].position_in_camera_m->z, 20.0 / 12, 1e-3);
+  EXPECT_EQ(left[2].reason, LeftOutReason::background);
+  EXPECT_EQ(left[2].disparity_px, 2);
+}
+
+TEST(LeftOutOf, SpecksAreNoRegions) {
+  Room room;
+  room.board({60, 40, 2, 1}, 14);  // 2 of 4800 px: less than 0.05 %
+  const auto left = room.left_out({}, {});
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(left[0].reason, LeftOutReason::background);
+  EXPECT_FALSE(left[0].position_in_camera_m);  // no rig
+}
+
+TEST(LeftOutOf, AnObjectBesideAnObstacleOfItsDisparityDividesThem) {
+  Room room;
+  room.board({30, 32, 12, 14}, 12);
+  for (int y = 32; y < 46; ++y) room.objects(36, y) = ObjectId{1};  // through the middle
+  for (const int threads : {1, 3}) {
+    const auto left = room.left_out({}, kRig, threads);
+    ASSERT_EQ(left.size(), 3U);
+    EXPECT_EQ(left[0].pixel_count + left[1].pixel_count, 11 * 14);
+  }
+}
+
+}  // namespace
+}  // namespace cairn
