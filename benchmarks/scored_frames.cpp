@@ -21,19 +21,19 @@ void require_size(const Image<T>& truth, const TrueFrame& frame) {
 
 TrueFrame load_true_frame(const io::FrameFiles& files) {
   if (!files.right) throw Error(files.left.string() + ": there is no right picture");
-  const io::TruthFiles truth = io::find_truth(files.folder);
+  const io::TruthFiles truth = io::find_truth(files);
   TrueFrame frame;
   frame.name = files.name;
   frame.pictures = io::load_pair(files.left, *files.right);
   if (files.calib) {
-    const io::Calibration calibration = io::load_calibration(*files.calib);
+    const io::Calibration calibration = io::load_calibration(*files.calib, files.grey_cameras);
     frame.rig = calibration.rig;
     frame.num_disparities = calibration.num_disparities.value_or(frame.num_disparities);
   }
   frame.partial = truth.partial;
   if (truth.objects) frame.objects = io::truth_ids(io::load_labels(*truth.objects));
   if (truth.disparity) frame.truth_px = io::load_disparity(*truth.disparity);
-  if (truth.occlusion) frame.hidden = io::hidden_pixels(io::load_labels(*truth.occlusion));
+  if (truth.occlusion) frame.hidden = io::load_hidden(*truth.occlusion);
   require_size(frame.objects, frame);
   require_size(frame.truth_px, frame);
   require_size(frame.hidden, frame);

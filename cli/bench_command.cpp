@@ -124,13 +124,8 @@ Truth load_truth(const std::string& name, Size size) {
   Truth truth{disparity.string(), io::load_disparity(disparity), {}};
   require_size(disparity, truth.disparity_px.size());
   if (!occlusion) return truth;
-  const io::Labels labels = io::load_labels(*occlusion);
-  require_size(*occlusion, labels.ids.size());
-  truth.hidden = Image<std::uint8_t>(size);
-  for (int y = 0; y < size.height; ++y) {
-    std::transform(labels.ids.row(y), labels.ids.row(y) + size.width, truth.hidden.row(y),
-                   [](std::uint16_t label) { return static_cast<std::uint8_t>(label == 255 ? 1 : 0); });
-  }
+  truth.hidden = io::load_hidden(*occlusion);
+  require_size(*occlusion, truth.hidden.size());
   return truth;
 }
 

@@ -140,7 +140,12 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
   if (options.right.empty() && fs::is_directory(options.left, ignored)) {
-    auto frames = io::find_frames(options.left);
+    auto frames = io::find_frames(options.left, options.cameras);
+    // One line, not one for each frame.
+    if (options.disparity.empty() && std::none_of(frames.begin(), frames.end(), [](const io::FrameFiles& f) {
+          return f.right.has_value();
+        }))
+      (void)right_of(frames.front());
     if (!options.disparity.empty() && frames.size() > 1) {
       throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
                   " frames of " + options.left + "; give one frame");
@@ -157,8 +162,9 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
 }
 
 const fs::path& right_of(const io::FrameFiles& files) {
-  if (!files.right) throw Error(files.left.string() + ": there is no right picture");
-  return *files.right;
+  if (files.right) return *files.right;
+  throw Error(files.left.string() + ": there is no right picture" +
+              (files.expected_right.empty() ? "" : ", expected " + files.expected_right.string()));
 }
 
 namespace {
@@ -193,7 +199,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   if (!options.calib.empty()) calib = options.calib;
   io::Calibration calibration;
   if (calib) {
-    calibration = io::load_calibration(*calib);
+    calibration = io::load_calibration(*calib, files.grey_cameras);
     io::check_size(calibration, frame.left.gray.size(), *calib);
     io::check_search_range(calibration, *calib);
   }

@@ -50,6 +50,7 @@ struct InputOptions {
   std::string calib;
   std::string disparity;
   ConfigOptions config;
+  io::Cameras cameras = io::Cameras::rectified;  // whose pictures are taken
 };
 
 /// LEFT, RIGHT, --calib and those of add_config_options().

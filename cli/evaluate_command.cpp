@@ -115,9 +115,8 @@ void score_disparity(const ResultFiles& result, const io::TruthFiles& truth, int
     score.confident = judge_pixels(disparity, true_disparity, confidence.ids, skip_left);
   }
   if (!truth.occlusion) return;
-  const io::Labels occlusion = io::load_labels(*truth.occlusion);
-  require_equal_size(*truth.occlusion, occlusion.ids.size(), *truth.disparity, true_disparity.size());
-  const Image<std::uint8_t> hidden = io::hidden_pixels(occlusion);
+  const Image<std::uint8_t> hidden = io::load_hidden(*truth.occlusion);
+  require_equal_size(*truth.occlusion, hidden.size(), *truth.disparity, true_disparity.size());
   score.visible = disparity_errors(disparity, true_disparity, hidden, skip_left);
   score.knows_occlusion = true;
 }
@@ -153,6 +152,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
 struct Scores {
   std::vector<FrameScore> frames;
   std::vector<std::string> without_result;  // frames with a truth, which are not in the results
+  std::vector<std::string> without_truth;   // the other way round: of KITTI's frames every other
   LeftOut left_out;                         // frames whose files cannot be used
   std::size_t results = 0;
 };
@@ -193,16 +193,21 @@ Scores score_all(const EvaluateOptions& options) {
                 "disparity.pfm");
   }
   std::sort(results.begin(), results.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-  const auto truth_of = [&](const ResultFiles& result) { return fs::path(options.truth) / result.name; };
-  for (const ResultFiles& result : results) {
-    if (!fs::is_directory(truth_of(result), ignored))
-      throw Error(truth_of(result).string() + ": no such folder, but there is a result " + result.name);
+  std::erase_if(results, [&](const ResultFiles& result) {
     seen.insert(result.name);
+    if (io::names_truth(options.truth, result.name)) return false;
+    scores.without_truth.push_back(result.name);
+    return true;
+  });
+  if (results.empty()) {
+    const std::string& name = scores.without_truth.front();
+    throw Error((fs::path(options.truth) / name).string() + ": no such folder, but there is a result " +
+                name);
   }
   scores.results = results.size();
   for (const ResultFiles& result : results) {
     try {
-      scores.frames.push_back(score_frame(result, io::find_truth(truth_of(result)), options));
+      scores.frames.push_back(score_frame(result, io::find_truth(options.truth, result.name), options));
     } catch (const Error& error) {
       if (results.size() == 1) throw;
       scores.left_out.add(result.name, error.what());
@@ -577,6 +582,7 @@ std::string evaluation_json(const Scores& scores, const EvaluateOptions& options
                   {"disparity", summary_disparity_json(scores.frames)},
                   {"timings_ms", summary_times_json(scores.frames)}};
   j["without_result"] = scores.without_result;
+  j["without_truth"] = scores.without_truth;
   j["left_out"] = scores.left_out.frames();
   j["frames"] = Json::array();
   for (const FrameScore& frame : scores.frames) j["frames"].push_back(frame_json(frame));
@@ -597,6 +603,16 @@ void write_page(Scores& scores, const EvaluateOptions& options, const std::strin
   io::write_file(fs::path(*options.html) / kPageName, page);
 }
 
+/// Empty where there are none.
+std::string names_line(std::string head, const char* whose, const std::vector<std::string>& names) {
+  constexpr std::size_t kColumn = 20;
+  if (names.empty()) return {};
+  head.resize(kColumn, ' ');
+  std::string line = head + frames_text(static_cast<int>(names.size())) + whose;
+  for (const std::string& name : names) line += " " + name;
+  return line + "\n";
+}
+
 int evaluate(const EvaluateOptions& options) {
   Scores scores = score_all(options);
   if (options.json || options.html) {
@@ -606,12 +622,8 @@ int evaluate(const EvaluateOptions& options) {
   }
   std::cout << frame_table(scores.frames) << "\n"
             << object_lines(scores.frames, options) << disparity_lines(scores.frames, options.skip_left);
-  if (!scores.without_result.empty()) {
-    std::cout << "no result           " << frames_text(static_cast<int>(scores.without_result.size()))
-              << " of the truth:";
-    for (const std::string& name : scores.without_result) std::cout << " " << name;
-    std::cout << "\n";
-  }
+  std::cout << names_line("no result", " of the truth:", scores.without_result)
+            << names_line("no truth", " of the results:", scores.without_truth);
   return scores.left_out.exit_code(scores.results);
 }
 

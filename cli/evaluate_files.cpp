@@ -36,8 +36,10 @@ class SizeCheck {
 std::optional<fs::path> left_picture(const fs::path& truth_folder, const std::string& name) {
   for (const fs::path& folder : {truth_folder, truth_folder.parent_path() / name}) {
     try {
-      const io::FrameFiles frame = io::find_frames(folder).front();
-      if (frame.folder == folder) return frame.left;
+      const std::vector<io::FrameFiles> frames = io::find_frames(folder);
+      for (const io::FrameFiles& frame : frames) {
+        if (frame.folder == folder && (frames.size() == 1 || frame.name == name)) return frame.left;
+      }
     } catch (const Error&) {
       continue;  // a truth needs no picture
     }

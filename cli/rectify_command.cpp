@@ -58,6 +58,7 @@ int rectify(const RectifyOptions& options) {
 
 Work declare_rectify(CLI::App& app) {
   auto options = std::make_shared<RectifyOptions>();
+  options->input.cameras = io::Cameras::raw;
   app.add_option(
          "LEFT", options->input.left,
          "left picture as the camera took it, or a folder with left.png and right.png, or a folder of "
@@ -65,8 +66,10 @@ Work declare_rectify(CLI::App& app) {
       ->required()
       ->type_name("");
   app.add_option("RIGHT", options->input.right, "right picture; not with a folder")->type_name("");
-  app.add_option("--calib", options->input.calib,
-                 "what cairn calibrate wrote; or OpenCV YAML or XML with M1 D1 M2 D2 R T, or ROS camera_info")
+  app.add_option(
+         "--calib", options->input.calib,
+         "what cairn calibrate wrote; or OpenCV YAML or XML with M1 D1 M2 D2 R T, ROS camera_info, or "
+         "EuRoC's cam0/sensor.yaml")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", options->output,

@@ -29,7 +29,7 @@ void load_truth(const io::TruthFiles& files, TuningFiles& frame) {
     require_size(frame.truth_px, *files.disparity, frame.loaded);
   }
   if (files.occlusion) {
-    frame.hidden = io::hidden_pixels(io::load_labels(*files.occlusion));
+    frame.hidden = io::load_hidden(*files.occlusion);
     require_size(frame.hidden, *files.occlusion, frame.loaded);
   }
 }
@@ -38,7 +38,7 @@ TuningFiles load_one(const io::FrameFiles& files, const InputOptions& input, boo
   try {
     TuningFiles frame{files.name, load_frame(files, input, {})};
     validate(frame.loaded.config, frame.loaded.left.gray.size(), frame.loaded.rig.has_value());
-    if (with_truth) load_truth(io::find_truth(files.folder), frame);
+    if (with_truth) load_truth(io::find_truth(files), frame);
     return frame;
   } catch (const Error& error) {
     throw Error("frame " + files.name + ": " + error.what());

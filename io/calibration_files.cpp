@@ -125,13 +125,13 @@ bool is_assignment(std::string_view line) {
   return !line.starts_with('#') && line.find('=') != std::string_view::npos;
 }
 
-Statement read_statement(std::string_view text, const fs::path& path) {
+Statement read_statement(std::string_view text, const fs::path& path, bool grey_cameras) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // what some editors put before UTF-8
   if (trimmed(text).empty()) throw Error("is empty, expected a calibration");
   if (text.find('\0') != std::string_view::npos) throw Error("is no text, expected a calibration");
   if (trimmed(text).starts_with('<')) return read_opencv_xml(text);
   if (has_line(text, is_camera_zero)) return read_middlebury(text);
-  if (has_kitti_projection(text)) return read_kitti(text);
+  if (has_kitti_projection(text)) return read_kitti(text, grey_cameras);
   if (has_line(text, is_assignment)) return read_key_value_lines(text);
   if (std::optional<Statement> says = read_yaml(text, path)) return *says;
   throw Error("is no calibration in a form that is known here (docs/formats.md lists them); it begins with " +
@@ -330,7 +330,7 @@ Statement read_middlebury(std::string_view text) {
   return says;
 }
 
-Statement read_kitti(std::string_view text) {
+Statement read_kitti(std::string_view text, bool grey_cameras) {
   Pairs pairs;
   for (const std::string_view line : lines_of(text)) {
     const std::size_t colon = line.find(':');
@@ -338,8 +338,9 @@ Statement read_kitti(std::string_view text) {
     const auto [at, fresh] = pairs.emplace(line.substr(0, colon), trimmed(line.substr(colon + 1)));
     if (!fresh && line.starts_with('P')) throw Error("has " + excerpt(at->first) + " twice");
   }
-  // The colour cameras first: 2 is the left one, 3 the right; 0 and 1 are the grey pair.
-  for (const auto& [left, right] : {std::pair{'2', '3'}, std::pair{'0', '1'}}) {
+  std::array pairs_of_cameras{std::pair{'2', '3'}, std::pair{'0', '1'}};
+  if (grey_cameras) std::swap(pairs_of_cameras[0], pairs_of_cameras[1]);
+  for (const auto& [left, right] : pairs_of_cameras) {
     for (const std::string prefix : {"P_rect_0", "P"}) {
       const auto first = pairs.find(prefix + left);
       const auto second = pairs.find(prefix + right);
@@ -363,12 +364,12 @@ Statement read_kitti(std::string_view text) {
       "...)");
 }
 
-Calibration load_calibration(const fs::path& path) {
+Calibration load_calibration(const fs::path& path, bool grey_cameras) {
   std::error_code unknown;
   const fs::path file = fs::is_directory(path, unknown) ? file_in(path) : path;
   const std::string text = read_file(file, kMostTextBytes);
   try {
-    Calibration calibration = judged(read_statement(text, file));
+    Calibration calibration = judged(read_statement(text, file, grey_cameras));
     // Numbers that are fine as double may be none as float.
     if (calibration.rig) calibration.rig->validate("calibration");
     return calibration;

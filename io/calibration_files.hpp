@@ -38,7 +38,8 @@ class ImpossibleCalibration : public Error {
 /// may also say how the rig is mounted: ground_points, camera_height, camera_pitch, camera_roll.
 /// Throws Error (one line: file, what was found, what was expected): missing, no known form, a number that is
 /// none or out of range, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
-Calibration load_calibration(const std::filesystem::path& path);
+/// Of KITTI's four cameras the colour pair counts, unless `grey_cameras`.
+Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
 
 /// Writes a rectified pair's calibration as key=value lines, whole or not at all. Throws Error.
 void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image);

@@ -54,7 +54,9 @@ StereoRig rig_of(const Projection& left, const Projection& right);
 
 Statement read_key_value_lines(std::string_view text);
 Statement read_middlebury(std::string_view text);
-Statement read_kitti(std::string_view text);
+/// Of cameras 2 and 3, which are KITTI's colour pair, else of 0 and 1; the other way round for
+/// `grey_cameras`.
+Statement read_kitti(std::string_view text, bool grey_cameras);
 Statement read_opencv_xml(std::string_view text);
 /// Our own YAML, OpenCV's, ROS': by their keys. `path` finds the other camera's file of a ROS pair; nothing
 /// where the text is no YAML map.

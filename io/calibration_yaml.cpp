@@ -197,7 +197,7 @@ void read_size(const Document& document, Statement& says) {
     if (!says.width) says.width = number_at(document, width);
     if (!says.height) says.height = number_at(document, height);
   }
-  for (const char* key : {"image_size", "imageSize", "size"}) {
+  for (const char* key : {"image_size", "imageSize", "size", "resolution"}) {
     if (says.width && says.height) return;
     const std::optional<std::vector<double>> sides = list_at(document, key);
     if (!sides) continue;
@@ -385,6 +385,57 @@ RawCalibration raw_from_ros(const YAML::Node& one, const YAML::Node& other) {
   return raw;
 }
 
+// ---- EuRoC ----
+
+/// Rows of T_BS: from the camera to the body.
+using Pose = std::array<double, 16>;
+
+RawCamera euroc_camera(const YAML::Node& camera) {
+  const YAML::Node model = camera["distortion_model"];
+  const std::string name = model && model.IsScalar() ? model.Scalar() : "";
+  if (name != "radial-tangential")
+    throw Error("distortion_model is " + excerpt(name) + ", expected radial-tangential");
+  const auto [fx, fy, cx, cy] = fixed<4>(list_at(camera, "intrinsics").value_or(Numbers{}), "intrinsics");
+  return {{fx, 0, cx, 0, fy, cy, 0, 0, 1},
+          list_at(camera, "distortion_coefficients").value_or(Numbers{}),
+          {},
+          {}};
+}
+
+/// x_right = Rᵣᵀ · (Rₗ · x_left + tₗ − tᵣ), R and t those of T_BS.
+void relate(const Pose& left, const Pose& right, RawCalibration& raw) {
+  std::array<double, 9> rotation{};
+  std::array<double, 3> translation{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) rotation[3 * i + j] += right[4 * k + i] * left[4 * k + j];
+      translation[i] += right[4 * k + i] * (left[4 * k + 3] - right[4 * k + 3]);
+    }
+  }
+  raw.rotation = rotation;
+  raw.translation_m = translation;
+}
+
+/// cam0/sensor.yaml with cam1/sensor.yaml beside its folder.
+RawCalibration raw_from_euroc(const YAML::Node& left, const fs::path& path) {
+  const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
+  const fs::path partner = folder.parent_path() / "cam1" / path.filename();
+  std::error_code unknown;
+  if (folder.filename() != "cam0" || !fs::is_regular_file(partner, unknown))
+    throw Error("is of one of EuRoC's cameras, expected cam0/sensor.yaml with cam1/sensor.yaml beside");
+  const std::vector<YAML::Node> documents = documents_of(read_file(partner, kMostTextBytes));
+  if (documents.empty() || !documents.front().IsMap()) throw Error(partner.string() + " is no YAML map");
+  const YAML::Node& right = documents.front();
+  RawCalibration raw;
+  Statement says;
+  read_size(left, says);
+  raw.image_size = raw_size(says);
+  raw.left = euroc_camera(left);
+  raw.right = euroc_camera(right);
+  relate(needed<16>(left, {"T_BS"}), needed<16>(right, {"T_BS"}), raw);
+  return raw;
+}
+
 // ---- our own ----
 
 Statement read_own(const YAML::Node& map) {
@@ -444,6 +495,7 @@ RawCalibration read_raw(std::string_view text, const fs::path& path) try {
   if (documents.empty() || !documents.front().IsMap())
     throw Error("is no YAML map, expected the calibration of raw cameras");
   if (const auto pair = ros_pair(documents, path)) return raw_from_ros(pair->first, pair->second);
+  if (documents.front()["T_BS"]) return raw_from_euroc(documents.front(), path);
   return read_raw_opencv(documents.front());
 } catch (const YAML::Exception& exception) {
   throw Error("is no calibration: " + exception.msg);

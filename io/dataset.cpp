@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <functional>
 #include <io/calibration_forms.hpp>
 #include <io/dataset.hpp>
 #include <system_error>
@@ -17,6 +18,32 @@ constexpr std::array kPictureExtensions = {".png", ".jpg", ".jpeg", ".pgm", ".pp
 constexpr std::array kCalibrations = {"calib.txt", "calib.yaml", "calib.yml",           "calib.json",
                                       "calib.xml", "left.yaml",  "calib_cam_to_cam.txt"};
 
+/// What data sets call a pair, the first that is there counts. A folder of Middlebury's with im2 and im6 has
+/// im0 and im1, too.
+struct Names {
+  const char* left;
+  const char* right;
+};
+constexpr std::array kPairs = {Names{"left", "right"}, Names{"im2", "im6"}, Names{"view1", "view5"},
+                               Names{"im0", "im1"}};
+/// In Middlebury's folders of 2014 both disp0 and disp1 are, and disp0 belongs to the left picture.
+constexpr std::array kTrueDisparities = {"disp_left", "disp0GT", "disp0", "disp1", "disp2"};
+
+struct Folders {
+  const char* left;
+  const char* right;
+  bool grey_cameras;
+  Cameras cameras;
+};
+constexpr std::array kFolders = {Folders{"left", "right", false, Cameras::rectified},
+                                 Folders{"image_2", "image_3", false, Cameras::rectified},
+                                 Folders{"image_02/data", "image_03/data", false, Cameras::rectified},
+                                 Folders{"colored_0", "colored_1", false, Cameras::rectified},
+                                 Folders{"image_0", "image_1", true, Cameras::rectified},
+                                 Folders{"image_00/data", "image_01/data", true, Cameras::rectified},
+                                 Folders{"cam0/data", "cam1/data", false, Cameras::raw},
+                                 Folders{"mav0/cam0/data", "mav0/cam1/data", false, Cameras::raw}};
+
 bool is_file(const fs::path& path) {
   std::error_code unknown;
   return fs::is_regular_file(path, unknown);
@@ -25,6 +52,11 @@ bool is_file(const fs::path& path) {
 std::optional<fs::path> file(const fs::path& path) {
   if (is_file(path)) return path;
   return std::nullopt;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_directory(path, unknown);
 }
 
 bool is_picture(const fs::path& path) {
@@ -64,27 +96,54 @@ std::optional<fs::path> calibration_of(const fs::path& folder) {
 }
 
 std::optional<FrameFiles> frame_in(const fs::path& folder) {
-  const std::optional<fs::path> left = picture(folder, "left");
-  if (!left) return std::nullopt;
-  std::optional<fs::path> right = file(folder / ("right" + left->extension().string()));
-  if (!right) right = picture(folder, "right");
-  return FrameFiles{clean(folder).filename().string(), folder, *left, right, calibration_of(folder)};
+  for (const auto& [left_name, right_name] : kPairs) {
+    const std::optional<fs::path> left = picture(folder, left_name);
+    if (!left) continue;
+    const fs::path expected = folder / (right_name + left->extension().string());
+    std::optional<fs::path> right = file(expected);
+    if (!right) right = picture(folder, right_name);
+    if (!right && picture(folder, "im0") && left_name == std::string_view("im2")) continue;
+    return FrameFiles{
+        clean(folder).filename().string(), folder, *left, right, calibration_of(folder), expected};
+  }
+  return std::nullopt;
+}
+
+std::optional<fs::path> true_disparity_in(const fs::path& folder) {
+  for (const std::string name : kTrueDisparities) {
+    for (const char* extension : {".png", ".pfm", ".pgm"}) {
+      if (std::optional<fs::path> found = file(folder / (name + extension))) return found;
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<TruthFiles> truth_in(const fs::path& folder) {
   TruthFiles truth;
   truth.folder = folder;
   truth.objects = file(folder / "objects.png");
-  truth.disparity = file(folder / "disp_left.png");
-  if (!truth.disparity) truth.disparity = file(folder / "disp_left.pfm");
+  truth.disparity = true_disparity_in(folder);
   if (!truth.objects && !truth.disparity) return std::nullopt;
   truth.occlusion = file(folder / "occlusion.png");
+  if (!truth.occlusion) truth.occlusion = file(folder / "mask0nocc.png");
   truth.ground = file(folder / "ground.png");
   truth.ground_plane = file(folder / "ground.txt");
   truth.calib = calibration(folder);
   std::error_code unknown;
   truth.partial = fs::exists(folder / "partial", unknown);
   return truth;
+}
+
+/// Of KITTI 2015 (disp_occ_0) and 2012 (disp_occ).
+std::optional<TruthFiles> kitti_truth(const fs::path& folder, const std::string& name) {
+  for (const auto& [all, seen] : {std::pair{"disp_occ_0", "disp_noc_0"}, std::pair{"disp_occ", "disp_noc"}}) {
+    TruthFiles truth;
+    truth.folder = folder;
+    truth.disparity = file(folder / all / (name + ".png"));
+    truth.occlusion = file(folder / seen / (name + ".png"));
+    if (truth.disparity) return truth;
+  }
+  return std::nullopt;
 }
 
 void check_folder(const fs::path& folder) {
@@ -111,9 +170,7 @@ std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
 
 std::vector<FrameFiles> frames_below(const fs::path& folder) {
   return each_in(folder, [](const fs::path& path) -> std::optional<FrameFiles> {
-    std::error_code unknown;
-    if (!fs::is_directory(path, unknown)) return std::nullopt;
-    return frame_in(path);
+    return is_folder(path) ? frame_in(path) : std::nullopt;
   });
 }
 
@@ -124,39 +181,100 @@ std::optional<fs::path> partner(const fs::path& left) {
   return is_left ? other_camera(left) : std::nullopt;
 }
 
-/// left01.jpg and right01.jpg, or left/01.jpg and right/01.jpg.
-std::vector<FrameFiles> pairs_by_name(const fs::path& folder) {
-  const bool in_folders = fs::is_directory(folder / "left") && fs::is_directory(folder / "right");
+/// Of one frame among others: KITTI has a file for each, named by what stands before the _, and its raw
+/// recordings one above their folders.
+std::optional<fs::path> calibration_among(const fs::path& folder, const fs::path& left) {
+  const std::string stem = left.stem().string();
+  const std::string number = stem.substr(0, stem.find('_')) + ".txt";
+  for (const char* files : {"calib_cam_to_cam", "calib"}) {
+    if (std::optional<fs::path> found = file(folder / files / number)) return found;
+  }
+  if (std::optional<fs::path> found = calibration_of(folder)) return found;
+  return file(clean(folder).parent_path() / "calib_cam_to_cam.txt");
+}
+
+/// left01.jpg and right01.jpg.
+std::vector<FrameFiles> pairs_of_names(const fs::path& folder) {
   const std::optional<fs::path> calib = calibration_of(folder);
-  return each_in(
-      in_folders ? folder / "left" : folder, [&](const fs::path& left) -> std::optional<FrameFiles> {
+  return each_in(folder, [&](const fs::path& left) -> std::optional<FrameFiles> {
+    if (!is_picture(left)) return std::nullopt;
+    const std::optional<fs::path> right = partner(left);
+    if (!right || !is_file(*right)) return std::nullopt;
+    return FrameFiles{left.stem().string(), folder, left, *right, calib, *right};
+  });
+}
+
+/// left/01.jpg and right/01.jpg. Pictures without the other are left out where there are pairs.
+std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names) {
+  std::vector<FrameFiles> all =
+      each_in(folder / names.left, [&](const fs::path& left) -> std::optional<FrameFiles> {
         if (!is_picture(left)) return std::nullopt;
-        const std::optional<fs::path> right = in_folders ? folder / "right" / left.filename() : partner(left);
-        if (!right || !is_file(*right)) return std::nullopt;
-        return FrameFiles{left.stem().string(), folder, left, *right, calib};
+        const fs::path right = folder / names.right / left.filename();
+        return FrameFiles{
+            left.stem().string(), folder, left, file(right), calibration_among(folder, left), right,
+            names.grey_cameras};
       });
+  const auto is_pair = [](const FrameFiles& frame) { return frame.right.has_value(); };
+  if (std::any_of(all.begin(), all.end(), is_pair)) std::erase_if(all, std::not_fn(is_pair));
+  return all;
+}
+
+std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras) {
+  for (const Folders& names : kFolders) {
+    if (!is_folder(folder / names.left)) continue;
+    std::vector<FrameFiles> pairs = pairs_in(folder, names);
+    if (pairs.empty()) continue;
+    if (names.cameras == Cameras::raw && cameras == Cameras::rectified) {
+      const fs::path sensor = (folder / names.left).parent_path() / "sensor.yaml";
+      throw Error(folder.string() + ": holds EuRoC's raw images (" + names.left + ", " + names.right +
+                  "), expected rectified ones: cairn rectify " + folder.string() + " --calib " +
+                  sensor.string() + " -o DIR makes them");
+    }
+    return pairs;
+  }
+  return pairs_of_names(folder);
+}
+
+/// Empty where there is none.
+std::vector<FrameFiles> frames_in(const fs::path& folder, Cameras cameras) {
+  if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
+  std::vector<FrameFiles> frames = frames_below(folder);
+  return frames.empty() ? pairs_by_name(folder, cameras) : frames;
+}
+
+/// The folder in this one that holds frames, as data sets have several.
+std::optional<fs::path> frames_deeper(const fs::path& folder) {
+  std::optional<fs::path> first;
+  std::error_code reason;
+  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    if (is_folder(it->path()) && (!first || it->path() < *first) &&
+        !frames_in(it->path(), Cameras::raw).empty()) {
+      first = it->path();
+    }
+  }
+  return first;
 }
 
 }  // namespace
 
-std::vector<FrameFiles> find_frames(const fs::path& folder) {
+std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
   check_folder(folder);
-  if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
-  std::vector<FrameFiles> frames = frames_below(folder);
-  if (frames.empty()) frames = pairs_by_name(folder);
-  if (frames.empty()) {
-    throw Error(
-        folder.string() +
-        ": holds no left.png (.jpg .pgm .ppm .tif), nor does a folder in it, nor pairs such as left01.png "
-        "and right01.png, or left/01.png and right/01.png");
+  std::vector<FrameFiles> frames = frames_in(folder, cameras);
+  if (!frames.empty()) return frames;
+  if (const std::optional<fs::path> deeper = frames_deeper(folder)) {
+    throw Error(folder.string() + ": holds no left.png and no other frame, but " + deeper->string() +
+                " does; name that folder");
   }
-  return frames;
+  throw Error(
+      folder.string() +
+      ": holds no left.png (.jpg .pgm .ppm .tif), nor does a folder in it, nor pairs such as left01.png "
+      "and right01.png, or left/01.png and right/01.png, nor a data set's (docs/formats.md)");
 }
 
 std::vector<FrameFiles> find_pairs(const fs::path& folder) {
   check_folder(folder);
-  std::vector<FrameFiles> pairs = pairs_by_name(folder);
-  return pairs.size() > 1 ? pairs : find_frames(folder);
+  std::vector<FrameFiles> pairs = pairs_by_name(folder, Cameras::raw);
+  return pairs.size() > 1 ? pairs : find_frames(folder, Cameras::raw);
 }
 
 TruthFiles find_truth(const fs::path& folder) {
@@ -165,6 +283,20 @@ TruthFiles find_truth(const fs::path& folder) {
   if (std::optional<TruthFiles> truth = truth_in(truth_beside(folder))) return *truth;
   throw Error(folder.string() + ": holds no truth (objects.png or disp_left.png), nor does " +
               truth_beside(folder).string());
+}
+
+TruthFiles find_truth(const FrameFiles& frame) {
+  if (std::optional<TruthFiles> truth = kitti_truth(frame.folder, frame.name)) return *truth;
+  return find_truth(frame.folder);
+}
+
+TruthFiles find_truth(const fs::path& folder, const std::string& name) {
+  if (std::optional<TruthFiles> truth = kitti_truth(folder, name)) return *truth;
+  return find_truth(folder / name);
+}
+
+bool names_truth(const fs::path& folder, const std::string& name) {
+  return is_folder(folder / name) || kitti_truth(folder, name);
 }
 
 Image<TruthId> truth_ids(const Labels& labels) {
@@ -179,12 +311,18 @@ Image<TruthId> truth_ids(const Labels& labels) {
   return ids;
 }
 
-Image<std::uint8_t> hidden_pixels(const Labels& labels) {
-  constexpr std::uint16_t kHidden = 255;
+Image<std::uint8_t> load_hidden(const fs::path& path) {
+  const Labels labels = load_labels(path);
+  const bool is_mask = path.stem() == "mask0nocc";
+  const bool is_map = path.parent_path().filename().string().starts_with("disp_noc");
+  const auto is_hidden = [&](std::uint16_t value) {
+    if (is_map) return value == 0;
+    return (value == 255) != is_mask;
+  };
   Image<std::uint8_t> hidden(labels.ids.size());
   for (int y = 0; y < hidden.height(); ++y) {
     std::transform(labels.ids.row(y), labels.ids.row(y) + hidden.width(), hidden.row(y),
-                   [](std::uint16_t id) { return static_cast<std::uint8_t>(id == kHidden ? 1 : 0); });
+                   [&](std::uint16_t value) { return static_cast<std::uint8_t>(is_hidden(value) ? 1 : 0); });
   }
   return hidden;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cairn/core/error.hpp>
 #include <cctype>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <io/atomic_file.hpp>
+#include <io/calibration_forms.hpp>
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
 #include <io/raster.hpp>
@@ -15,6 +17,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace cairn::io {
 namespace {
@@ -22,16 +25,19 @@ namespace {
 namespace fs = std::filesystem;
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-enum class Form : std::uint8_t { png, pfm };
+enum class Form : std::uint8_t { png, pfm, npy };
 
-Form form_of(const fs::path& path) {
+Form form_of(const fs::path& path, bool written) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".png") return Form::png;
   if (extension == ".pfm") return Form::pfm;
+  if (extension == ".pgm" && !written) return Form::png;
+  if (extension == ".npy" && !written) return Form::npy;
   throw Error(path.string() + ": has the extension '" + extension +
-              "', expected .png (16 bits) or .pfm for a disparity map");
+              (written ? "', expected .png (16 bits) or .pfm for a disparity map"
+                       : "', expected .png (16 bits), .pfm or .npy for a disparity map"));
 }
 
 // ---- PNG ----
@@ -44,17 +50,41 @@ std::optional<std::uint16_t> encoded(float disparity_px) {
   return static_cast<std::uint16_t>(std::max(value, 1.0));
 }
 
-Image<float> load_png(const fs::path& path, const Pool& pool) {
-  const Labels values = load_labels(path);
-  if (values.bits != 16) {
+/// Middlebury's maps of 8 bits say nowhere what a step is; it follows from the height of the data set's
+/// pictures.
+struct MiddleburySet {
+  int height;
+  float unit;  // steps per px
+};
+constexpr std::array kMiddleburySets = {
+    MiddleburySet{1110, 1}, MiddleburySet{555, 2}, MiddleburySet{370, 3},  // 2005, 2006
+    MiddleburySet{1500, 1}, MiddleburySet{750, 2}, MiddleburySet{375, 4},  // 2003
+    MiddleburySet{380, 8},  MiddleburySet{381, 8}, MiddleburySet{383, 8},  // 2001
+    MiddleburySet{216, 8}};
+
+float middlebury_unit(const fs::path& path, Size size) {
+  const std::string stem = path.stem().string();
+  if (!stem.starts_with("disp") || stem.size() != 5 ||
+      std::isdigit(static_cast<unsigned char>(stem[4])) == 0) {
     throw Error(path.string() +
                 ": has 8 bits, expected the 16 of a disparity map (disparity * 256, 0 = hole)");
   }
+  const auto* set = std::find_if(kMiddleburySets.begin(), kMiddleburySets.end(),
+                                 [&](const MiddleburySet& each) { return each.height == size.height; });
+  if (set != kMiddleburySets.end()) return set->unit;
+  throw Error(
+      path.string() + ": has 8 bits and is " + text(size) +
+      ", which is the size of no Middlebury map whose scale is known; expected 16 bits (disparity * 256)");
+}
+
+Image<float> load_png(const fs::path& path, const Pool& pool) {
+  const Labels values = load_labels(path);
+  const float unit = values.bits == 16 ? 256.0F : middlebury_unit(path, values.ids.size());
   Image<float> disparity(values.ids.size(), pool);
   for (int y = 0; y < disparity.height(); ++y) {
     const std::uint16_t* from = values.ids.row(y);
     std::transform(from, from + disparity.width(), disparity.row(y),
-                   [](std::uint16_t v) { return v == 0 ? kHole : static_cast<float>(v) / 256.0F; });
+                   [&](std::uint16_t v) { return v == 0 ? kHole : static_cast<float>(v) / unit; });
   }
   return disparity;
 }
@@ -153,10 +183,82 @@ Image<float> decode_pfm(std::string_view file, const Pool& pool) {
   return disparity;
 }
 
-Image<float> load_pfm(const fs::path& path, const Pool& pool) {
-  const std::string file = read_file(path, static_cast<std::size_t>(kMostPixels) * sizeof(float) + 256);
+// ---- NPY ----
+
+/// NumPy's header is a line of Python: {'descr': '<f4', 'fortran_order': False, 'shape': (480, 640), }.
+std::string_view after(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  if (at == std::string_view::npos) throw Error("is a damaged .npy: its header has no " + std::string(key));
+  header.remove_prefix(at + key.size());
+  header.remove_prefix(std::min(header.find_first_not_of(" :"), header.size()));
+  return header;
+}
+
+Size shape_in(std::string_view header) {
+  std::string_view shape = after(header, "'shape'");
+  shape = shape.substr(0, std::min(shape.find(')'), shape.size() - 1) + 1);
+  std::array<int, 2> sides{};
+  std::string_view rest = shape;
+  for (const auto& [begin, index] : {std::pair{"(", 0U}, std::pair{", ", 1U}}) {
+    if (!rest.starts_with(begin)) break;
+    rest.remove_prefix(std::string_view(begin).size());
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), sides[index]);
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  }
+  if (rest != ")") throw Error("has the shape " + excerpt(shape) + ", expected (height, width)");
+  check_sides(sides[1], sides[0]);
+  return {sides[1], sides[0]};
+}
+
+template <class T>
+Image<float> values_of(std::string_view bytes, Size size, const Pool& pool) {
+  const std::size_t expected = static_cast<std::size_t>(size.area()) * sizeof(T);
+  if (bytes.size() != expected) {
+    throw Error("has " + std::to_string(bytes.size()) + " bytes of pixels, expected " +
+                std::to_string(expected) + " for " + text(size));
+  }
+  Image<float> disparity(size, pool);
+  const char* from = bytes.data();
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x, from += sizeof(T)) {
+      T value{};
+      std::memcpy(&value, from, sizeof value);
+      disparity(x, y) = std::isfinite(value) ? static_cast<float>(value) : kHole;
+    }
+  }
+  return disparity;
+}
+
+Image<float> decode_npy(std::string_view file, const Pool& pool) {
+  constexpr std::string_view kMagic = "\x93NUMPY";
+  const auto byte = [&](std::size_t at) {
+    return static_cast<std::size_t>(static_cast<unsigned char>(file[at]));
+  };
+  if (!file.starts_with(kMagic) || file.size() < 12)
+    throw Error("is no .npy: it does not begin with \\x93NUMPY");
+  const bool is_first_version = byte(6) == 1;
+  const std::size_t begin = is_first_version ? 10 : 12;
+  const std::size_t length =
+      byte(8) + (byte(9) << 8) + (is_first_version ? 0 : (byte(10) << 16) + (byte(11) << 24));
+  if (file.size() - begin < length) throw Error("is a truncated .npy: its header is cut off");
+  const std::string_view header = file.substr(begin, length);
+  const std::string_view pixels = file.substr(begin + length);
+  if (!after(header, "'fortran_order'").starts_with("False"))
+    throw Error("is in Fortran's order, expected rows one after the other (numpy.ascontiguousarray)");
+  const Size size = shape_in(header);
+  const std::string_view type = after(header, "'descr'").substr(0, 5);
+  if (type == "'<f4'") return values_of<float>(pixels, size, pool);
+  if (type == "'<f8'") return values_of<double>(pixels, size, pool);
+  throw Error("holds values of the type " + excerpt(type) + ", expected '<f4' or '<f8' (float32, float64)");
+}
+
+template <class Decode>
+Image<float> load_floats(const fs::path& path, const Pool& pool, std::size_t pixel_bytes,
+                         const Decode& decode) {
+  constexpr std::size_t kMostHeader = std::size_t{1} << 16;
+  const std::string file = read_file(path, static_cast<std::size_t>(kMostPixels) * pixel_bytes + kMostHeader);
   try {
-    return decode_pfm(file, pool);
+    return decode(file, pool);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
@@ -180,12 +282,15 @@ std::string encode_pfm(View<const float> disparity_px) {
 }  // namespace
 
 Image<float> load_disparity(const fs::path& path, const Pool& pool) {
-  return form_of(path) == Form::png ? load_png(path, pool) : load_pfm(path, pool);
+  const Form form = form_of(path, false);
+  if (form == Form::png) return load_png(path, pool);
+  if (form == Form::npy) return load_floats(path, pool, sizeof(double), decode_npy);
+  return load_floats(path, pool, sizeof(float), decode_pfm);
 }
 
 void save_disparity(const fs::path& path, View<const float> disparity_px) {
   if (disparity_px.empty()) throw Error(path.string() + ": cannot be written: the disparity map is empty");
-  if (form_of(path) == Form::png) return save_as_png(path, disparity_px);
+  if (form_of(path, true) == Form::png) return save_as_png(path, disparity_px);
   write_file(path, encode_pfm(disparity_px));
 }
 

@@ -6,9 +6,11 @@
 #include <filesystem>
 
 /// Disparity maps in and out, in px; NaN = hole. The extension names the form:
-///   .png  16-bit grey, disparity · 256, 0 = hole (KITTI's); a true 0 is written as 1
+///   .png  16-bit grey, disparity · 256, 0 = hole (KITTI's); a true 0 is written as 1. Of 8 bits only
+///         Middlebury's maps of 2001 to 2006 are read (disp0 … disp9, also .pgm), with their data set's scale
 ///   .pfm  32-bit float, either byte order, rows bottom-up; NaN and ±inf are read as holes, +inf is written
-///   for one
+///         for one
+///   .npy  read only: NumPy's, two-dimensional float32 or float64; NaN and ±inf are holes
 /// Every function throws Error with one line that names the file.
 namespace cairn::io {
 

@@ -30,8 +30,9 @@ struct RawCalibration {
 };
 
 /// Reads OpenCV FileStorage YAML/XML/JSON (M1 D1 M2 D2 with R T, or with R1 R2 P1 P2; also K1, cameraMatrix1,
-/// distCoeffs1 and the like) and ROS camera_info YAML pairs, found as load_calibration() finds them. Lengths
-/// are metres. Throws Error (one line: file, what was found, what was expected).
+/// distCoeffs1 and the like) and ROS camera_info YAML pairs, found as load_calibration() finds them, and
+/// EuRoC's cam0/sensor.yaml with cam1's. Lengths are metres. Throws Error (one line: file, what was found,
+/// what was expected).
 RawCalibration load_raw_calibration(const std::filesystem::path& path);
 
 /// The same as OpenCV's FileStorage YAML, whole or not at all; `remarks` become comment lines at its top.

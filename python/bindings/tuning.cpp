@@ -104,10 +104,10 @@ std::unique_ptr<PyTuningFrame> read_frame(const io::FrameFiles& files, bool trut
   Image<std::uint8_t> hidden;
   bool partial = false;
   if (truth) {
-    const io::TruthFiles known = io::find_truth(files.folder);
+    const io::TruthFiles known = io::find_truth(files);
     if (known.objects) objects = io::truth_ids(io::load_labels(*known.objects));
     if (known.disparity) truth_px = io::load_disparity(*known.disparity);
-    if (known.occlusion) hidden = io::hidden_pixels(io::load_labels(*known.occlusion));
+    if (known.occlusion) hidden = io::load_hidden(*known.occlusion);
     partial = known.partial;
   }
   const auto picture = [](io::Picture from) {
@@ -115,7 +115,9 @@ std::unique_ptr<PyTuningFrame> read_frame(const io::FrameFiles& files, bool trut
                             : array_from(std::move(from.rgb));
   };
   const py::object rig =
-      files.calib ? py::cast(PyCalibration{io::load_calibration(*files.calib), *files.calib}) : py::none();
+      files.calib
+          ? py::cast(PyCalibration{io::load_calibration(*files.calib, files.grey_cameras), *files.calib})
+          : py::none();
   return make_frame(picture(std::move(pair.left)), picture(std::move(pair.right)), rig,
                     array_or_nothing(std::move(objects)), array_or_nothing(std::move(truth_px)),
                     array_or_nothing(std::move(hidden)), partial, files.name, false);

@@ -198,6 +198,13 @@ TEST_F(CalibrationFiles, KittisGreyPairServesWhereThereIsNoOther) {
   EXPECT_FLOAT_EQ(read(grey).rig->baseline_m, 0.5F);
 }
 
+TEST_F(CalibrationFiles, KittisGreyPairIsReadWhereItsPicturesAre) {
+  const io::Calibration calibration =
+      io::load_calibration(folder_.with("calib_cam_to_cam.txt", kKittiRaw), true);
+  EXPECT_FLOAT_EQ(calibration.rig->focal_px, 700);
+  EXPECT_FLOAT_EQ(calibration.rig->baseline_m, 0.5F);
+}
+
 TEST_F(CalibrationFiles, KittisShortFormIsRead) {
   const io::Calibration calibration = read(
       "P0: 700 0 600 0 0 700 170 0 0 0 1 0\nP1: 700 0 600 -350 0 700 170 0 0 0 1 0\n"

@@ -118,6 +118,114 @@ TEST(Dataset, RefusesFoldersWithoutTruth) {
   EXPECT_TRUE(has(refusal([&] { io::find_truth(folder.path() / "none"); }), {"not there"}));
 }
 
+// ---- data sets as they are downloaded ----
+
+TEST(Dataset, AFolderOfMiddleburyOrEth3dIsOneFrame) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"motorcycle/im0.png",   "motorcycle/im1.png",   "motorcycle/im1E.png",  "motorcycle/calib.txt",
+        "motorcycle/disp0.pfm", "motorcycle/disp1.pfm", "teddy/im0.ppm",        "teddy/im1.ppm",
+        "teddy/im2.ppm",        "teddy/im6.ppm",        "teddy/disp2.pgm",      "teddy/disp6.pgm",
+        "Art/view1.png",        "Art/view5.png",        "Art/disp1.png",        "Art/disp5.png",
+        "map/im0.pgm",          "map/im1.pgm",          "map/im2.pgm",          "map/disp0.pgm",
+        "delivery/im0.png",     "delivery/im1.png",     "delivery/disp0GT.pfm", "delivery/mask0nocc.png"}) {
+    (void)folder.with(name, "");
+  }
+  const auto is = [&](const std::string& name, const char* left, const char* right, const char* truth) {
+    const fs::path at = folder.path() / name;
+    const auto frames = io::find_frames(at);
+    ASSERT_EQ(frames.size(), 1U) << name;
+    EXPECT_EQ(frames[0].name, name);
+    EXPECT_EQ(frames[0].left, at / left);
+    EXPECT_EQ(frames[0].right, at / right);
+    EXPECT_EQ(io::find_truth(frames[0]).disparity, at / truth);
+  };
+  is("motorcycle", "im0.png", "im1.png", "disp0.pfm");
+  is("teddy", "im2.ppm", "im6.ppm", "disp2.pgm");
+  is("Art", "view1.png", "view5.png", "disp1.png");
+  is("map", "im0.pgm", "im1.pgm", "disp0.pgm");
+  is("delivery", "im0.png", "im1.png", "disp0GT.pfm");
+  EXPECT_EQ(io::find_frames(folder.path()).size(), 5U);
+  EXPECT_EQ(io::find_frames(folder.path() / "motorcycle")[0].calib, folder.path() / "motorcycle/calib.txt");
+  EXPECT_EQ(io::find_truth(folder.path() / "delivery").occlusion->filename(), "mask0nocc.png");
+}
+
+TEST(Dataset, TheMissingPictureOfAPairIsNamed) {
+  const TemporaryFolder folder;
+  (void)folder.with("Art/view1.png", "");
+  const auto frames = io::find_frames(folder.path() / "Art");
+  EXPECT_FALSE(frames[0].right);
+  EXPECT_EQ(frames[0].expected_right, folder.path() / "Art/view5.png");
+}
+
+TEST(Dataset, KittisFoldersHoldFramesWithTheirOwnCalibrationAndTruth) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"training/image_2/000000_10.png", "training/image_3/000000_10.png", "training/image_2/000000_11.png",
+        "training/image_3/000000_11.png", "training/image_2/000001_10.png", "training/image_0/000000_10.png",
+        "training/calib_cam_to_cam/000000.txt", "training/disp_occ_0/000000_10.png",
+        "training/disp_noc_0/000000_10.png", "odometry/image_0/000000.png", "odometry/image_1/000000.png",
+        "odometry/calib.txt", "2012/colored_0/000000_10.png", "2012/colored_1/000000_10.png",
+        "2012/calib/000000.txt", "2012/disp_occ/000000_10.png", "day/drive/image_02/data/0000000000.png",
+        "day/drive/image_03/data/0000000000.png", "day/calib_cam_to_cam.txt"}) {
+    (void)folder.with(name, "");
+  }
+  const fs::path training = folder.path() / "training";
+  const auto frames = io::find_frames(training);
+  ASSERT_EQ(frames.size(), 2U);  // 000001_10 has no right picture
+  EXPECT_EQ(frames[0].name, "000000_10");
+  EXPECT_EQ(frames[1].right, training / "image_3/000000_11.png");
+  EXPECT_EQ(frames[1].calib, training / "calib_cam_to_cam/000000.txt");
+  EXPECT_FALSE(frames[0].grey_cameras);
+  const io::TruthFiles truth = io::find_truth(frames[0]);
+  EXPECT_EQ(truth.disparity, training / "disp_occ_0/000000_10.png");
+  EXPECT_EQ(truth.occlusion, training / "disp_noc_0/000000_10.png");
+  EXPECT_EQ(io::find_truth(training, "000000_10").disparity, truth.disparity);
+  EXPECT_FALSE(io::names_truth(training, "000000_11"));
+
+  const auto odometry = io::find_frames(folder.path() / "odometry");
+  EXPECT_TRUE(odometry.at(0).grey_cameras);
+  EXPECT_EQ(odometry[0].calib, folder.path() / "odometry/calib.txt");
+  const auto of_2012 = io::find_frames(folder.path() / "2012");
+  EXPECT_EQ(of_2012.at(0).calib, folder.path() / "2012/calib/000000.txt");
+  EXPECT_EQ(io::find_truth(of_2012[0]).disparity, folder.path() / "2012/disp_occ/000000_10.png");
+  const auto raw = io::find_frames(folder.path() / "day/drive");
+  EXPECT_EQ(raw.at(0).calib, folder.path() / "day/calib_cam_to_cam.txt");
+  // The folder above several says which of them holds frames.
+  EXPECT_TRUE(has(refusal([&] { (void)io::find_frames(folder.path()); }), {"2012", "name that folder"}));
+}
+
+TEST(Dataset, EurocsRawPicturesAreForRectifyAlone) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"MH_01/mav0/cam0/data/140.png", "MH_01/mav0/cam1/data/140.png", "MH_01/mav0/cam0/data/141.png"})
+    (void)folder.with(name, "");
+  for (const fs::path& at : {folder.path() / "MH_01", folder.path() / "MH_01/mav0"}) {
+    EXPECT_TRUE(has(refusal([&] { (void)io::find_frames(at); }),
+                    {"EuRoC", "raw", "cairn rectify " + at.string(), "cam0/sensor.yaml"}));
+    const auto frames = io::find_frames(at, io::Cameras::raw);
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].right, folder.path() / "MH_01/mav0/cam1/data/140.png");
+  }
+}
+
+TEST(Dataset, HiddenPixelsAreReadInTheFormOfEachDataSet) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "disp_noc_0");
+  const auto hidden = [&](const char* name, auto seen, auto not_seen) {
+    Image<decltype(seen)> image({2, 1});
+    image(0, 0) = seen;
+    image(1, 0) = not_seen;
+    io::save_png(folder.path() / name, image.view());
+    const Image<std::uint8_t> read = io::load_hidden(folder.path() / name);
+    EXPECT_EQ(read(0, 0), 0) << name;
+    EXPECT_EQ(read(1, 0), 1) << name;
+  };
+  hidden("occlusion.png", std::uint8_t{0}, std::uint8_t{255});
+  hidden("mask0nocc.png", std::uint8_t{255}, std::uint8_t{128});
+  hidden("disp_noc_0/000000_10.png", std::uint16_t{2560}, std::uint16_t{0});
+}
+
 /// The shared collection of pairs, where this machine has it.
 std::optional<fs::path> collection() {
   const char* named = std::getenv("CAIRN_DATA");

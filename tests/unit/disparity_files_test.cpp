@@ -188,5 +188,66 @@ TEST_F(DisparityFiles, NoCutFileIsHalfRead) {
   EXPECT_EQ(survives_damage(folder_, "d.pfm", bytes_of(folder_.path() / "whole.pfm"), read), 0);
 }
 
+TEST_F(DisparityFiles, MiddleburysMapsHaveTheScaleOfTheirDataSet) {
+  const auto read = [&](const char* name, int height) {
+    Image<std::uint8_t> steps({4, height}, 60, {});
+    steps(1, 0) = 0;
+    io::save_png(folder_.path() / name, steps.view());
+    return io::load_disparity(folder_.path() / name);
+  };
+  EXPECT_EQ(read("disp1.png", 1110)(0, 0), 60);   // 2005 and 2006, full size
+  EXPECT_EQ(read("disp1.png", 555)(0, 0), 30);    // half
+  EXPECT_EQ(read("disp5.png", 370)(0, 0), 20);    // a third
+  EXPECT_EQ(read("disp2.png", 375)(0, 0), 15);    // 2003, a quarter
+  EXPECT_EQ(read("disp2.png", 383)(0, 0), 7.5F);  // 2001
+  EXPECT_TRUE(std::isnan(read("disp2.png", 383)(1, 0)));
+  EXPECT_TRUE(has(refusal([&] { (void)read("disp1.png", 480); }), {"disp1.png", "4x480", "scale"}));
+  EXPECT_TRUE(has(refusal([&] { (void)read("disparity.png", 370); }), {"8 bits", "256"}));
+  std::string pgm = "P5\n2 375\n255\n";
+  pgm.append(2 * 375, '\x08');
+  EXPECT_EQ(io::load_disparity(folder_.with("disp2.pgm", pgm))(1, 374), 2);
+}
+
+/// What numpy.save() writes.
+std::string npy(const std::string& type, const std::string& shape, const std::string& pixels,
+                const std::string& fortran = "False") {
+  std::string header =
+      "{'descr': '" + type + "', 'fortran_order': " + fortran + ", 'shape': " + shape + ", }";
+  header.resize(117, ' ');
+  header += '\n';
+  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(header.size()) + '\0' + header + pixels;
+}
+
+TEST_F(DisparityFiles, NumpysArraysAreRead) {
+  std::string pixels;
+  for (const float value : {1.5F, kNan, -2.0F, kInf, 4.25F, 0.0F}) pixels += little_endian(value);
+  const Image<float> floats = io::load_disparity(folder_.with("d.npy", npy("<f4", "(2, 3)", pixels)));
+  ASSERT_EQ(floats.size(), (Size{3, 2}));
+  EXPECT_EQ(floats(0, 0), 1.5F);
+  EXPECT_TRUE(std::isnan(floats(1, 0)) && std::isnan(floats(0, 1)));
+  EXPECT_EQ(floats(2, 0), -2.0F);
+  EXPECT_EQ(floats(1, 1), 4.25F);
+  const double wide = 7.125;
+  const std::string bytes(reinterpret_cast<const char*>(&wide), sizeof wide);
+  EXPECT_EQ(io::load_disparity(folder_.with("w.npy", npy("<f8", "(1, 1)", bytes)))(0, 0), 7.125F);
+}
+
+TEST_F(DisparityFiles, NumpysArraysOfOtherKindsAreRefused) {
+  const std::string four = little_endian(1) + little_endian(2) + little_endian(3) + little_endian(4);
+  EXPECT_TRUE(has(refused("d.npy", npy("<f4", "(2, 3)", four)), {"16 bytes", "24"}));
+  EXPECT_TRUE(has(refused("d.npy", npy("<i4", "(2, 2)", four)), {"'<i4'", "'<f4'"}));
+  EXPECT_TRUE(has(refused("d.npy", npy(">f4", "(2, 2)", four)), {"'>f4'"}));
+  EXPECT_TRUE(has(refused("d.npy", npy("<f4", "(4,)", four)), {"'(4,)'", "(height, width)"}));
+  EXPECT_TRUE(has(refused("d.npy", npy("<f4", "(1, 2, 2)", four)), {"(1, 2, 2)"}));
+  EXPECT_TRUE(has(refused("d.npy", npy("<f4", "(2, 2)", four, "True")), {"Fortran"}));
+  EXPECT_TRUE(has(refused("d.npy", npy("<f4", "(0, 4)", "")), {"0"}));
+  EXPECT_TRUE(has(refused("d.npy", "PK"), {"NUMPY"}));
+  EXPECT_TRUE(has(refusal([&] { save(folder_.path() / "d.npy", {{1.0F}}); }), {".npy", ".pfm"}));
+  const std::string good = npy("<f4", "(2, 2)", four);
+  EXPECT_EQ(
+      survives_damage(folder_, "d.npy", good, [](const fs::path& path) { (void)io::load_disparity(path); }),
+      0);
+}
+
 }  // namespace
 }  // namespace cairn

@@ -12,6 +12,7 @@
 namespace cairn {
 namespace {
 
+namespace fs = std::filesystem;
 using support::has;
 using support::refusal;
 using support::survives_damage;
@@ -92,6 +93,41 @@ TEST(RawCalibration, IsReadFromARosPairWhicheverIsNamed) {
     EXPECT_EQ((*raw.left.projection)[3], 0);
     EXPECT_EQ(raw.left.matrix[0], 551);
   }
+}
+
+/// A camera that looks along the body's x, its x to the body's −y.
+std::string euroc(const std::string& y, const std::string& model = "radial-tangential") {
+  return "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [0, 0, 1, 0.5, -1, 0, 0, " + y +
+         ", 0, -1, 0, 0, 0, 0, 0, 1]\nrate_hz: 20\nresolution: [752, 480]\ncamera_model: pinhole\n"
+         "intrinsics: [458.654, 457.296, 367.215, 248.375] #fu, fv, cu, cv\ndistortion_model: " +
+         model + "\ndistortion_coefficients: [-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05]\n";
+}
+
+TEST(RawCalibration, IsReadFromEurocsTwoSensors) {
+  const TemporaryFolder folder;
+  const auto left = folder.with("mav0/cam0/sensor.yaml", euroc("0.06"));
+  const auto right = folder.with("mav0/cam1/sensor.yaml", euroc("-0.05"));
+  const io::RawCalibration raw = io::load_raw_calibration(left);
+  EXPECT_EQ(raw.image_size, (Size{752, 480}));
+  EXPECT_EQ(raw.left.matrix, (std::array<double, 9>{458.654, 0, 367.215, 0, 457.296, 248.375, 0, 0, 1}));
+  EXPECT_EQ(raw.right.distortion, (std::vector<double>{-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05}));
+  EXPECT_EQ(raw.rotation, (std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  // The right camera is 0.11 m to the right of the left one.
+  ASSERT_TRUE(raw.translation_m);
+  EXPECT_NEAR((*raw.translation_m)[0], -0.11, 1e-12);
+  EXPECT_NEAR((*raw.translation_m)[1], 0, 1e-12);
+  EXPECT_NEAR((*raw.translation_m)[2], 0, 1e-12);
+  std::string turned = euroc("0");
+  turned.replace(turned.find("0, 0, 1, 0.5, -1"), 51, "1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]");
+  (void)folder.with("mav0/cam1/sensor.yaml", turned);
+  const io::RawCalibration other = io::load_raw_calibration(left);
+  EXPECT_EQ(other.rotation, (std::array<double, 9>{0, 0, 1, -1, 0, 0, 0, -1, 0}));
+  EXPECT_EQ(other.translation_m, (std::array<double, 3>{0.5, 0.06, 0}));
+  EXPECT_TRUE(has(refusal([&] { (void)io::load_raw_calibration(right); }), {"cam0/sensor.yaml"}));
+  (void)folder.with("mav0/cam1/sensor.yaml", euroc("-0.05", "equidistant"));
+  EXPECT_TRUE(has(refusal([&] { (void)io::load_raw_calibration(left); }), {"equidistant"}));
+  fs::remove(right);
+  EXPECT_TRUE(has(refusal([&] { (void)io::load_raw_calibration(left); }), {"cam1/sensor.yaml"}));
 }
 
 TEST(RawCalibration, RefusesWhatCannotRectify) {
