@@ -136,20 +136,50 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
 
 }  // namespace
 
+namespace {
+
+/// The map of a frame: the one file, or that of its name in a folder of maps or of results. Nothing where the
+/// folder has none.
+std::optional<fs::path> map_of(const io::FrameFiles& files, const std::string& given) {
+  std::error_code ignored;
+  if (!fs::is_directory(given, ignored)) return given;
+  for (const char* ending : {".png", ".pfm", ".npy", "/disparity.png", "/disparity.pfm"}) {
+    fs::path path = fs::path(given) / (files.name + ending);
+    if (fs::is_regular_file(path, ignored)) return path;
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_without_map(const io::FrameFiles& files, const std::string& given) {
+  throw Error("--disparity " + given + ": has no map of the frame " + files.name + ", expected " +
+              files.name + ".png, .pfm or .npy");
+}
+
+/// What is so for all frames is said once.
+void check_maps(const std::vector<io::FrameFiles>& frames, const InputOptions& options) {
+  std::error_code ignored;
+  if (frames.size() > 1 && !fs::is_directory(options.disparity, ignored)) {
+    throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
+                " frames of " + options.left + "; give a folder of maps, or one frame");
+  }
+  if (std::none_of(frames.begin(), frames.end(),
+                   [&](const io::FrameFiles& files) { return map_of(files, options.disparity); }))
+    refuse_without_map(frames.front(), options.disparity);
+}
+
+void check_rights(const std::vector<io::FrameFiles>& frames) {
+  if (std::none_of(frames.begin(), frames.end(), [](const io::FrameFiles& files) { return files.right; }))
+    (void)right_of(frames.front());
+}
+
+}  // namespace
+
 std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
   if (options.right.empty() && fs::is_directory(options.left, ignored)) {
     auto frames = io::find_frames(options.left, options.cameras);
-    // One line, not one for each frame.
-    if (options.disparity.empty() && std::none_of(frames.begin(), frames.end(), [](const io::FrameFiles& f) {
-          return f.right.has_value();
-        }))
-      (void)right_of(frames.front());
-    if (!options.disparity.empty() && frames.size() > 1) {
-      throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
-                  " frames of " + options.left + "; give one frame");
-    }
+    options.disparity.empty() ? check_rights(frames) : check_maps(frames, options);
     return frames;
   }
   if (options.right.empty() && options.disparity.empty() && fs::exists(options.left, ignored)) {
@@ -158,7 +188,9 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.right.empty() && options.disparity.empty()) {
     throw Error(options.left + ": is not there, expected a file or a folder");
   }
-  return {frame_of_files(options)};
+  std::vector<io::FrameFiles> frames{frame_of_files(options)};
+  if (!options.disparity.empty()) check_maps(frames, options);
+  return frames;
 }
 
 const fs::path& right_of(const io::FrameFiles& files) {
@@ -188,7 +220,9 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   LoadedFrame frame;
   if (!options.disparity.empty()) {
     frame.left = io::load_picture(files.left, exec.pool);
-    frame.given = load_given(options.disparity, frame.left.gray.size(), files.left, exec);
+    const std::optional<fs::path> map = map_of(files, options.disparity);
+    if (!map) refuse_without_map(files, options.disparity);
+    frame.given = load_given(*map, frame.left.gray.size(), files.left, exec);
   } else {
     io::PicturePair pair = io::load_pair(files.left, right_of(files), exec.pool);
     frame.left = std::move(pair.left);

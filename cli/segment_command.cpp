@@ -214,8 +214,9 @@ Work declare_segment(CLI::App& app) {
   auto options = std::make_shared<SegmentOptions>();
   add_input_options(app, options->input);
   app.add_option("--disparity", options->input.disparity,
-                 "take this disparity map (.png, .pfm) instead of matching; RIGHT may be left out")
-      ->type_name("FILE");
+                 "disparity map (.png, .pfm, .npy) to use instead of matching, or a folder of maps named "
+                 "like the frames; RIGHT may be left out")
+      ->type_name("PATH");
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
                  "folder for objects.json and its maps and pictures; docs/formats.md names them")

@@ -197,6 +197,9 @@ TEST_F(BadInput, DisparityMapsThatAreNone) {
   pair_in("many/a");
   pair_in("many/b");
   refuses({"segment", path("many"), "--disparity", path("good.pfm")}, {"--disparity", "2 frames"});
+  fs::create_directories(at("maps"));
+  refuses({"segment", path("many"), "--disparity", path("maps")}, {"maps", "frame a", "a.png", ".npy"});
+  refuses({"segment", pair[0], "--disparity", path("maps")}, {"maps", "frame pair", "pair.png", ".npy"});
 }
 
 TEST_F(BadInput, OutputsThatCannotBe) {

@@ -222,6 +222,27 @@ TEST_F(Command, SegmentTakesADisparityMapInsteadOfTheRightPicture) {
   }
 }
 
+TEST_F(Command, SegmentTakesAFolderOfMapsByTheFramesNames) {
+  for (const char* frame : {"a", "b", "c", "d"}) fs::remove(pair_in(std::string("many/") + frame)[1]);
+  fs::create_directories(at("maps/c"));
+  const auto flat = [](float px) { return pfm({96, 72}, std::vector<float>(96 * 72, px)); };
+  write(at("maps/a.pfm"), flat(4));
+  write(at("maps/c/disparity.pfm"), flat(5));
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (72, 96), }";
+  header.resize(117, ' ');
+  const std::string pixels = flat(3);
+  write(at("maps/b.npy"), std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" +
+                              pixels.substr(pixels.size() - 96 * 72 * sizeof(float)));
+  const Outcome outcome = run({"segment", path("many"), "--disparity", path("maps"), "-o", path("out")});
+  EXPECT_EQ(outcome.code, 2);  // for d
+  EXPECT_NE(outcome.err.find("frame d is left out: --disparity " + path("maps")), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(io::load_disparity(at("out/a/disparity.png"))(50, 36), 4);
+  EXPECT_EQ(io::load_disparity(at("out/b/disparity.png"))(50, 36), 3);
+  EXPECT_EQ(io::load_disparity(at("out/c/disparity.png"))(50, 36), 5);
+  EXPECT_FALSE(fs::exists(at("out/d")));
+}
+
 TEST_F(Command, DisparityWritesTheFormThatTheNameAsksFor) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("disparity", pair, {"-o", path("d.png"), "--set", "match.num_disparities=16"})).code, 0);
