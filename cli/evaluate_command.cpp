@@ -29,12 +29,16 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct EvaluateOptions {
-  std::string result;
+  std::vector<std::string> folders;  // as given: the results, then the truth
+  std::vector<std::string> results;
   std::string truth;
   ObjectErrorConfig objects;
   int skip_left = 0;
   std::optional<std::string> json;
   std::optional<std::string> html;
+  std::optional<std::string> csv;
+
+  [[nodiscard]] bool wants_times() const { return json || html || csv || results.size() > 1; }
 };
 
 // ---- one frame ----
@@ -65,8 +69,8 @@ struct FrameScore {
   std::optional<DisparityErrors> all;
   bool knows_occlusion = false;
   std::optional<ConfidentPixels> confident;  // nullopt where there is no confidence.png
-  std::vector<io::StageTime> times;  // empty where there is no objects.json, and without --json or --html
-  io::EncodedFrame page;             // empty without --html
+  std::vector<io::StageTime> times;          // empty where there is no objects.json, or nothing shows them
+  io::EncodedFrame page;                     // empty without --html
 };
 
 /// What objects.json says of the time of each stage.
@@ -142,7 +146,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
     throw Error(truth.folder.string() + ": has the truth of nothing that the result " + result.name +
                 " holds");
   }
-  if ((options.json || options.html) && result.json) score.times = load_times(*result.json);
+  if (options.wants_times() && result.json) score.times = load_times(*result.json);
   if (options.html) score.page = encode_frame(result, truth);
   return score;
 }
@@ -168,14 +172,14 @@ bool has_truth(const fs::path& folder) {
   }
 }
 
-Scores score_all(const EvaluateOptions& options) {
+Scores score_all(const std::string& run, const EvaluateOptions& options) {
   std::error_code ignored;
-  for (const std::string& folder : {options.result, options.truth}) {
+  for (const std::string& folder : {run, options.truth}) {
     if (!fs::exists(folder, ignored)) throw Error(folder + ": no such folder");
     if (!fs::is_directory(folder, ignored)) throw Error(folder + ": is a file, expected a folder");
   }
   Scores scores;
-  const fs::path whole = fs::absolute(options.result).lexically_normal();
+  const fs::path whole = fs::absolute(run).lexically_normal();
   if (auto single = result_in(whole.has_filename() ? whole : whole.parent_path())) {
     scores.frames.push_back(score_frame(*single, io::find_truth(options.truth), options));
     scores.results = 1;
@@ -183,12 +187,12 @@ Scores score_all(const EvaluateOptions& options) {
   }
   std::set<std::string> seen;
   std::vector<ResultFiles> results;
-  for (const auto& entry : fs::directory_iterator(options.result)) {
+  for (const auto& entry : fs::directory_iterator(run)) {
     if (!entry.is_directory(ignored)) continue;
     if (auto result = result_in(entry.path())) results.push_back(std::move(*result));
   }
   if (results.empty()) {
-    throw Error(options.result +
+    throw Error(run +
                 ": no result in this folder or its sub-folders, expected objects.png, disparity.png or "
                 "disparity.pfm");
   }
@@ -213,7 +217,7 @@ Scores score_all(const EvaluateOptions& options) {
       scores.left_out.add(result.name, error.what());
     }
   }
-  if (scores.frames.empty()) throw Error(options.result + ": not one of its results can be scored");
+  if (scores.frames.empty()) throw Error(run + ": not one of its results can be scored");
   for (const auto& entry : fs::directory_iterator(options.truth)) {
     const std::string name = entry.path().filename().string();
     if (!seen.contains(name) && name != "gt" && has_truth(entry.path()))
@@ -596,7 +600,7 @@ void write_page(Scores& scores, const EvaluateOptions& options, const std::strin
   std::vector<io::EncodedFrame> frames;
   frames.reserve(scores.frames.size());
   for (FrameScore& frame : scores.frames) frames.push_back(std::move(frame.page));
-  const io::PageHead head{"evaluate", name_of(options.result) + " against " + name_of(options.truth),
+  const io::PageHead head{"evaluate", name_of(options.results.front()) + " against " + name_of(options.truth),
                           as_json};
   const std::string page = io::html_page(head, frames);
   io::make_folder(*options.html);
@@ -613,8 +617,132 @@ std::string names_line(std::string head, const char* whose, const std::vector<st
   return line + "\n";
 }
 
-int evaluate(const EvaluateOptions& options) {
-  Scores scores = score_all(options);
+// ---- runs side by side ----
+
+/// As CSV wants a text that may have commas.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string all = "\"";
+  for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return all + "\"";
+}
+
+struct Run {
+  std::string name;
+  Scores scores;
+};
+
+/// The numbers of a run by their names: those of --json's `summary`, without the single stages.
+std::vector<std::pair<std::string, std::string>> cells_of(const Run& run) {
+  Json summary{{"objects", summary_objects_json(run.scores.frames)},
+               {"disparity", summary_disparity_json(run.scores.frames)},
+               {"timings_ms", summary_times_json(run.scores.frames)}};
+  if (summary["timings_ms"].is_object()) summary["timings_ms"].erase("stages");
+  std::vector<std::pair<std::string, std::string>> cells{{"run", quoted(run.name)}};
+  const Json flat = summary.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    std::string name = pointer.substr(1);
+    std::replace(name.begin(), name.end(), '/', '.');
+    cells.emplace_back(name, value.is_null() ? "" : value.dump());
+  }
+  return cells;
+}
+
+/// One line for each run below the names; what a run does not have is empty.
+std::string csv(const std::vector<Run>& runs) {
+  std::vector<std::string> names;
+  std::vector<std::map<std::string, std::string>> rows;
+  for (const Run& run : runs) {
+    const auto cells = cells_of(run);
+    rows.emplace_back(cells.begin(), cells.end());
+    for (const auto& [name, value] : cells) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  // What one run lacks as a whole, like `objects`, has no value of its own where another one has its parts.
+  std::erase_if(names, [&](const std::string& name) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& other) { return other.starts_with(name + "."); });
+  });
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  for (auto& row : rows) {
+    for (const std::string& name : names) text += (name == "run" ? "\n" : ",") + row[name];
+  }
+  return text + "\n";
+}
+
+std::string run_table(const std::vector<Run>& runs) {
+  Table table({"run", "frames", "found %", "0.75 %", "precision %", "median E %", "boundary F", "phantoms",
+               "bad-1 %", "density %", "ms"});
+  const auto share = [](double value) { return text_of("%.1f", 100 * value); };
+  for (const Run& run : runs) {
+    const std::vector<FrameScore>& frames = run.scores.frames;
+    std::vector<std::string> row{run.name, std::to_string(frames.size())};
+    const std::vector<FrameObjects> objects = objects_of(frames);
+    const ObjectSummary s = summarise(objects);
+    if (objects.empty()) {
+      row.insert(row.end(), 6, "");
+    } else {
+      row.insert(row.end(),
+                 {share(s.recall_50()), share(s.recall_75()), share(s.precision_50()), share(s.median_error),
+                  text_of("%.3f", s.mean_boundary_f), text_of("%.2f", s.phantoms_per_frame())});
+    }
+    const DisparityTotals disparity = disparity_totals(frames);
+    row.push_back(disparity.frames > 0 ? share(disparity.visible.bad_of_matched(1)) : "");
+    row.push_back(disparity.frames > 0 ? share(disparity.visible.density()) : "");
+    const Json times = summary_times_json(frames);
+    row.push_back(times.is_null() ? "" : text_of("%.1f", times["total"]["median"].get<double>()));
+    table.add(row);
+  }
+  return table.text();
+}
+
+/// A comparison of runs is fair on the same frames only.
+std::string frames_that_differ(const std::vector<Run>& runs) {
+  const auto names_of = [](const Run& run) {
+    std::set<std::string> names;
+    for (const FrameScore& frame : run.scores.frames) names.insert(frame.name);
+    return names;
+  };
+  for (const Run& run : runs) {
+    if (run.scores.frames.size() == 1 && runs.front().scores.frames.size() == 1) continue;
+    if (names_of(run) != names_of(runs.front()))
+      return "not the same frames in " + runs.front().name + " and " + run.name + "\n";
+  }
+  return {};
+}
+
+int compare(const EvaluateOptions& options) {
+  for (const auto& [asked, name] : {std::pair{options.json, "--json"}, {options.html, "--html"}}) {
+    if (asked) {
+      throw Error(std::string(name) + " " + *asked + ": is of one run, found " +
+                  std::to_string(options.results.size()) + "; --csv takes several");
+    }
+  }
+  std::vector<Run> runs;
+  int code = 0;
+  for (const std::string& folder : options.results) {
+    runs.push_back({folder, score_all(folder, options)});
+    const Scores& scores = runs.back().scores;
+    code = std::max(code, scores.left_out.exit_code(scores.results));
+  }
+  if (options.csv) io::write_file(*options.csv, csv(runs));
+  std::cout << run_table(runs) << frames_that_differ(runs);
+  return code;
+}
+
+int evaluate(EvaluateOptions& options) {
+  options.results = options.folders;
+  options.truth = options.results.back();
+  options.results.pop_back();
+  if (options.results.empty())
+    throw Error("TRUTH: found none behind " + options.truth + ", expected RESULT and then TRUTH");
+  if (options.results.size() > 1) return compare(options);
+  std::vector<Run> runs;
+  runs.push_back({options.results.front(), score_all(options.results.front(), options)});
+  Scores& scores = runs.front().scores;
+  if (options.csv) io::write_file(*options.csv, csv(runs));
   if (options.json || options.html) {
     const std::string as_json = evaluation_json(scores, options);
     if (options.json) io::write_file(*options.json, as_json);
@@ -631,13 +759,11 @@ int evaluate(const EvaluateOptions& options) {
 
 Work declare_evaluate(CLI::App& app) {
   auto options = std::make_shared<EvaluateOptions>();
-  app.add_option("RESULT", options->result,
-                 "what cairn segment -o wrote: one frame's folder, or a folder of them")
-      ->required()
-      ->type_name("");
   app.add_option(
-         "TRUTH", options->truth,
-         "folder with objects.png and/or disp_left.png (or ../gt beside it), or a folder of such folders")
+         "RESULT", options->folders,
+         "what cairn segment -o wrote: one frame's folder, or a folder of them; several: runs side by "
+         "side. Then TRUTH: folder with objects.png and/or disp_left.png (or ../gt beside it), or a "
+         "folder of such folders, or of KITTI's")
       ->required()
       ->type_name("");
   app.add_option("--min-area", options->objects.min_area, "px; smaller true objects are not scored")
@@ -658,6 +784,7 @@ Work declare_evaluate(CLI::App& app) {
   app.add_option("--html", options->html,
                  "also write evaluation.html into this folder: one page, to look at in a browser")
       ->type_name("DIR");
+  app.add_option("--csv", options->csv, "also write one row for each run into this file")->type_name("FILE");
   app.footer(
       "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true objects found "
       "with\n"

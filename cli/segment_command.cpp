@@ -10,6 +10,7 @@
 #include <optional>
 #include <page/html_page.hpp>
 #include <set>
+#include <sstream>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -67,14 +68,32 @@ std::string object_table(const std::vector<Object>& objects) {
   return table.text();
 }
 
-std::string summary(const Frame& frame, double milliseconds) {
-  const std::size_t count = frame.objects.list.size();
-  return std::to_string(count) + (count == 1 ? " object" : " objects") + ", disparity on " +
-         percent(valid_share(frame.disparity)) + " of the pixels, " +
-         (frame.ground.plane ? "ground found, " : "no ground, ") + text_of("%.1f ms", milliseconds);
+/// Of the frames that were worked on.
+struct Totals {
+  int frames = 0;
+  std::size_t objects = 0;
+  double valid_share = 0;  // summed up, as are the times
+  int grounds = 0;
+  double milliseconds = 0;
+
+  Totals& operator+=(const Totals& other) {
+    frames += other.frames;
+    objects += other.objects;
+    valid_share += other.valid_share;
+    grounds += other.grounds;
+    milliseconds += other.milliseconds;
+    return *this;
+  }
+};
+
+std::string summary(const Totals& frame) {
+  return std::to_string(frame.objects) + (frame.objects == 1 ? " object" : " objects") + ", disparity on " +
+         percent(frame.valid_share) + " of the pixels, " +
+         (frame.grounds == 1 ? "ground found, " : "no ground, ") + text_of("%.1f ms", frame.milliseconds);
 }
 
 struct Report {
+  Totals totals;           // of this frame
   std::string out;         // for stdout
   std::string note;        // for stderr; mostly empty
   std::string remark;      // the same, but once for all frames that have it
@@ -125,6 +144,8 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
   report.remark = remark_on_calibration(loaded);
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
+  report.totals = {1, frame.objects.list.size(), valid_share(frame.disparity), frame.ground.plane ? 1 : 0,
+                   watch.total_ms()};
   const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
                                   loaded.given.has_value()};
   if (!folder.empty()) {
@@ -142,7 +163,7 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
     report.out = io::objects_json(frame, provenance);
     return report;
   }
-  report.out = files.name + ": " + summary(frame, watch.total_ms()) + "\n";
+  report.out = files.name + ": " + summary(report.totals) + "\n";
   if (frame.epipolar.outcome == EpipolarOutcome::corrected) report.out += describe(frame.epipolar) + "\n";
   if (one_of_many && !folder.empty()) return report;
   if (!frame.objects.list.empty()) report.out += object_table(frame.objects.list);
@@ -165,8 +186,12 @@ void require_output(const SegmentOptions& options) {
   }
 }
 
-int segment_all(const SegmentOptions& options) {
-  require_output(options);
+struct Outcome {
+  Totals totals;
+  int exit_code = 0;
+};
+
+Outcome segment_all(const SegmentOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // what is bad for all frames is so before any of them
   if (!options.input.calib.empty()) (void)io::load_calibration(options.input.calib);
@@ -176,6 +201,7 @@ int segment_all(const SegmentOptions& options) {
   std::vector<io::EncodedFrame> encoded;
   std::set<std::string> remarks;
   LeftOut left_out;
+  Totals totals;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
     fs::path folder = options.output;
@@ -192,6 +218,7 @@ int segment_all(const SegmentOptions& options) {
     try {
       Report report = work_on(std::move(*loaded), frames[i], options, folder, many, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
+      totals += report.totals;
       progress.clear();
       if (remarks.insert(report.remark).second) std::cerr << report.remark;
       std::cerr << report.note;
@@ -205,7 +232,56 @@ int segment_all(const SegmentOptions& options) {
     const io::PageHead head{"segment", name_of(options.input.left), {}};
     io::write_file(fs::path(options.output) / kPageName, io::html_page(head, encoded));
   }
-  return left_out.exit_code(frames.size());
+  return {totals, left_out.exit_code(frames.size())};
+}
+
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream in(list + ",");
+  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  return words;
+}
+
+/// Before any work: what every preset must be and have for a run of its own.
+void check_presets(const std::vector<SegmentOptions>& runs, const SegmentOptions& all) {
+  const std::string list = "--preset " + all.input.config.preset;
+  if (all.output.empty()) throw Error(list + ": needs -o DIR, the folder in which each gets one of its own");
+  if (all.json) throw Error("--json: is of one preset, found " + list);
+  std::set<std::string> seen;
+  for (const SegmentOptions& run : runs) {
+    const std::string& name = run.input.config.preset;
+    if (!seen.insert(name).second) throw Error(list + ": has " + name + " twice");
+    const std::string from_file = resolve(run.input.config).preset;
+    if (from_file != name)
+      throw Error(run.input.config.file + ": says preset: " + from_file + ", found beside " + list);
+  }
+}
+
+int segment_by_presets(const SegmentOptions& options) {
+  require_output(options);
+  const std::vector<std::string> presets = words_of(options.input.config.preset);
+  if (presets.size() == 1) return segment_all(options).exit_code;
+  std::vector<SegmentOptions> runs(presets.size(), options);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].input.config.preset = presets[i];
+    runs[i].output = fs::path(options.output) / presets[i];
+  }
+  check_presets(runs, options);
+  Table table({"preset", "frames", "objects a frame", "disparity", "ground", "ms a frame"});
+  int code = 0;
+  for (const SegmentOptions& run : runs) {
+    const std::string& name = run.input.config.preset;
+    std::cout << "preset " << name << "\n";
+    const auto [totals, exit_code] = segment_all(run);
+    code = std::max(code, exit_code);
+    const double frames = totals.frames;
+    table.add({name, std::to_string(totals.frames),
+               text_of("%.2f", static_cast<double>(totals.objects) / frames),
+               percent(totals.valid_share / frames), percent(totals.grounds / frames),
+               text_of("%.1f", totals.milliseconds / frames)});
+  }
+  std::cout << "\n" << table.text();
+  return code;
 }
 
 }  // namespace
@@ -213,6 +289,11 @@ int segment_all(const SegmentOptions& options) {
 Work declare_segment(CLI::App& app) {
   auto options = std::make_shared<SegmentOptions>();
   add_input_options(app, options->input);
+  app.get_option("--preset")
+      ->description(
+          "start from this preset: default or paper; or from each of several: paper,default, with a folder "
+          "of "
+          "its name in DIR");
   app.add_option("--disparity", options->input.disparity,
                  "disparity map (.png, .pfm, .npy) to use instead of matching, or a folder of maps named "
                  "like the frames; RIGHT may be left out")
@@ -231,7 +312,7 @@ Work declare_segment(CLI::App& app) {
       "LEFT may also be a folder of such folders: each is a frame, and its result goes to a folder of its "
       "name in DIR.\n"
       "A frame whose files cannot be used is left out with a line on stderr; the exit code is 2 then.");
-  return [options] { return segment_all(*options); };
+  return [options] { return segment_by_presets(*options); };
 }
 
 }  // namespace cairn::cli

@@ -164,6 +164,40 @@ TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {
   EXPECT_EQ(outcome.err, "");  // no progress bar where stderr is no terminal
 }
 
+TEST_F(Command, SegmentComparesPresets) {
+  pair_in("many/a");
+  pair_in("many/b");
+  const Outcome outcome = run({"segment", path("many"), "--preset", "paper,default", "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* preset : {"paper", "default"}) {
+    for (const char* frame : {"a", "b"}) {
+      const Json result = Json::parse(content(at("out") / preset / frame / "objects.json"));
+      EXPECT_EQ(result.at("preset"), preset);
+    }
+  }
+  const std::size_t table = outcome.out.find("preset   frames");
+  ASSERT_NE(table, std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\npaper         2", table), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\ndefault       2", table), std::string::npos) << outcome.out;
+
+  const auto pair = pair_in("pair");
+  ASSERT_EQ(run(with("segment", pair, {"--preset", "default,paper", "-o", path("one")})).code, 0);
+  EXPECT_TRUE(fs::exists(at("one/paper/objects.json")));
+  const auto refuses_presets = [&](const std::string& list, std::vector<std::string> more,
+                                   const std::vector<std::string>& words) {
+    more.insert(more.begin(), {"--preset", list});
+    refuses(with("segment", pair, more), words);
+  };
+  refuses_presets("paper,default", {}, {"paper,default", "-o DIR"});
+  refuses_presets("paper,default", {"-o", path("two"), "--json"}, {"--json", "one preset"});
+  refuses_presets("paper,papre", {"-o", path("two")}, {"papre"});
+  refuses_presets("paper,", {"-o", path("two")}, {"preset"});
+  refuses_presets("paper,paper", {"-o", path("two")}, {"paper twice"});
+  write(at("fixed.yaml"), "preset: paper\n");
+  refuses_presets("paper,default", {"-o", path("two"), "--config", path("fixed.yaml")},
+                  {"fixed.yaml", "preset: paper"});
+}
+
 TEST_F(Command, AFolderWithOneSubFolderIsStillAFolderOfFrames) {
   pair_in("many/a");
   ASSERT_EQ(run({"segment", path("many"), "-o", path("all")}).code, 0);

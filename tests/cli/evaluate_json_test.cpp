@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "command.hpp"
 
@@ -255,6 +257,74 @@ TEST_F(EvaluateJson, NamesTheFramesThatAreLeftOut) {
     EXPECT_EQ(j["left_out"], Json::array({"b"}));
     EXPECT_EQ(j["frames"].size(), 1U);
   }
+}
+
+// ---- runs side by side ----
+
+/// Cells of a CSV without quotes, row by row, by the names in its first line.
+std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) {
+  const auto split = [](const std::string& text, char at) {
+    std::vector<std::string> parts;
+    std::istringstream in(text);
+    for (std::string part; std::getline(in, part, at);) parts.push_back(part);
+    return parts;
+  };
+  const auto lines = split(csv, '\n');
+  const auto names = split(lines.at(0), ',');
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto cells = split(lines[i] + ",.", ',');  // so that an empty last one counts
+    EXPECT_EQ(cells.size(), names.size() + 1) << lines[i];
+    rows.emplace_back();
+    for (std::size_t c = 0; c < names.size(); ++c) rows.back()[names[c]] = cells.at(c);
+  }
+  return rows;
+}
+
+TEST_F(EvaluateJson, RunsAreARowEachAndTheSameNumbers) {
+  fs::create_directories(at("other/b"));
+  fs::copy(at("result/b"), at("other/b"));
+  const Outcome outcome =
+      run({"evaluate", path("result"), path("other"), path("truth"), "--csv", path("runs.csv")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto rows = rows_of(content(at("runs.csv")));
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at("run"), path("result"));
+  EXPECT_EQ(rows[1].at("run"), path("other"));
+  const Json summary = evaluated().first.at("summary");
+  EXPECT_EQ(rows[0].at("objects.recall_50"), summary.at("objects").at("recall_50").dump());
+  EXPECT_EQ(rows[0].at("objects.confident.precision_50"),
+            summary.at("objects").at("confident").at("precision_50").dump());
+  EXPECT_EQ(rows[0].at("disparity.both_cameras.bad_of_matched.1"),
+            summary.at("disparity").at("both_cameras").at("bad_of_matched").at("1").dump());
+  EXPECT_EQ(rows[0].at("timings_ms.total.median"), summary.at("timings_ms").at("total").at("median").dump());
+  // Partial truth and no disparity: nothing is known.
+  EXPECT_EQ(rows[1].at("objects.frames"), "1");
+  EXPECT_EQ(rows[1].at("objects.recall_50"), "1.0");
+  EXPECT_EQ(rows[1].at("objects.precision_50"), "");
+  EXPECT_EQ(rows[1].at("disparity.all.density"), "");
+  for (const std::string& text :
+       {std::string("run "), path("other"), std::string("66.7"), std::string("100.0"),
+        "not the same frames in " + path("result") + " and " + path("other")})
+    EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
+}
+
+TEST_F(EvaluateJson, OneRunIsARowOfCsvToo) {
+  fs::rename(at("result"), at("with, comma"));
+  const Outcome outcome = run({"evaluate", path("with, comma"), path("truth"), "--csv", path("one.csv")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("boundary F"), std::string::npos);  // the table of one run, as ever
+  const std::string csv = content(at("one.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+  EXPECT_NE(csv.find("\n\"" + path("with, comma") + "\",2,"), std::string::npos) << csv;
+}
+
+TEST_F(EvaluateJson, SeveralRunsHaveNeitherAPageNorAJson) {
+  refuses({"evaluate", path("result"), path("result"), path("truth"), "--json", path("all.json")},
+          {"--json", "one run", "2", "--csv"});
+  refuses({"evaluate", path("result"), path("result"), path("truth"), "--html", path("page")}, {"--html"});
+  refuses({"evaluate", path("result"), path("missing"), path("truth"), "--csv", path("runs.csv")},
+          {"missing"});
 }
 
 TEST_F(EvaluateJson, IsNotWrittenForBadInput) {
