@@ -377,7 +377,8 @@ std::string disparity_block(const char* title, const DisparityErrors& e, const s
   bad("  of the matched    ", [&](std::size_t t) { return e.bad_of_matched(t); });
   bad("  holes count, too  ", [&](std::size_t t) { return e.bad_of_known(t); });
   all += "  off by            mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
-         text_of("%.3f px", e.root_mean_square_px()) + "\n";
+         text_of("%.3f px", e.root_mean_square_px()) + "   within 1 px RMS " +
+         text_of("%.3f px", e.sigma_px()) + "\n";
   return all;
 }
 
@@ -476,6 +477,7 @@ Json json(const DisparityErrors& errors) {
   }
   j["mean_absolute_px"] = json(errors.mean_absolute_px());
   j["root_mean_square_px"] = json(errors.root_mean_square_px());
+  j["sigma_px"] = json(errors.sigma_px());
   return j;
 }
 
@@ -761,9 +763,9 @@ Work declare_evaluate(CLI::App& app) {
   auto options = std::make_shared<EvaluateOptions>();
   app.add_option(
          "RESULT", options->folders,
-         "what cairn segment -o wrote: one frame's folder, or a folder of them; several: runs side by "
-         "side. Then TRUTH: folder with objects.png and/or disp_left.png (or ../gt beside it), or a "
-         "folder of such folders, or of KITTI's")
+         "one RESULT or more, which are put side by side, then TRUTH. RESULT: what cairn segment -o wrote, "
+         "one frame's folder or a folder of them; TRUTH: folder with objects.png and/or disp_left.png (or "
+         "../gt beside it), a folder of such folders, or KITTI's")
       ->required()
       ->type_name("");
   app.add_option("--min-area", options->objects.min_area, "px; smaller true objects are not scored")

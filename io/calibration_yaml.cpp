@@ -480,7 +480,7 @@ std::optional<Statement> read_yaml(std::string_view text, const fs::path& path) 
   if (documents.empty() || !documents.front().IsMap()) return std::nullopt;
   const YAML::Node& map = documents.front();
   if (const auto pair = ros_pair(documents, path)) return from_ros_pair(pair->first, pair->second);
-  if (const std::optional<Statement> says = read_opencv(map)) return says;
+  if (std::optional<Statement> says = read_opencv(map)) return says;
   return read_own(map);
 } catch (const YAML::Exception& exception) {
   throw Error("is no calibration: " + exception.msg);

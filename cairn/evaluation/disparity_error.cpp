@@ -9,6 +9,9 @@
 namespace cairn {
 namespace {
 
+constexpr std::size_t kWithinOnePx = 1;
+static_assert(kBadThresholdsPx[kWithinOnePx] == 1);
+
 double ratio(double part, std::int64_t whole) {
   return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
 }
@@ -21,6 +24,7 @@ DisparityErrors& DisparityErrors::operator+=(const DisparityErrors& other) {
   for (std::size_t t = 0; t < bad.size(); ++t) bad[t] += other.bad[t];
   absolute_sum_px += other.absolute_sum_px;
   square_sum_px2 += other.square_sum_px2;
+  square_sum_within_1_px2 += other.square_sum_within_1_px2;
   return *this;
 }
 
@@ -38,6 +42,9 @@ double DisparityErrors::mean_absolute_px() const {
 }
 double DisparityErrors::root_mean_square_px() const {
   return std::sqrt(ratio(square_sum_px2, matched));
+}
+double DisparityErrors::sigma_px() const {
+  return std::sqrt(ratio(square_sum_within_1_px2, matched - bad[kWithinOnePx]));
 }
 
 DisparityErrors disparity_errors(View<const float> ours_px, View<const float> truth_px,
@@ -59,6 +66,7 @@ DisparityErrors disparity_errors(View<const float> ours_px, View<const float> tr
       }
       errors.absolute_sum_px += off;
       errors.square_sum_px2 += off * off;
+      errors.square_sum_within_1_px2 += off > 1 ? 0 : off * off;
     }
   }
   return errors;

@@ -19,6 +19,7 @@ struct DisparityErrors {
   std::array<std::int64_t, kBadThresholdsPx.size()> bad{};  // of the matched, by kBadThresholdsPx
   double absolute_sum_px = 0;                               // of |ours − truth| over the matched
   double square_sum_px2 = 0;
+  double square_sum_within_1_px2 = 0;  // of those that are off by 1 px at most
 
   DisparityErrors& operator+=(const DisparityErrors& other);
   /// Shares of 0 … 1 and px; NaN where there is nothing to divide by. `t` indexes kBadThresholdsPx.
@@ -27,6 +28,8 @@ struct DisparityErrors {
   [[nodiscard]] double bad_of_known(std::size_t t) const;  // a hole counts as bad
   [[nodiscard]] double mean_absolute_px() const;
   [[nodiscard]] double root_mean_square_px() const;
+  /// Root mean square over those that are off by 1 px at most: σ_d of a right match.
+  [[nodiscard]] double sigma_px() const;
 };
 
 /// Compares two disparity maps of one size; NaN = a hole of ours, a pixel without truth. `excluded` (may be

@@ -93,6 +93,8 @@ void bind_evaluation(py::module_& m) {
                              "mean of |ours - truth| over the matched, px; NaN where nothing is")
       .def_property_readonly("root_mean_square_px", &DisparityErrors::root_mean_square_px,
                              "root of the mean square of the same, px; NaN where nothing is matched")
+      .def_property_readonly("sigma_px", &DisparityErrors::sigma_px,
+                             "the same over those that are off by 1 px at most: sigma of a right match")
       .def(py::self += py::self)
       .def("__repr__",
            [](const DisparityErrors& self) {

@@ -92,7 +92,8 @@ void bind_io(py::module_& m) {
         "Both pictures; deeper ones are reduced by the same factor, so that a difference of exposure stays "
         "what it was.");
   m.def("load_disparity", &load_disparity, "path"_a,
-        "A disparity map from .png (16 bits, px * 256, 0 = hole) or .pfm: (H, W) float32, px, NaN = hole.");
+        "A disparity map from .png (16 bits, px * 256, 0 = hole), .pfm or .npy, or of Middlebury in its own "
+        "8 bits: (H, W) float32, px, NaN = hole.");
   m.def("save_disparity", &save_disparity, "path"_a, "disparity_px"_a,
         "Writes a map as .png or .pfm, whole or not at all.");
   m.def("load_labels", &load_labels, "path"_a,

@@ -108,7 +108,7 @@ CAIRN_PARTS(Frame, disparity, ground, floor, by_intensity, by_disparity, fusion,
             space, left_out, epipolar, confidence)
 CAIRN_PARTS(io::StageTime, stage, milliseconds)
 CAIRN_PARTS(io::Provenance, preset, config, rig, timings, external_disparity)
-CAIRN_PARTS(DisparityErrors, known, matched, bad, absolute_sum, square_sum)
+CAIRN_PARTS(DisparityErrors, known, matched, bad, absolute_sum, square_sum, square_sum_within_1)
 CAIRN_PARTS(TrueObjectScore, id, pixel_count, found, iou, boundary_f, over_segmented, under_segmented)
 CAIRN_PARTS(FoundObjectScore, id, pixel_count, best, iou, share_on_objects, mostly_dont_care, phantom)
 CAIRN_PARTS(ObjectErrors, truth, ours, boundary_tolerance)

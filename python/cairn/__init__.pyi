@@ -263,6 +263,9 @@ class DisparityErrors:
     @property
     def root_mean_square_px(self) -> float:
         """root of the mean square of the same, px; NaN where nothing is matched"""
+    @property
+    def sigma_px(self) -> float:
+        """the same over those that are off by 1 px at most: sigma of a right match"""
     def __iadd__(self, arg0: DisparityErrors) -> DisparityErrors: ...
 
 class DisparityMap:
@@ -1423,7 +1426,9 @@ def load_calibration(path: PathLike) -> Calibration:
     """
 
 def load_disparity(path: PathLike) -> NDArray[numpy.float32]:
-    """A disparity map from .png (16 bits, px * 256, 0 = hole) or .pfm: (H, W) float32, px, NaN = hole."""
+    """A disparity map from .png (16 bits, px * 256, 0 = hole), .pfm or .npy, or of Middlebury in its own 8
+    bits: (H, W) float32, px, NaN = hole.
+    """
 
 def load_labels(path: PathLike) -> NDArray[numpy.uint16]:
     """The numbers of a one-channel file as they stand: (H, W) uint16."""

@@ -148,6 +148,7 @@ TEST_F(EvaluateJson, TellsTheErrorsOfDisparityAndOfWhichPixels) {
   EXPECT_DOUBLE_EQ(all.at("bad_of_known").at("4"), 0.25);
   EXPECT_DOUBLE_EQ(all.at("mean_absolute_px"), 1);
   EXPECT_DOUBLE_EQ(all.at("root_mean_square_px"), std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(all.at("sigma_px"), 0);
   EXPECT_EQ(a.at("both_cameras").at("known_px"), 96 * 36);
   EXPECT_DOUBLE_EQ(a.at("both_cameras").at("bad_of_known").at("1"), 0);
   EXPECT_TRUE(whole.at("frames")[1].at("disparity").is_null());
@@ -201,7 +202,8 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
            percent(d.at("bad_of_matched").at("1")));
     prints("holes count, too  bad-0.5 " + percent(d.at("bad_of_known").at("0.5")));
     prints("mean " + text_of("%.3f px", d.at("mean_absolute_px")) + "   RMS " +
-           text_of("%.3f px", d.at("root_mean_square_px")));
+           text_of("%.3f px", d.at("root_mean_square_px")) + "   within 1 px RMS " +
+           text_of("%.3f px", d.at("sigma_px")));
   }
   EXPECT_EQ(whole.at("without_result"), Json({"c"}));
   // And the summary's numbers themselves, so that both cannot be wrong together.

@@ -31,6 +31,7 @@ TEST(DisparityErrors, AMatchIsBadOnlyBeyondTheThreshold) {
   EXPECT_EQ(e.bad[3], 1);  // > 4
   EXPECT_DOUBLE_EQ(e.mean_absolute_px(), (0 + 0.5 + 1 + 2.5 + 5) / 5);
   EXPECT_DOUBLE_EQ(e.root_mean_square_px(), std::sqrt((0.25 + 1 + 6.25 + 25) / 5));
+  EXPECT_DOUBLE_EQ(e.sigma_px(), std::sqrt((0.25 + 1) / 3));
 }
 
 TEST(DisparityErrors, AHoleIsNoBadMatchButABadPixel) {
@@ -73,6 +74,7 @@ TEST(DisparityErrors, OfTwoFramesAddUpToThatOfBothTogether) {
   EXPECT_EQ(sum.matched, whole.matched);
   EXPECT_EQ(sum.bad, whole.bad);
   EXPECT_DOUBLE_EQ(sum.root_mean_square_px(), whole.root_mean_square_px());
+  EXPECT_DOUBLE_EQ(sum.sigma_px(), whole.sigma_px());
 }
 
 TEST(DisparityErrors, OfNothingAreNotANumberRatherThanZero) {
