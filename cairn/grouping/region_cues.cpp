@@ -50,6 +50,7 @@ class Gathering {
         height_(labels_.height()),
         weak_(weakest_edge(cues.noise_sigma)),
         steps_(labels_.size(), exec.pool),
+        textured_(slot(width_)),
         ground_(slot(width_)),
         background_(slot(width_)),
         contacts_of_(slot(superpixels.count)) {
@@ -82,6 +83,9 @@ class Gathering {
     const float* const d = cues_.disparity_px.row(y);
     std::int32_t* const out = steps_.row(y);
     for (int x = 0; x < width_; ++x) out[x] = std::isnan(d[x]) ? kNoDisparity : in_steps(d[x]);
+    const float* const evidence = cues_.evidence_px.row(y);
+    for (int x = 0; x < width_; ++x)
+      textured_[slot(x)] = std::isnan(evidence[x]) ? kNoDisparity : in_steps(evidence[x]);
     const auto fy = static_cast<float>(y);
     for (int x = 0; cues_.ground.plane && x < width_; ++x) {
       const float ground = cues_.ground.plane->disparity_px(static_cast<float>(x), fy);
@@ -149,33 +153,30 @@ class Gathering {
 
   void add_depth(RegionCues& region, int y, int first, int last) const {
     const std::int32_t* const d = steps_.row(y);
-    const float* const evidence = cues_.evidence_px.row(y);
     RunMoments matched;
     RunMoments textured;
     for (int x = first; x < last; ++x) {
       if (d[x] != kNoDisparity) matched.add(x - width_ / 2, d[x]);
-      if (!std::isnan(evidence[x])) textured.add(x - width_ / 2, in_steps(evidence[x]));
+      if (textured_[slot(x)] != kNoDisparity) textured.add(x - width_ / 2, textured_[slot(x)]);
     }
     region.matched.add(matched.in_row(y - height_ / 2));
     region.textured.add(textured.in_row(y - height_ / 2));
     if (cues_.ground.plane)
-      add_heights(ground_, d, evidence, first, last, region.above_ground, region.textured_above_ground);
-    if (!cues_.background.planes.empty()) {
-      add_heights(background_, d, evidence, first, last, region.before_background,
-                  region.textured_before_background);
-    }
+      add_heights(ground_, d, first, last, region.above_ground, region.textured_above_ground);
+    if (!cues_.background.planes.empty())
+      add_heights(background_, d, first, last, region.before_background, region.textured_before_background);
   }
 
   /// Of a run's disparities and of its evidence, over what lies behind.
-  static void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d,
-                          const float* evidence, int first, int last, Heights& all, Heights& textured) {
+  void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d, int first, int last,
+                   Heights& all, Heights& textured) const {
     Heights of_all;
     Heights of_textured;
     for (int x = first; x < last; ++x) {
       const std::int32_t base = behind[slot(x)];
       if (base == kNoDisparity) continue;
       if (d[x] != kNoDisparity) of_all.add(d[x] - base);
-      if (!std::isnan(evidence[x])) of_textured.add(in_steps(evidence[x]) - base);
+      if (textured_[slot(x)] != kNoDisparity) of_textured.add(textured_[slot(x)] - base);
     }
     all.add(of_all);
     textured.add(of_textured);
@@ -247,8 +248,9 @@ class Gathering {
   int width_;
   int height_;
   float weak_;
-  Image<std::int32_t> steps_;         // the disparities; kNoDisparity = hole
-  std::vector<std::int32_t> ground_;  // those of a row's background, kNoDisparity above the horizon
+  Image<std::int32_t> steps_;           // the disparities; kNoDisparity = hole
+  std::vector<std::int32_t> textured_;  // those of a row's evidence
+  std::vector<std::int32_t> ground_;    // and of what is behind it, kNoDisparity above the horizon
   std::vector<std::int32_t> background_;
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> contacts_of_;  // of a: b, and which
   RegionGraphCues result_;
