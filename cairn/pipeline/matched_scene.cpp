@@ -57,11 +57,13 @@ MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, cons
   // islands.
   SceneDisparity& found = scene.found;
   found.epipolar = matched.epipolar;
-  const View<const float> trusted_px =
-      scene.evidence_px.empty() ? matched.disparity.disparity_px.view() : scene.evidence_px.view();
-  found.ground = stage("fit_ground", fit_ground(trusted_px, rig, config.ground, exec));
-  found.ground =
-      stage("likely_ground", likely_ground(found.ground, matched.disparity, rig, config.ground, exec));
+  if (config.fusion.method == FusionMethod::hierarchy) {
+    found.ground = stage("fit_ground", fit_ground(scene.evidence_px, rig, config.ground, exec));
+    found.ground =
+        stage("likely_ground", likely_ground(found.ground, matched.disparity, rig, config.ground, exec));
+  } else {
+    found.ground = stage("fit_ground", fit_ground(matched.disparity, rig, config.ground, exec));
+  }
   found.disparity = stage("reject_below_ground", reject_below_ground(std::move(matched.disparity),
                                                                      found.ground, rig, config.ground, exec));
   found.disparity =

@@ -11,6 +11,14 @@ import pytest
 import cairn
 from conftest import same
 
+STAGES = """correct_epipolar match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine
+    noise_sigma find_evidence fit_ground likely_ground reject_below_ground reject_speckles label_floor fit_background
+    floor_under_reflections cut_superpixels grow_merge_tree choose_objects superpixels groups measure
+    estimate_confidence""".split()
+PAPER_STAGES = """match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine noise_sigma
+    fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
+    estimate_confidence""".split()
+
 
 def test_objects_tell_what_they_are(sample):
     frame = sample.frame
@@ -29,11 +37,11 @@ def test_objects_tell_what_they_are(sample):
 
 def test_objects_are_a_sequence(sample):
     objects = sample.frame.objects
-    assert [o.id for o in objects] == list(range(1, len(objects) + 1))
-    assert objects[-1].id == len(objects) and [o.id for o in objects[0:2]] == [1, 2]
+    assert len(objects) == 2 and [o.id for o in objects] == [1, 2]
+    assert objects[-1].id == 2 and [o.id for o in objects[1:3]] == [2] and [o.id for o in objects[0:2]] == [1, 2]
     assert [o.disparity_px for o in objects] == sorted((o.disparity_px for o in objects), reverse=True)
     with pytest.raises(IndexError):
-        objects[len(objects)]
+        objects[2]
     assert same(objects.labels, sample.frame.objects_map)
 
 
@@ -56,9 +64,14 @@ def test_a_frame_shows_itself(sample, tmp_path):
     assert frame.ground and frame.ground.refusal == "none" and 0 < frame.ground.support <= 1
     a, b, c = frame.ground.plane
     assert frame.ground.plane.disparity_px(10, 20) == pytest.approx(a * 10 + b * 20 + c, rel=1e-5)
-    assert list(frame.timings)[:3] == ["correct_epipolar", "match", "refine_subpixel"] and min(frame.timings.values()) >= 0
-    assert json.loads(frame.to_json())["objects"][0]["id"] == 1
+    assert list(frame.timings) == STAGES and min(frame.timings.values()) >= 0
+    assert [o["id"] for o in json.loads(frame.to_json())["objects"]] == [1, 2]
     assert frame.epipolar.outcome == "aligned"
+
+
+def test_the_paper_asks_its_own_stages_only(sample):
+    frame = cairn.segment(sample.left, sample.right, sample.calibration, preset="paper")
+    assert list(frame.timings) == PAPER_STAGES
 
 
 def test_reasons_have_names(sample):
