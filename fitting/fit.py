@@ -4,7 +4,7 @@
 """Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--out FOLDER] [--page FILE]
-fit.py TOOL DATA --ablation FILE: fits anew without one kind of cues after the other, and says what each brings.
+fit.py TOOL DATA --ablation FILE: fits again without each kind of cues in turn, and reports what each brings.
 
 Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
 the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
@@ -22,7 +22,6 @@ import time
 import zlib
 
 import numpy as np
-import xgboost
 
 WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
 PAIRS_KEPT = 0.4  # of all that are met: there are millions
@@ -47,7 +46,8 @@ def frames_in(folder):
 
 
 def fit_sets(data, rooms):
-    sets = {"dev 320x240": frames_in(data / "rendered/dev/320x240"), "dev 640x480": frames_in(data / "rendered/dev/640x480"),
+    sets = {"dev 320x240": frames_in(data / "rendered/dev/320x240"),
+            "dev 640x480": frames_in(data / "rendered/dev/640x480"),
             "train": frames_in(data / "rendered/train/320x240")}
     if rooms:
         sets["more rooms"] = frames_in(rooms)
@@ -129,6 +129,8 @@ def by_edges():
 
 
 def fitted(labels, weights, features, trees, depth, least_weight, eta):
+    import xgboost  # the only function that needs it
+
     data = xgboost.DMatrix(features, label=labels, weight=weights)
     model = xgboost.train(
         {"objective": "binary:logistic", "base_score": 0.5, "max_depth": depth, "eta": eta, "subsample": 0.7,
@@ -148,6 +150,7 @@ class Fitting:
         self.pair_features, self.region_features = (part.splitlines() for part in names.split("\n\n"))
         self.gains = {}
         self.without = ()
+        self.met_by_edges = False
         self.jobs = [(frame, colour, name) for name, frames in sets.items() for frame in frames
                      for colour in ("colour", "grey")]
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
@@ -184,7 +187,7 @@ class Fitting:
             heads.append(head)
             values.append(all_[:, 3:])
         values = np.concatenate(values)
-        names = self.pair_features if name == "pairs" else self.region_features
+        names = self.region_features if name == "regions" else self.pair_features
         for i, feature in enumerate(names):
             if any(word in feature for word in self.without):
                 values[:, i] = 0  # alike everywhere: no tree looks at it
@@ -194,12 +197,15 @@ class Fitting:
         return self.work / f"{kind}_{fold}"
 
     def fit_pairs(self):
-        by_edges().write(self.work / "by_edges")
+        if not self.met_by_edges:  # the same for every fit
+            by_edges().write(self.work / "by_edges")
+            self.run(lambda i: (self.work / "by_edges", "-"), "--pairs", self.work / "pairs_by_edges@")
+            self.met_by_edges = True
         seen = []
-        for round_ in range(2):
-            trees = (lambda i: (self.work / "by_edges", "-")) if round_ == 0 else self.of_fold_pairs
-            self.run(trees, "--pairs", self.work / "pairs@")
-            seen.append(self.records("pairs", len(self.pair_features), PAIRS_KEPT))
+        for round_, name in enumerate(("pairs_by_edges", "pairs")):
+            if round_ == 1:
+                self.run(self.of_fold_pairs, "--pairs", self.work / "pairs@")
+            seen.append(self.records(name, len(self.pair_features), PAIRS_KEPT))
             head = np.concatenate([h for h, _ in seen])
             features = np.concatenate([f for _, f in seen])
             job = head[:, 0].astype(int)
@@ -257,7 +263,9 @@ def page(fitting, sets, reports, score):
 
     counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
     rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get("more rooms", []))
-    more = f"The more rooms are the generator's numbers {runs_of(rooms)} (`rooms.py jobs.json FIRST LAST+1`).\n" if rooms else ""
+    more = ""
+    if rooms:
+        more = f"The more rooms are the generator's numbers {runs_of(rooms)} (`rooms.py jobs.json FIRST LAST+1`).\n"
     return f"""# What was fitted
 
 <!-- Written by ./dev fit; do not edit. -->
@@ -282,6 +290,10 @@ In brackets: Wilson's interval of 95 %. ms: of one core, the median frame, from 
 
 {table("whole_object", "feature")}
 """
+
+
+def share_of(hits, of):
+    return f"{hits}/{of} = " + (f"{hits / of:.2f}" if of else "–")
 
 
 def share_with_interval(hits, of):
@@ -332,14 +344,14 @@ def ablation(fitting, validation, path):
             for colour in ("colour", "grey"):
                 iou = np.array([float(v) for row, job in zip(rows, validation) if chosen(job[2]) and job[1] == colour
                                 for v in row[6][1:].split(",") if v])
-                cells.append(f"{(iou >= .5).sum()}/{len(iou)} = {(iou >= .5).mean():.2f}")
+                cells.append(share_of((iou >= .5).sum(), len(iou)))
         complete = [row for row in rows if row[2] == "0"]
         right, ours = sum(int(row[4]) for row in complete), sum(int(row[3]) for row in complete)
-        lines.append(f"| {cue} | " + " | ".join(cells) + f" | {right}/{ours} = {right / max(1, ours):.2f} |")
+        lines.append(f"| {cue} | " + " | ".join(cells) + f" | {share_of(right, ours)} |")
         say(lines[-1])
     path.write_text(f"""# What each cue brings
 
-<!-- Written by fitting/fit.py --ablation; do not edit. -->
+<!-- Written by ./dev fit --ablation; do not edit. -->
 
 Objects found (IoU ≥ 0.5) on the frames to validate, of colour and of grey pictures, when the features of one kind of cues are left out and both sets of trees are fitted anew without them.
 Fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so that the first row lies below [what was fitted](fitting.md). Below three objects' difference there is none.

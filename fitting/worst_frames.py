@@ -1,19 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Draws the frames in which the least is found: worst_frames.py DATA OUT [COUNT]
+"""Draws the frames in which the preset default loses most objects: worst_frames.py DATA OUT [COUNT]
 
-Of rendered/train and of the Middlebury pairs with masks: a row each, truth beside what the preset default finds
-(with PYTHONPATH at the built module). The pictures of Middlebury are not ours to show: of those only the masks
-are drawn. Prints a line for each frame: objects found, and what became of the others.
+Of rendered/train and of the Middlebury pairs with masks: one row per frame, the truth next to our result (PYTHONPATH
+names the built module). Middlebury's images may not be published: only their masks are drawn. Prints one line per
+frame: the objects found, and what became of the others.
 """
+import argparse
 import pathlib
-import sys
-
-import numpy as np
-from PIL import Image, ImageDraw
 
 import cairn
+import numpy as np
+from PIL import Image, ImageDraw
 
 TILE = (320, 240)
 COLOURS = np.random.RandomState(5).randint(70, 256, (256, 3)).astype(np.uint8)
@@ -37,8 +36,8 @@ def why(truth, ours, k):
     if most == 0 or share(mask & (ours == most)) < 20:
         return "missed"
     region = ours == most
-    others = [int(o) for o in np.unique(truth[region]) if o not in (0, k) and (region & (truth == o)).sum() > 0.3 * (truth == o).sum()]
-    if others:
+    others = [o for o in np.unique(truth[region]) if o not in (0, k)]
+    if any((region & (truth == o)).sum() > 0.3 * (truth == o).sum() for o in others):
         return "one with its neighbour"
     if (region & ~mask).sum() > mask.sum():
         return "flooded into the background"
@@ -75,12 +74,17 @@ def draw(frames, path, count, show):
 
 
 def main():
-    data, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    count = int(sys.argv[3]) if len(sys.argv) > 3 else 12
-    rooms = sorted(p.parent for p in (data / "rendered/train/320x240").glob("*/objects.png"))
-    clutter = sorted(p.parent for p in (data / "real").glob("middlebury*/*/objects.png"))
-    draw(rooms, out / "worst_train.png", count, True)
-    draw(clutter, out / "worst_middlebury.png", min(count, len(clutter)), False)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("data", type=pathlib.Path, help="the data collection")
+    parser.add_argument("out", type=pathlib.Path, help="folder of the images (docs/images)")
+    parser.add_argument("count", type=int, nargs="?", default=12, help="rows of each image (default: 12)")
+    arguments = parser.parse_args()
+    rooms = sorted(p.parent for p in (arguments.data / "rendered/train/320x240").glob("*/objects.png"))
+    clutter = sorted(p.parent for p in (arguments.data / "real").glob("middlebury*/*/objects.png"))
+    for name, frames in (("train", rooms), ("middlebury", clutter)):
+        if not frames:
+            parser.error(f"{arguments.data}: found no frames of {name} with objects.png")
+        draw(frames, arguments.out / f"worst_{name}.png", min(arguments.count, len(frames)), name == "train")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""fitting/: trees as sources and files, reports, what became of a lost object. Nothing is fitted here."""
+
+import importlib.util
+import pathlib
+import re
+import subprocess
+import types
+
+import numpy as np
+import pytest
+from conftest import SOURCE
+
+
+def load(name):
+    spec = importlib.util.spec_from_file_location(name, SOURCE / "fitting" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+fit = load("fit")
+
+TREE = {
+    "nodeid": 0, "split": "f3", "split_condition": 1.5, "yes": 1, "no": 2,
+    "children": [
+        {"nodeid": 2, "leaf": 0.25},
+        {"nodeid": 1, "split": "f0", "split_condition": -2, "yes": 4, "no": 3,
+         "children": [{"nodeid": 3, "leaf": 3}, {"nodeid": 4, "leaf": -1}]},
+    ],
+}
+
+
+def trees():
+    nodes = fit.Nodes(0.5)
+    nodes.add(TREE)
+    nodes.add({"nodeid": 0, "leaf": 7})
+    return nodes
+
+
+def test_the_branches_of_a_node_are_neighbours_the_yes_first():
+    nodes = trees()
+    assert nodes.roots == [0, 5]
+    assert nodes.nodes == [(3, 1, 1.5), (0, 3, -2), (-1, 0, 0.25), (-1, 0, -1), (-1, 0, 3), (-1, 0, 7)]
+
+
+def test_trees_are_written_for_the_tool_and_as_a_source(tmp_path):
+    trees().write(tmp_path / "trees")
+    assert (tmp_path / "trees").read_text() == "0.5 2 6\n0 5\n3 1 1.5\n0 3 -2\n-1 0 0.25\n-1 0 -1\n-1 0 3\n-1 0 7\n"
+    trees().write_source(tmp_path / "source", "SameThing")
+    assert (tmp_path / "source").read_text().splitlines()[2:] == [
+        "constexpr float kSameThingBase = 0.5F;",
+        "constexpr std::array<std::int16_t, 2> kSameThingRoots{",
+        "    0, 5,};",
+        "constexpr std::array<FittedTrees::Node, 6> kSameThingNodes{{",
+        "    {3,1,1.5F}, {0,3,-2.0F}, {-1,0,0.25F}, {-1,0,-1.0F}, {-1,0,3.0F}, {-1,0,7.0F},}};",
+    ]
+
+
+def test_a_scene_is_in_one_fold_at_all_sizes():
+    folds = [fit.fold_of(pathlib.Path(f"dev/320x240/s{i}"), 5) for i in range(50)]
+    assert folds == [fit.fold_of(pathlib.Path(f"dev/640x480/s{i}"), 5) for i in range(50)]
+    assert set(folds) == set(range(5))
+
+
+def test_frames_are_folders_with_true_objects(tmp_path):
+    for name, files in {"b": ["left.png", "objects.png"], "a": ["left.png", "objects.png"], "c": ["left.png"]}.items():
+        (tmp_path / name).mkdir()
+        for file in files:
+            (tmp_path / name / file).touch()
+    assert fit.frames_in(tmp_path) == [tmp_path / "a", tmp_path / "b"]
+
+
+def test_numbers_read_well():
+    assert fit.runs_of([1, 2, 3, 4, 6, 8, 9]) == "1 to 4, 6, 8 to 9"
+    assert fit.share_with_interval(0, 0) == "–"
+    assert fit.share_with_interval(8, 10) == "0.80 (0.49 … 0.94)"
+    assert fit.shares_of({"f1": 3.0, "f0": 1.0}, ["a", "b", "c"]) == [(0.75, "b"), (0.25, "a"), (0.0, "c")]
+
+
+def test_every_kind_of_cues_has_features():
+    names = "\n".join(re.findall(r'"([^"]+)"', (SOURCE / "cairn/grouping/region_features.cpp").read_text()))
+    for cue, words in fit.CUES.items():
+        for word in words:
+            assert word in names, f"{cue}: {word}"
+
+
+# Of a job: its number, the true objects, partial, ours, right, phantoms, IoUs, scores:right, milliseconds.
+ROWS = ["0 2 0 3 2 1 =0.9,0.6 =0.95:1,0.85:0,0.4:1 7".split(" "), "1 1 1 5 0 9 =0.2 =0.9:0 3".split(" ")]
+
+
+def test_a_report_counts_partial_frames_for_what_is_found_only():
+    jobs = [(pathlib.Path("a"), "colour", "rooms"), (pathlib.Path("b"), "colour", "rooms")]
+    row = fit.report(ROWS, jobs).splitlines()[2]
+    found = fit.share_with_interval
+    assert row == (f"| rooms | colour | 3 | {found(2, 3)} | {found(1, 3)} | {found(2, 3)} | 67 | 1.00 | "
+                   f"{found(1, 2)} | 5.0 |")
+
+
+def test_the_ablation_fits_without_each_kind_of_cues(tmp_path, capsys):
+    fitted = []
+    fake = types.SimpleNamespace(
+        jobs=[None] * 6, folds=2, fit_regions=lambda: None, model=lambda kind, fold: f"{kind}_{fold}",
+        fit_pairs=lambda: fitted.append(fake.without), run=lambda trees, *options, jobs: ROWS)
+    jobs = [(pathlib.Path("a"), "colour", "validate 320x240"), (pathlib.Path("b"), "grey", "validate rc_tabletop")]
+    fit.ablation(fake, jobs, tmp_path / "ablation.md")
+    assert fitted == [(), *fit.CUES.values()]
+    page = (tmp_path / "ablation.md").read_text()
+    assert "| edges | 2/2 = 1.00 | 0/1 = 0.00 | 2/2 = 1.00 | 0/0 = – | 0/0 = – | 0/1 = 0.00 | 0/0 = – | 0/0 = – | 2/3 = 0.67 |" in page
+    assert "Fitted to 3 frames" in page and "in 2 folds" in page
+
+
+def test_what_became_of_a_lost_object():
+    pytest.importorskip("PIL")
+    worst = load("worst_frames")
+    truth = np.zeros((20, 40), int)
+    truth[5:15, 5:15] = 1
+    truth[5:15, 15:25] = 2
+    ours = np.zeros_like(truth)
+    assert worst.why(truth, ours, 1) == "missed"
+    ours[5:15, 5:25] = 3
+    assert worst.why(truth, ours, 1) == "one with its neighbour"
+    assert worst.why(np.where(truth == 1, 1, 0), ours, 1) == "100 % of it"
+    ours[:] = 0
+    ours[5:9, 5:15] = 1
+    assert worst.why(truth, ours, 1) == "40 % of it"
+    ours[10:13, 5:15] = 2
+    assert worst.why(truth, ours, 1) == "40 % of it, in parts"
+    ours[:, :15] = 5
+    assert worst.why(truth, ours, 1) == "flooded into the background"
+    ours[:] = 0
+    ours[5:15, 5:6] = 1
+    assert worst.why(truth, ours, 1) == "missed"
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["--worse"], "fit: unknown argument '--worse'"),
+    (["--worst", "12"], "fit: unknown argument '12'"),
+    (["nowhere"], "fit: there is no folder 'nowhere'"),
+    (["--ablation"], "fit: no data collection in '/nowhere'"),
+    (["--worst"], "fit: no data collection in '/nowhere'"),
+])
+def test_the_door_refuses_what_it_does_not_know(arguments, message):
+    environment = {"CAIRN_DATA": "/nowhere", "CAIRN_INSTALL": "no", "PATH": "/usr/bin:/bin"}
+    done = subprocess.run([SOURCE / "dev", "fit", *arguments], capture_output=True, text=True, env=environment)
+    assert message in done.stderr and done.stderr.count("\n") == 1 and done.returncode == 1
