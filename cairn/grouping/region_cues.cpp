@@ -258,22 +258,6 @@ class Gathering {
 
 }  // namespace
 
-void PlaneMoments::add(int at_x, int at_y, int disparity) {
-  const std::int64_t px = at_x;
-  const std::int64_t py = at_y;
-  const std::int64_t pd = disparity;
-  ++n;
-  x += px;
-  y += py;
-  xx += px * px;
-  xy += px * py;
-  yy += py * py;
-  d += pd;
-  xd += px * pd;
-  yd += py * pd;
-  dd += pd * pd;
-}
-
 void PlaneMoments::add(const PlaneMoments& other) {
   n += other.n;
   x += other.x;

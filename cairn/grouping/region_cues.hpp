@@ -35,7 +35,6 @@ inline constexpr int kDisparitySteps = 64;
 /// Sums that a plane of disparity is fitted to.
 struct PlaneMoments {
   std::int64_t n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, d = 0, xd = 0, yd = 0, dd = 0;
-  void add(int at_x, int at_y, int disparity);
   void add(const PlaneMoments& other);
   friend bool operator==(const PlaneMoments&, const PlaneMoments&) = default;
 };

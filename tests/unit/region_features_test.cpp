@@ -19,12 +19,16 @@ using support::RegionScene;
 
 // ---- planes ----
 
+PlaneMoments of_pixel(std::int64_t x, std::int64_t y, std::int64_t d) {
+  return {1, x, y, x * x, x * y, y * y, d, x * d, y * d, d * d};
+}
+
 /// Of d = 20 + a·x + b·y in a rectangle, from the image's centre.
 PlaneMoments moments(Rect rect, double a, double b) {
   PlaneMoments m;
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     for (int x = rect.x; x < rect.x + rect.width; ++x)
-      m.add(x, y, static_cast<int>(std::lround((20 + a * x + b * y) * kDisparitySteps)));
+      m.add(of_pixel(x, y, std::lround((20 + a * x + b * y) * kDisparitySteps)));
   }
   return m;
 }
@@ -45,7 +49,7 @@ TEST(FitPlane, FindsTheSlopeOfALargeRegion) {
 TEST(FitPlane, SaysHowFarDisparitiesLieFromIt) {
   PlaneMoments m;
   for (int i = 0; i < 400; ++i)
-    m.add(i % 20 - 10, i / 20 - 10, (i % 2 == i / 20 % 2 ? 7 : 9) * kDisparitySteps);
+    m.add(of_pixel(i % 20 - 10, i / 20 - 10, (i % 2 == i / 20 % 2 ? 7 : 9) * kDisparitySteps));
   const FittedPlane plane = fit_plane(m, 100);
   EXPECT_NEAR(plane.d, 8, 1e-9);
   EXPECT_NEAR(std::sqrt(plane.squares / 400), 1, 1e-3);
