@@ -19,6 +19,7 @@ set(private_headers
   core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
   core/scratch
   diagnosis/robust_fit scene/floor_search scene/plane_fit scene/plane_through_pairs
+  pipeline/matched_scene pipeline/methods
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
   image/gaussian image/sparse_points image/texture
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
