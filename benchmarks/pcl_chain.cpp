@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Objects as one would get them without us: OpenCV's semi-global matcher, the points in metres, the largest
-// planes taken away by PCL's RANSAC, Euclidean clusters of the rest; beside ours, on frames with true
-// objects.
-//   pcl_chain [DATA]
-// DATA is the folder that holds rendered/ and real/. PCL's numbers have no defaults that suit every rig, so a
-// grid of them runs, and what does best on the very frames that are reported is what is shown: the
-// peer is tuned to each set, `default` is not. Processor time of one thread.
+// Objects as one would get them without us, next to ours: OpenCV's semi-global matcher, points in metres,
+// voxels, the largest planes removed by PCL's RANSAC, Euclidean clusters of the rest.
+//   pcl_chain DATA [--threads N]
+//   pcl_chain --search DATA [--threads N] [--rounds N] [--report] [OPTION=VALUE]...
+// DATA is the folder that holds rendered/ and real/. The first prints the tables of docs/comparison.md. The
+// second chooses the chain's own numbers on the fit set, by the search that chose those of the preset
+// `paper`, with as many settings a round (fitting/search_program.hpp). Times are of one thread's processor.
 #include <pcl/ModelCoefficients.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -16,20 +16,29 @@
 #include <pcl/segmentation/sac_segmentation.h>
 
 #include <algorithm>
+#include <array>
 #include <cairn/cairn.hpp>
-#include <cairn/evaluation/object_error.hpp>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <numeric>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
 #include <string>
-#include <thread>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include <fitting/search_program.hpp>
 #include <timing/clock.hpp>
 #include <timing/opencv_matchers.hpp>
+#include <timing/opencv_matrix.hpp>
+#include "arguments.hpp"
 #include "markdown_table.hpp"
-#include "scored_frames.hpp"
 
 namespace {
 
@@ -39,45 +48,103 @@ using report::text_of;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 struct Settings {
-  int planes;             // the largest, where they hold a tenth of the points or more
-  double plane_m;         // how far from a plane its points lie
-  double cluster_m;       // how far apart the points of a cluster lie
-  double smallest_share;  // of the image, that a cluster covers
+  double block_size, p1, p2;  // the penalties over the block's pixels
+  double uniqueness, speckle_size, speckle_range;
+  double farthest_m, voxel_m;
+  double planes, plane_m,
+      least_plane;  // the largest; how far their points lie; % of all points that each holds
+  double cluster_m, smallest,
+      largest;  // how far apart the points of a cluster lie; % of the image that it covers
 };
 
-std::vector<Settings> grid() {
-  std::vector<Settings> all;
-  for (const int planes : {1, 3}) {
-    for (const double plane_m : {0.02, 0.05}) {
-      for (const double cluster_m : {0.02, 0.05}) {
-        for (const double smallest : {0.002, 0.005}) all.push_back({planes, plane_m, cluster_m, smallest});
-      }
-    }
-  }
+struct ChainKnob {
+  double Settings::*value;
+  report::Knob knob;
+  const char* usual;   // as tutorials have it
+  const char* chosen;  // by --search
+};
+
+const std::vector<ChainKnob>& chain_knobs() {
+  static const std::vector<ChainKnob> all{
+      {&Settings::farthest_m, {"cloud.farthest_m", {"4", "6", "10"}}, "10", "4"},
+      {&Settings::voxel_m, {"cloud.voxel_m", {"0.01", "0.02", "0.03", "0.05"}}, "0.01", "0.01"},
+      {&Settings::planes, {"planes.count", {"1", "2", "3", "4"}}, "3", "1"},
+      {&Settings::plane_m, {"planes.within_m", {"0.01", "0.02", "0.03", "0.05", "0.08"}}, "0.02", "0.05"},
+      {&Settings::least_plane, {"planes.least", {"5", "10", "20"}}, "10", "10"},
+      {&Settings::cluster_m, {"clusters.within_m", {"0.02", "0.03", "0.05", "0.08", "0.12"}}, "0.02", "0.02"},
+      {&Settings::smallest, {"clusters.smallest", {"0.1", "0.2", "0.5", "1"}}, "0.5", "1"},
+      {&Settings::largest, {"clusters.largest", {"10", "20", "40", "100"}}, "100", "100"},
+      {&Settings::block_size, {"sgbm.block_size", {"3", "5", "7", "9", "11"}}, "5", "5"},
+      {&Settings::p1, {"sgbm.p1", {"2", "4", "8", "16"}}, "8", "8"},
+      {&Settings::p2, {"sgbm.p2", {"16", "32", "64", "128"}}, "32", "32"},
+      {&Settings::uniqueness, {"sgbm.uniqueness", {"0", "5", "10", "15"}}, "10", "0"},
+      {&Settings::speckle_size, {"sgbm.speckle_size", {"0", "50", "100", "200"}}, "100", "100"},
+      {&Settings::speckle_range, {"sgbm.speckle_range", {"1", "2", "4"}}, "2", "2"},
+  };
   return all;
 }
 
-std::string text_of(const Settings& s) {
-  return std::to_string(s.planes) + " planes within " + text_of("%g", s.plane_m) + " m, clusters within " +
-         text_of("%g", s.cluster_m) + " m of at least " + text_of("%g", 100 * s.smallest_share) + " %";
+Settings settings_of(const report::Values& values) {
+  Settings settings{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const ChainKnob& knob = chain_knobs()[i];
+    const std::vector<std::string>& known = knob.knob.values;
+    if (std::find(known.begin(), known.end(), values[i]) == known.end())
+      throw Error(knob.knob.option + ": found '" + values[i] + "', expected one of the values searched");
+    settings.*knob.value = std::stod(values[i]);
+  }
+  return settings;
 }
 
+Image<float> matched(const report::TrueFrame& frame, const Settings& s) {
+  const int pixels = static_cast<int>(s.block_size * s.block_size);
+  const int range = (frame.num_disparities + 15) / 16 * 16;
+  const auto matcher =
+      cv::StereoSGBM::create(0, range, static_cast<int>(s.block_size), static_cast<int>(s.p1) * pixels,
+                             static_cast<int>(s.p2) * pixels, 1, 63, static_cast<int>(s.uniqueness),
+                             static_cast<int>(s.speckle_size), static_cast<int>(s.speckle_range));
+  cv::Mat sixteenths;
+  matcher->compute(report::matrix(frame.pictures.left.gray), report::matrix(frame.pictures.right.gray),
+                   sixteenths);
+  return report::disparity_px_of(sixteenths, 0);
+}
+
+/// One point per voxel, the mean of those in it.
 struct Points {
   Cloud::Ptr cloud = std::make_shared<Cloud>();
-  std::vector<Point> pixels;  // where each was seen
+  std::vector<std::vector<Point>> pixels;  // where each was seen
 };
 
-Points points_of(const Image<float>& disparity_px, const StereoRig& rig) {
+Points points_of(View<const float> disparity_px, const StereoRig& rig, const Settings& settings) {
   Points points;
+  std::unordered_map<std::uint64_t, std::size_t> voxels;
   for (int y = 0; y < disparity_px.height(); ++y) {
     for (int x = 0; x < disparity_px.width(); ++x) {
       const float d = disparity_px(x, y);
       if (!(d > 0)) continue;
       const auto at = rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d);
-      if (!at) continue;
-      points.cloud->push_back({at->x, at->y, at->z});
-      points.pixels.push_back({x, y});
+      if (!at || at->z > settings.farthest_m) continue;
+      const auto step = [&](float metres) {  // 21 bits of each coordinate
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(metres / settings.voxel_m))) &
+               0x1fffff;
+      };
+      const auto [voxel, is_new] =
+          voxels.try_emplace(step(at->x) << 42 | step(at->y) << 21 | step(at->z), points.cloud->size());
+      if (is_new) {
+        points.cloud->push_back({0, 0, 0});
+        points.pixels.emplace_back();
+      }
+      pcl::PointXYZ& sum = (*points.cloud)[voxel->second];
+      sum.x += at->x;
+      sum.y += at->y;
+      sum.z += at->z;
+      points.pixels[voxel->second].push_back({x, y});
     }
+  }
+  for (std::size_t i = 0; i < points.pixels.size(); ++i) {
+    const auto n = static_cast<float>(points.pixels[i].size());
+    pcl::PointXYZ& at = (*points.cloud)[i];
+    at = {at.x / n, at.y / n, at.z / n};
   }
   return points;
 }
@@ -90,14 +157,16 @@ pcl::IndicesPtr without_planes(const Cloud::Ptr& cloud, const Settings& settings
   planes.setModelType(pcl::SACMODEL_PLANE);
   planes.setMethodType(pcl::SAC_RANSAC);
   planes.setDistanceThreshold(settings.plane_m);
-  planes.setMaxIterations(200);
+  planes.setMaxIterations(100);
   planes.setInputCloud(cloud);
-  for (int i = 0; i < settings.planes && left->size() > 3; ++i) {
+  for (int i = 0; i < static_cast<int>(settings.planes) && left->size() > 3; ++i) {
     planes.setIndices(left);
     pcl::PointIndices inliers;
     pcl::ModelCoefficients plane;
     planes.segment(inliers, plane);
-    if (inliers.indices.size() * 10 < cloud->size()) break;
+    if (static_cast<double>(inliers.indices.size()) <
+        settings.least_plane / 100 * static_cast<double>(cloud->size()))
+      break;
     std::vector<bool> gone(cloud->size(), false);
     for (const int point : inliers.indices) gone[static_cast<std::size_t>(point)] = true;
     auto rest = std::make_shared<pcl::Indices>();
@@ -116,7 +185,6 @@ Image<ObjectId> clusters(const Points& points, Size size, const Settings& settin
   if (left->empty()) return labels;
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
   extraction.setClusterTolerance(settings.cluster_m);
-  extraction.setMinClusterSize(static_cast<int>(settings.smallest_share * size.width * size.height));
   extraction.setSearchMethod(std::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
   extraction.setInputCloud(points.cloud);
   extraction.setIndices(left);
@@ -124,82 +192,142 @@ Image<ObjectId> clusters(const Points& points, Size size, const Settings& settin
   extraction.extract(found);
   int id = 0;
   for (const pcl::PointIndices& cluster : found) {
-    ++id;
+    std::vector<Point> pixels;
     for (const int point : cluster.indices) {
-      const Point at = points.pixels[static_cast<std::size_t>(point)];
-      labels(at.x, at.y) = ObjectId{id};
+      const std::vector<Point>& seen = points.pixels[static_cast<std::size_t>(point)];
+      pixels.insert(pixels.end(), seen.begin(), seen.end());
     }
+    const double share = 100 * static_cast<double>(pixels.size()) / static_cast<double>(size.area());
+    if (share < settings.smallest || share > settings.largest) continue;
+    ++id;
+    for (const Point at : pixels) labels(at.x, at.y) = ObjectId{id};
   }
   return labels;
 }
 
-std::vector<report::Score> score_all(const std::vector<report::TrueFrame>& frames, const Settings& settings,
-                                     int threads) {
-  std::vector<report::Score> scores(frames.size());
-  for_each_index(frames.size(), threads, [&](std::size_t i, const Exec&) {
-    const report::TrueFrame& frame = frames[i];
-    const StereoPair pair = StereoPair::from(frame.pictures.left.gray, frame.pictures.right.gray);
-    const auto matcher =
-        report::accurate_opencv_matchers()[1].prepare({.num_disparities = frame.num_disparities});
-    const double start = report::now_ms(CLOCK_THREAD_CPUTIME_ID);
-    matcher.compute(pair);
-    const Points points = points_of(matcher.disparity_px(), *frame.rig);
-    const Image<ObjectId> labels = clusters(points, pair.size(), settings);
-    scores[i].milliseconds = report::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
-    scores[i].objects = {object_errors(labels, frame.objects, {}), frame.partial};
-  });
-  return scores;
+/// What a frame was last matched to: most settings change only what comes after.
+struct MatchedOnce {
+  std::array<double, 6> by{};
+  Image<float> disparity_px;
+};
+
+report::Score score(const report::TrueFrame& frame, const Settings& s, MatchedOnce& matched_once) {
+  const std::array<double, 6> by{s.block_size, s.p1, s.p2, s.uniqueness, s.speckle_size, s.speckle_range};
+  if (!frame.rig)
+    throw Error(frame.name + ": found no focal length and baseline, expected both in calib.txt");
+  report::Score result;
+  const double start = report::now_ms(CLOCK_THREAD_CPUTIME_ID);
+  if (matched_once.by != by) matched_once = {by, matched(frame, s)};
+  const Points points = points_of(matched_once.disparity_px, *frame.rig, s);
+  const Image<ObjectId> labels = clusters(points, frame.objects.size(), s);
+  result.milliseconds = report::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
+  result.objects = {object_errors(labels, frame.objects, {}), frame.partial};
+  return result;
 }
 
-ObjectSummary summary_of(const std::vector<report::Score>& scores) {
-  std::vector<FrameObjects> objects;
-  for (const report::Score& score : scores) objects.push_back(score.objects);
-  return summarise(objects);
-}
-
-void add_row(report::MarkdownTable& table, const std::string& name,
-             const std::vector<report::Score>& scores) {
-  const ObjectSummary sum = summary_of(scores);
-  std::vector<double> times;
-  for (const report::Score& score : scores) times.push_back(score.milliseconds);
-  table.add({name, percent(sum.recall_50()), percent(sum.recall_75()), percent(sum.precision_50()),
-             percent(sum.median_error), text_of("%.2f", sum.phantoms_per_frame()),
-             text_of("%.0f", median(times))});
-}
-
-void compare(const std::filesystem::path& data) {
-  report::set_opencv_threads(1);
-  const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  for (const char* folder : {"rendered/dev/320x240", "rendered/dev/640x480", "real/rc_tabletop"}) {
-    const std::vector<report::TrueFrame> frames = report::load_true_frames(data / folder);
-    std::vector<report::Score> best;
-    Settings best_settings{};
-    for (const Settings& settings : grid()) {
-      std::vector<report::Score> scores = score_all(frames, settings, threads);
-      // Of found and precision the harmonic mean: either alone is had for nothing.
-      const auto key = [](const ObjectSummary& sum) {
-        return 2.0 * sum.found_50 / std::max(1, sum.true_objects + sum.our_objects);
-      };
-      if (best.empty() || key(summary_of(scores)) > key(summary_of(best))) {
-        best = std::move(scores);
-        best_settings = settings;
-      }
-    }
-    report::MarkdownTable table(
-        {"", "found 0.5, %", "found 0.75, %", "precision, %", "median E, %", "phantoms", "ms"});
-    add_row(table, "StereoSGBM and PCL", best);
-    add_row(table, "cairn, `paper`", report::score_all(frames, Config::paper(), false, threads));
-    add_row(table, "cairn, `default`", report::score_all(frames, Config{}, false, threads));
-    std::printf("### %s\n\n%s\nPCL: %s.\n\n", folder, table.text().c_str(), text_of(best_settings).c_str());
-    std::fflush(stdout);
+report::SearchProgram search_chain(std::map<const report::TrueFrame*, MatchedOnce>& matched_once,
+                                   std::mutex& guard) {
+  report::SearchProgram program{"pcl_chain", {}, {}, {}};
+  for (const ChainKnob& knob : chain_knobs()) {
+    program.knobs.push_back(knob.knob);
+    program.start.emplace_back(knob.usual);
   }
+  program.score = [&](const report::TrueFrame& frame, const report::Values& values, const Exec&) {
+    MatchedOnce* known = nullptr;
+    {
+      const std::lock_guard lock(guard);
+      known = &matched_once[&frame];
+    }
+    return score(frame, settings_of(values), *known);
+  };
+  return program;
+}
+
+using Way = std::function<report::Score(const report::TrueFrame&, const Exec&)>;
+
+Way chain(const char* ChainKnob::*which) {
+  report::Values values;
+  for (const ChainKnob& knob : chain_knobs()) values.emplace_back(knob.*which);
+  return [settings = settings_of(values)](const report::TrueFrame& frame, const Exec&) {
+    MatchedOnce none;
+    return score(frame, settings, none);
+  };
+}
+
+Way ours(const Config& config, bool grey) {
+  return [=](const report::TrueFrame& frame, const Exec& exec) {
+    return report::score(frame, config, grey, exec);
+  };
+}
+
+std::string counted(int part, int of) {
+  return std::to_string(part) + "/" + std::to_string(of) + " = " +
+         percent(of > 0 ? static_cast<double>(part) / of : NAN);
+}
+
+void add_row(report::MarkdownTable& table, const std::string& name, const std::vector<report::FrameSet>& sets,
+             const Way& way, int threads) {
+  std::vector<FrameObjects> objects;
+  std::vector<double> times;
+  for (const report::FrameSet& set : sets) {
+    std::vector<report::Score> scores(set.frames.size());
+    for_each_index(scores.size(), threads,
+                   [&](std::size_t i, const Exec& exec) { scores[i] = way(set.frames[i], exec); });
+    for (const report::Score& score : scores) {
+      objects.push_back(score.objects);
+      times.push_back(score.milliseconds);
+    }
+  }
+  const ObjectSummary sum = summarise(objects);
+  table.add({name, counted(sum.found_50, sum.true_objects), counted(sum.found_75, sum.true_objects),
+             counted(sum.right_50, sum.our_objects), percent(sum.mean_error), percent(sum.median_error),
+             text_of("%.2f", sum.phantoms_per_frame()), text_of("%.0f", median(times))});
+}
+
+void compare(const std::filesystem::path& data, int threads) {
+  const auto show = [&](const std::string& title, const std::vector<report::FrameSet>& sets) {
+    report::MarkdownTable table({"", "found 0.5, %", "found 0.75, %", "precision, %", "mean E, %",
+                                 "median E, %", "phantoms a frame", "ms"});
+    add_row(table, "StereoSGBM and PCL, usual numbers", sets, chain(&ChainKnob::usual), threads);
+    add_row(table, "StereoSGBM and PCL, searched", sets, chain(&ChainKnob::chosen), threads);
+    add_row(table, "cairn, `paper`", sets, ours(Config::paper(), true), threads);
+    add_row(table, "cairn, `default`, grey", sets, ours(Config{}, true), threads);
+    add_row(table, "cairn, `default`, colour", sets, ours(Config{}, false), threads);
+    std::printf("### %s\n\n%s\n", title.c_str(), table.text().c_str());
+    std::fflush(stdout);
+  };
+  show("fit", report::fit_sets(data));
+  for (report::FrameSet& set : report::validation_sets(data)) {
+    const std::string title = set.name;
+    std::vector<report::FrameSet> alone;
+    alone.push_back(std::move(set));
+    show(title, alone);
+  }
+}
+
+void run(std::vector<std::string> arguments) {
+  report::set_opencv_threads(1);
+  if (!arguments.empty() && arguments[0] == "--search") {
+    arguments.erase(arguments.begin());
+    std::map<const report::TrueFrame*, MatchedOnce> matched_once;
+    std::mutex guard;
+    report::run_search(search_chain(matched_once, guard), arguments);
+    return;
+  }
+  int threads = 1;
+  if (arguments.size() == 3 && arguments[1] == "--threads") {
+    threads = report::positive_number(arguments[2]);
+    arguments.resize(1);
+  }
+  if (arguments.size() != 1) throw Error("expected DATA [--threads N], or --search DATA ...");
+  compare(arguments[0], threads);
 }
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  compare(argc > 1 ? argv[1] : "../shared/data");
-} catch (const cairn::Error& error) {
+int main(int count, char** arguments) try {
+  run({arguments + 1, arguments + count});
+} catch (const std::exception& error) {
   std::fprintf(stderr, "pcl_chain: %s\n", error.what());
   return 2;
 }
