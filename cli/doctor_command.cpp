@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -420,22 +421,11 @@ std::string histogram_text(const Histogram& histogram) {
 
 // ---- words ----
 
-std::string name_of(Severity severity) {
-  for (const auto& choice : kSeverities) {
-    if (choice.value == severity) return std::string(choice.name);
-  }
-  return {};
-}
-
-std::string frames_text(const Finding& finding, const std::vector<Examined>& pairs) {
-  constexpr std::size_t kNamed = 3;
-  if (pairs.size() < 2 || finding.frames.empty()) return {};
-  std::string all =
-      ", in " + std::to_string(finding.frames.size()) + " of " + std::to_string(pairs.size()) + " pairs";
-  if (finding.frames.size() == pairs.size()) return all;
-  for (std::size_t i = 0; i < std::min(kNamed, finding.frames.size()); ++i)
-    all += (i == 0 ? " (" : ", ") + pairs[finding.frames[i]].name;
-  return all + (finding.frames.size() > kNamed ? ", ...)" : ")");
+std::vector<std::string> names_of(const std::vector<Examined>& pairs) {
+  std::vector<std::string> names;
+  names.reserve(pairs.size());
+  for (const Examined& pair : pairs) names.push_back(pair.name);
+  return names;
 }
 
 std::string findings_text(const Diagnosis& diagnosis) {
@@ -445,8 +435,8 @@ std::string findings_text(const Diagnosis& diagnosis) {
     std::string severity = name_of(finding.severity);
     severity.resize(9, ' ');
     all += severity + std::string(info(finding.kind).name) + ": " + finding.says +
-           frames_text(finding, diagnosis.pairs) + "\n         " + std::string(info(finding.kind).remedy) +
-           "\n";
+           frames_text(finding, names_of(diagnosis.pairs), "pairs") + "\n         " +
+           std::string(info(finding.kind).remedy) + "\n";
   }
   return all;
 }
@@ -512,10 +502,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
 
 int examine_and_tell(const DoctorOptions& options) {
   const Diagnosis diagnosis = examine_all(options);
-  const bool is_broken =
-      std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
-                  [](const Finding& finding) { return finding.severity == Severity::broken; });
-  if (options.json) io::write_file(*options.json, diagnosis_json(diagnosis, is_broken));
+  const bool broken = is_broken(diagnosis.findings);
+  if (options.json) io::write_file(*options.json, diagnosis_json(diagnosis, broken));
   std::cout << findings_text(diagnosis);
   for (const std::string& part :
        {numbers_text(diagnosis.pairs), histogram_text(histogram_of(diagnosis.pairs))}) {
@@ -523,7 +511,7 @@ int examine_and_tell(const DoctorOptions& options) {
   }
   const int left_out =
       diagnosis.left_out.exit_code(diagnosis.pairs.size() + diagnosis.left_out.frames().size());
-  return is_broken ? 1 : left_out;
+  return broken ? 1 : left_out;
 }
 
 /// Every finding with its number and remedy, and every limit.

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/diagnosis/diagnose.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
 #include <io/atomic_file.hpp>
@@ -14,6 +15,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -94,11 +96,17 @@ std::string summary(const Totals& frame) {
 
 struct Report {
   Totals totals;           // of this frame
-  std::string out;         // for stdout
-  std::string note;        // for stderr; mostly empty
-  std::string remark;      // the same, but once for all frames that have it
+  std::string out;     // for stdout
+  std::string note;    // for stderr; mostly empty
+  std::string remark;  // the same, but once for all frames that have it
+  std::vector<Finding> findings;
+  bool is_doubtful = false;
   io::EncodedFrame frame;  // for the page; empty without --html
 };
+
+/// How many doubtful frames of a run are measured as the doctor does it, which takes as long as segmenting
+/// one.
+constexpr std::size_t kMostMeasured = 5;
 
 constexpr const char* kPageName = "segment.html";
 
@@ -139,7 +147,7 @@ LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, con
 
 /// One frame from its pictures to results.
 Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOptions& options,
-               const fs::path& folder, bool one_of_many, Exec& exec) {
+               const fs::path& folder, bool one_of_many, bool may_measure, Exec& exec) {
   Report report;
   report.remark = remark_on_calibration(loaded);
   const Stopwatch watch(exec);
@@ -148,6 +156,13 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
                    watch.total_ms()};
   const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
                                   loaded.given.has_value()};
+  const DiagnosisConfig limits;
+  report.findings = diagnose(frame, loaded.left.gray, loaded.right, loaded.rig, loaded.config, limits);
+  report.is_doubtful = !loaded.given && is_doubtful(frame);
+  if (report.is_doubtful && may_measure) {
+    const PairMeasures measures = measure_pair(StereoPair::from(loaded.left.gray, loaded.right), exec);
+    report.findings = united({diagnose(measures, loaded.rig, loaded.config.match, limits), report.findings});
+  }
   if (!folder.empty()) {
     remove_older_page(options.output);
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
@@ -200,6 +215,9 @@ Outcome segment_all(const SegmentOptions& options) {
   const Progress progress(frames.size());
   std::vector<io::EncodedFrame> encoded;
   std::set<std::string> remarks;
+  PassingFindings findings;
+  std::size_t doubtful = 0;
+  bool is_any_broken = false;  // of the doubtful ones
   LeftOut left_out;
   Totals totals;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -216,12 +234,18 @@ Outcome segment_all(const SegmentOptions& options) {
       continue;
     }
     try {
-      Report report = work_on(std::move(*loaded), frames[i], options, folder, many, exec);
+      Report report =
+          work_on(std::move(*loaded), frames[i], options, folder, many, doubtful < kMostMeasured, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
       totals += report.totals;
       progress.clear();
       if (remarks.insert(report.remark).second) std::cerr << report.remark;
       std::cerr << report.note;
+      if (report.is_doubtful) {
+        is_any_broken = is_any_broken || is_broken(report.findings);
+        if (++doubtful > kMostMeasured && is_any_broken) findings.add_doubtful();
+      }
+      findings.add(frames[i].name, std::move(report.findings));
       std::cout << report.out << std::flush;
     } catch (const Error& error) {
       if (!many) throw;
@@ -232,6 +256,7 @@ Outcome segment_all(const SegmentOptions& options) {
     const io::PageHead head{"segment", name_of(options.input.left), {}};
     io::write_file(fs::path(options.output) / kPageName, io::html_page(head, encoded));
   }
+  findings.tell();
   return {totals, left_out.exit_code(frames.size())};
 }
 

@@ -12,6 +12,13 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 
+double known_share(const DisparityMap& map) {
+  std::int64_t known = 0;
+  for (int y = 0; y < map.reject.height(); ++y)
+    known += std::count(map.reject.row(y), map.reject.row(y) + map.reject.width(), Reject::none);
+  return static_cast<double>(known) / static_cast<double>(map.reject.size().area());
+}
+
 std::string text_of(const char* format, double value) {
   std::array<char, 64> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, value);
@@ -168,6 +175,37 @@ void check_range(Case& c) {
         "the nearest points have " + text_of("%.0f px", nearest) + " of a range up to " +
             text_of("%.0f px", last) +
             ": match.num_disparities=" + std::to_string(suggested_range(nearest - first)) + " would do");
+}
+
+/// Of a segmented frame, whose surfaces end where the range does.
+void check_end_of_range(Case& c, const DisparityMap& map) {
+  const int last = c.range.min_disparity + c.range.num_disparities - 1;
+  std::int64_t known = 0;
+  std::int64_t at_end = 0;
+  for (int y = 0; y < map.disparity_px.height(); ++y) {
+    const float* row = map.disparity_px.row(y);
+    for (int x = 0; x < map.disparity_px.width(); ++x) {
+      known += std::isnan(row[x]) ? 0 : 1;
+      at_end += row[x] >= static_cast<float>(last - 1) ? 1 : 0;
+    }
+  }
+  const double share = known > 0 ? static_cast<double>(at_end) / static_cast<double>(known) : 0.0;
+  if (100 * share < static_cast<double>(c.config.warn_at_end)) return;
+  c.add(FindingKind::range_too_small, Severity::warning, 100 * share,
+        percent_text(share) + " of the disparities lie in the last 2 px of " +
+            std::to_string(c.range.min_disparity) + text_of(" ... %.0f px", last) +
+            ", so nearer things are lost: match.num_disparities=" +
+            std::to_string(suggested_range(1.6 * c.range.num_disparities)));
+}
+
+/// Of a segmented frame.
+void check_floor(Case& c, const Frame& frame) {
+  if (frame.ground.plane || frame.ground.refusal == Refusal::off) return;
+  for (const auto& refusal : kRefusals) {
+    if (refusal.value == frame.ground.refusal)
+      c.add(FindingKind::no_floor, Severity::note, 100 * known_share(frame.disparity),
+            std::string(refusal.name));
+  }
 }
 
 void check_infinity(Case& c) {
@@ -329,6 +367,21 @@ std::vector<float> supported_disparities(const std::vector<Correspondence>& poin
   return supported;
 }
 
+/// Some thousand of a map's disparities, ascending.
+std::vector<float> some_disparities(View<const float> disparity_px) {
+  constexpr std::int64_t kMost = 4096;
+  const std::int64_t area = disparity_px.size().area();
+  const std::int64_t step = std::max<std::int64_t>(1, area / kMost) | 1;  // odd: no column alone
+  std::vector<float> some;
+  for (std::int64_t i = 0; i < area; i += step) {
+    const float d =
+        disparity_px(static_cast<int>(i % disparity_px.width()), static_cast<int>(i / disparity_px.width()));
+    if (!std::isnan(d)) some.push_back(d);
+  }
+  std::sort(some.begin(), some.end());
+  return some;
+}
+
 bool are_equal(View<const Gray> left, View<const Gray> right) {
   for (int y = 0; y < left.height(); ++y) {
     if (!std::equal(left.row(y), left.row(y) + left.width(), right.row(y))) return false;
@@ -378,6 +431,51 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
   check_contrast(c);
   check_sharpness(c);
   return united({c.findings});
+}
+
+std::vector<Finding> diagnose(const Frame& frame, View<const Gray> left, View<const Gray> right,
+                              const std::optional<StereoRig>& rig, const Config& config,
+                              const DiagnosisConfig& limits) {
+  PairMeasures measures;
+  measures.size = left.size();
+  measures.identical = !right.empty() && are_equal(left, right);
+  measures.left_exposure = measure_exposure(left);
+  measures.right_exposure = right.empty() ? measures.left_exposure : measure_exposure(right);
+  measures.disparities_px = some_disparities(frame.disparity.disparity_px);
+  if (frame.epipolar.outcome == EpipolarOutcome::corrected) {
+    measures.rows.offset_rows = frame.epipolar.rows;
+    measures.rows.rows_per_px = frame.epipolar.rows_per_px;
+  }
+  Case c{measures, rig, config.match, limits};
+  check_camera(c);
+  // A plain wall has disparities of 0 as well.
+  const bool has_points = frame.epipolar.outcome == EpipolarOutcome::aligned ||
+                          frame.epipolar.outcome == EpipolarOutcome::corrected ||
+                          (measures.identical && measures.left_exposure.contrast > 0);
+  if (!has_points || !check_same(c)) {
+    if (!measures.disparities_px.empty()) check_distances(c);
+    check_rows(c);
+    if (!right.empty()) check_end_of_range(c, frame.disparity);
+  }
+  check_clipping(c);
+  check_contrast(c);
+  check_floor(c, frame);
+  return united({c.findings});
+}
+
+bool is_doubtful(const Frame& frame) {
+  switch (frame.epipolar.outcome) {
+    case EpipolarOutcome::few_points:
+    case EpipolarOutcome::no_agreement:
+      return true;
+    case EpipolarOutcome::aligned:
+    case EpipolarOutcome::corrected:
+      return false;
+    case EpipolarOutcome::off:
+      break;
+  }
+  constexpr double kFew = 0.25;
+  return known_share(frame.disparity) < kFew;
 }
 
 std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs) {

@@ -8,6 +8,7 @@
 #include <cairn/diagnosis/row_alignment.hpp>
 #include <cairn/diagnosis/sharpness.hpp>
 #include <cairn/matching/match.hpp>
+#include <cairn/pipeline/segment.hpp>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct DiagnosisConfig {
   float break_same = 95;
   float warn_beyond = 4;
   float break_beyond = 50;
+  float warn_at_end = 5;
   float least_range_use = 20;
   float warn_clipped = 20;
   float break_clipped = 60;
@@ -64,6 +66,8 @@ void fields(DiagnosisConfig& c, V&& v) {
   v("warn_beyond", c.warn_beyond, "%", "points outside the disparity range, from which on it is a warning",
     range(0.0F, 100.0F));
   v("break_beyond", c.break_beyond, "%", "the same, broken", range(0.0F, 100.0F));
+  v("warn_at_end", c.warn_at_end, "%",
+    "disparities of a segmented frame in the last 2 px of the range that are a warning", range(0.0F, 100.0F));
   v("least_range_use", c.least_range_use, "%",
     "largest disparity, of a range of more than 64, that is a note", range(0.0F, 100.0F));
   v("warn_clipped", c.warn_clipped, "%", "black or white pixels, from which on it is a warning",
@@ -106,5 +110,18 @@ PairMeasures measure_pair(const StereoPair& pair, const Exec& exec);
 /// disparities would be tried; without `rig` nothing is said of a calibration.
 std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<StereoRig>& rig,
                               const MatchConfig& range, const DiagnosisConfig& config);
+
+/// The same from what segment() has computed of a frame, for nearly no time: rows from the epipolar
+/// correction, the range from the share of disparities at its end, exposure, calibration, and why there is no
+/// floor. Order, synchrony, brightness and focus are not judged. `right` is empty where the disparity was
+/// given.
+std::vector<Finding> diagnose(const Frame& frame, View<const Gray> left, View<const Gray> right,
+                              const std::optional<StereoRig>& rig, const Config& config,
+                              const DiagnosisConfig& limits);
+
+/// Whether a segmented frame looks as if the cameras were swapped, the pair not rectified or the range wrong,
+/// so that measure_pair() is worth its time: the epipolar correction found no common rows or, where that is
+/// off, fewer than a quarter of the pixels have a disparity.
+bool is_doubtful(const Frame& frame);
 
 }  // namespace cairn

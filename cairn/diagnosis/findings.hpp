@@ -37,7 +37,8 @@ enum class FindingKind : std::uint8_t {
   exposure,
   dark,
   brightness,
-  blur
+  blur,
+  no_floor
 };
 
 /// What is known of a kind beforehand. The number's meaning and unit are those of Finding::value.
@@ -119,7 +120,10 @@ inline constexpr std::array kFindings{
                 "how much the right picture differs, in the middle", "grey levels",
                 "Lock exposure, gain and white balance of both cameras to the same values."},
     FindingInfo{FindingKind::blur, "blurred", "pixels that an edge takes", "px",
-                "Focus the camera, clean its lens, or shorten the exposure if it moves."}};
+                "Focus the camera, clean its lens, or shorten the exposure if it moves."},
+    FindingInfo{FindingKind::no_floor, "no floor", "pixels with a disparity", "%",
+                "Where the picture shows a floor, say in the calibration how the camera is mounted and set "
+                "ground.source=pose, or add light; where it shows none, nothing needs mending."}};
 
 constexpr const FindingInfo& info(FindingKind kind) {
   return kFindings[static_cast<std::size_t>(kind)];

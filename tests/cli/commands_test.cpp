@@ -96,7 +96,6 @@ TEST_F(Command, SegmentPrintsATableAndWritesNothingWithoutAFolder) {
   const auto before = everything();
   const Outcome outcome = run(with("segment", pair));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("object"), std::string::npos);
   EXPECT_EQ(everything(), before);
 }
@@ -161,7 +160,7 @@ TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {
   EXPECT_TRUE(fs::exists(at("all/b/objects.json")));
   EXPECT_FALSE(fs::exists(at("all/objects.json")));
   EXPECT_LT(outcome.out.find("a:"), outcome.out.find("b:"));
-  EXPECT_EQ(outcome.err, "");  // no progress bar where stderr is no terminal
+  EXPECT_EQ(outcome.err.find("cairn: note: no floor: "), 0U);  // no progress bar where stderr is no terminal
 }
 
 TEST_F(Command, SegmentComparesPresets) {

@@ -278,6 +278,29 @@ TEST_F(Diagnosis, MeasuresGainAndOffset) {
   finds(findings(left(), darker), FindingKind::brightness, Severity::warning);
 }
 
+TEST_F(Diagnosis, JudgesASegmentedFrameByWhatItsStagesFound) {
+  Config config = sample_.suited();
+  const Frame frame = segment(sample_.pair(), rig_, config, {});
+  const auto in_passing = [&](const Frame& f) { return diagnose(f, left(), right(), rig_, config, {}); };
+  EXPECT_EQ(names(in_passing(frame)), "");
+  EXPECT_FALSE(is_doubtful(frame));
+  EXPECT_TRUE(is_doubtful(segment(StereoPair::from(right(), left()), rig_, config, {})));
+
+  const auto lower = made_of(
+      right(),
+      [](int x, int y) {
+        return Place{double(x), y - 2.0};
+      },
+      same_tone);
+  finds(in_passing(segment(StereoPair::from(left(), lower), rig_, config, {})), FindingKind::rows,
+        Severity::warning);
+
+  config.match.num_disparities = 17;
+  const auto found = in_passing(segment(sample_.pair(), rig_, config, {}));
+  finds(found, FindingKind::range_too_small, Severity::warning);
+  EXPECT_NE(says(found).find("match.num_disparities=48"), std::string::npos) << says(found);
+}
+
 TEST_F(Diagnosis, SeesWhichCameraIsBlurred) {
   const auto soft = blurred(right(), 2);
   const auto soft_left = blurred(left(), 2);
