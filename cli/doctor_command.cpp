@@ -29,6 +29,7 @@ struct DoctorOptions {
   ExecOptions exec;
   std::optional<std::string> json;
   int frames = 40;
+  bool strict = false;
 };
 
 /// What became of one pair.
@@ -37,6 +38,7 @@ struct Examined {
   std::optional<Size> size;              // of the left picture
   std::optional<PairMeasures> measures;  // nothing where the pictures differ in size
   std::vector<Finding> findings;
+  std::vector<NotChecked> not_checked;
 };
 
 // ---- one pair ----
@@ -109,7 +111,7 @@ void examine_rectification(Examined& examined) {
 }
 
 Examined examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
-  Examined examined{files.name, {}, {}, {}};
+  Examined examined{files.name, {}, {}, {}, {}};
   const std::optional<io::PicturePair> pictures = load_or_find(files, examined, exec);
   const io::Calibration calibration = calibration_or_find(files, options.input.calib, examined);
   if (!pictures) return examined;
@@ -117,6 +119,7 @@ Examined examine(const io::FrameFiles& files, const DoctorOptions& options, cons
   examined.measures = measure_pair(StereoPair::from(pictures->left.gray, pictures->right.gray), exec);
   for (Finding& finding : diagnose(*examined.measures, calibration.rig, config.match, DiagnosisConfig{}))
     examined.findings.push_back(std::move(finding));
+  examined.not_checked = not_checked(*examined.measures, calibration.rig, DiagnosisConfig{});
   if (calibration.of_raw_cameras) examine_rectification(examined);
   return examined;
 }
@@ -429,7 +432,6 @@ std::vector<std::string> names_of(const std::vector<Examined>& pairs) {
 }
 
 std::string findings_text(const Diagnosis& diagnosis) {
-  if (diagnosis.findings.empty()) return "nothing wrong found\n";
   std::string all;
   for (const Finding& finding : diagnosis.findings) {
     std::string severity = name_of(finding.severity);
@@ -439,6 +441,74 @@ std::string findings_text(const Diagnosis& diagnosis) {
            std::string(info(finding.kind).remedy) + "\n";
   }
   return all;
+}
+
+/// One check that some pairs did not allow.
+struct Omission {
+  NotChecked first;  // of the first pair
+  std::vector<std::size_t> pairs;
+};
+
+std::vector<Omission> omissions(const Diagnosis& diagnosis) {
+  std::vector<Omission> all;
+  const auto add = [&](const NotChecked& one, std::size_t pair) {
+    const auto known =
+        std::find_if(all.begin(), all.end(), [&](const Omission& o) { return o.first.check == one.check; });
+    if (known != all.end()) {
+      known->pairs.push_back(pair);
+    } else {
+      all.push_back({one, {pair}});
+    }
+  };
+  for (std::size_t i = 0; i < diagnosis.pairs.size(); ++i) {
+    for (const NotChecked& one : diagnosis.pairs[i].not_checked) add(one, i);
+    if (!diagnosis.pairs[i].measures)
+      add({"everything but the sizes", "the two pictures differ in size", false}, i);
+  }
+  const auto frames = diagnosis.sequence ? diagnosis.sequence->synchrony.frames : 1;
+  if (diagnosis.pairs_in_all == 1 || frames < Synchrony::kLeastFrames) {
+    all.push_back({{"synchrony",
+                    std::to_string(diagnosis.sequence ? frames : static_cast<int>(diagnosis.pairs_in_all)) +
+                        (frames == 1 ? " pair" : " pairs") + " in a row, expected " +
+                        std::to_string(Synchrony::kLeastFrames),
+                    false},
+                   {}});
+  }
+  return all;
+}
+
+std::string omissions_text(const std::vector<Omission>& omitted, const Diagnosis& diagnosis) {
+  std::string all;
+  for (const Omission& one : omitted) {
+    Finding pairs;
+    pairs.frames = one.pairs;
+    all += (one.first.is_for_want_of_it ? "cannot tell  " : "not checked  ") + std::string(one.first.check) +
+           ": " + one.first.why + frames_text(pairs, names_of(diagnosis.pairs), "pairs") + "\n";
+  }
+  return all;
+}
+
+std::string names_of(const std::vector<Finding>& findings, Severity severity) {
+  std::string all;
+  for (const Finding& finding : findings) {
+    if (finding.severity == severity) all += (all.empty() ? "" : ", ") + std::string(info(finding.kind).name);
+  }
+  return all;
+}
+
+/// The worst by name, and which checks no pair allowed.
+std::string verdict(const Diagnosis& diagnosis, const std::vector<Omission>& omitted) {
+  std::string all = "verdict: ";
+  std::string unknown;
+  for (const Omission& one : omitted) {
+    if (one.first.is_for_want_of_it && one.pairs.size() == diagnosis.pairs.size())
+      unknown += (unknown.empty() ? "; cannot tell: " : ", ") + std::string(one.first.check);
+  }
+  if (const std::string broken = names_of(diagnosis.findings, Severity::broken); !broken.empty()) {
+    return all + "broken: " + broken + "\n";
+  }
+  const std::string warnings = names_of(diagnosis.findings, Severity::warning);
+  return all + (warnings.empty() ? "nothing wrong found" : "warning: " + warnings) + unknown + "\n";
 }
 
 // ---- JSON ----
@@ -466,6 +536,15 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   j["findings"] = Json::array();
   for (const Finding& finding : diagnosis.findings)
     j["findings"].push_back(finding_json(finding, diagnosis.pairs));
+  j["not_checked"] = Json::array();
+  for (const Omission& one : omissions(diagnosis)) {
+    Json pairs = Json::array();
+    for (const std::size_t i : one.pairs) pairs.push_back(diagnosis.pairs[i].name);
+    j["not_checked"].push_back({{"check", one.first.check},
+                                {"why", one.first.why},
+                                {"cannot_tell", one.first.is_for_want_of_it},
+                                {"pairs", pairs}});
+  }
   j["left_out"] = diagnosis.left_out.frames();
   j["pairs"] = Json::array();
   for (const Examined& pair : diagnosis.pairs) {
@@ -504,14 +583,17 @@ int examine_and_tell(const DoctorOptions& options) {
   const Diagnosis diagnosis = examine_all(options);
   const bool broken = is_broken(diagnosis.findings);
   if (options.json) io::write_file(*options.json, diagnosis_json(diagnosis, broken));
-  std::cout << findings_text(diagnosis);
+  const std::vector<Omission> omitted = omissions(diagnosis);
   for (const std::string& part :
-       {numbers_text(diagnosis.pairs), histogram_text(histogram_of(diagnosis.pairs))}) {
-    if (!part.empty()) std::cout << "\n" << part;
+       {numbers_text(diagnosis.pairs), histogram_text(histogram_of(diagnosis.pairs)),
+        findings_text(diagnosis), omissions_text(omitted, diagnosis)}) {
+    if (!part.empty()) std::cout << part << "\n";
   }
+  std::cout << verdict(diagnosis, omitted);
   const int left_out =
       diagnosis.left_out.exit_code(diagnosis.pairs.size() + diagnosis.left_out.frames().size());
-  return broken ? 1 : left_out;
+  const bool warned = !names_of(diagnosis.findings, Severity::warning).empty();
+  return broken || (options.strict && warned) ? 1 : left_out;
 }
 
 /// Every finding with its number and remedy, and every limit.
@@ -546,6 +628,7 @@ Work declare_doctor(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--json", options->json, "also write findings and measurements into this file, as JSON")
       ->type_name("FILE");
+  app.add_flag("--strict", options->strict, "exit with 1 for a warning, too");
   app.add_flag_callback(
          "--explain",
          [] {
@@ -556,7 +639,11 @@ Work declare_doctor(CLI::App& app) {
       ->trigger_on_parse();
   app.footer(
       "Says what is wrong with the rig: each finding with what was measured and what to do.\n"
-      "Exit codes: 0 nothing is broken, 1 something is, 2 bad usage, file or option.\n"
+      "The last line is the verdict; above it stand what was measured, the findings, and what could not be "
+      "checked and why.\n"
+      "Exit codes: 0 nothing is broken, 1 something is (with --strict: or is a warning), 2 bad usage, file "
+      "or "
+      "option.\n"
       "docs/doctor.md explains each finding.");
   return [options] { return examine_and_tell(*options); };
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cmath>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
 #include <io/raw_calibration.hpp>
@@ -18,7 +20,10 @@ namespace fs = std::filesystem;
 struct RectifyOptions {
   InputOptions input;
   std::string output;
+  double nearest_m = 0;  // 0 = kNearestBaselines
 };
+
+constexpr double kNearestBaselines = 5;  // a fifth of the focal length, in disparities
 
 void save(const fs::path& path, const io::Picture& picture) {
   if (picture.rgb.empty()) {
@@ -26,6 +31,18 @@ void save(const fs::path& path, const io::Picture& picture) {
   } else {
     io::save_png(path, picture.rgb.view());
   }
+}
+
+/// The disparities down to the nearest distance, a multiple of 16 that fits the pictures.
+int disparities_to(double nearest_m, const StereoRig& rig, int width) {
+  constexpr int kStep = 16;
+  constexpr int kMost = 1024;
+  const auto baseline = static_cast<double>(rig.baseline_m);
+  if (nearest_m == 0) nearest_m = kNearestBaselines * baseline;
+  const double last =
+      static_cast<double>(rig.focal_px) * baseline / nearest_m - static_cast<double>(rig.doffs_px);
+  const double steps = std::floor(std::max(last, 0.0) / kStep) + 1;
+  return std::min(static_cast<int>(std::min(steps * kStep, double{kMost})), width);
 }
 
 int rectify(const RectifyOptions& options) {
@@ -46,7 +63,9 @@ int rectify(const RectifyOptions& options) {
     io::make_folder(folder);
     save(folder / "left.png", rectified.left);
     save(folder / "right.png", rectified.right);
-    io::save_calibration(folder / "calib.txt", rectify_pair.rig(), rectified.left.gray.size());
+    const Size size = rectified.left.gray.size();
+    io::save_calibration(folder / "calib.txt", rectify_pair.rig(), size,
+                         disparities_to(options.nearest_m, rectify_pair.rig(), size.width));
   }
   progress.clear();
   std::cout << "rectified " << frames.size() << (frames.size() == 1 ? " pair into " : " pairs into ")
@@ -76,6 +95,11 @@ Work declare_rectify(CLI::App& app) {
                  "folder for left.png, right.png and calib.txt; several pairs get a folder each in it")
       ->required()
       ->type_name("DIR");
+  app.add_option("--nearest", options->nearest_m,
+                 "nearest distance of interest, m; with focal length and baseline it gives the ndisp in "
+                 "calib.txt (default: 5 baselines)")
+      ->check(CLI::Range(0.01, 1e4).name(""))
+      ->type_name("M");
   return [options] { return rectify(*options); };
 }
 

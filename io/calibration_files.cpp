@@ -380,7 +380,8 @@ Calibration load_calibration(const fs::path& path, bool grey_cameras) {
   }
 }
 
-void save_calibration(const fs::path& path, const StereoRig& rig, Size image) {
+void save_calibration(const fs::path& path, const StereoRig& rig, Size image,
+                      std::optional<int> num_disparities) {
   std::string file;
   const auto add = [&](const char* key, float value) {
     std::array<char, 32> digits{};
@@ -395,8 +396,9 @@ void save_calibration(const fs::path& path, const StereoRig& rig, Size image) {
   add("cy", rig.cy_px);
   add("baseline", rig.baseline_m);
   add("doffs", rig.doffs_px);
-  write_file(path, file + "width=" + std::to_string(image.width) +
-                       "\nheight=" + std::to_string(image.height) + "\n");
+  file += "width=" + std::to_string(image.width) + "\nheight=" + std::to_string(image.height) + "\n";
+  if (num_disparities) file += "ndisp=" + std::to_string(*num_disparities) + "\n";
+  write_file(path, file);
 }
 
 void check_ground(const KnownGround& known) {

@@ -41,8 +41,10 @@ class ImpossibleCalibration : public Error {
 /// Of KITTI's four cameras the colour pair counts, unless `grey_cameras`.
 Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
 
-/// Writes a rectified pair's calibration as key=value lines, whole or not at all. Throws Error.
-void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image);
+/// Writes a rectified pair's calibration as key=value lines, whole or not at all; `num_disparities` as ndisp.
+/// Throws Error.
+void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image,
+                      std::optional<int> num_disparities = std::nullopt);
 
 /// Throws Error where the calibration was made for pictures of another size.
 void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);

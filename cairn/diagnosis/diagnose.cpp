@@ -75,6 +75,15 @@ bool check_points(Case& c) {
   return true;
 }
 
+/// Whether enough points agree for what is said of their disparities: by chance alone some do, as in a
+/// mirrored picture.
+bool is_certain(const PairMeasures& measures, const DiagnosisConfig& config) {
+  const RowAlignment& rows = measures.rows;
+  return static_cast<int>(measures.disparities_px.size()) >= config.least_points &&
+         (rows.agreeing >= config.least_certain ||
+          100 * rows.agreeing_share() >= static_cast<double>(config.least_certain_share));
+}
+
 /// True where both pictures are one: a pixel for a pixel, or as far as its points tell.
 bool check_same(Case& c) {
   const PairMeasures& measures = c.measures;
@@ -419,7 +428,7 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
   Case c{measures, rig, range, config};
   check_camera(c);
   if (!check_same(c) && check_points(c)) {
-    if (check_order(c)) {
+    if (is_certain(measures, config) && check_order(c)) {
       check_distances(c);
       check_range(c);
       check_infinity(c);
@@ -431,6 +440,42 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
   check_contrast(c);
   check_sharpness(c);
   return united({c.findings});
+}
+
+std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::optional<StereoRig>& rig,
+                                    const DiagnosisConfig& config) {
+  std::vector<NotChecked> all;
+  const RowAlignment& rows = measures.rows;
+  if (!rig) all.push_back({"calibration and distances", "no calibration with a baseline was given", false});
+  const std::string found =
+      std::to_string(rows.agreeing) + " of " + std::to_string(rows.points) + " points agree on one geometry";
+  const auto too_few = [&](std::string_view check, int least) {
+    if (rows.agreeing < least) all.push_back({check, found + ", expected " + std::to_string(least)});
+  };
+  if (!is_certain(measures, config)) {
+    const std::size_t supported = measures.disparities_px.size();
+    all.push_back({"order of the cameras and disparity range",
+                   static_cast<int>(supported) < config.least_points
+                       ? std::to_string(supported) +
+                             " points have a disparity like their neighbours', expected " +
+                             std::to_string(config.least_points)
+                       : found + ", expected " + std::to_string(config.least_certain) +
+                             text_of(", or %g %% of them", static_cast<double>(config.least_certain_share))});
+  }
+  too_few("shift of the rows", config.least_points);
+  too_few("turn of the right picture", RowAlignment::kLeastForRoll);
+  too_few("rectification", RowAlignment::kLeastForField);
+  if (!measures.brightness.is_measured()) {
+    all.push_back({"equal brightness", std::to_string(measures.brightness.points) +
+                                           " places could be compared, expected " +
+                                           std::to_string(BrightnessDifference::kLeastPoints)});
+  }
+  const int edges = std::min(measures.left_sharpness.edges, measures.right_sharpness.edges);
+  if (edges < Sharpness::kLeastEdges) {
+    all.push_back({"focus", std::to_string(edges) + " edges in the poorer picture, expected " +
+                                std::to_string(Sharpness::kLeastEdges)});
+  }
+  return all;
 }
 
 std::vector<Finding> diagnose(const Frame& frame, View<const Gray> left, View<const Gray> right,

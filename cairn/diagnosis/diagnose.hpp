@@ -10,6 +10,7 @@
 #include <cairn/matching/match.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace cairn {
@@ -19,6 +20,8 @@ struct DiagnosisConfig {
   int least_points = 8;
   int least_textured = 60;
   float least_agreeing = 40;
+  int least_certain = 30;
+  float least_certain_share = 80;
   float warn_rows = 0.75F;
   float break_rows = 4.5F;
   float warn_left_over = 1;
@@ -48,6 +51,10 @@ void fields(DiagnosisConfig& c, V&& v) {
   v("least_textured", c.least_textured, "points", "so many textured points must give that many",
     range(8, 500));
   v("least_agreeing", c.least_agreeing, "%", "points found that must agree on one geometry",
+    range(0.0F, 100.0F));
+  v("least_certain", c.least_certain, "points",
+    "so many that agree are enough to judge order, range and distances", range(8, 500));
+  v("least_certain_share", c.least_certain_share, "%", "so large a share of the points found is enough, too",
     range(0.0F, 100.0F));
   v("warn_rows", c.warn_rows, "rows", "shift and roll, at the worse side, from which on it is a warning",
     range(0.0F, 100.0F));
@@ -111,7 +118,16 @@ PairMeasures measure_pair(const StereoPair& pair, const Exec& exec);
 std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<StereoRig>& rig,
                               const MatchConfig& range, const DiagnosisConfig& config);
 
-/// The same from what segment() has computed of a frame, for nearly no time: rows from the epipolar
+/// A check that diagnose() could not do.
+struct NotChecked {
+  std::string_view check;
+  std::string why;                // what was found, what was expected
+  bool is_for_want_of_it = true;  // the pictures show too little; false: what it checks was not given
+};
+std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::optional<StereoRig>& rig,
+                                    const DiagnosisConfig& config);
+
+/// diagnose() from what segment() has computed of a frame, for nearly no time: rows from the epipolar
 /// correction, the range from the share of disparities at its end, exposure, calibration, and why there is no
 /// floor. Order, synchrony, brightness and focus are not judged. `right` is empty where the disparity was
 /// given.

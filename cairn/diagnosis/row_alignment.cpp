@@ -11,9 +11,7 @@ namespace {
 constexpr double kAgreeRows = 1.0;
 constexpr double kCloseRows = 0.5;
 constexpr double kGain = 1.15;  // so many times as many points must be close before a distortion is believed
-constexpr double kLeastForLine = 24;
 constexpr double kCertain = 5;  // standard errors of the roll
-constexpr std::size_t kLeastForField = 40;
 
 using LineTerms = std::array<double, 2>;
 using FieldTerms = std::array<double, 7>;
@@ -99,7 +97,7 @@ bool is_certain(const std::vector<Equation<2>>& equations, const std::array<doub
     squares += e.terms[1] * e.terms[1];
     residuals += residual * residual;
   }
-  if (count < kLeastForLine) return false;
+  if (count < RowAlignment::kLeastForRoll) return false;
   const double spread = squares - sum * sum / count;
   return std::abs(line[1]) * std::sqrt(spread * count) > kCertain * std::sqrt(residuals);
 }
@@ -115,12 +113,12 @@ Rows rows_of(const Correspondences& found) {
     rows.line = {fit_robustly<1>(shifts, kCloseRows)[0], 0};
   }
   rows.expected = values_of<2>(lines, rows.line);
-  if (found.list.size() < kLeastForField) return rows;
+  if (found.list.size() < RowAlignment::kLeastForField) return rows;
   const auto fields = equations_of<7>(found, [&](const Correspondence& c) { return frame.field(c); });
   std::vector<double> expected = values_of<7>(fields, fit_robustly<7>(fields, kCloseRows));
   const auto by_line = static_cast<double>(within(found, rows.expected, kCloseRows));
   const auto by_field = static_cast<double>(within(found, expected, kCloseRows));
-  if (by_field < std::max(static_cast<double>(kLeastForField), kGain * by_line)) return rows;
+  if (by_field < std::max(static_cast<double>(RowAlignment::kLeastForField), kGain * by_line)) return rows;
   rows.expected = std::move(expected);
   rows.line = line_through(found, lines, rows.expected);
   rows.is_field = true;

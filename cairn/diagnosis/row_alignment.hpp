@@ -20,6 +20,8 @@ struct RowAlignment {
   [[nodiscard]] double agreeing_share() const {
     return points > 0 ? static_cast<double>(agreeing) / points : 0.0;
   }
+  static constexpr int kLeastForRoll = 24;   // points that agree; fewer leave rows_per_px 0
+  static constexpr int kLeastForField = 40;  // the same of left_over_rows
   static constexpr int kMostBins = 8;
   /// Points by y_right − y_left, rounded, from −8 to 8 rows; the outermost count all beyond.
   std::array<int, 2 * kMostBins + 1> histogram{};

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kLeastStep = 12;
 constexpr float kLeastShare = 0.25F;  // of the image's contrast
-constexpr std::size_t kLeastEdges = 50;
 
 /// Adds the widths of a row's edges.
 void measure_row(const Gray* row, int width, int least, std::vector<double>& widths) {
@@ -38,7 +37,7 @@ Sharpness measure_sharpness(View<const Gray> image, float contrast) {
   for (int y = 0; y < image.height(); ++y) measure_row(image.row(y), image.width(), least, widths);
   Sharpness result;
   result.edges = static_cast<int>(widths.size());
-  if (widths.size() >= kLeastEdges) result.edge_px = static_cast<float>(quantile(widths, 0.25));
+  if (widths.size() >= Sharpness::kLeastEdges) result.edge_px = static_cast<float>(quantile(widths, 0.25));
   return result;
 }
 

@@ -8,8 +8,9 @@ namespace cairn {
 
 /// How many pixels an edge takes from dark to bright.
 struct Sharpness {
-  int edges = 0;      // that were measured
-  float edge_px = 0;  // a quarter of them are narrower
+  static constexpr int kLeastEdges = 50;  // fewer leave edge_px 0
+  int edges = 0;                          // that were measured
+  float edge_px = 0;                      // a quarter of them are narrower
 };
 
 /// Along the rows, every monotonic run of pixels that gains or loses a quarter of the image's contrast, and

@@ -12,7 +12,6 @@
 namespace cairn {
 namespace {
 
-constexpr int kLeastFrames = 8;
 constexpr int kBands = 16;
 constexpr std::size_t kMostTried = 6;  // frames whose points are looked for in neighbours
 constexpr double kLeastCorrelation = 0.6;
@@ -164,7 +163,7 @@ Synchrony measure_synchrony(std::span<const StereoPair> sequence, const Exec& ex
     result.left_repeats += left_still && !right_still ? 1 : 0;
     result.right_repeats += right_still && !left_still ? 1 : 0;
   }
-  if (result.frames < kLeastFrames) return result;
+  if (result.frames < Synchrony::kLeastFrames) return result;
   const SumsByLag sums = sums_by_lag(left, right);
   for (std::size_t lag = 0; lag < sums.size(); ++lag) result.motion[lag] = sums[lag].correlation();
   result.change = find_change(left, right, result.motion[index(best_of(result.motion))]);
@@ -254,7 +253,7 @@ std::optional<Finding> diagnose(const Synchrony& synchrony, std::span<const std:
                    {},
                    is_right ? Camera::right : Camera::left};
   }
-  if (synchrony.frames < kLeastFrames || synchrony.tells()) return std::nullopt;
+  if (synchrony.frames < Synchrony::kLeastFrames || synchrony.tells()) return std::nullopt;
   return Finding{FindingKind::unknown_synchrony, Severity::note, 100 * as_they_are,
                  "too little moves, or too evenly, to tell whether a camera is late: the changes in both "
                  "pictures correlate to " +

@@ -22,6 +22,7 @@ struct LagChange {
 
 /// Whether the two cameras of a sequence took their pictures at the same moments.
 struct Synchrony {
+  static constexpr int kLeastFrames = 8;  // fewer tell nothing
   static constexpr int kMostLag = 2;
   static constexpr int kLags = 2 * kMostLag + 1;
   int frames = 0;

@@ -17,11 +17,19 @@ std::string sample(const std::string& name) {
   return samples::folder(name).string();
 }
 
+std::string last_line(const std::string& text) {
+  if (text.empty()) return {};
+  const std::size_t before = text.rfind('\n', text.size() - 2);
+  return text.substr(before == std::string::npos ? 0 : before + 1, text.size() - before - 2);
+}
+
 TEST_F(Doctor, FindsNothingWrongInTheSamples) {
   const Outcome outcome = run({"doctor", sample(""), "--json", path("doctor.json")});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.out.find("nothing wrong found"), 0U) << outcome.out;
+  EXPECT_EQ(last_line(outcome.out), "verdict: nothing wrong found");
+  EXPECT_NE(outcome.out.find("not checked  synchrony: 4 pairs in a row, expected 8\n"), std::string::npos)
+      << outcome.out;
   const Json j = Json::parse(content(at("doctor.json")));
   EXPECT_EQ(j["broken"], false);
   EXPECT_EQ(j["findings"].size(), 0U);
@@ -37,8 +45,9 @@ TEST_F(Doctor, SaysWhatIsWrongAndWhatToDoAndExitsWithOne) {
       run({"doctor", folder / "right.png", folder / "left.png", "--json", path("d.json")});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.out.find("broken   cameras swapped: "), 0U) << outcome.out;
+  EXPECT_NE(outcome.out.find("broken   cameras swapped: "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("Exchange the two pictures"), std::string::npos) << outcome.out;
+  EXPECT_EQ(last_line(outcome.out), "verdict: broken: cameras swapped");
   const Json j = Json::parse(content(at("d.json")));
   EXPECT_EQ(j["broken"], true);
   EXPECT_EQ(j["findings"][0]["finding"], "cameras swapped");
@@ -47,11 +56,15 @@ TEST_F(Doctor, SaysWhatIsWrongAndWhatToDoAndExitsWithOne) {
   EXPECT_EQ(j["findings"][0]["pairs"], Json::array({"overlap"}));
 }
 
-TEST_F(Doctor, WarningsAloneExitWithZero) {
+TEST_F(Doctor, WarningsAloneExitWithZeroUnlessStrict) {
   const fs::path folder = samples::folder("overlap");
+  const Outcome strict = run({"doctor", folder, "--strict", "--set", "match.num_disparities=16"});
+  EXPECT_EQ(strict.code, 1);
+  EXPECT_EQ(last_line(strict.out), "verdict: warning: disparity range too small");
+  EXPECT_EQ(run({"doctor", folder, "--strict"}).code, 0);
   const Outcome outcome = run({"doctor", folder, "--set", "match.num_disparities=16"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.out.find("warning  disparity range too small: "), 0U) << outcome.out;
+  EXPECT_NE(outcome.out.find("warning  disparity range too small: "), std::string::npos) << outcome.out;
 }
 
 TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
@@ -59,7 +72,8 @@ TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
   const auto other = pair_in("other", {64, 48});
   const Outcome outcome = run({"doctor", pair[0], other[1]});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_EQ(outcome.out.find("broken   sizes: the left picture is 96x72, the right one 64x48"), 0U)
+  EXPECT_NE(outcome.out.find("broken   sizes: the left picture is 96x72, the right one 64x48"),
+            std::string::npos)
       << outcome.out;
   EXPECT_EQ(outcome.out.find("measured"), std::string::npos) << outcome.out;
 }
@@ -101,7 +115,32 @@ TEST_F(Doctor, SeesTheSamePictureTwice) {
   const std::string picture = (samples::folder("overlap") / "left.png").string();
   const Outcome outcome = run({"doctor", picture, picture});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_EQ(outcome.out.find("broken   the two pictures are the same: every pixel"), 0U) << outcome.out;
+  EXPECT_NE(outcome.out.find("broken   the two pictures are the same: every pixel"), std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(Doctor, CannotTellTheOrderFromAFewPointsThatAgreeByChance) {
+  for (const char* name : {"four_in_a_row", "glossy_floor"}) {
+    const fs::path folder = samples::folder(name);
+    const Image<Gray> right = io::load_picture(folder / "right.png").gray;
+    Image<Gray> mirrored(right.size());
+    for (int y = 0; y < right.height(); ++y)
+      std::reverse_copy(right.row(y), right.row(y) + right.width(), mirrored.row(y));
+    io::save_png(at("mirrored.png"), mirrored.view());
+    const Outcome outcome =
+        run({"doctor", folder / "left.png", path("mirrored.png"), "--json", path("d.json")});
+    EXPECT_EQ(outcome.out.find("cameras swapped"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("cannot tell  order of the cameras and disparity range: "), std::string::npos)
+        << outcome.out;
+    EXPECT_NE(outcome.out.find("expected 30, or 80 % of them"), std::string::npos) << outcome.out;
+    EXPECT_EQ(last_line(outcome.out).find("verdict: nothing wrong found; cannot tell: order of the cameras"),
+              0U)
+        << outcome.out;
+    const Json order = Json::parse(content(at("d.json")))["not_checked"][0];
+    EXPECT_EQ(order["check"], "order of the cameras and disparity range");
+    EXPECT_EQ(order["cannot_tell"], true);
+    EXPECT_EQ(order["pairs"].size(), 1U);
+  }
 }
 
 TEST_F(Doctor, SaysWhatWasNotMeasured) {

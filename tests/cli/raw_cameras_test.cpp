@@ -117,6 +117,31 @@ TEST_F(RawCameras, RefuseTheCalibrationOfARectifiedPair) {
           {"calib.txt", "rectified pair", "raw cameras"});
 }
 
+using Rectify = CommandTest;
+
+TEST_F(Rectify, WritesTheDisparitiesDownToTheNearestDistance) {
+  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+  io::RawCalibration raw{{160, 96}, {}, {}, {}, {}};
+  raw.left.matrix = raw.right.matrix = {200, 0, 79.5, 0, 200, 47.5, 0, 0, 1};
+  raw.left.rotation = raw.right.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  raw.left.projection = {200, 0, 79.5, 0, 0, 200, 47.5, 0, 0, 0, 1, 0};
+  raw.right.projection = {200, 0, 79.5, -20, 0, 200, 47.5, 0, 0, 0, 1, 0};
+  io::save_raw_calibration(at("raw.yaml"), raw, {});
+  const auto pair = pair_in("raw", {160, 96});
+  const auto range = [&](const std::vector<std::string>& more) {
+    const Outcome outcome =
+        run(with("rectify", pair, with("--calib", {path("raw.yaml"), "-o", path("out")}, more)));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return io::load_calibration(at("out/calib.txt")).num_disparities.value_or(0);
+  };
+  EXPECT_EQ(range({}), 48);                      // 5 baselines: a fifth of 200 px
+  EXPECT_EQ(range({"--nearest", "1"}), 32);      // 200 px · 0.1 m / 1 m = 20
+  EXPECT_EQ(range({"--nearest", "0.05"}), 160);  // no more than fit the picture
+  EXPECT_EQ(run({"segment", path("out")}).code, 0);
+  refuses(with("rectify", pair, {"--calib", path("raw.yaml"), "--nearest", "0", "-o", path("other")}),
+          {"--nearest"});
+}
+
 TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {
   if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
   io::RawCalibration raw{{64, 48}, {}, {}, {}, {}};
