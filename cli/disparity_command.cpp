@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <array>
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "refusals.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -48,27 +49,17 @@ void check_ply(const std::string& output, const LoadedFrame& frame) {
   if (!frame.rig) throw Error("--ply: a point cloud is in metres; give a calibration with --calib");
 }
 
-std::string describe(const SceneDisparity& scene, double milliseconds) {
-  std::int64_t valid = 0;
-  std::array<std::int64_t, kRejects.size()> counts{};
+std::string describe(const SceneDisparity& scene, const LoadedFrame& loaded, double milliseconds,
+                     const Exec& exec) {
   const Image<Reject>& reject = scene.disparity.reject;
-  for (int y = 0; y < reject.height(); ++y) {
-    for (int x = 0; x < reject.width(); ++x) {
-      valid += reject(x, y) == Reject::none ? 1 : 0;
-      for (std::size_t i = 0; i < kRejects.size(); ++i)
-        counts[i] += has(reject(x, y), kRejects[i].value) ? 1 : 0;
-    }
-  }
-  const auto share = [&](std::int64_t count) {
-    return percent(static_cast<double>(count) / static_cast<double>(reject.size().area()));
-  };
-  std::string all =
-      "disparity on " + share(valid) + " of the pixels, " + text_of("%.1f ms", milliseconds) + "\n";
-  Table table({"refused (a pixel may have several reasons)", "share"});
-  for (std::size_t i = 0; i < kRejects.size(); ++i) {
-    if (kRejects[i].value != Reject::no_data) table.add({std::string(kRejects[i].name), share(counts[i])});
-  }
-  all += table.text();
+  std::int64_t valid = 0;
+  for (int y = 0; y < reject.height(); ++y)
+    valid += std::count(reject.row(y), reject.row(y) + reject.width(), Reject::none);
+  std::string all = "disparity on " +
+                    percent(static_cast<double>(valid) / static_cast<double>(reject.size().area())) +
+                    " of the pixels, " + text_of("%.1f ms", milliseconds) + "\n";
+  all += refusals_table(
+      count_refusals(scene.disparity, loaded.left.gray, reasons_in_force(loaded.config), exec));
   if (const std::string epipolar = cli::describe(scene.epipolar); !epipolar.empty()) all += epipolar + "\n";
   if (scene.ground.plane) {
     const GroundPlane p = *scene.ground.plane;
@@ -104,7 +95,7 @@ int estimate(const DisparityOptions& options) {
     io::save_ply(options.ply, loaded.left.gray, loaded.left.rgb, scene.disparity.disparity_px, {},
                  *loaded.rig);
   }
-  std::cout << describe(scene, watch.total_ms());
+  std::cout << describe(scene, loaded, watch.total_ms(), exec);
   return 0;
 }
 

@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "findings.hpp"
+#include "refusals.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -181,6 +182,10 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
   report.out = files.name + ": " + summary(report.totals) + "\n";
   if (frame.epipolar.outcome == EpipolarOutcome::corrected) report.out += describe(frame.epipolar) + "\n";
   if (one_of_many && !folder.empty()) return report;
+  const Reject in_force = reasons_in_force(loaded.config, loaded.given.has_value());
+  const std::string refused =
+      refusals_line(count_refusals(frame.disparity, loaded.left.gray, in_force, exec));
+  if (!refused.empty()) report.out += refused + "\n";
   if (!frame.objects.list.empty()) report.out += object_table(frame.objects.list);
   if (one_of_many) report.out += "\n";
   return report;

@@ -174,7 +174,7 @@ constexpr int kLegendRow = 20;
 constexpr int kLegendHeight = kLegendRow * (int(kReasons.size()) + 6) + 10;
 
 void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, DisparitySpan span,
-                 const std::array<Rgb, 256>& colours, const std::optional<StereoRig>& rig) {
+                 const std::array<Rgb, 256>& colours, const std::optional<StereoRig>& rig, Reject in_force) {
   constexpr double kScale = 0.42;
   constexpr int kBarRows = 4;
   const Rgb white{235, 235, 235};
@@ -207,6 +207,7 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Dispa
   int y = bar_top + bar_height + kLegendRow;
   write(canvas, "valid" + percent(valid), {left + 10, y}, kScale, white);
   for (std::size_t i = 0; i < kReasons.size(); ++i) {
+    if (!has(in_force, kReasons[i].bit) && counts[i] == 0) continue;
     y += kLegendRow;
     cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kReasons[i].colour), cv::FILLED);
     write(canvas, std::string(kReasons[i].label) + percent(counts[i]), {left + 32, y}, kScale, white);
@@ -316,7 +317,7 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
   return canvas;
 }
 
-Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig) {
+Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig, Reject in_force) {
   const int factor = enlargement(map.reject.size());
   const DisparitySpan span = disparity_span(map.disparity_px);
   const std::array<Rgb, 256> colours = disparity_colours();
@@ -331,7 +332,7 @@ Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig
                          : shown_reason(reject).colour;
     }
   }
-  draw_legend(matrix(canvas), width, map, span, colours, rig);
+  draw_legend(matrix(canvas), width, map, span, colours, rig, in_force);
   return canvas;
 }
 

@@ -21,9 +21,10 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
                         View<const std::uint8_t> floor);
 
 /// Disparity as colour, holes in a muted colour that tells the reason, and beside them a legend: the scale in
-/// px (with a rig: and m), and each reason's share of the pixels. Where a hole has several reasons the
-/// legend's order decides.
-Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig);
+/// px (with a rig: and m), and the share of the pixels of each reason `in_force`. Where a hole has several
+/// reasons the legend's order decides.
+Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig,
+                          Reject in_force = Reject{0xFFFF});
 
 /// The colour that an object is drawn with: neighbouring ids differ strongly.
 Rgb object_colour(ObjectId id);

@@ -400,7 +400,9 @@ constexpr std::array kResultFiles{
                }},
     ResultFile{"disparity_view.png", always,
                [](const fs::path& path, const Result& r) {
-                 const Image<Rgb> picture = draw_disparity(r.frame.disparity, r.provenance.rig);
+                 const Image<Rgb> picture =
+                     draw_disparity(r.frame.disparity, r.provenance.rig,
+                                    reasons_in_force(r.provenance.config, r.provenance.external_disparity));
                  save_png(path, View<const Rgb>(picture));
                }},
     ResultFile{"cloud.ply",

@@ -278,6 +278,18 @@ void set(Config& config, std::string_view name, std::string_view value) {
               (close.empty() ? "; cairn config lists them" : ", did you mean '" + close + "'?"));
 }
 
+Reject reasons_in_force(const Config& config, bool external_disparity) {
+  Reject all = external_disparity ? Reject::no_data : Reject::border;
+  const auto add = [&](bool is_on, Reject reason) { all |= is_on ? reason : Reject::none; };
+  add(!external_disparity && config.left_right.max_diff >= 0, Reject::left_right);
+  add(!external_disparity && config.uniqueness.ratio >= 0, Reject::not_unique);
+  add(!external_disparity && config.flatness.threshold >= 0, Reject::flat);
+  add(!external_disparity && config.texture.threshold >= 0, Reject::no_texture);
+  add(config.ground.source != GroundSource::off, Reject::below_ground);
+  add(config.speckle.size >= 0, Reject::speckle);
+  return all;
+}
+
 std::vector<std::string> preset_names() {
   return {"default", "paper"};
 }

@@ -101,6 +101,8 @@ void set(Config& config, std::string_view name, std::string_view value);
 /// `sections` only what options of these sections ask for counts: for a stage by itself.
 void require_active(const Config& config, std::string_view name,
                     const std::vector<std::string>& sections = {});
+/// The reasons for which this configuration can refuse a pixel, or one of a map from elsewhere.
+Reject reasons_in_force(const Config& config, bool external_disparity = false);
 /// The names of the presets.
 std::vector<std::string> preset_names();
 /// Throws Error where a value lies outside its range, where match.maps leaves out what the method needs, or

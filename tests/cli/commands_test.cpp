@@ -294,6 +294,29 @@ TEST_F(Command, DisparityWritesTheFormThatTheNameAsksFor) {
   EXPECT_GT(valid, 96 * 72 / 2);
 }
 
+TEST_F(Command, TablesListTheReasonsInForceAndWhatIsForWantOfTexture) {
+  const auto pair = pair_in("pair");
+  for (const char* side : {"pair/left.png", "pair/right.png"}) {  // a plain wall beside the dots
+    Image<Gray> image = io::load_picture(at(side)).gray;
+    for (int y = 0; y < 72; ++y) std::fill_n(image.row(y) + 48, 48, Gray{9});
+    io::save_png(at(side), image.view());
+  }
+  const std::vector<std::string> range{"--set", "match.num_disparities=16"};
+  const std::string ours = run(with("disparity", pair, range)).out;
+  EXPECT_NE(ours.find("left_right"), std::string::npos) << ours;
+  EXPECT_EQ(ours.find("no_texture"), std::string::npos) << ours;
+  EXPECT_NE(ours.find("of it too dark or without texture"), std::string::npos) << ours;
+  const std::string paper = run(with("disparity", pair, with("--preset", {"paper"}, range))).out;
+  const std::size_t row = paper.find("\nno_texture ");
+  ASSERT_NE(row, std::string::npos) << paper;
+  EXPECT_NE(paper.substr(row, paper.find('\n', row + 1) - row).find("100.0 %"), std::string::npos) << paper;
+  EXPECT_EQ(paper.find("no_data"), std::string::npos) << paper;
+  const std::string segmented = run(with("segment", pair, with("--preset", {"paper"}, range))).out;
+  const std::size_t line = segmented.find("\nrefused: ");
+  ASSERT_NE(line, std::string::npos) << segmented;
+  EXPECT_NE(segmented.find("% of it too dark or without texture)", line), std::string::npos) << segmented;
+}
+
 TEST_F(Command, ThreadsAndTargetsChangeNoBitOfAResult) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("segment", pair, {"-o", path("one"), "--threads", "1", "--target", "scalar"})).code, 0);

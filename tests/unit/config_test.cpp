@@ -11,6 +11,18 @@
 namespace cairn {
 namespace {
 
+TEST(ReasonsInForce, AreThoseOfTheChecksThatAreSwitchedOn) {
+  constexpr Reject kAlways = Reject::border | Reject::left_right | Reject::below_ground;
+  EXPECT_EQ(reasons_in_force(Config{}), kAlways | Reject::speckle);
+  EXPECT_EQ(reasons_in_force(Config{}, true), Reject::no_data | Reject::below_ground | Reject::speckle);
+  Config config = Config::paper();
+  EXPECT_TRUE(has(reasons_in_force(config), Reject::no_texture));
+  set(config, "texture.threshold", "-1");
+  set(config, "ground.source", "off");
+  EXPECT_FALSE(has(reasons_in_force(config), Reject::no_texture));
+  EXPECT_FALSE(has(reasons_in_force(config), Reject::below_ground));
+}
+
 std::string message_of(const auto& call) {
   try {
     call();

@@ -138,6 +138,24 @@ TEST(DisparityPicture, HasALegendBesideThePicture) {
   EXPECT_GT(bright, 200);
 }
 
+TEST(DisparityPicture, ListsOnlyTheReasonsInForce) {
+  DisparityMap map = map_of({640, 480}, 20);
+  const auto has_colour = [&](Rgb colour, Reject in_force) {
+    const Image<Rgb> picture = draw_disparity(map, std::nullopt, in_force);
+    for (int y = 0; y < picture.height(); ++y) {
+      for (int x = 640; x < picture.width(); ++x)
+        if (picture(x, y) == colour) return true;
+    }
+    return false;
+  };
+  const auto flat = std::find_if(kReasons.begin(), kReasons.end(),
+                                 [](const Reason& reason) { return reason.bit == Reject::flat; });
+  EXPECT_TRUE(has_colour(flat->colour, Reject::flat | Reject::speckle));
+  EXPECT_FALSE(has_colour(flat->colour, Reject::speckle));
+  map.reject(3, 3) = Reject::flat;  // of an older result, whatever is in force now
+  EXPECT_TRUE(has_colour(flat->colour, Reject::speckle));
+}
+
 TEST(DisparityPicture, IsDrawnOfNothingButHolesAndOfOnePixel) {
   DisparityMap map = map_of({1, 1}, std::numeric_limits<float>::quiet_NaN());
   map.reject(0, 0) = Reject::border | Reject::no_texture;
