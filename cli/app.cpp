@@ -3,8 +3,16 @@
 #include "app.hpp"
 
 #include <string>
+#include <string_view>
 
 namespace cairn::cli {
+
+std::string examples_text(const Command& command) {
+  std::string text = "Examples:";
+  for (std::string_view rest = command.examples; !rest.empty(); rest.remove_prefix(rest.find('\n') + 1))
+    text += "\n  " + std::string(rest.substr(0, rest.find('\n')));
+  return text + "\n";
+}
 
 CommandLine declare_command_line() {
   CommandLine line;
@@ -13,11 +21,13 @@ CommandLine declare_command_line() {
   line.app->set_version_flag("--version", std::string("cairn ") + CAIRN_VERSION);
   line.app->require_subcommand(0, 1);
   line.app->footer(
-      "cairn COMMAND --help tells more of each.\n"
+      "cairn help COMMAND tells more of each, with examples.\n"
       "Exit codes: 0 done, 1 the work failed, 2 bad usage, file or option (one line on stderr).");
   for (const Command& command : kCommands) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.help);
+    sub->footer("");  // not the parent's
     line.commands.emplace_back(sub, command.declare(*sub));
+    sub->footer(examples_text(command) + (sub->get_footer().empty() ? "" : "\n" + sub->get_footer()));
   }
   return line;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,5 +17,11 @@ struct CommandLine {
   std::vector<std::pair<CLI::App*, Work>> commands;
 };
 CommandLine declare_command_line();
+
+/// "Examples:" and a line for each; what a command's own --help says comes behind it.
+std::string examples_text(const Command& command);
+
+/// The sentence for a command that does not exist; empty where there is one of this name.
+std::string unknown_command(const std::string& name);
 
 }  // namespace cairn::cli

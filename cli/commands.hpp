@@ -22,25 +22,49 @@ Work declare_rectify(CLI::App& app);
 Work declare_doctor(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
+Work declare_help(CLI::App& app);
 
 struct Command {
   const char* name;
   const char* help;
+  const char* examples;  // lines of the shell, which a test runs
   Work (*declare)(CLI::App&);
 };
 
 inline constexpr std::array kCommands{
-    Command{"segment", "find the objects of a stereo pair, or of a folder of pairs", declare_segment},
-    Command{"disparity", "match a stereo pair and check every match", declare_disparity},
-    Command{"evaluate", "compare results with the truth", declare_evaluate},
-    Command{"bench", "time each stage on a stereo pair, with OpenCV's matchers beside it", declare_bench},
-    Command{"tune", "search the options that do best on your own frames", declare_tune},
+    Command{"segment", "find the objects of a stereo pair, or of a folder of pairs",
+            "cairn segment left.png right.png --calib calib.txt -o result\n"
+            "cairn segment frames/ --html -o results\n"
+            "cairn segment left.png right.png --preset paper --set match.window_size=11\n",
+            declare_segment},
+    Command{"disparity", "match a stereo pair and check every match",
+            "cairn disparity left.png right.png -o disparity.pfm --view disparity.png\n"
+            "cairn disparity left.png right.png --calib calib.txt --ply cloud.ply\n",
+            declare_disparity},
+    Command{"evaluate", "compare results with the truth",
+            "cairn evaluate results truth\n"
+            "cairn evaluate results truth --html scores --json scores.json\n",
+            declare_evaluate},
+    Command{"bench", "time each stage on a stereo pair, with OpenCV's matchers beside it",
+            "cairn bench left.png right.png --frames 5\n"
+            "cairn bench --size 320x240 --frames 5 --preset paper\n",
+            declare_bench},
+    Command{"tune", "search the options that do best on your own frames",
+            "cairn tune frames/ --truth --budget 5s -o tuned.yaml\n", declare_tune},
     Command{"doctor", "tell what is wrong with a rig: order, rows, synchrony, range, exposure, focus",
+            "cairn doctor left.png right.png --calib calib.txt\n"
+            "cairn doctor frames/ --strict --json doctor.json\n",
             declare_doctor},
-    Command{"calibrate", "find both raw cameras from pictures of a checkerboard", declare_calibrate},
-    Command{"rectify", "turn raw pictures into those of a rectified pair", declare_rectify},
-    Command{"config", "show every option with its value, unit, range and meaning", declare_config},
-    Command{"info", "show version, instruction sets and threads", declare_info},
+    Command{"calibrate", "find both raw cameras from pictures of a checkerboard",
+            "cairn calibrate boards/ --board 9x6 --square 0.025 -o calib.yaml\n", declare_calibrate},
+    Command{"rectify", "turn raw pictures into those of a rectified pair",
+            "cairn rectify left.png right.png --calib calib.yaml --nearest 0.5 -o pair\n", declare_rectify},
+    Command{"config", "show every option with its value, unit, range and meaning",
+            "cairn config --preset paper\n"
+            "cairn config --changed --set objects.min_confidence=0.5 > mine.yaml\n",
+            declare_config},
+    Command{"info", "show version, instruction sets and threads", "cairn info\n", declare_info},
+    Command{"help", "show the help of a command", "cairn help segment\n", declare_help},
 };
 
 }  // namespace cairn::cli

@@ -67,9 +67,11 @@ std::vector<std::string> option_names(const CommandFacts& command) {
   return names;
 }
 
-bool takes_files(const CommandFacts& command) {
-  return std::any_of(command.options.begin(), command.options.end(),
-                     [](const OptionFacts& option) { return option.positional; });
+/// The first positional; nullptr where there is none.
+const OptionFacts* positional_of(const CommandFacts& command) {
+  const auto found = std::find_if(command.options.begin(), command.options.end(),
+                                  [](const OptionFacts& option) { return option.positional; });
+  return found == command.options.end() ? nullptr : &*found;
 }
 
 // ---- bash ----
@@ -222,7 +224,8 @@ std::string bash_completion(const std::vector<CommandFacts>& commands) {
   for (const CommandFacts& command : commands) {
     names +=
         "    " + shell_word(command.name) + ") echo " + shell_word(joined(option_names(command))) + " ;;\n";
-    if (takes_files(command)) positionals += "    " + shell_word(command.name) + ") echo @file ;;\n";
+    if (const OptionFacts* first = positional_of(command))
+      positionals += "    " + shell_word(command.name) + ") echo " + shell_word(bash_word(*first)) + " ;;\n";
     for (const OptionFacts& option : command.options) {
       const std::string word = bash_word(option);
       if (option.positional || word.empty()) continue;
@@ -282,8 +285,10 @@ std::string fish_completion(const std::vector<CommandFacts>& commands) {
     for (const OptionFacts& option : command.options) {
       if (!option.positional) all += fish_line(condition, option);
     }
-    if (!top && !takes_files(command)) {
-      all += "complete -c cairn -n " + shell_word(condition) + " -f\n";
+    const OptionFacts* first = positional_of(command);
+    if (!top && (first == nullptr || first->expects == Expects::one_of)) {
+      all += "complete -c cairn -n " + shell_word(condition) + " -f" +
+             (first == nullptr ? "" : " -a " + shell_word(joined(first->words))) + "\n";
     }
   }
   return all;

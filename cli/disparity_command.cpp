@@ -5,6 +5,7 @@
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
 #include <io/disparity_files.hpp>
+#include <io/overlay.hpp>
 #include <io/point_cloud.hpp>
 #include <iostream>
 
@@ -21,6 +22,7 @@ struct DisparityOptions {
   std::string output;
   std::string confidence;
   std::string ply;
+  std::string view;
 };
 
 /// Before any work: a name that cannot be written to should not cost the matching's time.
@@ -36,9 +38,9 @@ void check_output(const std::string& output, const MatchConfig& config) {
   }
 }
 
-void check_confidence(const std::string& output) {
+void check_png(const std::string& output, const char* what) {
   if (std::filesystem::path(output).extension().string() != ".png") {
-    throw Error(output + ": the confidence is written as .png");
+    throw Error(output + ": " + what + " is written as .png");
   }
 }
 
@@ -84,13 +86,19 @@ int estimate(const DisparityOptions& options) {
   const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
   std::cerr << remark_on_calibration(loaded);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
-  if (!options.confidence.empty()) check_confidence(options.confidence);
+  if (!options.confidence.empty()) check_png(options.confidence, "the confidence");
+  if (!options.view.empty()) check_png(options.view, "the picture of the disparity");
   if (!options.ply.empty()) check_ply(options.ply, loaded);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(
       StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
   if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
   if (!options.confidence.empty()) io::save_confidence(options.confidence, scene.confidence);
+  if (!options.view.empty()) {
+    const Image<Rgb> picture =
+        io::draw_disparity(scene.disparity, loaded.rig, reasons_in_force(loaded.config));
+    io::save_png(options.view, picture.view());
+  }
   if (!options.ply.empty()) {
     io::save_ply(options.ply, loaded.left.gray, loaded.left.rgb, scene.disparity.disparity_px, {},
                  *loaded.rig);
@@ -110,6 +118,9 @@ Work declare_disparity(CLI::App& app) {
       ->type_name("FILE");
   app.add_option("--confidence", options->confidence,
                  "file.png: 8 bits, how likely each disparity is within 1 px x 255, 0 = hole")
+      ->type_name("FILE");
+  app.add_option("--view", options->view,
+                 "file.png: the disparity in colours to look at, holes in those of their reasons, a legend")
       ->type_name("FILE");
   app.add_option("--ply", options->ply, "file.ply: coloured points in metres; needs a calibration")
       ->type_name("FILE");

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "facts.hpp"
 
+#include <algorithm>
 #include <cairn/core/target.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <cairn/tuning/tunable.hpp>
 #include <string_view>
 
 namespace cairn::cli {
@@ -12,6 +14,23 @@ namespace {
 std::vector<std::string> target_names() {
   std::vector<std::string> names{"best"};
   for (const Target target : compiled_targets()) names.emplace_back(name(target));
+  return names;
+}
+
+std::vector<std::string> tunable_names() {
+  std::vector<std::string> names;
+  for (const Tunable& tunable : tunables()) {
+    const std::string section = tunable.name.substr(0, tunable.name.find('.')) + ".*";
+    if (names.empty() || std::find(names.begin(), names.end(), section) == names.end())
+      names.push_back(section);
+    names.push_back(tunable.name);
+  }
+  return names;
+}
+
+std::vector<std::string> command_names() {
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) names.emplace_back(command.name);
   return names;
 }
 
@@ -67,17 +86,19 @@ OptionFacts facts_of(const CLI::Option& option) {
   // Their names are the library's, and --help tells them in words.
   if (facts.names.back() == "--preset") facts.words = preset_names();
   if (facts.names.back() == "--target") facts.words = target_names();
+  if (facts.names.back() == "--options") facts.words = tunable_names();
+  if (facts.names.back() == "COMMAND") facts.words = command_names();
   facts.expects = expects(facts);
   return facts;
 }
 
 CommandFacts command_facts(const CLI::App& app) {
-  CommandFacts facts{app.get_name(), app.get_description(), app.get_footer(), {}};
-  // CLI11 hands the parent's footer down.
-  if (app.get_parent() == nullptr) {
-    facts.name.clear();
-  } else if (facts.footer == app.get_parent()->get_footer()) {
-    facts.footer.clear();
+  CommandFacts facts{app.get_name(), app.get_description(), {}, app.get_footer(), {}};
+  if (app.get_parent() == nullptr) facts.name.clear();
+  for (const Command& command : kCommands) {
+    if (facts.name != command.name) continue;
+    facts.examples = command.examples;
+    facts.footer.erase(0, std::min(facts.footer.size(), examples_text(command).size() + 1));
   }
   for (const CLI::Option* option : app.get_options()) facts.options.push_back(facts_of(*option));
   return facts;

@@ -30,7 +30,8 @@ struct OptionFacts {
 struct CommandFacts {
   std::string name;  // empty: cairn itself
   std::string help;
-  std::string footer;  // of its own; may be empty
+  std::string examples;  // lines of the shell; may be empty
+  std::string footer;    // of its own; may be empty
   std::vector<OptionFacts> options;
 };
 

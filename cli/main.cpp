@@ -29,17 +29,6 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
   return close.empty() ? "" : ", did you mean '" + close + "'?";
 }
 
-/// The sentence for a command that does not exist; empty where the first word is one, or an option.
-std::string unknown_command(const std::vector<std::string>& words) {
-  if (words.empty() || words.front().starts_with('-')) return {};
-  std::vector<std::string> names;
-  names.reserve(kCommands.size());
-  for (const Command& command : kCommands) names.emplace_back(command.name);
-  if (std::find(names.begin(), names.end(), words.front()) != names.end()) return {};
-  const std::string close = suggestion(words.front(), names);
-  return "unknown command '" + words.front() + "'" + (close.empty() ? "; cairn --help lists them" : close);
-}
-
 /// The sentence for the first option that `app` does not have; empty where all are known.
 std::string unknown_option(const CLI::App& app, const std::vector<std::string>& words) {
   std::vector<std::string> known;
@@ -66,8 +55,10 @@ int run(int argc, const char* const* argv) {
   const CommandLine line = declare_command_line();
   CLI::App& app = *line.app;
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  if (const std::string sentence = unknown_command(words); !sentence.empty())
-    return complain(sentence, kBadUsage);
+  if (!words.empty() && !words.front().starts_with('-')) {
+    const std::string sentence = unknown_command(words.front());
+    if (!sentence.empty()) return complain(sentence, kBadUsage);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

@@ -100,6 +100,7 @@ std::string command_page(const CommandFacts& command, const std::vector<CommandF
   }
   page += ".SH OPTIONS\n" + entries(command, false);
   if (!command.footer.empty()) page += ".SH NOTES\n" + as_lines(command.footer);
+  if (!command.examples.empty()) page += ".SH EXAMPLES\n.nf\n" + roff(command.examples) + ".fi\n";
   return page + see_also(commands, name);
 }
 

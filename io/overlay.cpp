@@ -124,8 +124,68 @@ Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor)
   return large;
 }
 
+/// What a picture's levels are multiplied by so that its brightest hundredth is bright.
+float brightening(View<const Gray> left) {
+  constexpr int kBright = 200;
+  constexpr float kMost = 8;
+  std::array<std::int64_t, 256> counts{};
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x) ++counts[left(x, y)];
+  }
+  int level = kBright;
+  std::int64_t above = 0;
+  for (int i = 255; i > 0; --i) {
+    above += counts[static_cast<std::size_t>(i)];
+    if (100 * above < left.size().area()) continue;
+    level = i;
+    break;
+  }
+  constexpr int kDim = 128;
+  return level < kDim ? std::min(static_cast<float>(kBright) / static_cast<float>(level), kMost) : 1.0F;
+}
+
+void brighten(Image<Rgb>& canvas, float factor) {
+  const auto times = [&](std::uint8_t level) {
+    return static_cast<std::uint8_t>(std::lround(std::min(255.0F, factor * static_cast<float>(level))));
+  };
+  for (int y = 0; y < canvas.height(); ++y) {
+    for (int x = 0; x < canvas.width(); ++x) {
+      Rgb& pixel = canvas(x, y);
+      pixel = {times(pixel.r), times(pixel.g), times(pixel.b)};
+    }
+  }
+}
+
+constexpr Rgb kFloorTint{90, 150, 190};
+constexpr int kStripHeight = 24;
+
+/// The picture with a strip below it that says what the colours mean.
+Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float brightened) {
+  constexpr double kScale = 0.42;
+  constexpr int kGap = 18;
+  Image<Rgb> whole({picture.width(), picture.height() + kStripHeight}, Rgb{15, 15, 15}, {});
+  for (int y = 0; y < picture.height(); ++y) std::copy_n(picture.row(y), picture.width(), whole.row(y));
+  const cv::Mat canvas = matrix(whole);
+  const Rgb white{235, 235, 235};
+  const int base = whole.height() - 8;
+  int x = 8;
+  const auto entry = [&](const std::optional<Rgb>& chip, const std::string& text) {
+    if (chip) {
+      cv::rectangle(canvas, cv::Rect(x, base - 10, 14, 12), scalar(*chip), cv::FILLED);
+      x += 20;
+    }
+    write(canvas, text, {x, base}, kScale, white);
+    int below = 0;
+    x += cv::getTextSize(text, kFont, kScale, 1, &below).width + kGap;
+  };
+  entry(object_colour(ObjectId{1}), std::string("object, id: ") + (in_metres ? "distance" : "disparity"));
+  if (has_floor) entry(kFloorTint, "floor");
+  entry(Rgb{110, 110, 110}, "no object");
+  if (brightened > 1) entry(std::nullopt, "brightened " + number_text("%.1f x", brightened));
+  return whole;
+}
+
 void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> floor, int factor) {
-  constexpr Rgb kFloor{90, 150, 190};
   const View<const ObjectId> labels = objects.labels;
   const auto label_at = [&](int x, int y) {
     return labels.contains(x / factor, y / factor) && x >= 0 && y >= 0 ? labels(x / factor, y / factor)
@@ -138,7 +198,7 @@ void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> f
       if (id == ObjectId::none) {
         const auto grey = static_cast<std::uint8_t>((77 * pixel.r + 150 * pixel.g + 29 * pixel.b + 128) >> 8);
         pixel = mixed(mixed(pixel, {grey, grey, grey}, 0.6F), {0, 0, 0}, 0.25F);
-        if (!floor.empty() && floor(x / factor, y / factor) != 0) pixel = mixed(pixel, kFloor, 0.25F);
+        if (!floor.empty() && floor(x / factor, y / factor) != 0) pixel = mixed(pixel, kFloorTint, 0.25F);
         continue;
       }
       const bool outline = label_at(x - 1, y) != id || label_at(x + 1, y) != id || label_at(x, y - 1) != id ||
@@ -301,6 +361,8 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
                         View<const std::uint8_t> floor) {
   const int factor = enlargement(left.size());
   Image<Rgb> canvas = enlarged(left, left_rgb, factor);
+  const float brightened = brightening(left);
+  brighten(canvas, brightened);
   tint(canvas, objects, floor, factor);
   std::vector<Label> names;
   for (const Object& object : objects.list) {
@@ -314,7 +376,10 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
     names.push_back(label_at(middle, std::to_string(number(object.id)) + ": " + distance));
   }
   write_labels(matrix(canvas), names);
-  return canvas;
+  const bool in_metres = std::any_of(objects.list.begin(), objects.list.end(), [](const Object& object) {
+    return object.position_in_camera_m.has_value();
+  });
+  return with_legend(std::move(canvas), in_metres, !floor.empty(), brightened);
 }
 
 Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig, Reject in_force) {

@@ -16,7 +16,7 @@ namespace cairn::io {
 
 /// The left picture, its background faded: every object tinted, outlined and labelled with its id and
 /// distance (in m; without a calibration its disparity in px), the floor (non-zero; may be empty) faintly
-/// tinted. `left_rgb` may be empty.
+/// tinted; below it a legend. A dim picture is brightened, up to eightfold. `left_rgb` may be empty.
 Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const Objects& objects,
                         View<const std::uint8_t> floor);
 

@@ -392,8 +392,11 @@ void bind_frame_class(py::module_& m) {
       .def(
           "disparity_view",
           [](const PyFrame& self) {
-            return array_from(
-                released([&] { return io::draw_disparity(self.frame.disparity, self.provenance.rig); }));
+            return array_from(released([&] {
+              return io::draw_disparity(
+                  self.frame.disparity, self.provenance.rig,
+                  reasons_in_force(self.provenance.config, self.provenance.external_disparity));
+            }));
           },
           "Disparity as colour, holes in colours that tell the reason, with a legend: (h, w, 3) uint8, RGB.")
       .def(

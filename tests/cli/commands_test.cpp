@@ -24,7 +24,8 @@ TEST_F(Command, ShowsHelpForEveryCommandAndForNone) {
                                                     {"calibrate", "--help"},
                                                     {"rectify", "--help"},
                                                     {"config", "--help"},
-                                                    {"info", "--help"}}) {
+                                                    {"info", "--help"},
+                                                    {"help", "--help"}}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 0);
     EXPECT_EQ(outcome.err, "");
@@ -147,6 +148,28 @@ TEST_F(Command, DisparityWritesItsConfidence) {
   EXPECT_EQ(confidence.ids(0, 36), 0);
   EXPECT_NE(run(with("disparity", pair, {"--confidence", path("c.pfm")})).err.find(".png"),
             std::string::npos);
+}
+
+TEST_F(Command, DisparityDrawsThePictureThatAResultHasToo) {
+  const auto pair = pair_in("pair");
+  ASSERT_EQ(run(with("disparity", pair, {"--view", path("view.png")})).code, 0);
+  ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);
+  EXPECT_EQ(content(at("view.png")), content(at("out/disparity_view.png")));
+  refuses(with("disparity", pair, {"--view", path("view.jpg")}), {"view.jpg", ".png"});
+}
+
+TEST_F(Command, HelpAnswersLikeTheOptionAndNamesTheNearestCommand) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "segment"}).out, run({"segment", "--help"}).out);
+  refuses({"help", "segmnt"}, {"unknown command 'segmnt'", "did you mean 'segment'?"});
+}
+
+TEST_F(Command, EveryHelpShowsExamples) {
+  for (const char* name : {"segment", "disparity", "evaluate", "bench", "tune", "doctor", "calibrate",
+                           "rectify", "config", "info"}) {
+    const std::string help = run({"help", name}).out;
+    EXPECT_NE(help.find("Examples:\n  cairn " + std::string(name)), std::string::npos) << help;
+  }
 }
 
 TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {

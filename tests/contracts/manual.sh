@@ -23,6 +23,7 @@ for name in "" "${commands[@]}"; do
   warnings=$(groff -k -ww -man -Tutf8 "$page" 2>&1 >/dev/null)
   [[ -z $warnings ]] || complain "$page: $warnings"
   text=$(page_as_text "$page")
+  [[ -z $name || $text == *EXAMPLES*"cairn $name"* ]] || complain "$page has no example"
   while read -r option; do
     [[ $text == *"$option"* ]] || complain "$page does not tell of $option"
   done < <("$cairn" ${name:+"$name"} --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+')
@@ -62,6 +63,8 @@ expect "bash: a folder" "some folder" "$(bash_offers cairn segment left.png -o '
 expect "bash: an option's name" "match.method=" "$(bash_offers cairn segment --set match.me)"
 expect "bash: an option's value" "semi_global window" "$(bash_offers cairn segment --set match.method =)"
 expect "bash: a started value" "window" "$(bash_offers cairn segment --set match.method = w)"
+expect "bash: a command's help" "config" "$(bash_offers cairn help conf)"
+expect "bash: what may be tuned" "superpixels.* superpixels.count" "$(bash_offers cairn tune --options superp | tr ' ' '\n' | sort | head -2 | paste -sd' ')"
 expect "bash: a number" "" "$(bash_offers cairn segment --threads '')"
 expect "bash: commands" "$(printf '%s\n' "${commands[@]}" | sort | paste -sd' ')" \
   "$(bash_offers cairn '' | tr ' ' '\n' | grep -v '^-' | paste -sd' ')"

@@ -10,6 +10,7 @@ A fenced block of a page is
 unless one of these stands in the line before it:
   <!-- code: ... -->, <!-- output: ... -->   it is generated; docs/update.sh --check looks after it
   <!-- not run: WHY -->                      it is let alone
+The examples in the commands' help are run as well.
 That folder holds left.png, right.png and calib.txt of a sample, frames/ with all samples and truth/, the same. A page
 that speaks of boards/ gets OpenCV's checkerboards there, and the first of them as left.png and right.png; where
 Debian's opencv-doc is not installed, what it shows is not run.
@@ -111,6 +112,24 @@ def check_declarations(block, compiler, source):
     return f"{block.place}: {shown} declarations shown, {known} of them in the headers\n{block.text}\n{run.stderr}"
 
 
+def run_examples(build, source, environment):
+    """The lines below "Examples:" of every command's help, one after the other in one folder."""
+    text = subprocess.run([build / "cairn", "--help"], capture_output=True, text=True).stdout
+    names = re.findall(r"^  (\w+) ", text[text.index("Subcommands:"):], re.M)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        scene(source, folder)
+        for name in names:
+            help_text = subprocess.run([build / "cairn", "help", name], capture_output=True, text=True).stdout
+            lines = re.findall(r"^  (cairn .*)$", help_text[help_text.index("Examples:"):], re.M)
+            for number, line in enumerate(lines, 1):
+                if name in ("calibrate", "rectify", "bench"):  # on pages: boards are not everywhere, bench takes long
+                    continue
+                block = Block(f"cairn help {name}", number, "sh", "")
+                block.text = line + "\n"
+                yield run_shell(block, folder, environment)
+
+
 def main(source, build, compiler):
     environment = {**os.environ, "PATH": f"{build}:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python"}
     has_module = any((build / "python/cairn").glob("*.so"))
@@ -133,6 +152,7 @@ def main(source, build, compiler):
         failures += [r for r in results if r]
         for block in checked:
             counts[block.language] += block.language != "python" or has_module
+    failures += [r for r in run_examples(build, source, environment) if r]
     print("\n".join(failures))
     print(", ".join(f"{n} blocks of {language}" for language, n in counts.items()),
           "" if has_module else "(the Python module is not built)")

@@ -33,8 +33,9 @@ int distance(Rgb a, Rgb b) {
 TEST(ObjectPicture, IsTheLeftPictureEnlargedByAWholeFactorWhereItIsSmall) {
   const Image<Gray> small({160, 120}, Gray{100}, {});
   const Image<Gray> large({1280, 960}, Gray{100}, {});
-  EXPECT_EQ(draw_objects(small, {}, one_object({160, 120}, {10, 10, 60, 60}), {}).size(), (Size{640, 480}));
-  EXPECT_EQ(draw_objects(large, {}, one_object({1280, 960}, {10, 10, 60, 60}), {}).size(), (Size{1280, 960}));
+  EXPECT_EQ(draw_objects(small, {}, one_object({160, 120}, {10, 10, 60, 60}), {}).size(),
+            (Size{640, 504}));  // a legend of 24 px
+  EXPECT_EQ(draw_objects(large, {}, one_object({1280, 960}, {10, 10, 60, 60}), {}).size(), (Size{1280, 984}));
 }
 
 TEST(ObjectPicture, TintsObjectsAndFloorAndLeavesTheRestGrey) {
@@ -49,6 +50,38 @@ TEST(ObjectPicture, TintsObjectsAndFloorAndLeavesTheRestGrey) {
   EXPECT_GT(distance(picture(120, 120), background), 60);  // in the object, away from its label
   EXPECT_GT(distance(picture(10, 450), background), 10);
   EXPECT_LT(distance(picture(10, 450), background), distance(picture(120, 120), background));
+}
+
+TEST(ObjectPicture, BrightensADimSceneAndNoOther) {
+  const Size size{640, 480};
+  const auto background = [&](Gray level) {
+    const Image<Gray> left(size, level, {});
+    return draw_objects(left, {}, one_object(size, {100, 100, 200, 200}), {})(10, 10).g;
+  };
+  EXPECT_EQ(background(220), 165);  // a quarter darker, as all that is no object
+  EXPECT_EQ(background(25), 150);   // eight times as bright before
+  EXPECT_EQ(background(5), 30);     // and no more than that
+  EXPECT_EQ(background(0), 0);
+}
+
+TEST(ObjectPicture, SaysBelowWhatItsColoursMean) {
+  const Size size{640, 480};
+  const Objects objects = one_object(size, {100, 100, 200, 200});
+  const Image<std::uint8_t> floor(size, 255, {});
+  const Image<Gray> left(size, Gray{120}, {});
+  const auto chips = [&](const Image<Rgb>& picture) {
+    std::set<std::array<std::uint8_t, 3>> colours;
+    for (int x = 0; x < picture.width(); ++x) {
+      const Rgb c = picture(x, picture.height() - 12);
+      colours.insert({c.r, c.g, c.b});
+    }
+    return colours;
+  };
+  const Rgb object = object_colour(ObjectId{1});
+  const auto with_floor = chips(draw_objects(left, {}, objects, floor));
+  EXPECT_EQ(with_floor.count({object.r, object.g, object.b}), 1U);
+  EXPECT_EQ(with_floor.count({90, 150, 190}), 1U);
+  EXPECT_EQ(chips(draw_objects(left, {}, objects, {})).count({90, 150, 190}), 0U);
 }
 
 TEST(ObjectPicture, LabelsEachObject) {
