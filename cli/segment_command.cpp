@@ -4,6 +4,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/diagnosis/diagnose.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cmath>
 #include <filesystem>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
@@ -29,6 +30,8 @@ struct SegmentOptions {
   std::string output;
   bool json = false;
   bool ply = false;
+  bool depth = false;
+  bool grid = false;
   bool html = false;
 };
 
@@ -55,15 +58,42 @@ std::string point_text(const std::optional<Vec3>& v) {
          text_of("%.2f", double(v->z));
 }
 
+std::string interval_text(const std::optional<Interval>& i) {
+  if (!i) return {};
+  return text_of("%.2f", double(i->low)) + " … " +
+         (std::isinf(i->high) ? "∞" : text_of("%.2f", double(i->high)));
+}
+
+/// "3 obstacles left out: 2 background, 1 low confidence; the nearest at …"; empty where there are none.
+std::string left_out_text(const std::vector<cairn::LeftOut>& left_out) {
+  if (left_out.empty()) return {};
+  std::string text = std::to_string(left_out.size()) +
+                     (left_out.size() == 1 ? " obstacle is no object:" : " obstacles are no objects:");
+  const char* between = " ";
+  for (const auto& reason : kLeftOutReasons) {
+    const auto count = std::count_if(left_out.begin(), left_out.end(),
+                                     [&](const cairn::LeftOut& left) { return left.reason == reason.value; });
+    if (count == 0) continue;
+    text += between + std::to_string(count) + " " + std::string(reason.name);
+    between = ", ";
+  }
+  const cairn::LeftOut& nearest = left_out.front();
+  text += "; the nearest, " + std::to_string(nearest.pixel_count) + " px, ";
+  text += nearest.position_in_camera_m ? text_of("%.2f m away", double(nearest.position_in_camera_m->z))
+                                       : text_of("at %.1f px of disparity", double(nearest.disparity_px));
+  return text + " (objects.json lists them)\n";
+}
+
 std::string object_table(const std::vector<Object>& objects) {
-  Table table({"id", "distance_m", "disparity_px", "position_m (x, y, z)", "extent_m (x, y, z)", "area_px",
-               "box (x, y, w, h)", "confidence"});
+  Table table({"id", "distance_m", "95 % within", "disparity_px", "position_m (x, y, z)",
+               "extent_m (x, y, z)", "area_px", "box (x, y, w, h)", "confidence"});
   for (const Object& o : objects) {
     const Rect b = o.box_px;
     table.add({std::to_string(number(o.id)),
                o.position_in_camera_m ? text_of("%.2f", double(o.position_in_camera_m->z)) : "",
-               text_of("%.1f", double(o.disparity_px)), point_text(o.position_in_camera_m),
-               point_text(o.extent_in_camera_m), std::to_string(o.pixel_count),
+               interval_text(o.depth_interval_m), text_of("%.1f", double(o.disparity_px)),
+               point_text(o.position_in_camera_m), point_text(o.extent_in_camera_m),
+               std::to_string(o.pixel_count),
                std::to_string(b.x) + ", " + std::to_string(b.y) + ", " + std::to_string(b.width) + ", " +
                    std::to_string(b.height),
                text_of("%.2f", double(o.confidence))});
@@ -96,7 +126,7 @@ std::string summary(const Totals& frame) {
 }
 
 struct Report {
-  Totals totals;           // of this frame
+  Totals totals;       // of this frame
   std::string out;     // for stdout
   std::string note;    // for stderr; mostly empty
   std::string remark;  // the same, but once for all frames that have it
@@ -129,8 +159,8 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   return io::encode_frame(shown);
 }
 
-std::string no_metres(const io::FrameFiles& files) {
-  return "--ply: a point cloud is in metres, and " + files.left.string() +
+std::string no_metres(const std::string& flag, const io::FrameFiles& files) {
+  return flag + ": what it writes is in metres, and " + files.left.string() +
          " has no calibration with a baseline; give one with --calib";
 }
 
@@ -142,7 +172,10 @@ void remove_older_page(const fs::path& folder) {
 
 LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, const Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
-  if (options.ply && !loaded.rig) throw Error(no_metres(files));
+  for (const auto& [asked, name] :
+       {std::pair{options.ply, "--ply"}, {options.depth, "--depth"}, {options.grid, "--grid"}}) {
+    if (asked && !loaded.rig) throw Error(no_metres(name, files));
+  }
   return loaded;
 }
 
@@ -167,7 +200,7 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
   if (!folder.empty()) {
     remove_older_page(options.output);
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
-                     {.point_cloud = options.ply});
+                     {.point_cloud = options.ply, .depth = options.depth, .grid = options.grid});
     if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
       report.note = "cairn: " + (folder / "disparity.pfm").string() +
                     ": written instead of disparity.png, since 16 bits cannot hold disparities below 0 or "
@@ -187,6 +220,7 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
       refusals_line(count_refusals(frame.disparity, loaded.left.gray, in_force, exec));
   if (!refused.empty()) report.out += refused + "\n";
   if (!frame.objects.list.empty()) report.out += object_table(frame.objects.list);
+  report.out += left_out_text(frame.left_out);
   if (one_of_many) report.out += "\n";
   return report;
 }
@@ -201,7 +235,10 @@ bool is_folder_of_frames(const fs::path& input, const std::vector<io::FrameFiles
 /// Files that are asked for without a folder for them.
 void require_output(const SegmentOptions& options) {
   if (!options.output.empty()) return;
-  for (const auto& [asked, name] : {std::pair{options.ply, "--ply"}, {options.html, "--html"}}) {
+  for (const auto& [asked, name] : {std::pair{options.ply, "--ply"},
+                                    {options.depth, "--depth"},
+                                    {options.grid, "--grid"},
+                                    {options.html, "--html"}}) {
     if (asked) throw Error(std::string(name) + ": needs -o DIR, the folder to write into");
   }
 }
@@ -336,6 +373,11 @@ Work declare_segment(CLI::App& app) {
   app.add_flag(
       "--ply", options->ply,
       "also write cloud.ply: the coloured points in metres, each with its object; needs a calibration");
+  app.add_flag("--depth", options->depth,
+               "also write depth.png (16 bits, mm, 0 = none) and depth.npy (m); needs a calibration");
+  app.add_flag("--grid", options->grid,
+               "also write grid.pgm and grid.yaml: the obstacles on the floor as a map for ROS; needs a "
+               "calibration, and a floor that was found");
   app.add_flag("--html", options->html,
                "also write segment.html into DIR: one page of all frames, to look at in a browser");
   app.footer(
