@@ -22,7 +22,7 @@ namespace {
 constexpr float kStep = 1.0F;  // px
 
 // ln σ = kBias + kSpread · ln(interquartile range + 0.1 px) + kSeen · valid share, fitted to how far the
-// median disparities of found objects were from the true ones: fitting/fit_distances.py.
+// median disparities of found objects were from the true ones: ./dev bench geometry --fit.
 constexpr double kBias = 1.58;
 constexpr double kSpread = 0.441;
 constexpr double kSeen = -2.693;
