@@ -75,13 +75,39 @@ def found_objects(truth, frame):
                 yield found, true & ~np.isnan(truth.disparity)
 
 
+def approached(truth):
+    """What a camera sees that comes near: of each object that fills a hundredth of the picture the window about it of
+    which it fills two fifths, where that is 140 px wide and more. The share of its pixels that are objects or obstacles."""
+    height, width = truth.objects.shape
+    for k in np.unique(truth.objects):
+        whole = truth.objects == k
+        if k in (0, 255) or whole.sum() < 0.01 * whole.size:
+            continue
+        rows, columns = np.nonzero(whole)
+        for scale in np.arange(1, 140 / width, -0.02):
+            w, h = int(width * scale), int(height * scale)
+            x = int(np.clip((columns.min() + columns.max()) // 2 - w // 2, 0, width - w))
+            y = int(np.clip((rows.min() + rows.max()) // 2 - h // 2, 0, height - h))
+            window = np.s_[y : y + h, x : x + w]
+            if whole[window].mean() >= 0.4:
+                break
+        else:
+            continue
+        rig = cairn.Rig(focal_px=truth.rig.focal_px, cx_px=truth.rig.cx_px - x, cy_px=truth.rig.cy_px - y, baseline_m=truth.rig.baseline_m)
+        range_px = min(int(np.nanmax(truth.disparity)) + 4, w)
+        pair = [np.ascontiguousarray(picture[window]) for picture in (truth.left, truth.right)]
+        frame = cairn.segment(*pair, rig, match={"num_disparities": range_px})
+        yield (frame.space[whole[window]] == 255).mean()
+
+
 def measure(folders):
     pixels = dict.fromkeys(["floor", "called_floor", "floor_right", "obstacle_called", "obstacle_right", "object", "object_obstacle", "object_floor"], 0)
-    rows, frames, grounds, right_grounds = [], 0, 0, 0
+    rows, near_by, frames, grounds, right_grounds = [], [], 0, 0, 0
     for folder in folders:
         truth = Truth(folder)
         frame = cairn.segment(truth.left, truth.right, truth.calibration)
         frames += 1
+        near_by += approached(truth)
         if frame.ground.plane:
             grounds += 1
             a, b, c = frame.ground.plane
@@ -115,6 +141,8 @@ def measure(folders):
         "floor, precision / recall": f"{share('floor_right', 'called_floor'):.1f} / {share('floor_right', 'floor'):.1f} %",
         "obstacles, precision": f"{share('obstacle_right', 'obstacle_called'):.1f} %",
         "pixels of objects that are obstacles / floor": f"{share('object_obstacle', 'object'):.1f} / {share('object_floor', 'object'):.1f} %",
+        "objects that fill two fifths of a window": f"{len(near_by)}",
+        "… of them obstacles by 95 % of their pixels": f"{100 * np.mean(np.array(near_by) >= 0.95):.0f} %",
         "objects found": f"{len(rows)}",
         "depth at 2–4 m, objects": f"{len(near)}",
         "… error, median / 90th percentile": f"{100 * np.median(near):.1f} / {100 * np.quantile(near, 0.9):.1f} cm",

@@ -87,6 +87,26 @@ Objects located(const Config&, const Exec& exec, const Objects& objects, const D
   });
 }
 
+ArrayOf<Space> space_of(const Config& config, const Exec& exec, const Objects& objects,
+                        const DisparityArgument& disparity, const FloatsArgument& confidence,
+                        const Ground& ground, const Background& background, const Superpixels& superpixels,
+                        const FloatsArgument& seen_px, const RigArgument& rig) {
+  const auto known = rig_of(rig);
+  const DisparityInput map(disparity, "disparity", exec);
+  const BorrowedDisparities sure(confidence, "confidence");
+  const BorrowedDisparities seen(seen_px, "seen_px");
+  const Size size = objects.labels.size();
+  expect_size(map.size(), "disparity", size, "objects");
+  expect_size(sure.size(), "confidence", size, "objects");
+  expect_size(superpixels.labels.size(), "superpixels", size, "objects");
+  expect_size(seen.size(), "seen_px", size, "objects");
+  return array_from(released([&] {
+    const SpaceCues cues{map.map(),  seen.view(),        sure.view(),   ground,
+                         background, superpixels.labels, objects.labels};
+    return label_space(cues, known, config.ground, exec);
+  }));
+}
+
 // ---- what the classes show ----
 
 std::string decimal(const char* format, double value) {
@@ -354,6 +374,11 @@ void bind_objects(py::module_& m) {
       "Where objects are: the uncertainty of their disparity and, with a rig, position, interval of depth, "
       "extent, and with a ground their box on the floor. Returns Objects.",
       &located, "objects"_a, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "label_space", {"ground"},
+            "What each pixel shows: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. seen_px as "
+            "floor_under_reflections() gives it.",
+            &space_of, "objects"_a, "disparity"_a, "confidence"_a, "ground"_a, "background"_a,
+            "superpixels"_a, "seen_px"_a, "rig"_a = py::none(), py::kw_only());
   def_stage(m, "measure_chosen", {},
             "Measures regions that were chosen to be objects: measure() of C++ with scores. chosen: (H, W) "
             "integers, the labels of groups_of(); scores: for each region its confidence, 0 to 1, as "

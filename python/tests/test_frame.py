@@ -14,10 +14,10 @@ from conftest import same
 STAGES = """correct_epipolar match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine
     noise_sigma find_evidence fit_ground likely_ground reject_below_ground reject_speckles label_floor fit_background
     floor_under_reflections cut_superpixels grow_merge_tree choose_objects superpixels groups measure
-    estimate_confidence""".split()
+    locate estimate_confidence label_space left_out_of""".split()
 PAPER_STAGES = """match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
-    estimate_confidence""".split()
+    locate estimate_confidence label_space left_out_of""".split()
 
 
 def test_objects_tell_what_they_are(sample):
@@ -43,6 +43,52 @@ def test_objects_are_a_sequence(sample):
     with pytest.raises(IndexError):
         objects[2]
     assert same(objects.labels, sample.frame.objects_map)
+
+
+def test_distances_have_an_interval_and_boxes_stand_on_the_floor(sample):
+    frame = sample.frame
+    nearest = frame.objects[0]
+    low, high = nearest.depth_interval_m
+    assert low < nearest.distance_m < high and nearest.disparity_sigma_px > 0
+    box = nearest.box_on_floor
+    forward, left, up = box.centre_in_floor_m
+    assert forward == pytest.approx(nearest.distance_m, abs=0.4) and left > 0 and 0 < up < 1
+    assert box.size_m[0] >= box.size_m[1] > 0 and box.size_m[2] == pytest.approx(0.8, abs=0.15)
+    assert (np.linalg.eigvalsh(box.centre_covariance_m2) > 0).all() and repr(box).startswith("<cairn.FloorBox 0.")
+    floor = frame.floor_frame
+    assert cairn.floor_frame(frame.ground.plane, frame.rig).camera_height_m == floor.camera_height_m
+    on_floor = np.array(floor.floor_from_camera) @ [*nearest.position_in_camera_m, 1]
+    assert on_floor[:2] == pytest.approx(box.centre_in_floor_m[:2], abs=0.4)
+
+
+def test_what_stands_in_the_way_is_known_object_or_not(sample):
+    frame = sample.frame
+    assert set(np.unique(frame.space)) == {0, 128, 255}
+    assert (frame.space[frame.objects_map > 0] == 255).all() and same(frame.floor, (frame.space == 128).astype(np.uint8) * 255)
+    reasons = {left.reason for left in frame.left_out}
+    assert reasons == {"background", "too small", "low confidence"} and repr(frame.left_out[0]).startswith("<cairn.LeftOut ")
+    scan, grid = frame.scan(), frame.grid()
+    seen = scan.ranges_m[np.isfinite(scan.ranges_m)]
+    assert len(scan) == len(scan.ranges_m) and 1 < seen.min() < frame.objects[0].distance_m
+    assert set(np.unique(grid.cells)) == {-1, 0, 100} and grid.cells.shape == (240, 120)
+    without = cairn.segment(sample.left, sample.right, match={"num_disparities": 32})
+    assert without.scan() is None and without.grid() is None and without.floor_frame is None
+
+
+def test_depth_and_points_are_arrays(sample):
+    frame = sample.frame
+    depth, points = frame.depth_m(), frame.points()
+    rig = frame.rig
+    assert depth.dtype == np.float32 and (np.isnan(depth) == np.isnan(frame.disparity)).all()
+    known = ~np.isnan(depth)
+    assert depth[known] == pytest.approx(rig.focal_px * rig.baseline_m / (frame.disparity[known] + rig.doffs_px), rel=1e-5)
+    assert same(points[..., 2].copy(), depth)
+    own = frame.points(frame.objects[0])
+    assert own.shape == ((known & (frame.objects_map == 1)).sum(), 3) and same(own, frame.points(1))
+    with pytest.raises(cairn.Error, match="object: found id 3, expected 1 … 2"):
+        frame.points(3)
+    with pytest.raises(cairn.Error, match="a frame without a rig has no metres"):
+        cairn.segment(sample.left, sample.right, match={"num_disparities": 32}).depth_m()
 
 
 def test_without_a_rig_there_are_no_metres(sample):

@@ -40,7 +40,8 @@ def by_the_paper(sample):
     by_intensity = cairn.segment_intensity(sample.left, config=config)
     fusion = cairn.fuse(by_intensity, by_disparity)
     noise = cairn.noise_sigma(sample.left)
-    objects = cairn.measure(fusion.labels, fusion.is_floor, disparity, sample.left, noise, rig, config=config)
+    objects = cairn.measure(fusion.labels, fusion.is_floor, disparity, sample.left, noise, config=config)
+    objects = cairn.locate(objects, disparity, ground, rig)
     confidence = cairn.estimate_confidence(matches, disparity, config=config)
     return disparity, confidence, {"by_intensity": by_intensity, "by_disparity": by_disparity, "fusion": fusion}, objects
 
@@ -62,9 +63,13 @@ def by_hierarchy(sample):
     tree = cairn.grow_merge_tree(superpixels, sample.left, seen, evidence, ground, background, noise)
     chosen = cairn.choose_objects(tree)
     groups = cairn.groups_of(superpixels, chosen, disparity)
-    objects = cairn.measure_chosen(groups.labels, chosen.scores, disparity, sample.left, noise, rig)
+    objects = cairn.measure_chosen(groups.labels, chosen.scores, disparity, sample.left, noise)
+    objects = cairn.locate(objects, disparity, ground, rig)
+    confidence = cairn.estimate_confidence(matches, disparity)
+    space = cairn.label_space(objects, disparity, confidence, ground, background, superpixels, seen, rig)
+    assert same(space, sample.frame.space)
     regions = {"superpixels": cairn.segmentation_of(superpixels, sample.left), "groups": groups}
-    return disparity, cairn.estimate_confidence(matches, disparity), regions, objects
+    return disparity, confidence, regions, objects
 
 
 @pytest.mark.parametrize("preset, stages", [("paper", by_the_paper), ("default", by_hierarchy)])
