@@ -13,6 +13,7 @@
 #include <io/config_files.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "commands.hpp"
@@ -34,12 +35,15 @@ struct TuneOptions {
   bool truth = false;
   std::vector<std::string> patterns;
   std::string budget = "60s";
-  int evaluations = 0;  // 0 = as many as the budget allows
-  double holdout = 0;
+  int evaluations = 0;            // 0 = as many as the budget allows
+  std::optional<double> holdout;  // else kHoldout where there are kEnough frames
   std::uint32_t seed = 1;
   std::string output = "tuned.yaml";
   std::string json;
 };
+
+constexpr double kHoldout = 0.25;
+constexpr std::size_t kEnough = 8;
 
 // ---- time and Ctrl-C ----
 
@@ -149,9 +153,17 @@ std::string words(const TuneProgress& now, const std::string& budget) {
   return text;
 }
 
+/// Frames of one name show one scene, and are held out together.
+std::size_t count_scenes(const Task& task) {
+  std::set<std::string> names;
+  for (const TuningFrame& frame : task.frames) names.insert(frame.name);
+  return names.size();
+}
+
 Tuning tune_task(const Task& task, const TuneOptions& options, Seconds budget) {
-  const TuneConfig config{options.patterns, budget.count(), options.evaluations, options.holdout,
-                          options.seed};
+  const double usual = count_scenes(task) >= kEnough ? kHoldout : 0;
+  const TuneConfig config{options.patterns, budget.count(), options.evaluations,
+                          options.holdout.value_or(usual), options.seed};
   const Progress progress(task.frames.size());
   const Interruptible interruptible;
   Tuning tuned =
@@ -234,6 +246,31 @@ std::string figure_table(const Tuning& tuned) {
                known ? text_of(held_out_before[i]) : "", known ? text_of(held_out_after[i]) : ""});
   }
   return table.text();
+}
+
+std::string gain_text(const Gain& gain) {
+  const auto points = [](double value) { return cli::text_of("%+.1f", 100 * value); };
+  if (std::isnan(gain.mean)) return "not known";
+  if (std::isnan(gain.low)) return points(gain.mean) + " points, one frame";
+  return points(gain.mean) + " points (95 %: " + points(gain.low) + " ... " + points(gain.high) + ")";
+}
+
+/// How much of the gain is luck: what frames gain that had no say in the search.
+std::string luck(const Tuning& tuned) {
+  const Gain own = gain_of(losses_of(tuned.before), losses_of(tuned.after));
+  std::string all = "gain, tuned on:  " + gain_text(own) + "\n";
+  if (tuned.held_out_before.empty()) {
+    return all + "gain, held out:  no frames were held out (fewer than " + std::to_string(kEnough) +
+           ", or --holdout 0): how much of it is luck is not known\n";
+  }
+  const Gain fair = gain_of(losses_of(tuned.held_out_before), losses_of(tuned.held_out_after));
+  all += "gain, held out:  " + gain_text(fair);
+  if (!std::isnan(fair.mean) && own.mean > 0) {
+    const double share = std::clamp(1 - fair.mean / own.mean, 0.0, 1.0);
+    all += cli::text_of(": %.0f %% of the gain is luck", 100 * share);
+    if (!(fair.low > 0)) all += ", and all of it may be";
+  }
+  return all + "\n";
 }
 
 std::string change_table(const SearchResult& search) {
@@ -328,6 +365,14 @@ std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions
                           static_cast<int>(tuned.before.size()));
   j["held_out"] = json_of(figures_of(tuned.held_out_before, tuned.goal),
                           figures_of(tuned.held_out_after, tuned.goal), held_out_frames(tuned));
+  const auto gain = [](const Measures& before, const Measures& after) {
+    if (before.empty()) return Json(nullptr);
+    const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+    const Gain g = gain_of(losses_of(before), losses_of(after));
+    return Json{{"mean", number(g.mean)}, {"low", number(g.low)}, {"high", number(g.high)}};
+  };
+  j["gain"] = {{"tuned_on", gain(tuned.before, tuned.after)},
+               {"held_out", gain(tuned.held_out_before, tuned.held_out_after)}};
   j["held_out_frames"] = Json::array();
   for (std::size_t i = 0; i < task.frames.size(); ++i) {
     if (tuned.held_out[i]) j["held_out_frames"].push_back(task.frames[i].name);
@@ -353,7 +398,7 @@ int tune_folder(const TuneOptions& options) {
   const Tuning tuned = tune_task(task, options, budget);
   io::write_file(options.output, config_file(task, tuned));
   if (!options.json.empty()) io::write_file(options.json, tuning_json(task, tuned, options));
-  std::cout << summary(task, tuned) << "\n" << figure_table(tuned) << "\n";
+  std::cout << summary(task, tuned) << "\n" << figure_table(tuned) << "\n" << luck(tuned) << "\n";
   const std::string changes = change_table(tuned.search);
   if (!changes.empty()) std::cout << changes << "\n";
   if (!tuned.kept_because.empty())
@@ -391,10 +436,9 @@ Work declare_tune(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--holdout", options->holdout,
-                 "keep this share of the frames out of the search and say how well it does on them")
+                 "share of the frames that only judge the result; default: 0.25 from 8 frames on, else 0")
       ->check(CLI::Range(0.0, 0.9).name(""))
-      ->type_name("SHARE")
-      ->capture_default_str();
+      ->type_name("SHARE");
   app.add_option("--seed", options->seed, "which frames are held out, and in which order options are tried")
       ->type_name("N")
       ->capture_default_str();

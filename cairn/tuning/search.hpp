@@ -33,6 +33,16 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
 /// Of all frames together.
 int faults(const std::vector<Loss>& frames);
 
+/// What a change gains of the mean loss, with its 95 % interval by Student's t over the frames: what other
+/// frames of this kind may gain. Of one frame there is no interval: low and high are NaN.
+struct Gain {
+  double mean = 0;
+  double low = 0;
+  double high = 0;
+};
+/// The same frames, in order. NaN where nothing was scored.
+Gain gain_of(const std::vector<Loss>& before, const std::vector<Loss>& after);
+
 struct Setting {
   std::string option;
   std::string value;  // as set() reads it

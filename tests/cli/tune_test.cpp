@@ -107,6 +107,28 @@ TEST_F(Tune, HoldsOutTheShareAskedForAndJudgesIt) {
   EXPECT_GT(j.at("held_out").at("loss").at("before"), 0);
 }
 
+TEST_F(Tune, HoldsOutAQuarterOfEightFramesAndSaysHowMuchIsLuck) {
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) pair_in(std::string("frames/") + name);
+  const std::vector<std::string> fast{
+      "--options", "left_right.max_diff",      "--evaluations", "2",
+      "--set",     "match.num_disparities=16", "--set",         "left_right.max_diff=-1"};
+  const Outcome outcome = tune(path("frames"), fast);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json j = found();
+  EXPECT_EQ(j.at("held_out").at("frames"), 2);
+  EXPECT_NE(outcome.out.find("\ngain, tuned on:  "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\ngain, held out:  "), std::string::npos) << outcome.out;
+  EXPECT_LE(j.at("gain").at("held_out").at("low"), j.at("gain").at("held_out").at("mean"));
+  EXPECT_NEAR(j.at("gain").at("tuned_on").at("mean").get<double>(),
+              j.at("tuned_on").at("loss").at("before").get<double>() -
+                  j.at("tuned_on").at("loss").at("after").get<double>(),
+              1e-12);
+  const Outcome none = tune(path("frames"), with("--holdout", {"0"}, fast));
+  EXPECT_TRUE(found().at("held_out").is_null());
+  EXPECT_TRUE(found().at("gain").at("held_out").is_null());
+  EXPECT_NE(none.out.find("no frames were held out"), std::string::npos) << none.out;
+}
+
 TEST_F(Tune, WithoutTruthItJudgesDisparitiesByTheirContradictions) {
   pair_in("frames/a");
   pair_in("frames/b");

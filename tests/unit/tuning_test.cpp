@@ -13,6 +13,27 @@
 namespace cairn {
 namespace {
 
+TEST(GainOfAChange, IsTheDifferenceOfTheMeansWithWhatOtherFramesMayGain) {
+  // Frames gain 1, 2, 3 and 2 of 10 each: 0.2 in the mean; s = 0.0816, t(3) = 3.182, / sqrt(4).
+  const std::vector<Loss> before{{5, 10}, {6, 10}, {7, 10}, {8, 10}};
+  const std::vector<Loss> after{{4, 10}, {4, 10}, {4, 10}, {6, 10}};
+  const Gain gain = gain_of(before, after);
+  EXPECT_NEAR(gain.mean, 0.2, 1e-12);
+  EXPECT_NEAR(gain.high - gain.mean, 3.182 * 0.081650 / 2, 1e-5);
+  EXPECT_NEAR(gain.mean - gain.low, gain.high - gain.mean, 1e-12);
+  EXPECT_NEAR(gain_of({{5, 10}}, {{4, 10}}).mean, 0.1, 1e-12);
+  EXPECT_TRUE(std::isnan(gain_of({{5, 10}}, {{4, 10}}).low));
+  EXPECT_TRUE(std::isnan(gain_of({{0, 0}}, {{0, 0}}).mean));
+  // Many frames: t comes near that of a Gaussian.
+  std::vector<Loss> many_before(31, Loss{5, 10});
+  std::vector<Loss> many_after(31, Loss{4, 10});
+  many_after[0].sum = 0;
+  const Gain of_many = gain_of(many_before, many_after);
+  const double deviation =
+      std::sqrt((std::pow(5 - 35.0 / 31, 2) + 30 * std::pow(1 - 35.0 / 31, 2)) / 30) / 10;
+  EXPECT_NEAR(of_many.high - of_many.mean, 2.042 * deviation / std::sqrt(31), 2e-5);
+}
+
 using Strings = std::vector<std::string>;
 
 Tunable named(const std::string& name) {
