@@ -11,13 +11,13 @@
 #include <string_view>
 #include <type_traits>
 
-/// cv::Mat in and out without a copy, for programs that use OpenCV anyway: they link it themselves
+/// cv::Mat in and out, for programs that use OpenCV anyway: they link it themselves
 /// (opencv_core), the library knows nothing of it, and cairn.hpp does not include this header.
 ///
-///   const auto pair = cairn::stereo_pair(left, right);                             // cv::Mat, CV_8UC1
-///   const auto frame = cairn::segment(pair, rig, config, exec);
-///   const cv::Mat disparity = cairn::mat_of(frame.disparity.disparity_px);         // CV_32FC1, NaN = hole
-///   const cv::Mat labels = cairn::mat_of(frame.objects.labels);                    // CV_32SC1, 0 = none
+///   const auto pair = cairn::stereo_pair(left_bgr, right_bgr);                     // as cv::imread gives
+///   them const auto frame = cairn::segment(pair, rig, config, exec); const cv::Mat disparity =
+///   cairn::mat_of(frame.disparity.disparity_px);         // CV_32FC1, NaN = hole const cv::Mat labels =
+///   cairn::mat_of(frame.objects.labels);                    // CV_32SC1, 0 = none
 namespace cairn {
 
 /// OpenCV's number of the pixel type T: CV_8UC1 for Gray, CV_16UC1 for Reject, CV_8UC3 for Rgb, CV_32SC1 for
@@ -68,11 +68,56 @@ View<const T> view_of(const cv::Mat& mat, std::string_view what = "cv::Mat") {
   return {mat.ptr<T>(), {mat.cols, mat.rows}, static_cast<std::ptrdiff_t>(mat.step[0] / sizeof(T))};
 }
 
-/// A rectified pair that borrows its matrices: `left` and `right` CV_8UC1, `left_rgb` CV_8UC3 in the order
-/// R, G, B, or empty. Throws Error as view_of() and StereoPair::from() do.
-inline StereoPair stereo_pair(const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_rgb = {}) {
-  return StereoPair::from(view_of<Gray>(left, "left"), view_of<Gray>(right, "right"),
-                          view_of<Rgb>(left_rgb, "left_rgb"));
+namespace opencv_detail {
+
+/// Both of a CV_8UC3 matrix in OpenCV's order, the grey as cairn's file readers make it.
+inline void convert(const cv::Mat& bgr, std::string_view what, Image<Gray>& gray, Image<Rgb>* rgb) {
+  const View<const Rgb> from = view_of<Rgb>(bgr, what);  // its r is B
+  gray = Image<Gray>(from.size());
+  if (rgb != nullptr) *rgb = Image<Rgb>(from.size());
+  for (int y = 0; y < from.height(); ++y) {
+    for (int x = 0; x < from.width(); ++x) {
+      const Rgb c = from(x, y);
+      gray(x, y) = static_cast<Gray>((77 * c.b + 150 * c.g + 29 * c.r + 128) >> 8);
+      if (rgb != nullptr) (*rgb)(x, y) = {c.b, c.g, c.r};
+    }
+  }
+}
+
+}  // namespace opencv_detail
+
+/// A rectified pair of matrices, to be passed wherever a StereoPair is taken. Grey matrices are borrowed and
+/// must live on; of coloured ones it keeps grey and colour itself. It must be named: of a temporary the
+/// pixels would be gone.
+class MatPair {
+ public:
+  MatPair(const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_rgb)
+      : pair_(StereoPair::from(view_of<Gray>(left, "left"), view_of<Gray>(right, "right"),
+                               view_of<Rgb>(left_rgb, "left_rgb"))) {}
+  MatPair(const cv::Mat& left_bgr, const cv::Mat& right_bgr)
+      : pair_((opencv_detail::convert(left_bgr, "left", left_, &left_rgb_),
+               opencv_detail::convert(right_bgr, "right", right_, nullptr),
+               StereoPair::from(left_, right_, left_rgb_))) {}
+
+  operator const StereoPair&() const& { return pair_; }  // NOLINT(google-explicit-constructor): it is one
+  operator const StereoPair&() && = delete;
+  [[nodiscard]] View<const Gray> left() const { return pair_.left(); }
+  [[nodiscard]] View<const Gray> right() const { return pair_.right(); }
+  [[nodiscard]] View<const Rgb> left_rgb() const { return pair_.left_rgb(); }
+  [[nodiscard]] Size size() const { return pair_.size(); }
+
+ private:
+  Image<Gray> left_;  // empty where the matrices are borrowed
+  Image<Gray> right_;
+  Image<Rgb> left_rgb_;
+  StereoPair pair_;
+};
+
+/// Both CV_8UC3 in OpenCV's order B, G, R; or both CV_8UC1, and `left_rgb` CV_8UC3 in the order R, G, B, or
+/// empty. Throws Error as view_of() and StereoPair::from() do.
+inline MatPair stereo_pair(const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_rgb = {}) {
+  if (left.type() == CV_8UC3 && left_rgb.empty()) return {left, right};
+  return {left, right, left_rgb};
 }
 
 /// A header over the view's pixels: they are not copied, and the matrix does not own them. OpenCV knows no

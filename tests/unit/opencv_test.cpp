@@ -5,7 +5,9 @@
 #include <cairn/cairn.hpp>
 #include <cairn/opencv.hpp>
 #include <cstring>
+#include <opencv2/imgproc.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "support/samples.hpp"
@@ -47,7 +49,7 @@ TEST(OpenCv, ViewsTheMatricesOwnPixels) {
   const cv::Mat left(3, 5, CV_8UC1);
   const cv::Mat right(3, 5, CV_8UC1);
   const cv::Mat rgb(3, 5, CV_8UC3);
-  const StereoPair pair = stereo_pair(left, right, rgb);
+  const auto pair = stereo_pair(left, right, rgb);
   EXPECT_EQ(pair.left().data(), left.data);
   EXPECT_EQ(pair.right().data(), right.data);
   EXPECT_EQ(static_cast<const void*>(pair.left_rgb().data()), rgb.data);
@@ -87,10 +89,32 @@ TEST(OpenCv, SegmentsMatricesAsItDoesImages) {
   const cv::Mat rgb = copy_of(sample.pictures.left.rgb);
   const Config config = sample.suited();
   const Frame expected = segment(sample.pair(), sample.calibration.rig, config, {});
-  const Frame frame = segment(stereo_pair(left, right, rgb), sample.calibration.rig, config, {});
+  const auto pair = stereo_pair(left, right, rgb);
+  const Frame frame = segment(pair, sample.calibration.rig, config, {});
   EXPECT_TRUE(same_bits(frame.disparity.disparity_px, expected.disparity.disparity_px));
   EXPECT_TRUE(same_bits(frame.objects.labels, expected.objects.labels));
   EXPECT_FALSE(frame.objects.list.empty());
+}
+
+TEST(OpenCv, SegmentsColourInOpenCvsOrderAsItDoesFiles) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const auto bgr_of = [](const io::Picture& picture) {
+    cv::Mat bgr;
+    cv::cvtColor(mat_of(picture.rgb), bgr, cv::COLOR_RGB2BGR);
+    return bgr;
+  };
+  const cv::Mat left = bgr_of(sample.pictures.left);
+  const cv::Mat right = bgr_of(sample.pictures.right);
+  auto made = stereo_pair(left, right);
+  const auto pair = std::move(made);  // keeps its pixels
+  const Config config = sample.suited();
+  const Frame expected = segment(sample.pair(), sample.calibration.rig, config, {});
+  const Frame frame = segment(pair, sample.calibration.rig, config, {});
+  EXPECT_TRUE(same_bits(frame.disparity.disparity_px, expected.disparity.disparity_px));
+  EXPECT_TRUE(same_bits(frame.objects.labels, expected.objects.labels));
+  EXPECT_EQ(pair.left_rgb()(3, 5), sample.pictures.left.rgb(3, 5));
+  EXPECT_FALSE((std::is_convertible_v<MatPair, const StereoPair&>));  // a temporary's pixels would be gone
+  EXPECT_TRUE((std::is_convertible_v<const MatPair&, const StereoPair&>));
 }
 
 TEST(OpenCv, RefusesWrongTypesByName) {
@@ -99,6 +123,7 @@ TEST(OpenCv, RefusesWrongTypesByName) {
   EXPECT_EQ(
       error_of([&] { stereo_pair(gray, bgr); }),
       "right: found pixels of CV_8UC3, expected CV_8UC1; cv::cvtColor with COLOR_BGR2GRAY makes it grey");
+  EXPECT_EQ(error_of([&] { stereo_pair(bgr, gray); }), "right: found pixels of CV_8UC1, expected CV_8UC3");
   EXPECT_EQ(error_of([&] { stereo_pair(gray, gray, gray); }),
             "left_rgb: found pixels of CV_8UC1, expected CV_8UC3");
   EXPECT_EQ(
