@@ -37,12 +37,12 @@ build_key() {
     "SIMD $(cached CAIRN_SIMD), TBB $(cached CAIRN_TBB)"
 }
 
-# counts PRESET: lines `PRESET FUNCTION INSTRUCTIONS` for every function of the stages' own folders, those that it calls
+# With --json, since the table of refusals judges texture once more. counts PRESET: lines `PRESET FUNCTION INSTRUCTIONS` for every function of the stages' own folders, those that it calls
 # included; segment is the whole.
 counts() {
   local preset=$1
   valgrind --tool=callgrind --callgrind-out-file="$scratch/$preset" \
-    "$build_dir/cairn" segment samples/four_in_a_row --threads 1 --target avx2 --preset "$preset" \
+    "$build_dir/cairn" segment samples/four_in_a_row --threads 1 --target avx2 --preset "$preset" --json \
     >"$scratch/out" 2>&1 || { cat "$scratch/out" >&2; return 1; }
   # A function of more than one source file has a line for each, and an overload one of its own: the largest counts.
   callgrind_annotate --inclusive=yes --threshold=100 "$scratch/$preset" |

@@ -289,8 +289,9 @@ TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndLeftOut) {
   write(bad[1], "no picture");
   const Outcome outcome = run({"segment", path("many"), "--html", "-o", path("out")});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 3) << outcome.err;
   EXPECT_EQ(outcome.err.find("cairn: frame b is left out: " + bad[1]), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: note: no floor: "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
   EXPECT_TRUE(fs::exists(at("out/a/objects.json")));
   EXPECT_FALSE(fs::exists(at("out/b")));
