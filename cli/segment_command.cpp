@@ -314,13 +314,16 @@ void check_presets(const std::vector<SegmentOptions>& runs, const SegmentOptions
   const std::string list = "--preset " + all.input.config.preset;
   if (all.output.empty()) throw Error(list + ": needs -o DIR, the folder in which each gets one of its own");
   if (all.json) throw Error("--json: is of one preset, found " + list);
+  const auto refuse = [](const std::string& where, const std::string& what) {
+    throw Error(where + ": " + what);
+  };
   std::set<std::string> seen;
   for (const SegmentOptions& run : runs) {
     const std::string& name = run.input.config.preset;
-    if (!seen.insert(name).second) throw Error(list + ": has " + name + " twice");
+    if (!seen.insert(name).second) refuse(list, "has " + name + " twice");
     const std::string from_file = resolve(run.input.config).preset;
     if (from_file != name)
-      throw Error(run.input.config.file + ": says preset: " + from_file + ", found beside " + list);
+      refuse(run.input.config.file, "says preset: " + from_file + ", expected none beside several");
   }
 }
 
