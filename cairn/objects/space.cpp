@@ -16,47 +16,55 @@ constexpr float kRatherRight = 0.5F;
 constexpr std::int64_t kKnownPart = 5;  // a fifth of a superpixel
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// The planes behind a pixel.
+/// The planes behind the pixels of a row, px of disparity.
 class Behind {
  public:
   Behind(const SpaceCues& cues, const std::optional<StereoRig>& rig)
-      : floor_(cues.ground.plane), infinity_(rig ? rig->doffs_px : 0.0F) {
+      : floor_(cues.ground.plane), infinity_(rig ? rig->doffs_px : 0.0F), width_(cues.objects.width()) {
     const auto& planes = cues.background.planes;
     walls_.assign(planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end());
+    for (std::vector<float>* row : {&floor_px_, &wall_px_, &barrier_px_}) row->resize(slot(width_));
   }
-  [[nodiscard]] bool has_floor() const { return floor_.has_value(); }
-  [[nodiscard]] bool has_any() const { return has_floor() || !walls_.empty(); }
-  /// NaN above the horizon and where there is no floor.
-  [[nodiscard]] float floor_px(int x, int y) const {
-    if (!floor_) return kNan;
-    const float d = floor_->disparity_px(static_cast<float>(x), static_cast<float>(y));
-    return d + infinity_ > 0 ? d : kNan;
+  [[nodiscard]] bool has_any() const { return floor_.has_value() || !walls_.empty(); }
+
+  void look_at(int y) {
+    std::fill(floor_px_.begin(), floor_px_.end(), kNan);
+    std::fill(wall_px_.begin(), wall_px_.end(), -std::numeric_limits<float>::infinity());
+    for (const GroundPlane& wall : walls_) {
+      for (int x = 0; x < width_; ++x)
+        wall_px_[slot(x)] =
+            std::max(wall_px_[slot(x)], wall.disparity_px(static_cast<float>(x), static_cast<float>(y)));
+    }
+    for (int x = 0; x < width_ && floor_; ++x) {
+      const float d = floor_->disparity_px(static_cast<float>(x), static_cast<float>(y));
+      floor_px_[slot(x)] = d + infinity_ > 0 ? d : kNan;
+    }
+    for (int x = 0; x < width_; ++x) {
+      const float floor = floor_px_[slot(x)];
+      barrier_px_[slot(x)] = !std::isnan(floor) ? floor
+                             : floor_           ? -infinity_
+                                                : std::max(wall_px_[slot(x)], -infinity_);
+    }
+  }
+
+  /// NaN above the horizon, where there is no floor, and where a wall stands before it.
+  [[nodiscard]] float free_floor_px(int x) const {
+    return floor_px_[slot(x)] >= wall_px_[slot(x)] ? floor_px_[slot(x)] : kNan;
   }
   /// −∞ where there is none.
-  [[nodiscard]] float wall_px(int x, int y) const {
-    float nearest = -std::numeric_limits<float>::infinity();
-    for (const GroundPlane& wall : walls_)
-      nearest = std::max(nearest, wall.disparity_px(static_cast<float>(x), static_cast<float>(y)));
-    return nearest;
-  }
+  [[nodiscard]] float wall_px(int x) const { return wall_px_[slot(x)]; }
   /// What an obstacle stands before: the floor; where none is known, the walls.
-  [[nodiscard]] float barrier_px(int x, int y) const {
-    const float floor = floor_px(x, y);
-    if (!std::isnan(floor)) return floor;
-    return has_floor() ? -infinity_ : std::max(wall_px(x, y), -infinity_);
-  }
+  [[nodiscard]] float barrier_px(int x) const { return barrier_px_[slot(x)]; }
 
  private:
   std::optional<GroundPlane> floor_;
   std::vector<GroundPlane> walls_;
   float infinity_;
+  int width_;
+  std::vector<float> floor_px_;
+  std::vector<float> wall_px_;
+  std::vector<float> barrier_px_;
 };
-
-/// Where the floor is the nearest of the planes, and how far what is seen lies above it; NaN elsewhere.
-float above_floor(const Behind& behind, View<const float> seen_px, int x, int y) {
-  const float floor = behind.floor_px(x, y);
-  return floor >= behind.wall_px(x, y) ? seen_px(x, y) - floor : kNan;
-}
 
 struct Tally {
   std::int64_t pixels = 0;
@@ -67,20 +75,22 @@ struct Tally {
   }
 };
 
-/// For each superpixel whether it is floor; one for all pixels where there are none.
-std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px, const Behind& behind,
+/// For each superpixel whether it is floor; none where there are no superpixels.
+std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px, Behind behind,
                                float margin) {
   if (cues.superpixels.empty()) return {};
   std::vector<Tally> pieces;
   for (int y = 0; y < seen_px.height(); ++y) {
+    behind.look_at(y);
+    const RegionId* const superpixel = cues.superpixels.row(y);
+    const float* const seen = seen_px.row(y);
     for (int x = 0; x < seen_px.width(); ++x) {
-      const std::size_t i = index(cues.superpixels(x, y));
+      const std::size_t i = index(superpixel[x]);
       if (i >= pieces.size()) pieces.resize(i + 1);
       Tally& piece = pieces[i];
       ++piece.pixels;
-      if (std::isnan(seen_px(x, y))) continue;
-      ++piece.known;
-      piece.on_floor += std::abs(above_floor(behind, seen_px, x, y)) <= margin ? 1 : 0;
+      piece.known += std::isnan(seen[x]) ? 0 : 1;
+      piece.on_floor += std::abs(seen[x] - behind.free_floor_px(x)) <= margin ? 1 : 0;
     }
   }
   std::vector<bool> floor(pieces.size());
@@ -139,23 +149,26 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
                          const GroundConfig& config, const Exec& exec) {
   const View<const float> disparity_px = cues.disparity.disparity_px;
   const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
-  const Behind behind(cues, rig);
-  const std::vector<bool> floor = floor_pieces(cues, seen_px, behind, config.margin);
+  const Behind planes(cues, rig);
+  const std::vector<bool> pieces = floor_pieces(cues, seen_px, planes, config.margin);
   Image<Space> space(disparity_px.size(), exec.pool);
-  const auto label = [&](int x, int y) {
-    if (cues.objects(x, y) != ObjectId::none) return Space::obstacle;
-    if (!behind.has_any()) return Space::unknown;
-    const float above = above_floor(behind, seen_px, x, y);
-    const bool piece = floor.empty() ? !std::isnan(above) : floor[index(cues.superpixels(x, y))];
-    const bool off = !std::isnan(seen_px(x, y)) && !(std::abs(above) <= config.margin);
-    const float under = behind.floor_px(x, y);
-    if (piece && !off && under >= behind.wall_px(x, y)) return Space::floor;
-    const bool believed = cues.confidence.empty() || cues.confidence(x, y) >= kRatherRight;
-    if (believed && disparity_px(x, y) - behind.barrier_px(x, y) > config.margin) return Space::obstacle;
-    return Space::unknown;
-  };
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
+    Behind behind = planes;
+    const auto label = [&](int x, int y) {
+      if (cues.objects(x, y) != ObjectId::none) return Space::obstacle;
+      if (!behind.has_any()) return Space::unknown;
+      const float floor = behind.free_floor_px(x);
+      const float seen = seen_px(x, y);
+      const bool on_floor = std::abs(seen - floor) <= config.margin;
+      const bool in_floor = !pieces.empty() && std::isnan(seen) && !std::isnan(floor);
+      if ((on_floor || in_floor) && (pieces.empty() || pieces[index(cues.superpixels(x, y))]))
+        return Space::floor;
+      const bool believed = cues.confidence.empty() || cues.confidence(x, y) >= kRatherRight;
+      if (believed && disparity_px(x, y) - behind.barrier_px(x) > config.margin) return Space::obstacle;
+      return Space::unknown;
+    };
     for (int y = first; y < last; ++y) {
+      behind.look_at(y);
       for (int x = 0; x < space.width(); ++x) space(x, y) = label(x, y);
     }
   });
@@ -239,17 +252,18 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
                                  const LeftOutLimits& limits, const Exec& exec) {
   constexpr double kLeastShare = 0.0005;
   const View<const float> d = cues.disparity.disparity_px;
-  const Behind behind(cues, rig);
+  Behind behind(cues, rig);
   const auto rows = [&](int y) { return RestRow{space.row(y), cues.objects.row(y), d.row(y)}; };
   const Islands islands(space.size(), rows, exec);
   std::vector<Gathered> found(islands.count());
   for (int y = 0; y < space.height(); ++y) {
+    behind.look_at(y);
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       Gathered& of = found[slot(island)];
       of.box = united(of.box, {begin, y, end - begin, 1});
       for (int x = begin; x < end; ++x) {
         ++of.pixels;
-        of.on_wall += std::abs(d(x, y) - behind.wall_px(x, y)) <= limits.wall_tolerance_px ? 1 : 0;
+        of.on_wall += std::abs(d(x, y) - behind.wall_px(x)) <= limits.wall_tolerance_px ? 1 : 0;
         of.disparity_px += double{d(x, y)};
         of.x += x;
         of.y += y;
