@@ -5,16 +5,24 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-inline void reject_below(const FloorRow& given, int y, int width, float* CAIRN_RESTRICT disparity_px,
-                         Reject* CAIRN_RESTRICT reject) {
+inline void find_below(const FloorRow& given, int y, int width, const float* disparity_px,
+                       float* CAIRN_RESTRICT below_px) {
   const FloorRow row = given;
   const GroundPlane p = row.plane;
   for (int x = 0; x < width; ++x) {
     const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
     const float d = disparity_px[x];
     const bool below = (floor + row.infinity > 0) & (d < floor - row.margin);
-    disparity_px[x] = below ? std::numeric_limits<float>::quiet_NaN() : d;
-    reject[x] |= below ? Reject::below_ground : Reject::none;
+    below_px[x] = below ? d : std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+inline void reject_marked(const Reject* marks, int width, float* CAIRN_RESTRICT disparity_px,
+                          Reject* CAIRN_RESTRICT reject) {
+  for (int x = 0; x < width; ++x) {
+    const bool marked = marks[x] != Reject::none;
+    disparity_px[x] = marked ? std::numeric_limits<float>::quiet_NaN() : disparity_px[x];
+    reject[x] |= marked ? Reject::below_ground : Reject::none;
   }
 }
 
@@ -29,7 +37,7 @@ inline void label_floor(const FloorRow& given, int y, int width, const float* di
   }
 }
 
-inline constexpr FloorKernels kFloorKernels{reject_below, label_floor};
+inline constexpr FloorKernels kFloorKernels{find_below, reject_marked, label_floor};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

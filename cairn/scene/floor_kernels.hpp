@@ -21,8 +21,11 @@ struct FloorRow {
 /// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
 /// rounds in another order than it is written in, so that each gives the same bits.
 struct FloorKernels {
-  /// reject_below_ground() and label_floor() for the pixels of row `y`.
-  void (*reject_below)(const FloorRow& floor, int y, int width, float* disparity_px, Reject* reject);
+  /// The disparities of row `y` that are below the floor; NaN elsewhere.
+  void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px);
+  /// Rejects the disparities of a row that have a mark as below the ground.
+  void (*reject_marked)(const Reject* marks, int width, float* disparity_px, Reject* reject);
+  /// label_floor() for the pixels of row `y`.
   void (*label_floor)(const FloorRow& floor, int y, int width, const float* disparity_px,
                       std::uint8_t* label);
 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
+#include <cairn/disparity/speckle.hpp>
 #include <cairn/scene/floor_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/ground_plane.hpp>
@@ -10,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace cairn {
 namespace {
@@ -31,6 +34,18 @@ GroundPlane ground_from_pose(const StereoRig& rig, const KnownGround& known) {
 kernels::FloorRow floor_row(const Ground& ground, const std::optional<StereoRig>& rig,
                             const GroundConfig& config) {
   return {*ground.plane, rig ? rig->doffs_px : 0.0F, config.margin};
+}
+
+// A surface under the floor's plane is seen past the floor's edge. Unlike a mirror image, which shows through
+// the floor's own pattern, it is smooth and wide.
+constexpr float kWidestStep = 0.2F;     // px; larger steps between neighbours part two surfaces
+constexpr double kLeastSurface = 0.02;  // share of the image
+constexpr int kFewestPixels = 64;
+
+/// Rejects all disparities but those of such surfaces.
+SpeckleConfig all_but_surfaces(Size image) {
+  const auto least = static_cast<int>(kLeastSurface * static_cast<double>(image.area()));
+  return {std::max(least, kFewestPixels) - 1, kWidestStep};
 }
 
 void require_sound(const std::vector<PointPair>& points) {
@@ -114,9 +129,17 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
   const Size size = disparity.disparity_px.size();
   const kernels::FloorKernels& run = kernels::floor_kernels(exec);
   const kernels::FloorRow floor = floor_row(ground, rig, config);
+  DisparityMap below{Image<float>(size, exec.pool), Image<Reject>(size, Reject::none, exec.pool)};
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y)
-      run.reject_below(floor, y, size.width, disparity.disparity_px.row(y), disparity.reject.row(y));
+      run.find_below(floor, y, size.width, disparity.disparity_px.row(y), below.disparity_px.row(y));
+  });
+  // What is marked is a mirror image or a wrong match; the rest, a surface beyond the floor's edge.
+  below = reject_speckles(std::move(below), all_but_surfaces(size), exec);
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y)
+      run.reject_marked(below.reject.row(y), size.width, disparity.disparity_px.row(y),
+                        disparity.reject.row(y));
   });
   return disparity;
 }

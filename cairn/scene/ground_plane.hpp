@@ -83,7 +83,8 @@ void validate(const GroundConfig& config, bool has_rig);
 Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                      const GroundConfig& config, const Exec& exec);
 
-/// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground.
+/// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground. A
+/// surface seen past the floor's edge stays: at least 2 % of the image, of steps of at most 0.2 px.
 /// Nothing is above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground:
 /// nothing happens. (docs/stages/ground.md; paper)
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,

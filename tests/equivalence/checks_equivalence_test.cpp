@@ -87,6 +87,21 @@ DisparityMap random_map(Size size, std::uint32_t seed) {
   return map;
 }
 
+/// Smooth patches of three sizes, with holes.
+DisparityMap smooth_map(Size size, std::uint32_t seed) {
+  const Image<int> noise = random_image<int>(size, 0, 19, seed);
+  DisparityMap map{Image<float>(size), Image<Reject>(size)};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const bool hole = noise(x, y) == 19;
+      const int patch = (x < size.width / 2 ? x / 9 : x / 23) + y / 8;
+      map.disparity_px(x, y) = hole ? kHole : static_cast<float>(patch % 3) + 0.01F * static_cast<float>(x);
+      map.reject(x, y) = hole ? Reject::left_right : Reject::none;
+    }
+  }
+  return map;
+}
+
 DisparityMap clone(const DisparityMap& map) {
   return {map.disparity_px.clone(), map.reject.clone()};
 }
@@ -197,19 +212,21 @@ TEST_P(ChecksEquivalence, Combine) {
 
 TEST_P(ChecksEquivalence, BelowGroundAndFloor) {
   for (const Size size : sizes()) {
-    const DisparityMap map = random_map(size, 19);
-    for (const float doffs : {0.0F, 3.0F}) {
-      const GroundPlane plane{0.05F, 0.3F, -2.0F};
-      const Ground ground{plane, 1.0F, 0.0F, Refusal::none};
-      const StereoRig rig{100, 10, 10, 0.1F, doffs};
-      for (const float margin : {0.0F, 1.0F, 64.0F}) {
-        SCOPED_TRACE(text(size) + " doffs " + std::to_string(doffs) + " margin " + std::to_string(margin));
-        GroundConfig config;
-        config.margin = margin;
-        EXPECT_SAME_MAP(reject_below_ground(clone(map), ground, rig, config, exec),
-                        reference::reject_below_ground(map, plane, doffs, margin));
-        EXPECT_EQ(numbers(label_floor(map, ground, rig, config, exec)),
-                  numbers(reference::label_floor(map, plane, doffs, margin)));
+    for (const bool smooth : {false, true}) {
+      const DisparityMap map = smooth ? smooth_map(size, 19) : random_map(size, 19);
+      for (const float doffs : {0.0F, 3.0F}) {
+        const GroundPlane plane{0.05F, 0.3F, -2.0F};
+        const Ground ground{plane, 1.0F, 0.0F, Refusal::none};
+        const StereoRig rig{100, 10, 10, 0.1F, doffs};
+        for (const float margin : {0.0F, 1.0F, 64.0F}) {
+          SCOPED_TRACE(text(size) + " doffs " + std::to_string(doffs) + " margin " + std::to_string(margin));
+          GroundConfig config;
+          config.margin = margin;
+          EXPECT_SAME_MAP(reject_below_ground(clone(map), ground, rig, config, exec),
+                          reference::reject_below_ground(map, plane, doffs, margin));
+          EXPECT_EQ(numbers(label_floor(map, ground, rig, config, exec)),
+                    numbers(reference::label_floor(map, plane, doffs, margin)));
+        }
       }
     }
   }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "checks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -94,12 +95,21 @@ DisparityMap combine(const Image<float>& refined_px, const std::vector<View<cons
 
 DisparityMap reject_below_ground(const DisparityMap& disparity, const GroundPlane& plane, float doffs_px,
                                  float margin) {
+  DisparityMap below = clone(disparity);
+  for (int y = 0; y < below.reject.height(); ++y) {
+    for (int x = 0; x < below.reject.width(); ++x) {
+      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
+      const bool is_below = floor + doffs_px > 0 && below.disparity_px(x, y) < floor - margin;
+      if (!is_below) reject(below, x, y, Reject::no_data);
+    }
+  }
+  // A surface has at least 2 % of the pixels and 64, and steps of at most 0.2 px.
+  const int least = std::max(64, static_cast<int>(0.02 * static_cast<double>(below.reject.size().area())));
+  const DisparityMap surfaces = reject_speckles(below, {least - 1, 0.2F});
   DisparityMap map = clone(disparity);
   for (int y = 0; y < map.reject.height(); ++y) {
     for (int x = 0; x < map.reject.width(); ++x) {
-      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      if (floor + doffs_px > 0 && map.disparity_px(x, y) < floor - margin)
-        reject(map, x, y, Reject::below_ground);
+      if (has(surfaces.reject(x, y), Reject::speckle)) reject(map, x, y, Reject::below_ground);
     }
   }
   return map;

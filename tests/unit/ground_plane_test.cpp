@@ -455,6 +455,46 @@ TEST(BelowGround, TheHorizonLiesWhereTheFloorIsAtInfinity) {
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0}, {32}, {32}, {0}, {0}}));
 }
 
+/// A table top that fills the lower part of the picture, and past its edge a floor, which is `rough` from
+/// pixel to pixel, down to the row `edge`.
+DisparityMap table_before_a_floor(int edge, float rough_px) {
+  const Size size{160, 120};
+  DisparityMap map{Image<float>(size), Image<Reject>(size, Reject::none, {})};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const float table = 0.2F * static_cast<float>(y) + 4;
+      const float rough = (x + y) % 2 == 0 ? rough_px : -rough_px;
+      map.disparity_px(x, y) = y < edge ? 0.4F * table + rough : table;
+    }
+  }
+  return map;
+}
+
+int below_ground(const DisparityMap& table) {
+  const Ground ground{GroundPlane{0, 0.2F, 4}, 1, 0, Refusal::none};
+  const DisparityMap map =
+      reject_below_ground({table.disparity_px.clone(), table.reject.clone()}, ground, {}, {}, {});
+  int count = 0;
+  for (int y = 0; y < map.reject.height(); ++y) {
+    for (int x = 0; x < map.reject.width(); ++x) count += has(map.reject(x, y), Reject::below_ground) ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(BelowGround, KeepsASurfaceSeenPastTheEdge) {
+  EXPECT_EQ(below_ground(table_before_a_floor(40, 0)), 0);
+  EXPECT_EQ(below_ground(table_before_a_floor(40, 0.05F)), 0);
+}
+
+TEST(BelowGround, RejectsWhatIsTooRoughForASurface) {
+  EXPECT_EQ(below_ground(table_before_a_floor(40, 0.15F)), 40 * 160);
+}
+
+TEST(BelowGround, RejectsWhatIsTooSmallForASurface) {
+  EXPECT_EQ(below_ground(table_before_a_floor(2, 0)), 2 * 160);  // of the 384 px that 2 % are
+  EXPECT_EQ(below_ground(table_before_a_floor(3, 0)), 0);
+}
+
 TEST(BelowGround, WithoutGroundNothingHappens) {
   const auto map = reject_below_ground(column({{-9}, {1}}), Ground{}, {}, {}, {});
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0}, {0}}));
