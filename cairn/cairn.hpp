@@ -39,7 +39,7 @@
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/objects/locate.hpp>              // locate
-#include <cairn/objects/space.hpp>               // label_space, scan_obstacles, map_obstacles, left_out_of
+#include <cairn/objects/space.hpp>               // label_space
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above
 #include <cairn/pipeline/segmenter.hpp>          // Segmenter: the same for video

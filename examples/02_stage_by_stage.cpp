@@ -105,7 +105,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   // Those that texture vouches for show the scene: its ground, what is reflected in it, its walls.
   const float noise = noise_sigma(pair.left(), exec);
   const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
-  const Ground seen = fit_ground(evidence_px, rig, config.ground, exec);
+  const Ground seen = fit_ground(evidence_px, rig, config.ground, exec, pair.left());
   const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec);
   disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
   disparity = reject_speckles(std::move(disparity), config.speckle, exec);

@@ -58,7 +58,7 @@ MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, cons
   SceneDisparity& found = scene.found;
   found.epipolar = matched.epipolar;
   if (config.fusion.method == FusionMethod::hierarchy) {
-    found.ground = stage("fit_ground", fit_ground(scene.evidence_px, rig, config.ground, exec));
+    found.ground = stage("fit_ground", fit_ground(scene.evidence_px, rig, config.ground, exec, given.left));
     found.ground =
         stage("likely_ground", likely_ground(found.ground, matched.disparity, rig, config.ground, exec));
   } else {

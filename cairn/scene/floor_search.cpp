@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
+#include <cairn/image/local_contrast.hpp>
 #include <cairn/regions/label_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/plane_fit.hpp>
@@ -28,16 +29,20 @@ constexpr float kParallel = 5.0F;        // degrees; fits to parallel surfaces d
 // When there is one.
 constexpr double kLeastMatches = 0.005;  // share of the image
 constexpr std::int64_t kFewestMatches = 64;
-constexpr double kLeastScore = 0.05;  // share of the matches under the plane's horizon
-constexpr double kLeastRise = 0.5;    // share of its slope that the matches show from row to row, for sure
-constexpr int kFewestPairs = 8;       // of matches, that this is judged by
-constexpr double kAlike = 4;          // so many neighbouring matches err alike
-constexpr int kLowerSurface = 3;      // a plane below the best counts with a third of its score
+constexpr double kLeastScore = 0.05;    // share of the matches under the plane's horizon
+constexpr double kLeastRise = 0.5;      // share of its slope that the matches show from row to row, for sure
+constexpr int kFewestPairs = 8;         // of matches, that this is judged by
+constexpr double kAlike = 4;            // so many neighbouring matches err alike
+constexpr double kLeastLikeness = 7.5;  // standard deviations; of mirror images to their originals
+constexpr float kNearest = 1.25F;       // of the nearest match; a floor is no nearer at the lower border
+constexpr float kApart = 4;             // px; from an original, at least
+constexpr int kLowerSurface = 3;        // a plane below the best counts with a third of its score
 
 // How hard it is searched: one to three milliseconds.
 constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kRefining = 1024;  // of them, for least squares
 constexpr std::size_t kScreening = 512;  // of them, for a guess's score
+constexpr std::size_t kMirrorScreening = 256;
 constexpr int kDraws = 8192;
 constexpr std::size_t kGuesses = 1024;
 constexpr std::size_t kFinalists = 24;
@@ -177,6 +182,10 @@ struct Camera {
   }
 };
 
+/// What is seen about a place: a match of the disparity asked for, only such as lie farther away, or nothing
+/// that tells.
+enum class Sight : std::uint8_t { same, farther, none };
+
 /// The matches by where they are, to ask whether one is at a place.
 class Places {
  public:
@@ -194,15 +203,19 @@ class Places {
   }
 
   /// Whether there is a match of this disparity about (x, y).
-  [[nodiscard]] bool has(float x, float y, float d) const {
-    if (!(x >= 0 && y >= 0)) return false;
+  [[nodiscard]] Sight look(float x, float y, float d) const {
+    if (!(x >= 0 && y >= 0)) return Sight::none;
     const float column = x / static_cast<float>(cell_);
     const float row = y / static_cast<float>(cell_);
-    if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_))) return false;
+    if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_))) return Sight::none;
     const auto cell = static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
-    return std::any_of(members_.begin() + static_cast<std::ptrdiff_t>(first_[cell]),
-                       members_.begin() + static_cast<std::ptrdiff_t>(first_[cell + 1]),
-                       [&](std::size_t i) { return std::abs(points_.d[i] - d) <= kTolerance; });
+    Sight sight = first_[cell] == first_[cell + 1] ? Sight::none : Sight::farther;
+    for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
+      const float above = points_.d[members_[k]] - d;
+      if (std::abs(above) <= kTolerance) return Sight::same;
+      if (above > 0) sight = Sight::none;  // it may be hidden
+    }
+    return sight;
   }
 
  private:
@@ -222,14 +235,14 @@ class Places {
   std::vector<std::size_t> members_;
 };
 
-/// Of the matches under the plane, those of which the original is seen where the plane as a mirror puts it. A
-/// point's distance from the plane, in units of its depth, is the difference of the disparities divided by
-/// the normal's length.
-int mirrored(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera,
-             const Kernels& run) {
+/// Calls visit(number, x, y, d) for each match below the plane, with the place and the disparity of the
+/// original that the plane as a mirror would show there. A point's distance from the plane, in units of its
+/// depth, is the difference of the disparities divided by the normal's length.
+template <class Visit>
+void for_each_original(const GroundPlane& plane, const Points& points, const Camera& camera,
+                       const Kernels& run, Visit visit) {
   const Vec3 normal = camera.normal(plane);
   const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
-  int sum = 0;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float below_it = std::nextafter(-kTolerance, -kInfinity);
   for (const std::uint32_t i : between(points, plane, -kInfinity, below_it, run)) {
@@ -241,9 +254,51 @@ int mirrored(const GroundPlane& plane, const Points& points, const Places& place
     const float x = ((points.x[i] - camera.cx_px) / camera.focal_px - twice * normal.x) / z;
     const float y = ((points.y[i] - camera.cy_px) / camera.focal_px - twice * normal.y) / z;
     const float d = (points.d[i] + camera.infinity) / z - camera.infinity;
-    sum += places.has(camera.cx_px + camera.focal_px * x, camera.cy_px + camera.focal_px * y, d) ? 1 : 0;
+    visit(i, camera.cx_px + camera.focal_px * x, camera.cy_px + camera.focal_px * y, d);
   }
-  return sum;
+}
+
+/// Of the matches under a plane, those of which the original is seen where the plane as a mirror puts it, and
+/// those of which it is not: what is seen there is farther away.
+struct Reflections {
+  int seen = 0;
+  int missing = 0;
+};
+
+Reflections reflections(const GroundPlane& plane, const Points& points, const Places& places,
+                        const Camera& camera, const Kernels& run) {
+  Reflections found;
+  for_each_original(plane, points, camera, run, [&](std::uint32_t, float x, float y, float d) {
+    const Sight sight = places.look(x, y, d);
+    found.seen += sight == Sight::same ? 1 : 0;
+    found.missing += sight == Sight::farther ? 1 : 0;
+  });
+  return found;
+}
+
+/// How much mirror images look like their originals: the correlation of the two, in standard deviations from
+/// what chance would make it. A wall that a plane cuts through has its lower part where the mirror image of
+/// the upper one would be; only the picture tells these apart.
+double likeness(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera,
+                View<const float> contrast, const Kernels& run) {
+  double pp = 0;
+  double pq = 0;
+  double qq = 0;
+  int count = 0;
+  for_each_original(plane, points, camera, run, [&](std::uint32_t i, float x, float y, float d) {
+    const bool apart = std::abs(points.y[i] - y) > kApart;  // else both see the same pixels
+    if (!apart || places.look(x, y, d) != Sight::same) return;
+    const auto u = static_cast<int>(x + 0.5F);
+    const auto v = static_cast<int>(y + 0.5F);
+    if (!contrast.contains(u, v)) return;
+    const double p = contrast(static_cast<int>(points.x[i]), static_cast<int>(points.y[i]));
+    const double q = contrast(u, v);
+    pp += p * p;
+    pq += p * q;
+    qq += q * q;
+    ++count;
+  });
+  return pq > 0 ? pq * std::sqrt(count / (pp * qq)) : 0;
 }
 
 /// splitmix64 (Steele, Lea, Flood 2014): a well mixed number for each n, without a state.
@@ -353,42 +408,83 @@ struct Candidate {
 /// cannot.
 struct Candidates {
   std::vector<Candidate> floors;
-  bool others = false;
+  std::vector<GroundPlane> walls;
 };
 
-Candidates candidates(View<const float> disparity_px, const Points& points, const Places& places,
-                      const Camera& camera, const Kernels& run) {
+/// Refines guesses, the best first, and calls visit(plane) for each plane that is another than those before;
+/// `walls` may grow meanwhile.
+template <class Visit>
+void for_each_finalist(const std::vector<Guess>& list, const Points& points,
+                       const std::vector<GroundPlane>& walls, const Kernels& run, Visit visit) {
   const Points some = about(kRefining, points);
   std::vector<GroundPlane> seen;
-  std::vector<GroundPlane> walls;
-  Candidates found;
-  for (const Guess& next : guesses(points, camera, run)) {
+  for (const Guess& next : list) {
     if (seen.size() == kFinalists) break;
     const auto explains = [&](const GroundPlane& plane) {
       return points.on(plane, next.i) && points.on(plane, next.j);
     };
-    // A guess through a wall and something else leads to the wall again.
+    // A guess through a wall and something else leads to the wall again, and so does one beside it.
     const auto touches = [&](const GroundPlane& plane) {
-      return points.on(plane, next.i) || points.on(plane, next.j);
+      return std::min(std::abs(points.above(plane, next.i)), std::abs(points.above(plane, next.j))) <=
+             2 * kTolerance;
     };
     if (std::any_of(seen.begin(), seen.end(), explains)) continue;
     if (std::any_of(walls.begin(), walls.end(), touches)) continue;
-    const auto plane =
-        refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F}, run);
-    seen.push_back(plane);
+    seen.push_back(
+        refined(next.plane, some, std::array{2.0F, 1.5F, 1.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F}, run));
+    visit(seen.back());
+  }
+}
+
+Candidates candidates(View<const float> disparity_px, const std::vector<Guess>& list, const Points& points,
+                      const Places& places, const Camera& camera, const Kernels& run) {
+  Candidates found;
+  for_each_finalist(list, points, found.walls, run, [&](const GroundPlane& plane) {
     Tally judged = tally(plane, points, camera.infinity, run);
-    judged.mirrored = mirrored(plane, points, places, camera, run);
-    if (!judged.convincing()) continue;
+    judged.mirrored = reflections(plane, points, places, camera, run).seen;
+    if (!judged.convincing()) return;
     if (camera.may_stand_on(plane) && rises(plane, disparity_px, points, run)) {
       found.floors.push_back({plane, judged});
     } else {
-      found.others = true;
-      walls.push_back(plane);
+      found.walls.push_back(plane);
     }
-  }
+  });
   std::stable_sort(found.floors.begin(), found.floors.end(),
                    [](const Candidate& p, const Candidate& q) { return p.tally.rank() > q.tally.rank(); });
   return found;
+}
+
+/// The floor that shows little but mirror images, by what these look like: of the planes that have matches of
+/// their own, the one with the most likeness.
+std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<Guess> list, const Points& points,
+                                  const std::vector<GroundPlane>& walls, const Places& places,
+                                  const Camera& camera, const Kernels& run, const Exec& exec) {
+  const Points few = about(kMirrorScreening, points);
+  for (Guess& guess : list) {
+    const Tally judged = tally(guess.plane, few, camera.infinity, run);
+    const Reflections found = reflections(guess.plane, few, places, camera, run);
+    guess.score = judged.on - judged.beside + found.seen - found.missing;
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Guess& p, const Guess& q) { return p.score > q.score; });
+  const Image<float> contrast = local_contrast(left, exec);
+  const float nearest = *std::max_element(points.d.begin(), points.d.end());
+  std::optional<GroundPlane> best;
+  double most = kLeastLikeness;
+  for_each_finalist(list, points, walls, run, [&](const GroundPlane& plane) {
+    const float last = static_cast<float>(left.height() - 1);
+    const float right = static_cast<float>(left.width() - 1);
+    const float bottom = std::max(plane.disparity_px(0, last), plane.disparity_px(right, last));
+    if (bottom + camera.infinity > kNearest * (nearest + camera.infinity)) return;
+    const Tally judged = tally(plane, points, camera.infinity, run);
+    const double chance = std::sqrt(judged.on + judged.beside);
+    if (judged.on - judged.beside < 2 * chance || !camera.may_stand_on(plane)) return;
+    const double alike = likeness(plane, points, places, camera, contrast, run);
+    if (alike < most) return;
+    most = alike;
+    best = plane;
+  });
+  return best;
 }
 
 /// Whether most of the matches on `plane` are below `other`.
@@ -470,7 +566,8 @@ Ground refused(Refusal why) {
 
 }  // namespace
 
-Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>& rig, const Exec& exec) {
+Ground find_floor(View<const float> disparity_px, View<const Gray> left, const std::optional<StereoRig>& rig,
+                  const Exec& exec) {
   const std::int64_t valid = count_valid(disparity_px, exec);
   const auto least = kLeastMatches * static_cast<double>(disparity_px.size().area());
   if (valid < kFewestMatches || static_cast<double>(valid) < least) return refused(Refusal::too_few_matches);
@@ -481,13 +578,19 @@ Ground find_floor(View<const float> disparity_px, const std::optional<StereoRig>
   const Camera camera(disparity_px.size(), rig);
   const Places places(points, disparity_px.size(), step);
   const Kernels run(exec);
-  const auto found = candidates(disparity_px, points, places, camera, run);
-  if (found.floors.empty()) {
-    return refused(found.others || faces_a_wall(points, camera, run) ? Refusal::implausible
-                                                                     : Refusal::no_plane);
+  const std::vector<Guess> list = guesses(points, camera, run);
+  const Candidates found = candidates(disparity_px, list, points, places, camera, run);
+  std::optional<GroundPlane> best;
+  if (!found.floors.empty()) {
+    best = choose(found.floors, points, camera).plane;
+  } else if (!left.empty()) {
+    best = mirror(left, list, points, found.walls, places, camera, run, exec);
   }
-  const auto plane =
-      refined(choose(found.floors, points, camera).plane, points, std::array{1.0F, 0.5F, 0.5F, 0.5F}, run);
+  if (!best) {
+    return refused(!found.walls.empty() || faces_a_wall(points, camera, run) ? Refusal::implausible
+                                                                             : Refusal::no_plane);
+  }
+  const auto plane = refined(*best, points, std::array{1.0F, 0.5F, 0.5F, 0.5F}, run);
   return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, points), Refusal::none};
 }
 

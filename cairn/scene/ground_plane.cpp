@@ -101,10 +101,10 @@ Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>&
 }
 
 Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>& rig,
-                  const GroundConfig& config, const Exec& exec) {
+                  const GroundConfig& config, const Exec& exec, View<const Gray> left) {
   switch (config.source) {
     case GroundSource::automatic:
-      return find_floor(disparity_px, rig, exec);
+      return find_floor(disparity_px, left, rig, exec);
     case GroundSource::points:
       return ground_from_points(config.known.points);
     case GroundSource::pose:

@@ -67,9 +67,10 @@ struct Ground {
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 
-/// The same from bare disparities, NaN for holes: from those alone that deserve trust, for instance.
+/// The same from bare disparities, NaN for holes: from those alone that deserve trust, for instance. `left`,
+/// if given, also shows the floor that mirrors so well that there are hardly any disparities of its own.
 Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>& rig,
-                  const GroundConfig& config, const Exec& exec);
+                  const GroundConfig& config, const Exec& exec, View<const Gray> left = {});
 
 /// The plane through hand-given pairs. Throws Error for fewer than four, or where all lie on one line.
 /// Called by validate(Config), so that fit_ground cannot fail.

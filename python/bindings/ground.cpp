@@ -30,15 +30,23 @@ KnownRig known_rig(const Config& config, const RigArgument& rig) {
   return known;
 }
 
-Ground fit(const Config& config, const Exec& exec, const DisparityArgument& disparity,
-           const RigArgument& rig) {
+Ground fit(const Config& config, const Exec& exec, const DisparityArgument& disparity, const RigArgument& rig,
+           const std::optional<ImageArgument>& left, bool bgr) {
   const KnownRig known = known_rig(config, rig);
   if (py::isinstance<DisparityMap>(disparity)) {
     const auto& map = disparity.cast<const DisparityMap&>();
     return released([&] { return fit_ground(map, known.rig, known.ground, exec); });
   }
   const BorrowedDisparities in(disparity, "disparity");
-  return released([&] { return fit_ground(in.view(), known.rig, known.ground, exec); });
+  std::optional<Picture> picture;
+  if (left) {
+    picture.emplace(*left, "left", bgr, exec.pool);
+    expect_size(picture->size(), "left", in.size(), "disparity");
+  }
+  return released([&] {
+    return fit_ground(in.view(), known.rig, known.ground, exec,
+                      picture ? picture->gray() : View<const Gray>{});
+  });
 }
 
 Ground likely(const Config& config, const Exec& exec, const Ground& ground,
@@ -158,10 +166,11 @@ void bind_ground(py::module_& m) {
            })
       .def(pickled<Background>());
 
-  def_stage(
-      m, "fit_ground", {"ground"},
-      "Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve trust).",
-      &fit, "disparity"_a, "rig"_a = py::none(), py::kw_only());
+  def_stage(m, "fit_ground", {"ground"},
+            "Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve "
+            "trust; with these, "
+            "`left` also shows a floor that mirrors so well that it has hardly any disparities of its own).",
+            &fit, "disparity"_a, "rig"_a = py::none(), py::kw_only(), "left"_a = py::none(), "bgr"_a = false);
   def_stage(m, "reject_below_ground", {"ground"}, "Rejects matches under the floor, which are reflections.",
             &without_reflections, "disparity"_a, "ground"_a, "rig"_a = py::none(), py::kw_only());
   def_stage(m, "label_floor", {"ground"},

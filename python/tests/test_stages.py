@@ -54,7 +54,7 @@ def by_hierarchy(sample):
     matches = cairn.match_semi_global(sample.left, sample.right, num_disparities=32)
     disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches)])
     evidence = cairn.find_evidence(sample.left, disparity, noise)
-    ground = cairn.likely_ground(cairn.fit_ground(evidence, rig), disparity, rig)
+    ground = cairn.likely_ground(cairn.fit_ground(evidence, rig, left=sample.left), disparity, rig)
     disparity = cairn.reject_below_ground(disparity, ground, rig)
     disparity = cairn.reject_speckles(disparity)
     seen = cairn.floor_under_reflections(disparity, ground)
