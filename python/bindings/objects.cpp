@@ -287,6 +287,10 @@ void bind_classes(py::module_& m) {
           },
           "(N,) float32, m; NaN: no obstacle is seen there, which does not say that there is none")
       .def("__len__", [](const ObstacleScan& self) { return self.ranges_m.size(); })
+      .def("__repr__",
+           [](const ObstacleScan& self) {
+             return "<cairn.ObstacleScan " + std::to_string(self.ranges_m.size()) + " directions>";
+           })
       .def(pickled<ObstacleScan>());
 
   py::class_<ObstacleGrid>(
@@ -307,6 +311,11 @@ void bind_classes(py::module_& m) {
                                             self.cells.data());
           },
           "(height, width) int8: -1 = unknown, 0 = free, 100 = occupied")
+      .def("__repr__",
+           [](const ObstacleGrid& self) {
+             return "<cairn.ObstacleGrid " + text(Size{self.width, self.height}) + " cells of " +
+                    decimal("%.3f m>", double(self.cell_size_m));
+           })
       .def(pickled<ObstacleGrid>());
 
   py::class_<Objects>(m, "Objects",
