@@ -36,7 +36,8 @@ class Truth:
         self.floor_px = self.plane[0] * columns + self.plane[1] * rows + self.plane[2]
         depth = rig.focal_px * rig.baseline_m / (self.disparity + rig.doffs_px)
         self.points = np.stack([(columns - rig.cx_px) * depth / rig.focal_px, (rows - rig.cy_px) * depth / rig.focal_px, depth], -1)
-        self.floor_frame = cairn.floor_frame(true_plane(self), rig)
+        plane = true_plane(self)
+        self.floor_frame = cairn.floor_frame(plane, rig) if plane else None
 
 
 def true_plane(truth):
@@ -72,7 +73,9 @@ def found_objects(truth, frame):
         for k, shared in zip(ids, counts):
             true = truth.objects == k
             if 0 < k < 255 and shared >= 0.5 * (mask.sum() + true.sum() - shared):
-                yield found, true & ~np.isnan(truth.disparity)
+                known = true & ~np.isnan(truth.disparity)
+                if known.any():
+                    yield found, known
 
 
 def approached(truth):
@@ -127,7 +130,7 @@ def measure(folders):
             low, high = found.depth_interval_m
             points = truth.points[mask]
             row = dict(depth=depth, off=abs(found.distance_m - depth), inside=low <= depth <= high,
-                       extent=[e / (p.max() - p.min()) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
+                       extent=[e / span(p) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
             if found.box_on_floor and truth.floor_frame:
                 row["box"] = [ours / true for ours, true in zip(found.box_on_floor.size_m, box_size(points, truth.floor_frame))]
             rows.append(row)

@@ -134,6 +134,7 @@ Json scan_json(const Frame& frame, const Provenance& provenance) {
   for (const float range : scan.ranges_m) ranges.push_back(json(range));
   return {{"angle_min_rad", json(scan.angle_min_rad)},
           {"angle_increment_rad", json(scan.angle_increment_rad)},
+          {"range_max_m", json(scan.range_max_m)},
           {"ranges_m", ranges}};
 }
 

@@ -9,6 +9,7 @@
 #include <cairn/objects/ranks.hpp>
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -95,7 +96,7 @@ float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& e
   const auto [low, high] = values_at_ranks(disparities_px, rank_of(25, n), rank_of(75, n), exec);
   const double logarithm =
       kBias + kSpread * std::log(double{high} - double{low} + 0.1) + kSeen * double{valid_share};
-  // What exp() gives in the last place may differ between processors, and is rounded away here.
+  // What exp() gives in the last place may differ between processors; nearly all of it is rounded away here.
   return static_cast<float>(std::floor(std::exp(logarithm) * 1024 + 0.5) / 1024);
 }
 
@@ -110,6 +111,12 @@ struct Points {
   }
 };
 
+/// Farther points have no place: their coordinates would overflow where they are turned.
+bool is_near(Vec3 p) {
+  constexpr float kFarthest = 1e6F;  // m
+  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
+
 Points points_of(const Part& part, const Image<float>& disparity_px, const StereoRig& rig, const Exec& exec) {
   const kernels::PointKernels& run = kernels::point_kernels(exec);
   std::array<std::vector<float>, 3> row;
@@ -119,7 +126,8 @@ Points points_of(const Part& part, const Image<float>& disparity_px, const Stere
     run.points_in_camera(rig, y, first, last, disparity_px.row(y), row[0].data(), row[1].data(),
                          row[2].data());
     for (auto x = slot(first); x < slot(last); ++x) {
-      if (!std::isnan(row[2][x])) points.push_back({row[0][x], row[1][x], row[2][x]});
+      const Vec3 point{row[0][x], row[1][x], row[2][x]};
+      if (is_near(point)) points.push_back(point);
     }
   }
   return points;
@@ -127,12 +135,15 @@ Points points_of(const Part& part, const Image<float>& disparity_px, const Stere
 
 // ---- boxes on the floor ----
 
-/// Points as they lie on the floor, seen from above, every so many of them with their axes turned.
-void turn(const Points& points, std::size_t step, float yaw_rad, std::array<std::vector<float>, 2>& room) {
+/// `count` of the points as they lie on the floor, seen from above, with their axes turned. Fewer than all
+/// are drawn at random: every so many of them would stand in a few columns of the picture.
+void turn(const Points& points, std::size_t count, float yaw_rad, std::array<std::vector<float>, 2>& room) {
+  constexpr std::uint64_t kSpread = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
   const float c = std::cos(yaw_rad);
   const float s = std::sin(yaw_rad);
   for (auto& axis : room) axis.clear();
-  for (std::size_t i = step / 2; i < points.size(); i += step) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = count < points.size() ? k * kSpread % points.size() : k;
     const float x = points.axis[0][i];
     const float y = points.axis[1][i];
     room[0].push_back(c * x + s * y);
@@ -160,10 +171,10 @@ float radians(int degrees) {
 int closest_yaw(const Points& points, std::array<std::vector<float>, 2>& room, const Exec& exec) {
   constexpr std::size_t kEnough = 512;  // points, to tell a direction by
   constexpr int kCoarse = 6;            // degrees
-  const std::size_t step = std::max<std::size_t>(1, points.size() / kEnough);
+  const std::size_t count = std::min(points.size(), kEnough);
   std::array<std::vector<float>, 2> ranked;
   const auto distance = [&](int degrees) {
-    turn(points, step, radians(degrees), room);
+    turn(points, count, radians(degrees), room);
     ranked = room;
     const Interval u = without_tails(ranked[0], exec);
     const Interval v = without_tails(ranked[1], exec);
@@ -192,10 +203,9 @@ int closest_yaw(const Points& points, std::array<std::vector<float>, 2>& room, c
 
 /// What is not known of a box's centre: along the ray from the camera the depth, across it the mask, and
 /// along each of its sides where it ends.
-std::array<float, 6> covariance(const FloorBox& box, double sigma_z_m, double sigma_side_m,
-                                const FloorFrame& floor) {
-  const Vec3 at_m = box.centre_in_floor_m;
-  const Vec3 in_camera = floor.to_camera(at_m);
+std::array<float, 6> covariance(const FloorBox& box, Vec3 position_in_camera_m, double sigma_z_m,
+                                double sigma_side_m, const FloorFrame& floor) {
+  const Vec3 at_m = floor.to_floor(position_in_camera_m);
   const Vec3 ray{at_m.x, at_m.y, at_m.z - floor.camera_height_m};
   const double c = std::cos(double{box.yaw_rad});
   const double s = std::sin(double{box.yaw_rad});
@@ -203,7 +213,8 @@ std::array<float, 6> covariance(const FloorBox& box, double sigma_z_m, double si
   const double longer = end(box.size_m.x);
   const double shorter = end(box.size_m.y);
   const double square = double{ray.x} * ray.x + double{ray.y} * ray.y + double{ray.z} * ray.z;
-  const double far = square / (double{in_camera.z} * in_camera.z);  // a step of z along the ray, squared
+  const double far = square / (double{position_in_camera_m.z} *
+                               position_in_camera_m.z);  // a step of z along the ray, squared
   const double along = sigma_z_m * sigma_z_m * far;
   const double across = sigma_side_m * sigma_side_m;
   const auto entry = [&](float p, float q, double more) {
@@ -224,7 +235,7 @@ FloorBox box_on(const FloorFrame& floor, const Points& in_camera, const Exec& ex
   std::array<std::vector<float>, 2> room;
   int degrees = closest_yaw(points, room, exec);
   const float yaw = radians(degrees);
-  turn(points, 1, yaw, room);
+  turn(points, points.size(), yaw, room);
   const Interval u = without_tails(room[0], exec);
   const Interval v = without_tails(room[1], exec);
   const Interval up = without_tails(points.axis[2], exec);
@@ -256,6 +267,10 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   object.position_in_camera_m =
       rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), object.disparity_px);
   if (!object.position_in_camera_m) return;
+  if (!is_near(*object.position_in_camera_m)) {
+    object.position_in_camera_m.reset();
+    return;
+  }
 
   const double focal_baseline = double{rig.focal_px} * rig.baseline_m;
   const double before_infinity = double{object.disparity_px} + rig.doffs_px;
@@ -270,9 +285,12 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   if (floor) {
     object.box_on_floor = box_on(*floor, points, exec);
     const double z = object.position_in_camera_m->z;
-    object.box_on_floor->centre_covariance_m2 =
-        covariance(*object.box_on_floor, z * z * object.disparity_sigma_px / focal_baseline,
-                   kSideSigma * z / rig.focal_px, *floor);
+    std::array<float, 6>& known = object.box_on_floor->centre_covariance_m2;
+    known =
+        covariance(*object.box_on_floor, *object.position_in_camera_m,
+                   z * z * object.disparity_sigma_px / focal_baseline, kSideSigma * z / rig.focal_px, *floor);
+    if (!std::all_of(known.begin(), known.end(), [](float c) { return std::isfinite(c); }))
+      object.box_on_floor.reset();
   }
   const auto span = [&](std::size_t axis) { return length(without_tails(points.axis.at(axis), exec)); };
   object.extent_in_camera_m = Vec3{span(0), span(1), span(2)};
@@ -288,6 +306,11 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
   parallel_for(exec, static_cast<int>(parts.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i) {
       Object& object = objects.list[i];
+      object.disparity_sigma_px = 0;
+      object.position_in_camera_m.reset();
+      object.depth_interval_m.reset();
+      object.extent_in_camera_m.reset();
+      object.box_on_floor.reset();
       if (parts[i].main.empty()) continue;
       object.disparity_sigma_px = sigma_px(parts[i].disparities_px, object.valid_share, exec);
       if (rig) place(object, parts[i], disparity.disparity_px, floor, *rig, exec);

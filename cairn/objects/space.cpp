@@ -141,6 +141,7 @@ struct Gathered {
   double disparity_px = 0;
   double x = 0;
   double y = 0;
+  float likeliest = 0;
 };
 
 }  // namespace
@@ -152,24 +153,37 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
   const Behind planes(cues, rig);
   const std::vector<bool> pieces = floor_pieces(cues, seen_px, planes, config.margin);
   Image<Space> space(disparity_px.size(), exec.pool);
+  const bool has_any = planes.has_any();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
     Behind behind = planes;
-    const auto label = [&](int x, int y) {
-      if (cues.objects(x, y) != ObjectId::none) return Space::obstacle;
-      if (!behind.has_any()) return Space::unknown;
-      const float floor = behind.free_floor_px(x);
-      const float seen = seen_px(x, y);
-      const bool on_floor = std::abs(seen - floor) <= config.margin;
-      const bool in_floor = !pieces.empty() && std::isnan(seen) && !std::isnan(floor);
-      if ((on_floor || in_floor) && (pieces.empty() || pieces[index(cues.superpixels(x, y))]))
-        return Space::floor;
-      const bool believed = cues.confidence.empty() || cues.confidence(x, y) >= kRatherRight;
-      if (believed && disparity_px(x, y) - behind.barrier_px(x) > config.margin) return Space::obstacle;
-      return Space::unknown;
-    };
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
-      for (int x = 0; x < space.width(); ++x) space(x, y) = label(x, y);
+      const ObjectId* const object = cues.objects.row(y);
+      const float* const disparity = disparity_px.row(y);
+      const float* const seen = seen_px.row(y);
+      const float* const confidence = cues.confidence.empty() ? nullptr : cues.confidence.row(y);
+      const RegionId* const piece = pieces.empty() ? nullptr : cues.superpixels.row(y);
+      const auto is_floor = [&](int x) {
+        const float floor = behind.free_floor_px(x);
+        if (piece == nullptr) return std::abs(seen[x] - floor) <= config.margin;
+        // A hole is floor where the piece is; what is seen off the floor is none.
+        return pieces[index(piece[x])] &&
+               std::abs((std::isnan(seen[x]) ? floor : seen[x]) - floor) <= config.margin;
+      };
+      const auto is_obstacle = [&](int x) {
+        return disparity[x] - behind.barrier_px(x) > config.margin &&
+               (confidence == nullptr || confidence[x] >= kRatherRight);
+      };
+      Space* const out = space.row(y);
+      for (int x = 0; x < space.width(); ++x) {
+        if (object[x] != ObjectId::none) {
+          out[x] = Space::obstacle;
+        } else if (!has_any) {
+          out[x] = Space::unknown;
+        } else {
+          out[x] = is_floor(x) ? Space::floor : is_obstacle(x) ? Space::obstacle : Space::unknown;
+        }
+      }
     }
   });
   return space;
@@ -188,12 +202,18 @@ ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity
                             const StereoRig& rig, const SpaceConfig& config) {
   constexpr float kIncrement = std::numbers::pi_v<float> / 180;
   constexpr std::size_t kRank = 3;  // from 0
-  const float to_left = rig.cx_px + 0.5F;
-  const float to_right = static_cast<float>(space.width()) - 0.5F - rig.cx_px;
-  // As wide as what a level camera sees; what a tilted one sees beyond counts at the ends.
-  const float widest = std::atan(std::max(to_left, to_right) / rig.focal_px);
+  float widest = 0;
+  for (const int x : {0, space.width() - 1}) {
+    for (const int y : {0, space.height() - 1}) {
+      const Vec3 ray{(static_cast<float>(x) - rig.cx_px) / rig.focal_px,
+                     (static_cast<float>(y) - rig.cy_px) / rig.focal_px, 1};
+      const Vec3 at = floor.to_floor(ray);
+      const bool is_ahead = at.x > 0 && std::isfinite(at.y);
+      widest = std::max(widest, is_ahead ? std::atan2(std::abs(at.y), at.x) : std::numbers::pi_v<float>);
+    }
+  }
   const int half = std::clamp(static_cast<int>(std::ceil(widest / kIncrement)), 1, 180);
-  ObstacleScan scan{-kIncrement * static_cast<float>(half), kIncrement, {}};
+  ObstacleScan scan{-kIncrement * static_cast<float>(half), kIncrement, config.range, {}};
   std::vector<std::vector<float>> ranges(slot(2 * half + 1));
   for_each_place(space, disparity_px, floor, rig, config, [&](const Place& place) {
     const float bearing = std::atan2(place.in_floor_m.y, place.in_floor_m.x);
@@ -214,8 +234,9 @@ ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity
 ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
                            const StereoRig& rig, const SpaceConfig& config) {
   constexpr int kEnough = 3;  // pixels
-  // A grid as large as memory would be no one's wish: 4096 cells from the camera on at most.
-  const int reach = std::clamp(static_cast<int>(std::ceil(config.range / config.cell_size)), 1, 4096);
+  // (A hair less, so that a whole number of cells stays one.)
+  const float cells = std::ceil(config.range / config.cell_size - 1e-4F);
+  const int reach = static_cast<int>(std::clamp(cells, 1.0F, float{ObstacleGrid::kMostCells}));
   ObstacleGrid grid{config.cell_size, reach, 2 * reach, 0, -config.cell_size * static_cast<float>(reach), {}};
   grid.cells.assign(slot(grid.width) * slot(grid.height), ObstacleGrid::kUnknown);
   const auto at = [&](int column, int row) { return slot(row) * slot(grid.width) + slot(column); };
@@ -230,7 +251,10 @@ ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_
       const float y = rig.cy_px + rig.focal_px * point.y / point.z;
       const bool inside = x > -0.5F && y > -0.5F && x < static_cast<float>(space.width()) - 0.5F &&
                           y < static_cast<float>(space.height()) - 0.5F;
-      if (inside && space(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y))) == Space::floor)
+      if (!inside) continue;
+      const auto u = static_cast<int>(std::lround(x));
+      const auto v = static_cast<int>(std::lround(y));
+      if (space(u, v) == Space::floor && !std::isnan(disparity_px(u, v)))
         grid.cells[at(column, row)] = ObstacleGrid::kFree;
     }
   }
@@ -261,12 +285,15 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       Gathered& of = found[slot(island)];
       of.box = united(of.box, {begin, y, end - begin, 1});
+      const double run = end - begin;
+      of.pixels += end - begin;
+      of.x += run * (begin + end - 1) / 2;
+      of.y += run * y;
       for (int x = begin; x < end; ++x) {
-        ++of.pixels;
         of.on_wall += std::abs(d(x, y) - behind.wall_px(x)) <= limits.wall_tolerance_px ? 1 : 0;
         of.disparity_px += double{d(x, y)};
-        of.x += x;
-        of.y += y;
+        if (!likeliest.empty())
+          of.likeliest = std::max(of.likeliest, likeliest[index(cues.superpixels(x, y))]);
       }
     });
   }
@@ -284,11 +311,6 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
                  std::nullopt,
                  0};
     if (rig) left.position_in_camera_m = rig->point_in_camera_m(x, y, left.disparity_px);
-    if (!likeliest.empty()) {
-      const RegionId piece =
-          cues.superpixels(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)));
-      left.confidence = likeliest[index(piece)];
-    }
     if (of.pixels < limits.min_area) left.reason = LeftOutReason::too_small;
     if (2 * of.on_wall >= of.pixels) left.reason = LeftOutReason::background;
     all.push_back(left);

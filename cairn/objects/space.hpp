@@ -45,7 +45,8 @@ struct SpaceCues {
 /// For each pixel what it shows. obstacle: an object, or what stands above the floor (where none is known:
 /// before the background) by more than config.margin, with a disparity that is rather right than wrong.
 /// floor: what no object covers, in a superpixel of which at least a fifth is known, and of that three fifths
-/// lie on the floor; but pixels that are off the floor themselves. All else is unknown, holes first of all.
+/// lie on the floor; but pixels that are off the floor themselves. A hole in such a piece is floor, too. All
+/// else is unknown.
 Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
                          const GroundConfig& config, const Exec& exec);
 
@@ -57,6 +58,7 @@ Image<std::uint8_t> floor_of(View<const Space> space, const Exec& exec);
 struct ObstacleScan {
   float angle_min_rad = 0;        // of the first; counter-clockwise from straight ahead
   float angle_increment_rad = 0;  // from one to the next
+  float range_max_m = 0;          // how far it reaches
   std::vector<float> ranges_m;    // NaN: no obstacle is seen there, which does not say that there is none
 };
 
@@ -71,6 +73,7 @@ struct ObstacleGrid {
   static constexpr std::int8_t kUnknown = -1;
   static constexpr std::int8_t kFree = 0;
   static constexpr std::int8_t kOccupied = 100;
+  static constexpr int kMostCells = 4096;  // from the camera on
 
   float cell_size_m = 0;
   int width = 0;         // cells along x
@@ -80,8 +83,9 @@ struct ObstacleGrid {
   std::vector<std::int8_t> cells;
 };
 
-/// Occupied: where at least three pixels of obstacles stand. Free: where else the floor itself is seen, at
-/// the cell's middle. Unknown: all else, such as what is hidden behind an obstacle, and holes.
+/// Occupied: where at least three pixels of obstacles stand. Free: where else the floor itself is seen, with
+/// a disparity of its own, at the cell's middle. Unknown: all else, such as what is hidden behind an
+/// obstacle, and holes. At most kMostCells long.
 ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
                            const StereoRig& rig, const SpaceConfig& config);
 
@@ -99,7 +103,7 @@ struct LeftOut {
   int pixel_count = 0;
   float disparity_px = 0;                    // mean of its pixels
   std::optional<Vec3> position_in_camera_m;  // of its middle; needs a rig
-  float confidence = 0;  // 0 … 1: the best of a region that holds its middle; 0 where none was judged
+  float confidence = 0;  // 0 … 1: the best of a region that holds some of it; 0 where none was judged
 };
 
 /// What a region must be to be an object, for reasons.

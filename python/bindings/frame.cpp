@@ -268,7 +268,7 @@ py::array_t<float> all_points(const PyFrame& self) {
 
 py::array_t<float> points_of(const PyFrame& self, const py::object& object) {
   if (object.is_none()) return all_points(self);
-  const auto id = ObjectId{py::isinstance<py::int_>(object) ? object.cast<std::int32_t>()
+  const auto id = ObjectId{PyIndex_Check(object.ptr()) != 0 ? py::int_(object).cast<std::int32_t>()
                                                             : object.attr("id").cast<std::int32_t>()};
   const auto count = static_cast<std::int32_t>(self.frame.objects.list.size());
   if (number(id) < 1 || number(id) > count) {

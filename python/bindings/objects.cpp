@@ -261,7 +261,7 @@ void bind_classes(py::module_& m) {
           "position_in_camera_m", [](const LeftOut& self) { return triple(self.position_in_camera_m); },
           "(x right, y down, z forward), m: of its middle; None without a rig")
       .def_readonly("confidence", &LeftOut::confidence,
-                    "0 to 1: the best of a region that holds its middle; 0 where none was judged")
+                    "0 to 1: the best of a region that holds some of it; 0 where none was judged")
       .def("__repr__",
            [](const LeftOut& self) {
              std::string reason;
@@ -280,6 +280,7 @@ void bind_classes(py::module_& m) {
       .def_readonly("angle_min_rad", &ObstacleScan::angle_min_rad,
                     "of the first; counter-clockwise from straight ahead")
       .def_readonly("angle_increment_rad", &ObstacleScan::angle_increment_rad, "from one to the next")
+      .def_readonly("range_max_m", &ObstacleScan::range_max_m, "how far it reaches, m")
       .def_property_readonly(
           "ranges_m",
           [](const ObstacleScan& self) {

@@ -102,7 +102,7 @@ CAIRN_PARTS(Object, id, box, pixel_count, disparity, valid_share, colour, edge_s
 CAIRN_PARTS(Objects, labels, list)
 CAIRN_PARTS(SceneDisparity, disparity, ground, floor, epipolar, confidence)
 CAIRN_PARTS(LeftOut, reason, box, pixel_count, disparity, position, confidence)
-CAIRN_PARTS(ObstacleScan, angle_min, angle_increment, ranges)
+CAIRN_PARTS(ObstacleScan, angle_min, angle_increment, range_max, ranges)
 CAIRN_PARTS(ObstacleGrid, cell_size, width, height, origin_x, origin_y, cells)
 CAIRN_PARTS(Frame, disparity, ground, floor, by_intensity, by_disparity, fusion, superpixels, groups, objects,
             space, left_out, epipolar, confidence)

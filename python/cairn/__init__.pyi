@@ -102,6 +102,11 @@ class ObjectsOptions(TypedDict, total=False):
     max_area: float  # % of the image, 0 … 100, read while fusion.method=overlap: larger regions are background
     min_confidence: float  # 0 … 1: regions less likely than this to be an object are none
 
+class SpaceOptions(TypedDict, total=False):
+    max_height: float  # m, 0.01 … 100: higher things above the floor are in nobody's way
+    range: float  # m, 0.1 … 1000: how far the scan and the grid of obstacles reach
+    cell_size: float  # m, 0.005 … 10: side of a cell of the grid of obstacles
+
 class ArgumentError:
     """An Error that is a TypeError as well: an argument of a wrong type, one that there is not, or none where one is wanted."""
     ...
@@ -195,6 +200,9 @@ class ChosenObjects:
     @property
     def scores(self) -> List[float]:
         """for each object how likely it is one, 0 to 1; scores[0] = 0"""
+    @property
+    def likeliest(self) -> List[float]:
+        """for each superpixel how likely the likeliest region that holds it is an object, 0 to 1"""
     def __len__(self) -> int: ...
 
 class Config:
@@ -223,6 +231,7 @@ class Config:
         fusion: FusionOptions = ...,
         superpixels: SuperpixelsOptions = ...,
         objects: ObjectsOptions = ...,
+        space: SpaceOptions = ...,
     ) -> None:
         """preset: one of preset_names(). file: a configuration file's name, or None. Then a dict for each
         group of options().
@@ -359,6 +368,36 @@ class Finding:
     def remedy(self) -> str:
         """what to do about it"""
 
+class FloorBox:
+    """A box about what is seen of an object, upright on the floor and turned as it is. In the floor's frame: x forward, y left, z up, from the floor below the left camera."""
+    @property
+    def centre_in_floor_m(self) -> Tuple[float, float, float]:
+        """(x, y, z), m"""
+    @property
+    def size_m(self) -> Tuple[float, float, float]:
+        """(along its longer side, along its shorter one, up), m"""
+    @property
+    def yaw_rad(self) -> float:
+        """-pi/2 to pi/2: of the longer side, counter-clockwise from x as seen from above"""
+    @property
+    def centre_covariance_m2(self) -> List[List[float[3]][3]]:
+        """3 rows of 3, m^2: how well the centre is known"""
+
+class FloorFrame:
+    """Where the floor is, in metres: its frame has its origin on the floor below the left camera, x forward, y left, z up."""
+    @property
+    def camera_height_m(self) -> float:
+        """of the left camera above the floor, m"""
+    @property
+    def pitch_rad(self) -> float:
+        """of the camera: positive looks down"""
+    @property
+    def roll_rad(self) -> float:
+        """of the camera: positive lowers its right side"""
+    @property
+    def floor_from_camera(self) -> List[List[float[4]][4]]:
+        """4 rows of 4: takes homogeneous points from the camera's frame to the floor's"""
+
 class FoundObjectScore:
     """What became of one object of ours."""
     @property
@@ -399,6 +438,25 @@ class Frame:
     @property
     def objects(self) -> Objects:
         """the Objects, nearest first"""
+    @property
+    def space(self) -> NDArray[numpy.uint8]:
+        """uint8, what each pixel shows: 255 = obstacle, object or not; 128 = floor; 0 = unknown"""
+    @property
+    def left_out(self) -> List[LeftOut]:
+        """a list of LeftOut: obstacles that are no objects, nearest first, and why"""
+    @property
+    def floor_frame(self) -> Optional[FloorFrame]:
+        """the FloorFrame: where the floor is, in metres; None without a rig or a ground"""
+    def scan(self) -> Optional[ObstacleScan]:
+        """The nearest obstacle in each direction: an ObstacleScan. None without a rig or a ground."""
+    def grid(self) -> Optional[ObstacleGrid]:
+        """What stands where on the floor: an ObstacleGrid. None without a rig or a ground."""
+    def depth_m(self) -> numpy.ndarray[numpy.float32]:
+        """(H, W) float32, m: how far each pixel is along the view; NaN = hole."""
+    def points(self, object: object = None) -> numpy.ndarray[numpy.float32]:
+        """Points in the camera's frame, m, x right, y down, z forward: (H, W, 3) float32, NaN = hole; of an
+        Object or of its id alone (N, 3), without holes.
+        """
     @property
     def disparity_map(self) -> DisparityMap:
         """disparity and reject as the DisparityMap that stages take"""
@@ -498,6 +556,27 @@ class GroundPlane:
 
 HOLE_16: int
 
+class LeftOut:
+    """An obstacle that is no object, and why."""
+    @property
+    def reason(self) -> str:
+        """'background', 'too small' or 'low confidence'"""
+    @property
+    def box_px(self) -> Tuple[int, int, int, int]:
+        """(x, y, width, height), px"""
+    @property
+    def pixel_count(self) -> int:
+        """area, px"""
+    @property
+    def disparity_px(self) -> float:
+        """mean of its pixels, px"""
+    @property
+    def position_in_camera_m(self) -> Optional[Tuple[float, float, float]]:
+        """(x right, y down, z forward), m: of its middle; None without a rig"""
+    @property
+    def confidence(self) -> float:
+        """0 to 1: the best of a region that holds its middle; 0 where none was judged"""
+
 class Matches:
     """The outcome of correlation for each pixel of the left picture (best_right: of the right one). Arrays (H, W), read-only; row_offset is None without match.row_band."""
     @property
@@ -559,10 +638,21 @@ class Object:
         """(red, green, blue), 0 to 255; grey where the input had no colour"""
     @property
     def position_in_camera_m(self) -> Optional[Tuple[float, float, float]]:
-        """(x right, y down, z forward), m: mean of its valid points; None without a rig"""
+        """(x right, y down, z forward), m: in the middle of its main part, at the depth of disparity_px; None
+        without a rig
+        """
+    @property
+    def disparity_sigma_px(self) -> float:
+        """standard deviation of disparity_px, px"""
+    @property
+    def depth_interval_m(self) -> Optional[Tuple[float, float]]:
+        """(nearest, farthest), m: where its depth lies with 95 %; None without a rig"""
     @property
     def extent_in_camera_m(self) -> Optional[Tuple[float, float, float]]:
-        """(x, y, z), m: the box around its points, 2nd to 98th percentile; None without a rig"""
+        """(x, y, z), m: the box around the points of its main part, 2nd to 98th percentile; None without a rig"""
+    @property
+    def box_on_floor(self) -> Optional[FloorBox]:
+        """its box, upright on the floor: a FloorBox; None without a rig or a ground"""
     @property
     def distance_m(self) -> Optional[float]:
         """z of its position, m; None without a rig"""
@@ -629,6 +719,31 @@ class Objects:
     @overload
     def __getitem__(self, range: slice) -> List[Object]: ...
     def __iter__(self) -> Iterator[Object]: ...
+
+class ObstacleGrid:
+    """What stands where on the floor: rows along y, from the right to the left, of cells along x, from the camera forward."""
+    @property
+    def cell_size_m(self) -> float:
+        """side of a cell, m"""
+    @property
+    def origin_in_floor_m(self) -> Tuple[float, float]:
+        """(x, y), m: corner of the first cell"""
+    @property
+    def cells(self) -> numpy.ndarray[numpy.int8]:
+        """(height, width) int8: -1 = unknown, 0 = free, 100 = occupied"""
+
+class ObstacleScan:
+    """The nearest obstacle in each direction, as a laser scanner has it, seen from the floor below the left camera."""
+    @property
+    def angle_min_rad(self) -> float:
+        """of the first; counter-clockwise from straight ahead"""
+    @property
+    def angle_increment_rad(self) -> float:
+        """from one to the next"""
+    @property
+    def ranges_m(self) -> numpy.ndarray[numpy.float32]:
+        """(N,) float32, m; NaN: no obstacle is seen there, which does not say that there is none"""
+    def __len__(self) -> int: ...
 
 class Option:
     """One option of the method, as the command and the reference page name it."""
@@ -858,6 +973,7 @@ class Segmenter:
         fusion: FusionOptions = ...,
         superpixels: SuperpixelsOptions = ...,
         objects: ObjectsOptions = ...,
+        space: SpaceOptions = ...,
     ) -> None:
         """The arguments are those of segment()."""
     def segment(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> Frame:
@@ -1218,6 +1334,7 @@ def estimate_disparity(
     fusion: FusionOptions = ...,
     superpixels: SuperpixelsOptions = ...,
     objects: ObjectsOptions = ...,
+    space: SpaceOptions = ...,
 ) -> SceneDisparity:
     """The method's first half: matching and every check, ground and speckle included. Returns a
     SceneDisparity.
@@ -1292,13 +1409,21 @@ def fit_ground(
     disparity: DisparityLike,
     rig: RigLike = None,
     *,
+    left: Optional[ImageLike] = None,
+    bgr: bool = False,
     config: Optional[Config] = None,
     exec: Optional[Exec] = None,
     source: Literal["off", "automatic", "points", "pose"] = ...,
     margin: float = ...,
     label_floor: bool = ...,
 ) -> Ground:
-    """Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve trust)."""
+    """Finds the floor in a disparity map (or in floats, NaN = hole: in those alone that deserve trust;
+    with these, `left` also shows a floor that mirrors so well that it has hardly any disparities of its
+    own).
+    """
+
+def floor_frame(ground: GroundPlane, rig: RigLike) -> Optional[FloorFrame]:
+    """Where the floor is: a FloorFrame, or None for a plane that no floor below a camera can show."""
 
 def floor_under_reflections(
     disparity: DisparityLike,
@@ -1405,6 +1530,26 @@ def label_floor(
     label_floor is off.
     """
 
+def label_space(
+    objects: Objects,
+    disparity: DisparityLike,
+    confidence: FloatsLike,
+    ground: Ground,
+    background: Background,
+    superpixels: Superpixels,
+    seen_px: FloatsLike,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+    source: Literal["off", "automatic", "points", "pose"] = ...,
+    margin: float = ...,
+    label_floor: bool = ...,
+) -> NDArray[numpy.uint8]:
+    """What each pixel shows: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. seen_px as
+    floor_under_reflections() gives it.
+    """
+
 def likely_ground(
     ground: Ground,
     disparity: DisparityLike,
@@ -1447,6 +1592,19 @@ def load_tuning_frames(folder: PathLike, truth: bool = False) -> List[TuningFram
     """Every frame of a folder, as `cairn tune` reads them: a folder with left.png and right.png is one,
     else each of its sub-folders with those; a calib.txt belongs to it. truth: with objects.png,
     disp_left.png and occlusion.png, of which one of the first two must be there.
+    """
+
+def locate(
+    objects: Objects,
+    disparity: DisparityLike,
+    ground: Ground,
+    rig: RigLike = None,
+    *,
+    config: Optional[Config] = None,
+    exec: Optional[Exec] = None,
+) -> Objects:
+    """Where objects are: the uncertainty of their disparity and, with a rig, position, interval of depth,
+    extent, and with a ground their box on the floor. Returns Objects.
     """
 
 def match(
@@ -1522,7 +1680,6 @@ def measure(
     disparity: DisparityLike,
     left: ImageLike,
     noise_sigma: float,
-    rig: RigLike = None,
     *,
     bgr: bool = False,
     config: Optional[Config] = None,
@@ -1542,7 +1699,6 @@ def measure_chosen(
     disparity: DisparityLike,
     left: ImageLike,
     noise_sigma: float,
-    rig: RigLike = None,
     *,
     bgr: bool = False,
     config: Optional[Config] = None,
@@ -1715,6 +1871,7 @@ def segment(
     fusion: FusionOptions = ...,
     superpixels: SuperpixelsOptions = ...,
     objects: ObjectsOptions = ...,
+    space: SpaceOptions = ...,
 ) -> Frame:
     """Objects from a stereo pair: the whole method. Returns a Frame.
     left, right: a rectified pair of one size, (H, W) or (H, W, 3) uint8, RGB (bgr=True: OpenCV's
@@ -1821,6 +1978,7 @@ def tune(
     fusion: FusionOptions = ...,
     superpixels: SuperpixelsOptions = ...,
     objects: ObjectsOptions = ...,
+    space: SpaceOptions = ...,
 ) -> Tuning:
     """Searches the options that do best on frames of yours, as `cairn tune` does (docs/tune.md). Returns a
     Tuning.

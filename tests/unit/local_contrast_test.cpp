@@ -50,7 +50,8 @@ TEST(LocalContrast, IsItsFormulaAtAnySizeAndForAnyThreads) {
 }
 
 TEST(LocalContrast, IsNoneOfAPlainImage) {
-  const Image<float> contrast = local_contrast(Image<Gray>({20, 20}, 200, {}), {});
+  const Image<Gray> plain({20, 20}, 200, {});
+  const Image<float> contrast = local_contrast(plain, {});
   EXPECT_EQ(contrast(10, 10), 0.0F);
 }
 
