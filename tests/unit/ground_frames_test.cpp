@@ -74,6 +74,24 @@ TEST_P(GroundFrames, AreWithinHalfAPixelOrRefused) {
   EXPECT_GE(found, frames - 2);
 }
 
+/// Floors of which a hundredth to a fifth of the pixels have a disparity of their own.
+TEST(MirrorFloors, AreFoundByWhatTheyMirror) {
+  for (const char* frame : {"train_s17", "train_s84", "train_s116"}) {
+    const auto folder = rendered().parent_path() / "train" / "320x240" / frame;
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
+    const auto pictures = io::load_pair(folder / "left.png", folder / "right.png");
+    const auto calibration = io::load_calibration(folder / "calib.txt");
+    Config config;
+    config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
+    const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+    const Ground ground = estimate_disparity(pair, calibration.rig, config, {}).ground;
+    ASSERT_TRUE(ground.plane) << frame;
+    const GroundPlane should = truth(folder / "ground.txt");
+    EXPECT_NEAR(ground.plane->disparity_px(160, 239), should.disparity_px(160, 239), 1) << frame;
+    EXPECT_NEAR(ground.plane->disparity_px(160, 120), should.disparity_px(160, 120), 1) << frame;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, GroundFrames, testing::Values("320x240", "640x480"),
                          [](const auto& test) { return "Of" + std::string(test.param); });
 

@@ -153,53 +153,6 @@ TEST(GroundAutomatic, TakesWhatIsBelowAPlaneForNoMirrorImageOfSomethingUnseen) {
   }
 }
 
-/// A patterned wall on a floor that mirrors it so well that one match in seven is the floor's own and a third
-/// of the others are wrong; `mirrors` = false: the pattern goes on below as on a wall that goes on.
-struct MirrorRoom {
-  static constexpr GroundPlane kFloor{0.0F, 0.12F, -0.12F * 119.5F};
-  Image<Gray> left{Size{320, 240}};
-  Image<float> disparity_px{Size{320, 240}};
-  explicit MirrorRoom(bool mirrors, std::uint32_t seed = 1) {
-    std::mt19937 random(seed);
-    const auto uniform = [&] { return static_cast<float>(random()) / 4294967296.0F; };
-    const Image<Gray> pattern = grids::random_image<Gray>({320 / 3 + 1, 240 / 3 + 1}, 40, 200, seed + 1);
-    for (int y = 0; y < 240; ++y) {
-      for (int x = 0; x < 320; ++x) {
-        const auto floor = kFloor.disparity_px(static_cast<float>(x), static_cast<float>(y));
-        const bool wall = floor < 6;
-        const int row =
-            wall || !mirrors ? y : 2 * 169 + 1 - y;  // the wall's foot is between the rows 169 and 170
-        const Gray seen = pattern(x / 3, row / 3);
-        left(x, y) = wall ? seen : static_cast<Gray>(seen / 2 + 20);
-        const float chance = uniform();
-        float d = 6;
-        if (!wall && chance < 0.14F) d = floor;
-        if (!wall && chance > 0.7F) d = 6 * uniform();
-        disparity_px(x, y) = uniform() < 0.3F ? d + 0.2F * (uniform() - 0.5F) : kNaN;
-      }
-    }
-  }
-};
-
-TEST(GroundAutomatic, FindsAFloorByWhatIsMirroredInIt) {
-  const StereoRig rig{320, 159.5F, 119.5F, 0.1F, 0};
-  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-    const MirrorRoom room(true, seed);
-    EXPECT_FALSE(fit_ground(room.disparity_px, rig, {}, {}).plane) << "needs no image";
-    const Ground ground = fit_ground(room.disparity_px, rig, {}, {}, room.left);
-    ASSERT_TRUE(ground.plane) << seed;
-    EXPECT_LT(error(ground, {.floor = MirrorRoom::kFloor}), 0.75F) << seed;
-  }
-}
-
-TEST(GroundAutomatic, TakesAWallThatGoesOnForNoMirrorImage) {
-  const StereoRig rig{320, 159.5F, 119.5F, 0.1F, 0};
-  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-    const MirrorRoom room(false, seed);
-    EXPECT_FALSE(fit_ground(room.disparity_px, rig, {}, {}, room.left).plane) << seed;
-  }
-}
-
 TEST(GroundAutomatic, FindsAFloorWithFewMatchesBesideALargeWall) {
   // Most guesses go through the wall; were it tried again and again, none would be left for the floor.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
