@@ -472,8 +472,8 @@ std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<Guess> list
   std::optional<GroundPlane> best;
   double most = kLeastLikeness;
   for_each_finalist(list, points, walls, run, [&](const GroundPlane& plane) {
-    const float last = static_cast<float>(left.height() - 1);
-    const float right = static_cast<float>(left.width() - 1);
+    const auto last = static_cast<float>(left.height() - 1);
+    const auto right = static_cast<float>(left.width() - 1);
     const float bottom = std::max(plane.disparity_px(0, last), plane.disparity_px(right, last));
     if (bottom + camera.infinity > kNearest * (nearest + camera.infinity)) return;
     const Tally judged = tally(plane, points, camera.infinity, run);
