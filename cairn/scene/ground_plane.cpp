@@ -137,9 +137,10 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
   // What is marked is a mirror image or a wrong match; the rest, a surface beyond the floor's edge.
   below = reject_speckles(std::move(below), all_but_surfaces(size), exec);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
-    for (int y = first; y < last; ++y)
+    for (int y = first; y < last; ++y) {
       run.reject_marked(below.reject.row(y), size.width, disparity.disparity_px.row(y),
                         disparity.reject.row(y));
+    }
   });
   return disparity;
 }
