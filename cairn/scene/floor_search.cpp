@@ -38,7 +38,7 @@ constexpr float kNearest = 1.25F;       // of the nearest match; a floor is no n
 constexpr float kApart = 4;             // px; from an original, at least
 constexpr int kLowerSurface = 3;        // a plane below the best counts with a third of its score
 
-// How hard it is searched: one to three milliseconds.
+// How hard it is searched: one to three milliseconds, four more where the left image is asked.
 constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kRefining = 1024;  // of them, for least squares
 constexpr std::size_t kScreening = 512;  // of them, for a guess's score
