@@ -63,7 +63,8 @@ struct ObstacleScan {
 };
 
 /// `space` of label_space(); obstacles without a disparity have no place and are not in it. A range is that
-/// of the fourth nearest pixel in its direction: single wrong matches do not count.
+/// of the fourth nearest pixel in its direction: single wrong matches do not count. As wide as the picture is
+/// on the floor; all around where the camera sees what is beside it.
 ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
                             const StereoRig& rig, const SpaceConfig& config);
 

@@ -332,11 +332,6 @@ void validate(const Config& config) {
   if (config.match.maps != MatchMaps::full)
     throw Error("match.maps: less than full is for match() alone, the method needs full");
   validate(config.ground, true);
-  const float cells = config.space.range / config.space.cell_size;
-  if (cells > float{ObstacleGrid::kMostCells}) {
-    throw Error("option space.range: " + write(config.space.range) + " m are " + write(std::ceil(cells)) +
-                " cells of space.cell_size, expected " + write(int{ObstacleGrid::kMostCells}) + " at most");
-  }
 }
 
 void validate(const Config& config, Size image, bool has_rig) {

@@ -261,6 +261,63 @@ TEST(Locate, ACratesBoxIsTheCrate) {
   }
 }
 
+/// A wall of one object, as wide and as high as said, turned by `yaw` about its middle column, 2 m ahead.
+Scene wall_of(int width, int height, double yaw) {
+  Scene scene({320, 240}, {{{160 - width / 2, 120 - height / 2, width, height}, 30}});
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      if (scene.objects.labels(x, y) == ObjectId::none) continue;
+      // (2, 0) + s·(cos, sin) = t·(1, −(x − cx)/f)
+      const double left = -(x - 160) / 300.0;
+      const double t = 2 * std::sin(yaw) / (std::sin(yaw) - left * std::cos(yaw));
+      scene.disparity.disparity_px(x, y) = static_cast<float>(60 / t);
+    }
+  }
+  return scene;
+}
+
+TEST(Locate, ABoxIsTurnedAsItsWallWhateverItsWidthInPixels) {
+  for (const auto& [width, height] : {std::pair{60, 171}, {64, 128}, {64, 127}, {32, 160}}) {
+    const double yaw = -1.1;
+    const Object object = wall_of(width, height, yaw).located(kLarge, level_floor(1)).list[0];
+    ASSERT_TRUE(object.box_on_floor);
+    EXPECT_NEAR(object.box_on_floor->yaw_rad, yaw, 0.05) << width;
+    EXPECT_LT(object.box_on_floor->size_m.y, 0.02) << width;
+  }
+}
+
+TEST(Locate, DisparitiesNearInfinityEndNoProgramAndHaveNoPlace) {
+  std::mt19937 bits(1);
+  for (int round = 0; round < 30; ++round) {
+    Scene scene({320, 240}, {{{100, 60, 90, 90}, 0.5F}});
+    for (int y = 60; y < 150; ++y) {
+      for (int x = 100; x < 190; ++x) {
+        const double exponent = -38.0 * static_cast<double>(bits() % 1000) / 999;
+        if (bits() % 3 != 0)
+          scene.disparity.disparity_px(x, y) = static_cast<float>(std::pow(10.0, exponent));
+      }
+    }
+    if (round % 2 == 0) scene.objects.list[0].disparity_px = 1e-37F;
+    const Object object = scene.located(kLarge, level_floor(1)).list[0];
+    EXPECT_EQ(object.position_in_camera_m.has_value(), round % 2 == 1);
+    if (!object.box_on_floor) continue;
+    for (const float c : object.box_on_floor->centre_covariance_m2) EXPECT_TRUE(std::isfinite(c));
+    EXPECT_TRUE(std::isfinite(object.box_on_floor->centre_in_floor_m.x));
+    EXPECT_TRUE(std::isfinite(object.extent_in_camera_m->z));
+  }
+}
+
+TEST(Locate, SaysNothingOfAnEarlierFrame) {
+  Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
+  scene.objects = scene.located(kLarge, level_floor(1));
+  ASSERT_TRUE(scene.objects.list[0].box_on_floor);
+  const Object again = scene.located({}).list[0];
+  EXPECT_FALSE(again.position_in_camera_m);
+  EXPECT_FALSE(again.depth_interval_m);
+  EXPECT_FALSE(again.extent_in_camera_m);
+  EXPECT_FALSE(again.box_on_floor);
+}
+
 TEST(Locate, ABoxIsKnownBestAcrossTheView) {
   const Object object = scene_of({-0.6, 0.9, 0.5, 0.6}, {2.5, -0.5}).located(kLarge, level_floor(1)).list[0];
   ASSERT_TRUE(object.box_on_floor);

@@ -19,17 +19,21 @@ constexpr GroundPlane kWall{0, 0, 2};  // 10 m ahead, from row 30 up
 
 /// A room: floor and a wall, with all disparities right.
 struct Room {
-  DisparityMap disparity{Image<float>(kSize, kNan, {}), Image<Reject>(kSize, Reject::none, {})};
-  Image<float> confidence{kSize, 0.9F, {}};
-  Image<RegionId> superpixels{kSize, RegionId{0}, {}};
-  Image<ObjectId> objects{kSize, ObjectId::none, {}};
+  DisparityMap disparity;
+  Image<float> confidence;
+  Image<RegionId> superpixels;
+  Image<ObjectId> objects;
   Ground ground{kFloor, 1, 0, Refusal::none};
   Background background{{kFloor, kWall}, true};
   bool by_pieces = true;
 
-  Room() {
-    for (int y = 0; y < kSize.height; ++y) {
-      for (int x = 0; x < kSize.width; ++x) {
+  explicit Room(Size size = kSize)
+      : disparity{Image<float>(size, kNan, {}), Image<Reject>(size, Reject::none, {})},
+        confidence(size, 0.9F, {}),
+        superpixels(size, RegionId{0}, {}),
+        objects(size, ObjectId::none, {}) {
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
         disparity.disparity_px(x, y) = std::max(2.0F, kFloor.disparity_px(0, static_cast<float>(y)));
         superpixels(x, y) = RegionId{y / 10 * 8 + x / 10};  // squares of 10 px
       }
@@ -138,12 +142,14 @@ TEST(LabelSpace, WithoutAFloorObstaclesStandBeforeTheWalls) {
 }
 
 TEST(LabelSpace, DoesNotDependOnThreads) {
-  Room room;
-  room.board({30, 35, 8, 12}, 8);
+  Room room(Size{80, 300});  // more rows than a thread takes at once
+  room.board({30, 35, 8, 220}, 80);
   const Image<Space> one = room.space();
   const Image<Space> three = room.space(3);
-  for (int y = 0; y < kSize.height; ++y)
-    EXPECT_TRUE(std::equal(one.row(y), one.row(y) + kSize.width, three.row(y)));
+  EXPECT_EQ(room.left_out({}, kRig).size(), 2U);
+  EXPECT_EQ(room.left_out({}, kRig, 3).front().pixel_count, room.left_out({}, kRig).front().pixel_count);
+  for (int y = 0; y < one.height(); ++y)
+    EXPECT_TRUE(std::equal(one.row(y), one.row(y) + one.width(), three.row(y)));
 }
 
 TEST(FloorOf, IsTheFloorOfTheSpace) {
@@ -180,6 +186,37 @@ TEST(ScanObstacles, WhatIsAboveTheHeightOrBeyondTheRangeIsNotInTheWay) {
   EXPECT_GT(seen(scan(2, 5)), 3);
   EXPECT_EQ(seen(scan(1, 5)), 0);
   EXPECT_EQ(seen(scan(2, 1)), 0);
+}
+
+TEST(ScanObstacles, IsAsWideAsThePictureIsOnTheFloor) {
+  // Pitched by 30 degrees the lower corner sees farther to the side than the middle row.
+  GroundConfig config;
+  config.source = GroundSource::pose;
+  config.known.camera_height_m = 1.0F;
+  config.known.camera_pitch_deg = 30;
+  const StereoRig rig{.focal_px = 300, .cx_px = 159.5F, .cy_px = 119.5F, .baseline_m = 0.1F, .doffs_px = 4};
+  const Image<float> none({320, 240}, kNan, {});
+  const GroundPlane plane = *fit_ground(none.view(), rig, config, {}).plane;
+  const FloorFrame floor = *floor_frame(plane, rig);
+  Image<Space> space({320, 240}, Space::unknown, {});
+  Image<float> d({320, 240}, kNan, {});
+  for (int y = 230; y < 240; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      space(x, y) = Space::obstacle;
+      d(x, y) = plane.disparity_px(static_cast<float>(x), static_cast<float>(y)) + 2;
+    }
+  }
+  const ObstacleScan scan = scan_obstacles(space, d, floor, rig, {});
+  std::size_t seen = scan.ranges_m.size();
+  for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
+    if (!std::isnan(scan.ranges_m[i])) seen = i;
+  }
+  ASSERT_LT(seen, scan.ranges_m.size());
+  const Vec3 corner = floor.to_floor(*rig.point_in_camera_m(1, 235, d(1, 235)));
+  const float angle = scan.angle_min_rad + static_cast<float>(seen) * scan.angle_increment_rad;
+  EXPECT_NEAR(angle, std::atan2(corner.y, corner.x), 0.03);
+  EXPECT_GT(angle, 32 * std::numbers::pi / 180);  // a level camera's view ends at 28
+  EXPECT_EQ(scan.range_max_m, 6);
 }
 
 TEST(ScanObstacles, ThreeWrongPixelsAreNoObstacle) {
