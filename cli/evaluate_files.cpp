@@ -66,6 +66,7 @@ std::optional<ResultFiles> result_in(const fs::path& folder) {
   if (!files.disparity) files.disparity = file_in(folder, "disparity.pfm");
   files.reject = file_in(folder, "reject.png");
   files.confidence = file_in(folder, "confidence.png");
+  files.space = file_in(folder, "space.png");
   files.json = file_in(folder, "objects.json");
   if (!files.objects && !files.disparity) return std::nullopt;
   return files;
@@ -123,6 +124,13 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
                                   [](std::uint16_t c) { return static_cast<float>(c & 0xff) / 255; });
     check(*result.confidence, confidence.size());
     shown.confidence = confidence;
+  }
+  Image<Space> space;
+  if (result.space) {
+    space = converted<Space>(io::load_labels(*result.space),
+                             [](std::uint16_t value) { return static_cast<Space>(value & 0xff); });
+    check(*result.space, space.size());
+    shown.space = space;
   }
   io::Picture left;
   if (const auto path = left_picture(truth.folder, result.name)) {

@@ -19,6 +19,7 @@ struct ResultFiles {
   std::optional<std::filesystem::path> disparity;
   std::optional<std::filesystem::path> reject;
   std::optional<std::filesystem::path> confidence;
+  std::optional<std::filesystem::path> space;
   std::optional<std::filesystem::path> json;
 };
 

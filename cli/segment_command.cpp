@@ -155,6 +155,7 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   shown.superpixels = frame.superpixels.labels;
   shown.groups = frame.groups.labels;
   shown.objects = frame.objects.labels;
+  shown.space = frame.space;
   shown.objects_json = io::objects_json(frame, provenance);
   return io::encode_frame(shown);
 }

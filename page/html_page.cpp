@@ -223,6 +223,7 @@ Json maps(const PageFrame& frame) {
           {"superpixels", packed(frame.superpixels, id)},
           {"groups", packed(frame.groups, id)},
           {"objects", packed(frame.objects, id)},
+          {"space", packed(frame.space, [](Space s) { return static_cast<std::uint8_t>(s); })},
           // One more than the id: don't care is 0.
           {"true_objects", packed(frame.true_objects, [](TruthId t) { return number(t) + 1; })},
           {"true_disparity", packed_disparity(frame.true_disparity_px)}};

@@ -6,6 +6,7 @@
 #include <cairn/core/image.hpp>
 #include <cairn/disparity/reject.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/objects/space.hpp>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct PageFrame {
   View<const RegionId> superpixels;
   View<const RegionId> groups;
   View<const ObjectId> objects;
+  View<const Space> space;
   View<const TruthId> true_objects;
   View<const float> true_disparity_px;
   std::string objects_json;  // the text of an objects.json, for the tables; may be empty

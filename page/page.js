@@ -99,7 +99,7 @@
     const packed = block(`maps-${index}`);
     const count = frames[index].width * frames[index].height;
     const maps = {left: packed.left || null};
-    const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'superpixels', 'groups', 'objects'];
+    const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'superpixels', 'groups', 'objects', 'space'];
     for (const name of names) maps[name] = await unpacked(packed[name], count);
     maps.disparity = await disparities(packed.disparity, count);
     maps.true_disparity = await disparities(packed.true_disparity, count);
@@ -123,6 +123,8 @@
     reason: null,      // the hole reason that the legend points at
     near: null,        // the object under the pointer in a table or picture
     picked: null,      // the object that was clicked
+    nearLeftOut: null, // the row under the pointer in the table of what is no object
+    leftOut: null,     // the row that was clicked there
     bin: null,         // the histogram's bar that was clicked
     onlyThisFrame: false,
   };
@@ -346,6 +348,26 @@
     };
   }
 
+  const kSpaces = [['obstacle: object', '#d3632c'], ['obstacle: no object', '#f2d16b'], ['floor', '#2b9c8d'], ['unknown', kNothing]];
+  const kFloor = 2;
+  const spaceOf = ({space, objects}, i) => (space[i] === 255 ? (objects?.[i] > 0 ? 0 : 1) : space[i] === 128 ? kFloor : 3);
+
+  /** All of the space, or one kind of it. */
+  function paintSpace(out, maps, only = null) {
+    const shown = (kind) => only === null || only === kind;
+    const colours = kSpaces.map(([, colour], kind) => (shown(kind) ? pixel(colour, 165) : 0)), counts = kSpaces.map(() => 0);
+    for (let i = 0; i < out.length; ++i) {
+      const kind = spaceOf(maps, i);
+      ++counts[kind];
+      out[i] = colours[kind];
+    }
+    const share = (...kinds) => percent(kinds.reduce((sum, kind) => sum + counts[kind], 0) / out.length);
+    return {
+      count: only === null ? `${share(0, 1)} obstacle` : share(only),
+      legend: [el('div', {class: 'chips'}, kSpaces.map(([name, colour], kind) => (shown(kind) ? chip(colour, name, counts[kind] / out.length) : null)))],
+    };
+  }
+
   /** panel → its modes; `needs` are the maps without which there is nothing to show. */
   const kPanels = {
     left: [{name: 'Left picture', needs: ['left'], base: 'plain'}],
@@ -364,6 +386,10 @@
           {name: 'Groups', needs: ['groups'], base: 'faded', paint: (out, m) => paintRegions(out, m.groups)},
         ]}),
     objects: [{name: evaluates ? 'Objects found' : 'Objects', needs: ['objects'], base: 'faded', paint: paintFound}],
+    space: [
+      {name: 'Obstacles', needs: ['space'], base: 'faded', paint: (out, m) => paintSpace(out, m)},
+      {name: 'Floor', needs: ['space'], base: 'plain', paint: (out, m) => paintSpace(out, m, kFloor)},
+    ],
   };
 
   const panels = {};
@@ -403,7 +429,7 @@
       canvas.getContext('2d').putImageData(image, 0, 0);
       children.push(canvas);
     }
-    stage.replaceChildren(...children, ...(shown.marks ?? []));
+    stage.replaceChildren(...children, ...(shown.marks ?? []), ...leftOutBox());
     partMarks(shown.marks ?? []);
     if (!withLegend) return;
     const heading = offered.length === 1 ? el('h2', {}, mode.name)
@@ -418,6 +444,19 @@
     const {rig, result} = current();
     if (!rig) return result ? 'no calibration: no metres' : null;
     return `focal length ${fixed(rig.focal_px, 1)} px, baseline ${fixed(rig.baseline_m, 3)} m`;
+  }
+  /** The box of what is no object while its row is pointed at or chosen. */
+  function leftOutBox() {
+    const left = state.nearLeftOut ?? state.leftOut;
+    if (!left) return [];
+    const [x, y, wide, high] = left.bbox, {width, height} = current();
+    return [el('div', {class: 'box', style: {
+      left: `${100 * x / width}%`, top: `${100 * y / height}%`, width: `${100 * wide / width}%`, height: `${100 * high / height}%`,
+    }})];
+  }
+  function showLeftOut() {
+    for (const box of document.querySelectorAll('.box')) box.remove();
+    for (const {stage} of Object.values(panels)) stage.append(...leftOutBox());
   }
   function repaintObjects() {
     for (const name of ['objects', 'truth']) if (panels[name] && state.maps) repaint(name, false);
@@ -518,11 +557,14 @@
   function pick(id) {
     state.picked = id;
     state.near = null;
-    for (const row of document.querySelectorAll('#objects tbody tr')) {
-      row.setAttribute('aria-selected', row.dataset.key === String(id));
-      if (row.dataset.key === String(id)) row.scrollIntoView({block: 'nearest'});
-    }
+    selectRow('objects', id);
     repaintObjects();
+  }
+  function selectRow(table, key) {
+    for (const row of document.querySelectorAll(`#${table} tbody tr`)) {
+      row.setAttribute('aria-selected', row.dataset.key === String(key));
+      if (row.dataset.key === String(key)) row.scrollIntoView({block: 'nearest'});
+    }
   }
 
   // ---- tables ----
@@ -586,6 +628,11 @@
     const has = (property) => list.some((o) => o[property]);
     const columns = [{name: 'id', value: (o) => o.id, show: (o) => [swatch(objectColour(o.id)), o.id]}];
     if (has('position_m')) columns.push(number('distance m', (o) => o.position_m?.[2], 2));
+    if (has('depth_interval_m')) {
+      columns.push({name: 'interval m', title: 'holds its distance with 95 %; sorts by its width',
+        value: (o) => o.depth_interval_m && (o.depth_interval_m[1] ?? Infinity) - o.depth_interval_m[0],
+        show: (o) => o.depth_interval_m?.map((z) => (z === null ? '∞' : fixed(z, 2))).join(' – ') ?? '–'});
+    }
     if (has('confidence')) columns.push(number('confidence', (o) => o.confidence, 2));
     if (has('disparity_px')) columns.push(number('disparity px', (o) => o.disparity_px, 1));
     if (evaluates) {
@@ -615,6 +662,30 @@
     if (score.mostly_dont_care) return 'don’t care';
     if (score.phantom) return 'phantom';
     return score.iou >= 0.5 ? 'right' : 'poor';
+  }
+
+  function leftOutCard() {
+    const found = current().result?.left_out;
+    if (!found) return null;  // a result of before there was such a list
+    const title = 'Not objects, and why';
+    if (!found.length) return card(title, null, el('p', {class: 'empty'}, 'none'));
+    const list = found.map((left, key) => ({key, ...left}));
+    const columns = [{name: 'reason', text: true, value: (l) => l.reason, show: (l) => l.reason,
+      title: 'background: most of it lies on a wall; too small: less than objects.min_area; low confidence: no region is likely enough an object'}];
+    if (list.some((l) => l.position_m)) columns.push(number('distance m', (l) => l.position_m?.[2], 2));
+    columns.push(number('disparity px', (l) => l.disparity_px, 1));
+    if (list.some((l) => l.confidence > 0)) columns.push(number('confidence', (l) => l.confidence, 2, {title: 'the best of a region that holds its middle'}));
+    columns.push(number('area px', (l) => l.area, 0));
+    return card(title, counted(list.length, 'obstacle'), table('left-out', columns, list, {
+      key: (l) => l.key, selected: (l) => l.key === state.leftOut?.key,
+      pickRow: (l) => {
+        state.leftOut = l.key === state.leftOut?.key ? null : l;
+        state.nearLeftOut = null;
+        selectRow('left-out', state.leftOut?.key);
+        showLeftOut();
+      },
+      enter: (l) => { state.nearLeftOut = l; showLeftOut(); },
+    }));
   }
 
   const total = (times) => Object.values(times ?? {}).reduce((sum, t) => sum + t, 0);
@@ -785,8 +856,8 @@
   function fillTables() {
     const many = run.frames > 1, scored = allTrue.length > 0;
     const columns = evaluates
-      ? [[scored ? histogramCard() : null, objectsCard(), timesCard()], [scored ? truthCard() : null, many ? framesCard() : null, optionsCard()]]
-      : [[objectsCard(), many ? timesCard() : null], [many ? framesCard() : timesCard(), optionsCard()]];
+      ? [[scored ? histogramCard() : null, objectsCard(), leftOutCard(), timesCard()], [scored ? truthCard() : null, many ? framesCard() : null, optionsCard()]]
+      : [[objectsCard(), leftOutCard(), many ? timesCard() : null], [many ? framesCard() : timesCard(), optionsCard()]];
     // A table that is filled anew stays where it was scrolled to.
     const scrolled = [...document.querySelectorAll('#tables table')].map((t) => [t.id, t.parentElement.scrollTop]);
     byId('tables').replaceChildren(...columns.map((cards) => el('div', {class: 'column'}, cards)));
@@ -823,7 +894,7 @@
       return;
     }
     if (mine !== wanted) return;
-    if (state.frame !== mine) Object.assign(state, {picked: null, near: null});
+    if (state.frame !== mine) Object.assign(state, {picked: null, near: null, leftOut: null, nearLeftOut: null});
     Object.assign(state, {frame: mine, maps, reason: null});
     byId('summary').replaceChildren(...summaryText());
     leave();
@@ -841,7 +912,7 @@
   }
 
   function layOut() {
-    const fitting = innerWidth >= 1080 ? 4 : innerWidth >= 560 ? 2 : 1;
+    const fitting = innerWidth >= 1080 ? 3 : innerWidth >= 560 ? 2 : 1;
     document.documentElement.style.setProperty('--columns', state.columns || fitting);
     for (const button of byId('columns').children) {
       button.setAttribute('aria-pressed', Number(button.dataset.columns) === (state.columns || fitting));
@@ -859,7 +930,7 @@
     byId('title').textContent = run.title;
     byId('about').textContent = `cairn ${run.cairn}. Point at a pixel to see what is known of it; click an object to single it out` +
       (run.frames > 1 ? '; ← and → change the frame.' : '.');
-    byId('columns').append(...[4, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} in a row`, onclick: () => {
+    byId('columns').append(...[4, 3, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} in a row`, onclick: () => {
       state.columns = n;
       layOut();
     }}, String(n))));

@@ -131,10 +131,15 @@ class Page(unittest.TestCase):
     def result(self, index):
         folder = self.results / self.names[index]
         maps = {}
-        for name in ("disparity", "reject", "objects", "confidence"):
+        for name in ("disparity", "reject", "objects", "confidence", "space"):
             with Image.open(folder / f"{name}.png") as image:
                 maps[name] = image.copy()
         return maps, json.loads((folder / "objects.json").read_text())
+
+    def legend(self, panel):
+        """What the chips of a panel say: name → per cent."""
+        chips = [chip.text.rsplit(" %", 1)[0].rsplit("\n", 1) for chip in self.find_all(f"[data-panel={panel}] .chip")]
+        return {name: float(share) for name, share in chips}
 
     def keep(self, name):
         if folder := os.environ.get("CAIRN_SCREENSHOTS"):
@@ -148,19 +153,73 @@ class Page(unittest.TestCase):
             asked = self.browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
             self.assertEqual([name for name in asked if not name.startswith("data:")], [])
 
-    def test_has_four_pictures_and_the_tables(self):
+    def test_has_all_pictures_and_tables(self):
         self.open("segment")
         panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
-        self.assertEqual(panels, ["left", "disparity", "regions", "objects"])
-        self.assertEqual(len(self.find_all(".panel canvas")), 3)
+        self.assertEqual(panels, ["left", "disparity", "regions", "objects", "space"])
+        self.assertEqual(len(self.find_all(".panel canvas")), 4)
         self.assertGreater(self.browser.execute_script("return document.querySelector('[data-panel=left] img').naturalWidth"), 0)
         _, document = self.result(0)
         self.assertEqual(self.column("objects", "id"), [str(o["id"]) for o in document["objects"]])
         self.assertEqual(self.column("objects", "distance m"), [f"{o['position_m'][2]:.2f}" for o in document["objects"]])
+        self.assertEqual(self.column("objects", "interval m"),
+                         [f"{near:.2f} – " + ("∞" if far is None else f"{far:.2f}") for near, far in
+                          (o["depth_interval_m"] for o in document["objects"])])
         self.assertEqual(self.column("frames-table", "frame"), self.names)
         marks = [mark.text for mark in self.find_all("[data-panel=objects] .mark")]
         self.assertEqual(marks, [f"{o['id']}: {o['position_m'][2]:.2f} m" for o in document["objects"]])
         self.keep("segment")
+
+    def test_obstacles_and_floor_are_those_of_the_files(self):
+        for command in self.pages:
+            self.open(command)
+            maps, _ = self.result(0)
+            space, ids = list(maps["space"].getdata()), list(maps["objects"].getdata())
+            shares = {name: 100 * sum(kinds) / len(space) for name, kinds in (
+                ("obstacle: object", (s == 255 and i > 0 for s, i in zip(space, ids))),
+                ("obstacle: no object", (s == 255 and i == 0 for s, i in zip(space, ids))),
+                ("floor", (s == 128 for s in space)), ("unknown", (s == 0 for s in space)))}
+            self.assertGreater(min(shares.values()), 0)
+            told = self.legend("space")
+            self.assertEqual(list(told), list(shares))
+            for name, share in shares.items():
+                self.assertAlmostEqual(told[name], share, delta=0.051)
+            Select(self.find("[data-panel=space] select")).select_by_visible_text("Floor")
+            self.assertEqual(list(self.legend("space")), ["floor"])
+            drawn = self.browser.execute_script(
+                "const c = document.querySelector('[data-panel=space] canvas');"
+                "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+                "return Array.from({length: d.length / 4}, (_, i) => d[4 * i + 3] > 0);")
+            self.assertEqual(drawn, [s == 128 for s in space])
+
+    def test_what_is_no_object_is_listed_and_boxed(self):
+        self.open("segment")
+        _, document = self.result(0)
+        listed = document["left_out"]
+        self.assertGreater(len(listed), 1)
+        self.assertEqual(self.column("left-out", "reason"), [left["reason"] for left in listed])
+        self.assertEqual(self.column("left-out", "distance m"), [f"{left['position_m'][2]:.2f}" for left in listed])
+        self.assertEqual(self.column("left-out", "area px"), [str(left["area"]) for left in listed])
+        self.assertEqual(self.find_all(".box"), [])
+        row = self.find("#left-out tr[data-key='1']")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", row)
+        ActionChains(self.browser).move_to_element(row).perform()
+        boxes = self.find_all(".stage .box")
+        self.assertEqual(len(boxes), 5)
+        for box in boxes:
+            at = self.browser.execute_script(
+                "const b = arguments[0].getBoundingClientRect(), s = arguments[0].parentElement.getBoundingClientRect();"
+                "return [b.left - s.left, b.top - s.top, b.width, b.height].map((v) => v / s.width * 320);", box)
+            for shown, expected in zip(at, listed[1]["bbox"]):
+                self.assertAlmostEqual(shown, expected, delta=0.1)
+        row.click()
+        ActionChains(self.browser).move_to_element(self.find("h1")).perform()
+        self.assertEqual(self.find("#left-out tr[data-key='1']").get_attribute("aria-selected"), "true")
+        self.assertEqual(len(self.find_all(".stage .box")), 5)  # it stays until the next click
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", row)
+        row.click()
+        ActionChains(self.browser).move_to_element(self.find("h1")).perform()
+        self.assertEqual(self.find_all(".box"), [])
 
     def test_slider_buttons_and_arrows_change_the_frame(self):
         self.open("segment")
@@ -239,7 +298,7 @@ class Page(unittest.TestCase):
         self.assertGreater(seen["hole"], 3)
         self.assertGreater(seen["object"], 1)
         self.assertGreater(seen["two reasons"], 0)
-        self.assertEqual(len(self.find_all(".cross")), 3)  # the same pixel in the other pictures
+        self.assertEqual(len(self.find_all(".cross")), 4)  # the same pixel in the other pictures
 
     def test_a_click_singles_an_object_out(self):
         self.open("segment")
@@ -257,7 +316,7 @@ class Page(unittest.TestCase):
     def test_evaluation_shows_the_numbers_of_its_json(self):
         self.open("evaluate")
         panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
-        self.assertEqual(panels, ["left", "disparity", "truth", "objects"])
+        self.assertEqual(panels, ["left", "disparity", "truth", "objects", "space"])
         summary = self.evaluation["summary"]["objects"]
         tiles = self.find("#tiles").text
         self.assertIn(f"{100 * summary['recall_50']:.1f} %", tiles)

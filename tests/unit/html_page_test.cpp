@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <io/raster.hpp>
@@ -103,6 +104,16 @@ TEST(HtmlPage, PacksEveryReasonAndTheDontCare) {
   expect_map(maps.at("reject"), reject, [](Reject r) { return static_cast<std::uint32_t>(r); });
   expect_map(maps.at("true_objects"), truth,
              [](TruthId t) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(t) + 1); });
+}
+
+TEST(HtmlPage, PacksTheSpaceWithTheValuesOfItsFile) {
+  constexpr std::array kAll{Space::unknown, Space::floor, Space::obstacle};
+  const auto space = filled<Space>([&](int x, int y) { return kAll[static_cast<std::size_t>(x * y % 3)]; });
+  PageFrame frame;
+  frame.space = space;
+  const Json maps = Json::parse(encode_frame(frame).maps);
+  expect_map(maps.at("space"), space, [](Space s) { return static_cast<std::uint32_t>(s); });
+  EXPECT_TRUE(Json::parse(encode_frame({}).maps).at("space").is_null());
 }
 
 TEST(HtmlPage, KeepsDisparitiesToHalfOf64thOfAPixelAndHolesAsHoles) {
