@@ -136,6 +136,16 @@
     const shifted = disparity + rig.doffs_px;
     return shifted > 0 ? (rig.focal_px * rig.baseline_m) / shifted : Infinity;
   }
+  /** Where a pixel with a disparity is, in m from the left camera: x right, y down, z forward. Null without metres. */
+  function placeInCamera(x, y, disparity) {
+    const {rig} = current(), z = metres(disparity);
+    return isNumber(z) ? [(x - rig.cx_px) * z / rig.focal_px, (y - rig.cy_px) * z / rig.focal_px, z] : null;
+  }
+  /** The same place from the floor below the camera: x forward, y left, z up. Null without a floor. */
+  function placeOnFloor(place) {
+    const matrix = current().result?.floor_frame?.floor_from_camera;
+    return place && matrix ? [0, 4, 8].map((row) => place.reduce((sum, value, k) => sum + matrix[row + k] * value, matrix[row + 3])) : null;
+  }
   const distanceText = (object) =>
     object?.position_m ? `${fixed(object.position_m[2], 2)} m`
       : isNumber(object?.disparity_px) ? `${fixed(object.disparity_px, 1)} px` : '';
@@ -484,15 +494,19 @@
     const {maps} = state, facts = current();
     const parts = [el('div', {class: 'at'}, `x ${x}, y ${y}`)];
     if (maps.disparity) {
-      const d = maps.disparity[i], hole = Number.isNaN(d), z = metres(d), truth = maps.true_disparity?.[i];
+      const d = maps.disparity[i], hole = Number.isNaN(d), truth = maps.true_disparity?.[i];
+      const place = placeInCamera(x, y, d), above = placeOnFloor(place);
       parts.push(group(null, [
         ['disparity', hole ? 'none' : `${fixed(d, 2)} px`],
         ['refused', hole && maps.reject ? reasonsOf(maps.reject[i]).join(', ') : null],
-        ['distance', !hole && isNumber(z) ? `${fixed(z, 2)} m` : null],
+        ['depth z', place ? `${fixed(place[2], 2)} m` : metres(d) === Infinity ? 'infinite' : null],
+        ['x, y', place && `${fixed(place[0], 2)}, ${fixed(place[1], 2)} m`],
+        ['above the floor', above && `${fixed(above[2], 2)} m`],
         ['confidence', !hole && maps.confidence ? fixed(maps.confidence[i] / 255, 2) : null],
         ['true disparity', maps.true_disparity ? (Number.isNaN(truth) ? 'not known' : `${fixed(truth, 2)} px`) : null],
       ]));
     }
+    if (maps.space) parts.push(group(null, [['space', kSpaces[spaceOf(maps, i)][0]]]));
     if (maps.by_intensity) {
       parts.push(group(null, [['region by intensity', maps.by_intensity[i]], ['by disparity', maps.by_disparity?.[i] ?? null]]));
     }

@@ -283,10 +283,19 @@ class Page(unittest.TestCase):
                 shown = float(text.split("disparity\n")[1].split(" px")[0])
                 self.assertAlmostEqual(shown, disparity, delta=0.5 / 64 + 0.0051 + 0.5 / 256)
                 rig = document["rig"]
-                metres = float(text.split("distance\n")[1].split(" m")[0])
+                metres = float(text.split("depth z\n")[1].split(" m")[0])
                 expected = rig["focal_px"] * rig["baseline_m"] / (disparity + rig["doffs_px"])
                 self.assertAlmostEqual(metres, expected, delta=0.006 + expected * 0.011 / (disparity + rig["doffs_px"]))
+                right, down = map(float, text.split("x, y\n")[1].split(" m")[0].split(", "))
+                self.assertAlmostEqual(right, (x - rig["cx_px"]) * metres / rig["focal_px"], delta=0.011)
+                self.assertAlmostEqual(down, (y - rig["cy_px"]) * metres / rig["focal_px"], delta=0.011)
+                up = document["floor_frame"]["floor_from_camera"][8:12]
+                self.assertAlmostEqual(float(text.split("above the floor\n")[1].split(" m")[0]),
+                                       up[0] * right + up[1] * down + up[2] * metres + up[3], delta=0.021)
                 self.assertIn(f"confidence\n{maps['confidence'].getpixel((x, y)) / 255:.2f}", text)
+            space = maps["space"].getpixel((x, y))
+            self.assertIn("space\n" + ("floor" if space == 128 else "unknown" if space == 0 else
+                                       "obstacle: object" if object_id else "obstacle: no object"), text)
             if object_id:
                 seen["object"] += 1
                 found = document["objects"][object_id - 1]
