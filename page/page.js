@@ -98,7 +98,7 @@
   async function decode(index) {
     const packed = block(`maps-${index}`);
     const count = frames[index].width * frames[index].height;
-    const maps = {left: packed.left || null};
+    const maps = {left: packed.left || null, floor_frame: frames[index].result?.floor_frame ?? null};
     const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'superpixels', 'groups', 'objects', 'space'];
     for (const name of names) maps[name] = await unpacked(packed[name], count);
     maps.disparity = await disparities(packed.disparity, count);
@@ -358,6 +358,7 @@
     };
   }
 
+  const kScan = '#f2d16b', kSeen = '#23282d';
   const kSpaces = [['obstacle: object', '#d3632c'], ['obstacle: no object', '#f2d16b'], ['floor', '#2b9c8d'], ['unknown', kNothing]];
   const kFloor = 2;
   const spaceOf = ({space, objects}, i) => (space[i] === 255 ? (objects?.[i] > 0 ? 0 : 1) : space[i] === 128 ? kFloor : 3);
@@ -376,6 +377,66 @@
       count: only === null ? `${share(0, 1)} obstacle` : share(only),
       legend: [el('div', {class: 'chips'}, kSpaces.map(([name, colour], kind) => (shown(kind) ? chip(colour, name, counts[kind] / out.length) : null)))],
     };
+  }
+
+  // ---- from above ----
+
+  const polar = (radius, angle) => [radius * Math.cos(angle), radius * Math.sin(angle)];
+  function cornersOf({centre_m: [x, y], size_m: [long, short], yaw_rad: yaw}) {
+    const [ax, ay] = polar(long / 2, yaw), [bx, by] = polar(short / 2, yaw + Math.PI / 2);
+    return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([a, b]) => [x + a * ax + b * bx, y + a * ay + b * by]);
+  }
+  /** The directions in which the camera sees the sides of its picture, from the right to the left. */
+  function sideAngles({rig, width, result}) {
+    const m = result.floor_frame.floor_from_camera;
+    return [width - 0.5, -0.5].map((column) => {
+      const right = (column - rig.cx_px) / rig.focal_px;
+      return Math.atan2(m[4] * right + m[6], m[0] * right + m[2]);
+    });
+  }
+
+  let drawnPlace = null;  // floor → drawing, in the view from above that is shown
+  function drawAbove() {
+    const facts = current(), {obstacle_scan: scan, objects, config} = facts.result;
+    const wide = 480, high = 360, bottom = 18;
+    const dots = (scan?.ranges_m ?? []).flatMap((range, i) =>
+      (range === null ? [] : [polar(range, scan.angle_min_rad + i * scan.angle_increment_rad)]));
+    const boxes = objects.filter((o) => o.box_on_floor).map((o) => ({...o, corners: cornersOf(o.box_on_floor)})).reverse();  // the nearest on top
+    const places = [...dots, ...boxes.flatMap((o) => o.corners)];
+    const reach = 1.05 * (places.length ? Math.max(...places.map((p) => Math.hypot(...p))) : config?.space?.range ?? 6);
+    const [right, left] = sideAngles(facts);
+    const beside = Math.max(reach * Math.sin(Math.max(-right, left)), ...places.map(([, y]) => Math.abs(y)));
+    const scale = Math.min((high - bottom - 16) / reach, (wide / 2 - 34) / beside);
+    const at = ([x, y]) => [wide / 2 - scale * y, high - bottom - scale * x].map((v) => v.toFixed(1));
+    drawnPlace = at;
+    const arc = (radius) => `M${at(polar(radius, right))}A${scale * radius} ${scale * radius} 0 0 0 ${at(polar(radius, left))}`;
+    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((metre) => reach / metre < 7) ?? 200;
+    const rings = Array.from({length: Math.floor(reach / step)}, (_, i) => Number((step * (i + 1)).toPrecision(3)));
+    const drawing = svg('svg', {class: 'above', viewBox: `0 0 ${wide} ${high}`, role: 'img', 'aria-label': 'The floor from above'},
+      svg('path', {class: 'seen', fill: kSeen, d: `${arc(reach)}L${at([0, 0])}Z`}),
+      ...rings.flatMap((radius) => {
+        const [x, y] = at(polar(radius, right));
+        return [svg('path', {class: 'ring', d: arc(radius)}), svg('text', {x: Number(x) + 4, y: Number(y) + 8}, `${radius} m`)];
+      }),
+      ...dots.map((dot) => svg('circle', {class: 'dot', fill: kScan, r: 2, cx: at(dot)[0], cy: at(dot)[1]})),
+      ...boxes.map(({id, corners, box_on_floor: {centre_m: centre, size_m: size}}) => svg('g', {
+        class: 'thing', 'data-key': id,
+        onpointerenter: () => near(id), onpointerleave: () => near(null), onclick: () => pick(id === state.picked ? null : id),
+      }, svg('polygon', {points: corners.map(at).join(' '), fill: objectColour(id), stroke: mixed(objectColour(id), '#ffffff', 0.4)}),
+      svg('text', {x: at(centre)[0], y: Number(at(centre)[1]) + 4}, String(id)),
+      svg('title', {}, `object ${id}: ${size.slice(0, 2).map((length) => fixed(length, 2)).join(' × ')} m, ${fixed(size[2], 2)} m high`))),
+      svg('path', {class: 'camera', d: `M${at([0, 0])}l-7 10h14Z`}), svg('circle', {class: 'here', r: 6, visibility: 'hidden'}));
+    return {
+      drawing, count: `a ring every ${step} m`,
+      legend: [el('div', {class: 'chips'}, chip(kScan, 'obstacle scan'), chip(kSeen, 'field of view'), el('span', {}, 'numbered: the objects’ boxes on the floor'))],
+    };
+  }
+  /** Rings a place in the view from above; none without one. */
+  function ringAbove(onFloor) {
+    const ring = document.querySelector('.above .here');
+    if (!ring) return;
+    const [x, y] = onFloor ? drawnPlace(onFloor) : [0, 0];
+    for (const [name, value] of Object.entries({cx: x, cy: y, visibility: onFloor ? 'visible' : 'hidden'})) ring.setAttribute(name, value);
   }
 
   /** panel → its modes; `needs` are the maps without which there is nothing to show. */
@@ -400,15 +461,19 @@
       {name: 'Obstacles', needs: ['space'], base: 'faded', paint: (out, m) => paintSpace(out, m)},
       {name: 'Floor', needs: ['space'], base: 'plain', paint: (out, m) => paintSpace(out, m, kFloor)},
     ],
+    ...(frames.some((facts) => facts.result?.floor_frame)
+      ? {above: [{name: 'From above', needs: ['floor_frame'], draw: drawAbove}]} : {}),
   };
 
   const panels = {};
   function makePanels() {
     for (const name of Object.keys(kPanels)) {
       const stage = el('div', {class: 'stage'});
-      stage.addEventListener('pointermove', (event) => point(event, name));
-      stage.addEventListener('pointerleave', leave);
-      stage.addEventListener('click', pickUnderPointer);
+      if (name !== 'above') {
+        stage.addEventListener('pointermove', (event) => point(event, name));
+        stage.addEventListener('pointerleave', leave);
+        stage.addEventListener('click', pickUnderPointer);
+      }
       const caption = el('figcaption'), legend = el('div', {class: 'legend'});
       byId('panels').append(el('figure', {class: 'panel', 'data-panel': name}, caption, stage, legend));
       panels[name] = {stage, caption, legend};
@@ -422,7 +487,7 @@
     const offered = kPanels[name].filter((mode) => mode.needs.every((map) => state.maps[map]));
     const mode = offered[Math.min(state.modes[name], offered.length - 1)];
     const title = kPanels[name][0].name;
-    stage.style.aspectRatio = `${width || 4} / ${height || 3}`;
+    stage.style.aspectRatio = name === 'above' || !width ? '4 / 3' : `${width} / ${height}`;
     if (!mode) {
       stage.replaceChildren(el('div', {class: 'none'}, 'not there'));
       caption.replaceChildren(el('h2', {}, title));
@@ -439,7 +504,11 @@
       canvas.getContext('2d').putImageData(image, 0, 0);
       children.push(canvas);
     }
-    stage.replaceChildren(...children, ...(shown.marks ?? []), ...leftOutBox());
+    if (mode.draw) {
+      shown = mode.draw();
+      children.push(shown.drawing);
+    }
+    stage.replaceChildren(...children, ...(shown.marks ?? []), ...leftOutBox(name));
     partMarks(shown.marks ?? []);
     if (!withLegend) return;
     const heading = offered.length === 1 ? el('h2', {}, mode.name)
@@ -456,9 +525,9 @@
     return `focal length ${fixed(rig.focal_px, 1)} px, baseline ${fixed(rig.baseline_m, 3)} m`;
   }
   /** The box of what is no object while its row is pointed at or chosen. */
-  function leftOutBox() {
+  function leftOutBox(name) {
     const left = state.nearLeftOut ?? state.leftOut;
-    if (!left) return [];
+    if (!left || name === 'above') return [];
     const [x, y, wide, high] = left.bbox, {width, height} = current();
     return [el('div', {class: 'box', style: {
       left: `${100 * x / width}%`, top: `${100 * y / height}%`, width: `${100 * wide / width}%`, height: `${100 * high / height}%`,
@@ -466,10 +535,20 @@
   }
   function showLeftOut() {
     for (const box of document.querySelectorAll('.box')) box.remove();
-    for (const {stage} of Object.values(panels)) stage.append(...leftOutBox());
+    for (const [name, {stage}] of Object.entries(panels)) stage.append(...leftOutBox(name));
+    ringAbove(placeOnFloor((state.nearLeftOut ?? state.leftOut)?.position_m));
   }
   function repaintObjects() {
     for (const name of ['objects', 'truth']) if (panels[name] && state.maps) repaint(name, false);
+    // Not drawn anew: what the pointer is on would be another then.
+    const chosen = state.near ?? state.picked;
+    for (const thing of document.querySelectorAll('.above .thing')) thing.classList.toggle('dim', chosen !== null && thing.dataset.key !== String(chosen));
+  }
+  /** The object that the pointer is on, outside of the pictures. */
+  function near(id) {
+    state.near = id;
+    markRow(id);
+    repaintObjects();
   }
 
   // ---- the pointer ----
@@ -547,7 +626,7 @@
     tip.style.top = `${Math.max(0, top)}px`;
     for (const [other, {stage}] of Object.entries(panels)) {
       let cross = stage.querySelector('.cross');
-      if (other === name) {
+      if (other === name || other === 'above') {
         cross?.remove();
         continue;
       }
@@ -555,12 +634,16 @@
       cross.style.left = `${100 * (at.x + 0.5) / current().width}%`;
       cross.style.top = `${100 * (at.y + 0.5) / current().height}%`;
     }
-    const id = state.maps.objects?.[at.i] ?? 0;
+    ringAbove(placeOnFloor(placeInCamera(at.x, at.y, state.maps.disparity?.[at.i])));
+    markRow(state.maps.objects?.[at.i] ?? 0);
+  }
+  function markRow(id) {
     for (const row of document.querySelectorAll('#objects tbody tr')) row.classList.toggle('near', row.dataset.key === String(id));
   }
   function leave() {
     byId('tip').hidden = true;
     for (const cross of document.querySelectorAll('.cross')) cross.remove();
+    ringAbove(null);
     for (const row of document.querySelectorAll('tr.near')) row.classList.remove('near');
   }
   function pickUnderPointer(event) {
@@ -577,7 +660,12 @@
   function selectRow(table, key) {
     for (const row of document.querySelectorAll(`#${table} tbody tr`)) {
       row.setAttribute('aria-selected', row.dataset.key === String(key));
-      if (row.dataset.key === String(key)) row.scrollIntoView({block: 'nearest'});
+      if (row.dataset.key !== String(key)) continue;
+      // Its table is scrolled, not the page: the picture that was clicked stays where it is.
+      const box = row.closest('.scroll');
+      if (row.offsetTop < box.scrollTop + row.offsetHeight || row.offsetTop + row.offsetHeight > box.scrollTop + box.clientHeight) {
+        box.scrollTop = row.offsetTop - box.clientHeight / 2;
+      }
     }
   }
 
@@ -668,7 +756,7 @@
     columns.push(number('area px', (o) => o.area ?? o.score?.area_px, 0));
     return card(evaluates ? 'Objects found' : 'Objects', note, table('objects', columns, list, {
       key: (o) => o.id, pickRow: (o) => pick(o.id === state.picked ? null : o.id), selected: (o) => o.id === state.picked,
-      enter: (o) => { state.near = o?.id ?? null; repaintObjects(); },
+      enter: (o) => near(o?.id ?? null),
     }));
   }
   function verdict({score}) {

@@ -4,6 +4,7 @@
 pixels and compares what the page says with the files of the result. Exits with 77 (skipped) where Debian's chromium,
 chromium-driver, python3-selenium or python3-pil is absent. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -156,7 +157,7 @@ class Page(unittest.TestCase):
     def test_has_all_pictures_and_tables(self):
         self.open("segment")
         panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
-        self.assertEqual(panels, ["left", "disparity", "regions", "objects", "space"])
+        self.assertEqual(panels, ["left", "disparity", "regions", "objects", "space", "above"])
         self.assertEqual(len(self.find_all(".panel canvas")), 4)
         self.assertGreater(self.browser.execute_script("return document.querySelector('[data-panel=left] img').naturalWidth"), 0)
         _, document = self.result(0)
@@ -220,6 +221,85 @@ class Page(unittest.TestCase):
         row.click()
         ActionChains(self.browser).move_to_element(self.find("h1")).perform()
         self.assertEqual(self.find_all(".box"), [])
+
+    def test_the_view_from_above_is_drawn_to_scale(self):
+        self.open("segment")
+        self.two_in_a_row()
+        _, document = self.result(0)
+        drawn = self.browser.execute_script(
+            "const all = (s, f) => [...document.querySelectorAll('.above ' + s)].map(f);"
+            "return {camera: all('.camera', (c) => c.getAttribute('d').slice(1).split('l')[0].split(',').map(Number))[0],"
+            " rings: all('.ring', (r) => Number(r.getAttribute('d').split('A')[1].split(' ')[0])),"
+            " labels: all('.ring + text', (t) => t.textContent),"
+            " dots: all('.dot', (d) => [d.cx.baseVal.value, d.cy.baseVal.value]),"
+            " boxes: Object.fromEntries(all('.thing', (g) => [g.dataset.key, [...g.querySelector('polygon').points].map((p) => [p.x, p.y])]))};")
+        self.assertGreater(len(drawn["rings"]), 1)
+        scale = drawn["rings"][0] / float(drawn["labels"][0].removesuffix(" m"))  # px of the drawing for a metre
+        for radius, label in zip(drawn["rings"], drawn["labels"]):
+            self.assertAlmostEqual(radius, scale * float(label.removesuffix(" m")), delta=0.01)
+
+        def in_drawing(forward, left):
+            return drawn["camera"][0] - scale * left, drawn["camera"][1] - scale * forward
+
+        def assert_there(shown, expected):
+            for place, (x, y) in zip(shown, expected):
+                self.assertAlmostEqual(place[0], x, delta=0.11)
+                self.assertAlmostEqual(place[1], y, delta=0.11)
+                self.assertTrue(0 <= x <= 480 and 0 <= y <= 360)
+
+        scan = document["obstacle_scan"]
+        angles = [scan["angle_min_rad"] + i * scan["angle_increment_rad"] for i in range(len(scan["ranges_m"]))]
+        seen = [(r, a) for r, a in zip(scan["ranges_m"], angles) if r is not None]
+        self.assertEqual(len(drawn["dots"]), len(seen))
+        assert_there(drawn["dots"], [in_drawing(r * math.cos(a), r * math.sin(a)) for r, a in seen])
+        self.assertEqual(set(drawn["boxes"]), {str(o["id"]) for o in document["objects"]})
+        for found in document["objects"]:
+            (x, y, _), (long, short, _), yaw = (found["box_on_floor"][key] for key in ("centre_m", "size_m", "yaw_rad"))
+            corners = [in_drawing(x + a * long / 2 * math.cos(yaw) - b * short / 2 * math.sin(yaw),
+                                  y + a * long / 2 * math.sin(yaw) + b * short / 2 * math.cos(yaw))
+                       for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
+            assert_there(drawn["boxes"][str(found["id"])], corners)
+        # The place of the pixel pointed at is ringed, and a box leads to its row.
+        maps, _ = self.result(0)
+        x, y = next((x, y) for y in range(120, 240) for x in range(320)
+                    if maps["objects"].getpixel((x, y)) == 1 and maps["disparity"].getpixel((x, y)))
+        self.point_at("objects", x, y)
+        ring = self.browser.execute_script(
+            "const r = document.querySelector('.above .here');"
+            "return [r.getAttribute('visibility'), r.cx.baseVal.value, r.cy.baseVal.value]")
+        self.assertEqual(ring[0], "visible")
+        rig, matrix = document["rig"], document["floor_frame"]["floor_from_camera"]
+        z = rig["focal_px"] * rig["baseline_m"] / (maps["disparity"].getpixel((x, y)) / 256 + rig["doffs_px"])
+        place = (z * (x - rig["cx_px"]) / rig["focal_px"], z * (y - rig["cy_px"]) / rig["focal_px"], z, 1)
+        expected = in_drawing(*(sum(a * b for a, b in zip(matrix[row:row + 4], place)) for row in (0, 4)))
+        self.assertLess(math.dist(ring[1:], expected), 0.5)
+        box = self.find(".above .thing[data-key='1'] polygon")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", box)
+        ActionChains(self.browser).move_to_element(box).click().perform()
+        self.assertEqual(self.find("#objects tr[data-key='1']").get_attribute("aria-selected"), "true")
+        dim = [thing.get_attribute("data-key") for thing in self.find_all(".above .thing.dim")]
+        self.assertEqual(sorted(dim), [str(o["id"]) for o in document["objects"] if o["id"] != 1])
+        self.keep("from_above")
+
+    def test_without_a_calibration_there_are_no_metres(self):
+        folder, out = self.results.parent / "pair", self.results.parent / "uncalibrated"
+        folder.mkdir()
+        for side in ("left", "right"):
+            shutil.copy(SOURCE / "samples" / "four_in_a_row" / f"{side}.png", folder)
+        cairn("segment", folder, "--html", "-o", out)
+        self.pages = {"segment": out / "segment.html"}
+        self.open("segment")
+        self.assertEqual([panel.get_attribute("data-panel") for panel in self.find_all(".panel")],
+                         ["left", "disparity", "regions", "objects", "space"])
+        heads = [head.text for head in self.find_all("#objects th")]
+        self.assertIn("disparity px", heads)
+        self.assertNotIn("interval m", heads)
+        self.two_in_a_row()
+        text = self.point_at("disparity", 160, 60)
+        self.assertIn("disparity\n", text)
+        self.assertIn("space\n", text)
+        for words in ("depth z", "x, y\n", "above the floor"):
+            self.assertNotIn(words, text)
 
     def test_slider_buttons_and_arrows_change_the_frame(self):
         self.open("segment")
@@ -325,7 +405,7 @@ class Page(unittest.TestCase):
     def test_evaluation_shows_the_numbers_of_its_json(self):
         self.open("evaluate")
         panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
-        self.assertEqual(panels, ["left", "disparity", "truth", "objects", "space"])
+        self.assertEqual(panels, ["left", "disparity", "truth", "objects", "space", "above"])
         summary = self.evaluation["summary"]["objects"]
         tiles = self.find("#tiles").text
         self.assertIn(f"{100 * summary['recall_50']:.1f} %", tiles)
