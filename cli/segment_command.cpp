@@ -147,6 +147,7 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   shown.name = name;
   shown.left = loaded.left.gray;
   shown.left_rgb = loaded.left.rgb;
+  shown.right = loaded.right;
   shown.disparity_px = frame.disparity.disparity_px;
   shown.reject = frame.disparity.reject;
   shown.confidence = frame.confidence;

@@ -131,14 +131,13 @@ Json packed_disparity(View<const float> map) {
   return j;
 }
 
-std::string left_as_uri(View<const Gray> left, View<const Rgb> left_rgb) {
-  if (left.empty() && left_rgb.empty()) return {};
+std::string picture_as_uri(View<const Gray> grey, View<const Rgb> colour) {
+  if (grey.empty() && colour.empty()) return {};
   PixelRows rows;
-  if (left_rgb.empty()) {
-    rows = {left.size(), 1, 1, left.data(), left.stride()};
+  if (colour.empty()) {
+    rows = {grey.size(), 1, 1, grey.data(), grey.stride()};
   } else {
-    rows = {left_rgb.size(), 3, 1, reinterpret_cast<const std::uint8_t*>(left_rgb.data()),
-            left_rgb.stride() * 3};
+    rows = {colour.size(), 3, 1, reinterpret_cast<const std::uint8_t*>(colour.data()), colour.stride() * 3};
   }
   const std::string file = encode_jpeg(rows);
   return "data:image/jpeg;base64," + base64(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
@@ -214,7 +213,8 @@ Json facts(const PageFrame& frame) {
 
 Json maps(const PageFrame& frame) {
   const auto id = [](auto label) { return number(label); };
-  return {{"left", left_as_uri(frame.left, frame.left_rgb)},
+  return {{"left", picture_as_uri(frame.left, frame.left_rgb)},
+          {"right", picture_as_uri(frame.right, {})},
           {"disparity", packed_disparity(frame.disparity_px)},
           {"reject", packed(frame.reject, [](Reject r) { return static_cast<std::uint16_t>(r); })},
           {"confidence", packed(frame.confidence, [](float c) { return std::lround(255 * c); })},

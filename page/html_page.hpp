@@ -20,6 +20,7 @@ struct PageFrame {
   std::string name;
   View<const Gray> left;
   View<const Rgb> left_rgb;
+  View<const Gray> right;
   View<const float> disparity_px;  // NaN = hole
   View<const Reject> reject;
   View<const float> confidence;  // 0 … 1
@@ -35,7 +36,7 @@ struct PageFrame {
 };
 
 /// A frame as text, so that its images need not be kept until the page is written. Ids and reasons are packed
-/// without loss, disparities to 1/64 px, confidences to 1/255, the left picture as JPEG.
+/// without loss, disparities to 1/64 px, confidences to 1/255, the pictures as JPEG.
 struct EncodedFrame {
   std::string facts;  // JSON, read when the page is opened
   std::string maps;   // JSON, read when the frame is shown

@@ -98,16 +98,17 @@
   async function decode(index) {
     const packed = block(`maps-${index}`);
     const count = frames[index].width * frames[index].height;
-    const maps = {left: packed.left || null, floor_frame: frames[index].result?.floor_frame ?? null};
+    const maps = {left: packed.left || null, right: packed.right || null, floor_frame: frames[index].result?.floor_frame ?? null};
     const names = ['reject', 'confidence', 'by_intensity', 'by_disparity', 'superpixels', 'groups', 'objects', 'space'];
     for (const name of names) maps[name] = await unpacked(packed[name], count);
     maps.disparity = await disparities(packed.disparity, count);
     maps.true_disparity = await disparities(packed.true_disparity, count);
     const truth = await unpacked(packed.true_objects, count);
     maps.true_objects = truth && Int32Array.from(truth, (n) => n - 1);  // −1 = don't care
-    if (maps.left) {
+    for (const source of [maps.left, maps.right]) {
+      if (!source) continue;
       const image = new Image();
-      image.src = maps.left;
+      image.src = source;
       await image.decode().catch(() => {});
     }
     return maps;
@@ -441,7 +442,10 @@
 
   /** panel → its modes; `needs` are the maps without which there is nothing to show. */
   const kPanels = {
-    left: [{name: 'Left picture', needs: ['left'], base: 'plain'}],
+    left: [
+      {name: 'Left picture', needs: ['left'], base: 'plain'},
+      {name: 'Right picture', needs: ['right'], base: 'plain', picture: 'right'},
+    ],
     disparity: [
       {name: 'Disparity', needs: ['disparity'], paint: (out, m) => paintDisparity(out, m.disparity, m.reject)},
       {name: 'Disparity error', needs: ['disparity', 'true_disparity'], paint: paintError},
@@ -472,7 +476,7 @@
       if (name !== 'above') {
         stage.addEventListener('pointermove', (event) => point(event, name));
         stage.addEventListener('pointerleave', leave);
-        stage.addEventListener('click', pickUnderPointer);
+        stage.addEventListener('click', (event) => pickUnderPointer(event, name));
       }
       const caption = el('figcaption'), legend = el('div', {class: 'legend'});
       byId('panels').append(el('figure', {class: 'panel', 'data-panel': name}, caption, stage, legend));
@@ -494,8 +498,9 @@
       legend.replaceChildren();
       return;
     }
-    const children = [];
-    if (mode.base && state.maps.left) children.push(el('img', {src: state.maps.left, alt: '', class: mode.base, draggable: 'false'}));
+    panels[name].isRight = mode.picture === 'right';
+    const children = [], picture = state.maps[mode.picture ?? 'left'];
+    if (mode.base && picture) children.push(el('img', {src: picture, alt: '', class: mode.base, draggable: 'false'}));
     let shown = {count: `${width} × ${height} px`, legend: [rigText()]};
     if (mode.paint) {
       const canvas = el('canvas', {width, height});
@@ -528,7 +533,8 @@
   function leftOutBox(name) {
     const left = state.nearLeftOut ?? state.leftOut;
     if (!left || name === 'above') return [];
-    const [x, y, wide, high] = left.bbox, {width, height} = current();
+    const [, , wide, high] = left.bbox, {width, height} = current();
+    const [x, y] = panels[name].isRight ? inRight(left.bbox[0], left.bbox[1], left.disparity_px) : left.bbox;
     return [el('div', {class: 'box', style: {
       left: `${100 * x / width}%`, top: `${100 * y / height}%`, width: `${100 * wide / width}%`, height: `${100 * high / height}%`,
     }})];
@@ -551,14 +557,37 @@
     repaintObjects();
   }
 
+  // ---- the right picture ----
+
+  /** How many rows the right picture is lower there, where the frame was corrected for it. */
+  function rowsLower(x) {
+    const epipolar = current().result?.epipolar;
+    return epipolar?.outcome === 'corrected' ? epipolar.rows + epipolar.rows_per_px * (x - (current().width - 1) / 2) : 0;
+  }
+  /** Where the right picture shows what the left one has at (x, y). */
+  const inRight = (x, y, disparity) => [x - disparity, y + rowsLower(x - disparity)];
+  /** The pixel of the left picture that is matched with this one of the right: the nearest of several. Or null. */
+  function fromRight({x, y}) {
+    const {width, height} = current(), {disparity} = state.maps;
+    const row = Math.round(y - rowsLower(x));
+    let best = null;
+    for (let left = 0, i = row * width; disparity && row >= 0 && row < height && left < width; ++left, ++i) {
+      if (Math.abs(left - disparity[i] - x) <= 0.5 && !(best && disparity[best.i] >= disparity[i])) best = {x: left, y: row, i};
+    }
+    return best;
+  }
+
   // ---- the pointer ----
 
-  function placeOf(event, stage) {
+  /** The pixel of the left picture that the pointer is on, or the one matched with it. */
+  function placeOf(event, name) {
+    const {stage, isRight} = panels[name];
     const box = stage.getBoundingClientRect();
     const {width, height} = current();
     const x = Math.floor((event.clientX - box.left) / box.width * width);
     const y = Math.floor((event.clientY - box.top) / box.height * height);
-    return x >= 0 && y >= 0 && x < width && y < height ? {x, y, i: y * width + x} : null;
+    if (x < 0 || y < 0 || x >= width || y >= height) return null;
+    return isRight ? fromRight({x, y}) : {x, y, i: y * width + x};
   }
 
   function rows(pairs) {
@@ -614,7 +643,7 @@
   }
 
   function point(event, name) {
-    const at = state.maps && placeOf(event, panels[name].stage);
+    const at = state.maps && placeOf(event, name);
     if (!at) return leave();
     const tip = byId('tip'), gap = 14;
     tip.replaceChildren(...described(at));
@@ -624,17 +653,19 @@
     const top = event.clientY + gap + height > innerHeight ? event.clientY - gap - height : event.clientY + gap;
     tip.style.left = `${Math.max(0, left)}px`;
     tip.style.top = `${Math.max(0, top)}px`;
-    for (const [other, {stage}] of Object.entries(panels)) {
+    const disparity = state.maps.disparity?.[at.i];
+    for (const [other, {stage, isRight}] of Object.entries(panels)) {
       let cross = stage.querySelector('.cross');
-      if (other === name || other === 'above') {
+      if (other === name || other === 'above' || (isRight && !isNumber(disparity))) {
         cross?.remove();
         continue;
       }
+      const [x, y] = isRight ? inRight(at.x, at.y, disparity) : [at.x, at.y];
       if (!cross) stage.append(cross = el('div', {class: 'cross'}));
-      cross.style.left = `${100 * (at.x + 0.5) / current().width}%`;
-      cross.style.top = `${100 * (at.y + 0.5) / current().height}%`;
+      cross.style.left = `${100 * (x + 0.5) / current().width}%`;
+      cross.style.top = `${100 * (y + 0.5) / current().height}%`;
     }
-    ringAbove(placeOnFloor(placeInCamera(at.x, at.y, state.maps.disparity?.[at.i])));
+    ringAbove(placeOnFloor(placeInCamera(at.x, at.y, disparity)));
     markRow(state.maps.objects?.[at.i] ?? 0);
   }
   function markRow(id) {
@@ -646,8 +677,8 @@
     ringAbove(null);
     for (const row of document.querySelectorAll('tr.near')) row.classList.remove('near');
   }
-  function pickUnderPointer(event) {
-    const at = state.maps?.objects && placeOf(event, event.currentTarget);
+  function pickUnderPointer(event, name) {
+    const at = state.maps?.objects && placeOf(event, name);
     const id = at ? state.maps.objects[at.i] : 0;
     pick(id > 0 && id !== state.picked ? id : null);
   }

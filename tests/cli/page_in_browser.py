@@ -3,6 +3,8 @@
 """page_in_browser.py CAIRN SOURCE_DIR: the pages of --html in headless Chromium. Sorts tables, moves the slider, points at
 pixels and compares what the page says with the files of the result. Exits with 77 (skipped) where Debian's chromium,
 chromium-driver, python3-selenium or python3-pil is absent. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
+import base64
+import io
 import json
 import math
 import os
@@ -15,7 +17,7 @@ import time
 import unittest
 
 try:
-    from PIL import Image
+    from PIL import Image, ImageChops, ImageStat
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
@@ -300,6 +302,33 @@ class Page(unittest.TestCase):
         self.assertIn("space\n", text)
         for words in ("depth z", "x, y\n", "above the floor"):
             self.assertNotIn(words, text)
+
+    def test_the_right_picture_is_shown_where_there_is_one(self):
+        self.open("evaluate")
+        self.assertEqual(self.find_all("[data-panel=left] select"), [])
+        self.open("segment")
+        self.two_in_a_row()
+        Select(self.find("[data-panel=left] select")).select_by_visible_text("Right picture")
+        shown = Image.open(io.BytesIO(base64.b64decode(self.find("[data-panel=left] img").get_attribute("src").split(",")[1])))
+        with Image.open(self.frames / self.names[0] / "right.png") as image:
+            difference = ImageStat.Stat(ImageChops.difference(shown.convert("L"), image.convert("L"))).mean[0]
+        self.assertLess(difference, 2)  # a JPEG, and how colours become grey
+        # The ring is where the right camera sees the pixel, and leads back to it.
+        maps, _ = self.result(0)
+        disparity = maps["disparity"].load()
+        x, y = next((x, y) for y in range(120, 240) for x in range(160, 320) if disparity[x, y])
+        self.point_at("disparity", x, y)
+        cross = self.find("[data-panel=left] .cross")
+        right = float(cross.get_attribute("style").split("left: ")[1].split("%")[0]) * 320 / 100 - 0.5
+        self.assertAlmostEqual(right, x - disparity[x, y] / 256, delta=0.02)
+        text = self.point_at("left", round(right), y)
+        back, row = (int(part.split(" ")[1]) for part in text.split("\n")[0].split(", "))
+        self.assertEqual(row, y)
+        self.assertAlmostEqual(back - disparity[back, row] / 256, round(right), delta=0.52)
+        x, y = next((x, y) for y in range(120, 240) for x in range(160, 320) if not disparity[x, y])
+        self.point_at("disparity", x, y)
+        self.assertEqual(self.find_all("[data-panel=left] .cross"), [])
+        self.keep("right_picture")
 
     def test_slider_buttons_and_arrows_change_the_frame(self):
         self.open("segment")

@@ -81,6 +81,30 @@ Image<T> filled(const Value& value) {
   return image;
 }
 
+int first_channel(Gray grey) {
+  return grey;
+}
+int first_channel(Rgb colour) {
+  return colour.r;
+}
+
+template <class T>
+void expect_picture(const std::string& uri, int channels, const Image<T>& expected) {
+  const std::string head = "data:image/jpeg;base64,";
+  ASSERT_TRUE(uri.starts_with(head));
+  const Raster raster = decode_jpeg(bytes_of_base64(uri.substr(head.size())));
+  ASSERT_EQ(raster.size, kSize);
+  ASSERT_EQ(raster.channels, channels);
+  int worst = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const int shown = raster.row<std::uint8_t>(y)[x * raster.channels];
+      worst = std::max(worst, std::abs(shown - first_channel(expected(x, y))));
+    }
+  }
+  EXPECT_LE(worst, 20);
+}
+
 TEST(HtmlPage, PacksIdsOfAnySizeWithoutLoss) {
   for (const std::int32_t factor : {0, 1, 300, 70'000, 20'000'000}) {
     const auto labels =
@@ -144,7 +168,7 @@ TEST(HtmlPage, KeepsDisparitiesToHalfOf64thOfAPixelAndHolesAsHoles) {
               1 - holes / static_cast<double>(kSize.area()), 1e-9);
 }
 
-TEST(HtmlPage, ShowsTheLeftPictureNearlyAsItIs) {
+TEST(HtmlPage, ShowsThePicturesNearlyAsTheyAre) {
   const auto grey = filled<Gray>([](int x, int y) { return static_cast<Gray>(4 * x + 3 * y); });
   const auto colour = filled<Rgb>([](int x, int y) {
     return Rgb{static_cast<std::uint8_t>(5 * x), static_cast<std::uint8_t>(6 * y), 128};
@@ -152,22 +176,23 @@ TEST(HtmlPage, ShowsTheLeftPictureNearlyAsItIs) {
   for (const bool coloured : {false, true}) {
     PageFrame frame;
     frame.left = grey;
+    frame.right = grey;
     if (coloured) frame.left_rgb = colour;
-    const std::string uri = Json::parse(encode_frame(frame).maps).at("left");
-    const std::string head = "data:image/jpeg;base64,";
-    ASSERT_TRUE(uri.starts_with(head));
-    const Raster raster = decode_jpeg(bytes_of_base64(uri.substr(head.size())));
-    ASSERT_EQ(raster.size, kSize);
-    ASSERT_EQ(raster.channels, coloured ? 3 : 1);
-    int worst = 0;
-    for (int y = 0; y < kSize.height; ++y) {
-      for (int x = 0; x < kSize.width; ++x) {
-        const int shown = raster.row<std::uint8_t>(y)[x * raster.channels];
-        worst = std::max(worst, std::abs(shown - (coloured ? colour(x, y).r : grey(x, y))));
-      }
+    const Json maps = Json::parse(encode_frame(frame).maps);
+    expect_picture(maps.at("right"), 1, grey);
+    if (coloured) {
+      expect_picture(maps.at("left"), 3, colour);
+    } else {
+      expect_picture(maps.at("left"), 1, grey);
     }
-    EXPECT_LE(worst, 20);
   }
+}
+
+TEST(HtmlPage, HasNoRightPictureWhereThereIsNone) {
+  const Image<Gray> grey(kSize, Gray{80}, {});
+  PageFrame frame;
+  frame.left = grey;
+  EXPECT_EQ(Json::parse(encode_frame(frame).maps).at("right"), "");
 }
 
 TEST(HtmlPage, PutsALabelInsideOfEachObject) {
