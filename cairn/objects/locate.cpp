@@ -138,12 +138,12 @@ Points points_of(const Part& part, const Image<float>& disparity_px, const Stere
 /// `count` of the points as they lie on the floor, seen from above, with their axes turned. Fewer than all
 /// are drawn at random: every so many of them would stand in a few columns of the picture.
 void turn(const Points& points, std::size_t count, float yaw_rad, std::array<std::vector<float>, 2>& room) {
-  constexpr std::uint64_t kSpread = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
+  constexpr std::uint64_t kStride = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
   const float c = std::cos(yaw_rad);
   const float s = std::sin(yaw_rad);
   for (auto& axis : room) axis.clear();
   for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = count < points.size() ? k * kSpread % points.size() : k;
+    const std::size_t i = count < points.size() ? k * kStride % points.size() : k;
     const float x = points.axis[0][i];
     const float y = points.axis[1][i];
     room[0].push_back(c * x + s * y);

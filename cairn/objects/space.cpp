@@ -309,7 +309,7 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
                  static_cast<int>(of.pixels),
                  static_cast<float>(of.disparity_px / count),
                  std::nullopt,
-                 0};
+                 of.likeliest};
     if (rig) left.position_in_camera_m = rig->point_in_camera_m(x, y, left.disparity_px);
     if (of.pixels < limits.min_area) left.reason = LeftOutReason::too_small;
     if (2 * of.on_wall >= of.pixels) left.reason = LeftOutReason::background;
