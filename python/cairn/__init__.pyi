@@ -575,7 +575,7 @@ class LeftOut:
         """(x right, y down, z forward), m: of its middle; None without a rig"""
     @property
     def confidence(self) -> float:
-        """0 to 1: the best of a region that holds its middle; 0 where none was judged"""
+        """0 to 1: the best of a region that holds some of it; 0 where none was judged"""
 
 class Matches:
     """The outcome of correlation for each pixel of the left picture (best_right: of the right one). Arrays (H, W), read-only; row_offset is None without match.row_band."""
@@ -740,6 +740,9 @@ class ObstacleScan:
     @property
     def angle_increment_rad(self) -> float:
         """from one to the next"""
+    @property
+    def range_max_m(self) -> float:
+        """how far it reaches, m"""
     @property
     def ranges_m(self) -> numpy.ndarray[numpy.float32]:
         """(N,) float32, m; NaN: no obstacle is seen there, which does not say that there is none"""
