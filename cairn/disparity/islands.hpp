@@ -15,7 +15,8 @@ namespace cairn {
 
 /// The 4-connected islands of a picture's pixels. `rows(y)` says of row y which pixels there are and which
 /// belong together: row.is_pixel(x); row.follows(x), x − 1 is a pixel, too, and x belongs to it;
-/// row.joins(above, x), of two pixels, x belongs to that in the row above. Islands are numbered by their first pixels in raster order. Private to the library.
+/// row.joins(above, x), of two pixels, x belongs to that in the row above. Islands are numbered by their
+/// first pixels in raster order. Private to the library.
 template <class Rows>
 class Islands {
  public:

@@ -18,7 +18,7 @@ struct ChoiceLimits {
 struct ChosenObjects {
   std::vector<std::int32_t> object_of;  // per superpixel: its object, 1 … scores.size()−1; 0 = none
   std::vector<float> scores;            // how likely each of these is one, 0 … 1; scores[0] = 0
-  std::vector<float> likeliest{};       // per superpixel: how likely the likeliest region that holds it is one
+  std::vector<float> likeliest{};  // per superpixel: how likely the likeliest region that holds it is one
 };
 
 /// Of all nodes of the tree those whose scores together exceed min_score by most, each scored by
