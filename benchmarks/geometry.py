@@ -46,7 +46,8 @@ def true_plane(truth):
 
 
 def span(values):
-    low, high = np.percentile(values, [2, 98])
+    """Of true points: their whole extent but for single ones."""
+    low, high = np.percentile(values, [0.5, 99.5])
     return high - low
 
 
@@ -57,7 +58,7 @@ def box_size(points, frame):
     best = None
     for yaw in np.radians(np.arange(90)):
         u, v = x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw)
-        off = [np.abs(a - np.percentile(a, p)) for a in (u, v) for p in (2, 98)]
+        off = [np.abs(a - np.percentile(a, p)) for a in (u, v) for p in (0.5, 99.5)]
         distance = np.min(off, axis=0).sum()
         if best is None or distance < best[0]:
             best = distance, sorted([span(u), span(v)], reverse=True)

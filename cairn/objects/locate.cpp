@@ -83,13 +83,16 @@ std::size_t rank_of(std::size_t percent, std::size_t count) {
   return (percent * (count - 1) + 50) / 100;
 }
 
-/// The values of the ranks ⌊(p·(n−1) + 50)/100⌋ for p = 2 and 98, in ascending order: few wild matches do not
-/// stretch what lies between them. Reorders `values`, which are not empty.
-Interval without_tails(std::span<float> values, const Exec& exec) {
+/// The ranks of the `percent`-th percentile and of the one as far from the other end: ⌊(p·(n−1) + 50)/100⌋ in
+/// ascending order. Few wild matches do not stretch what lies between them. Reorders `values`, which are not
+/// empty.
+Interval without_tails(std::span<float> values, std::size_t percent, const Exec& exec) {
   const std::size_t n = values.size();
-  const auto [low, high] = values_at_ranks(values, rank_of(2, n), rank_of(98, n), exec);
+  const auto [low, high] = values_at_ranks(values, rank_of(percent, n), rank_of(100 - percent, n), exec);
   return {low, high};
 }
+constexpr std::size_t kTailOfBox = 2;     // %; the far ends of its sides show few points
+constexpr std::size_t kTailOfExtent = 5;  // %; depth has more wild points than breadth
 
 float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& exec) {
   const std::size_t n = disparities_px.size();
@@ -176,8 +179,8 @@ int closest_yaw(const Points& points, std::array<std::vector<float>, 2>& room, c
   const auto distance = [&](int degrees) {
     turn(points, count, radians(degrees), room);
     ranked = room;
-    const Interval u = without_tails(ranked[0], exec);
-    const Interval v = without_tails(ranked[1], exec);
+    const Interval u = without_tails(ranked[0], kTailOfBox, exec);
+    const Interval v = without_tails(ranked[1], kTailOfBox, exec);
     double sum = 0;
     for (std::size_t i = 0; i < room[0].size(); ++i)
       sum += double{std::min(from_end(u, room[0][i]), from_end(v, room[1][i]))};
@@ -236,9 +239,9 @@ FloorBox box_on(const FloorFrame& floor, const Points& in_camera, const Exec& ex
   int degrees = closest_yaw(points, room, exec);
   const float yaw = radians(degrees);
   turn(points, points.size(), yaw, room);
-  const Interval u = without_tails(room[0], exec);
-  const Interval v = without_tails(room[1], exec);
-  const Interval up = without_tails(points.axis[2], exec);
+  const Interval u = without_tails(room[0], kTailOfBox, exec);
+  const Interval v = without_tails(room[1], kTailOfBox, exec);
+  const Interval up = without_tails(points.axis[2], kTailOfBox, exec);
   const float c = std::cos(yaw);
   const float s = std::sin(yaw);
   FloorBox box;
@@ -292,7 +295,11 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
     if (!std::all_of(known.begin(), known.end(), [](float c) { return std::isfinite(c); }))
       object.box_on_floor.reset();
   }
-  const auto span = [&](std::size_t axis) { return length(without_tails(points.axis.at(axis), exec)); };
+  // What is cut off of points that are spread evenly comes back.
+  const auto span = [&](std::size_t axis) {
+    return length(without_tails(points.axis.at(axis), kTailOfExtent, exec)) * 100 /
+           float{100 - 2 * kTailOfExtent};
+  };
   object.extent_in_camera_m = Vec3{span(0), span(1), span(2)};
 }
 

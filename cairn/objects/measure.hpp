@@ -58,7 +58,7 @@ struct Object {
   float disparity_sigma_px = 0;              // standard deviation of disparity_px
   std::optional<Vec3> position_in_camera_m;  // in the middle of its main part, at the depth of disparity_px
   std::optional<Interval> depth_interval_m;  // 95 %: where the z of its position lies
-  std::optional<Vec3> extent_in_camera_m;    // of its main part, 2nd to 98th percentile per axis
+  std::optional<Vec3> extent_in_camera_m;    // of its main part, without wild points
   std::optional<FloorBox> box_on_floor;      // needs a ground, too
 };
 

@@ -223,7 +223,7 @@ void bind_classes(py::module_& m) {
           "(nearest, farthest), m: where its depth lies with 95 %; None without a rig")
       .def_property_readonly(
           "extent_in_camera_m", [](const Object& self) { return triple(self.extent_in_camera_m); },
-          "(x, y, z), m: the box around the points of its main part, 2nd to 98th percentile; None without a "
+          "(x, y, z), m: the box around the points of its main part, without wild ones; None without a "
           "rig")
       .def_readonly("box_on_floor", &Object::box_on_floor,
                     "its box, upright on the floor: a FloorBox; None without a rig or a ground")

@@ -60,8 +60,8 @@ TEST(Locate, PlacesAnObjectInMetresWhereARigIsKnown) {
   EXPECT_NEAR(object.position_in_camera_m->x, 4.5 * 0.02, 1e-5);
   EXPECT_NEAR(object.position_in_camera_m->y, -0.5 * 0.02, 1e-5);
   EXPECT_NEAR(object.position_in_camera_m->z, 2, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->x, 9 * 0.02, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->y, 9 * 0.02, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->x, 10 * 0.02, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->y, 10 * 0.02, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
   EXPECT_FALSE(object.box_on_floor);  // no ground
 }
@@ -80,8 +80,8 @@ TEST(Locate, AFewWildMatchesOfOneSurfaceDoNotStretchTheExtent) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   scene.disparity.disparity_px(22, 7) = 4.5F;  // 2.22 m, and one surface with the rest
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
-  for (int i = 0; i < 4; ++i) scene.disparity.disparity_px(21 + i, 8) = 4.5F;
-  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, 10 / 4.5 - 2, 1e-4);
+  for (int i = 0; i < 6; ++i) scene.disparity.disparity_px(21 + i, 8) = 4.5F;
+  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, (10 / 4.5 - 2) * 10 / 9, 1e-4);
 }
 
 TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
@@ -91,7 +91,7 @@ TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
     for (int x = 26; x < 30; ++x) scene.disparity.disparity_px(x, y) = 3.5F;
   }
   const Object object = scene.located(kRig).list[0];
-  EXPECT_NEAR(object.extent_in_camera_m->x, 5 * 0.02, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->x, 5 * 0.02 * 10 / 9, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
   EXPECT_NEAR(object.position_in_camera_m->x, 2.5 * 0.02, 1e-5);
 }
