@@ -850,7 +850,7 @@
         number('ms', (f) => total(f.result?.timings_ms), 1));
     }
     return card('Frames', `${run.frames}`, table('frames-table', columns, list, {
-      key: (f) => f.index, pickRow: (f) => show(f.index), selected: (f) => f.index === state.frame,
+      key: (f) => f.index, pickRow: (f) => go(f.index), selected: (f) => f.index === state.frame,
     }));
   }
   function groundText({result}) {
@@ -971,7 +971,7 @@
     if (run.frames > 1) columns.unshift({name: 'frame', text: true, value: (t) => t.name, show: (t) => t.name});
     const note = state.bin === null ? counted(list.length, 'scored object') : `${counted(list.length, 'object')} with E ${binText(state.bin)}`;
     const result = card('True objects', note, table('truth', columns, list, {
-      key: (t) => `${t.frame}:${t.id}`, pickRow: (t) => show(t.frame).then(() => pick(t.ours)),
+      key: (t) => `${t.frame}:${t.id}`, pickRow: (t) => go(t.frame).then(() => pick(t.ours)),
       enter: (t) => { state.near = t?.frame === state.frame ? t.ours : null; repaintObjects(); },
     }));
     if (run.frames > 1) {
@@ -1039,6 +1039,34 @@
     if (mine + 1 < run.frames) setTimeout(() => mapsOf(mine + 1).catch(() => {}), 150);
   }
 
+  const kMsPerFrame = 200;
+  let playing = null;  // a token of the run through the frames that is under way
+  /** From the frame shown to the last, from the first where the last is shown. */
+  async function play() {
+    const mine = playing = {};
+    playButton(true);
+    if (wanted === run.frames - 1) await show(0);
+    while (playing === mine && wanted < run.frames - 1) {
+      await new Promise((resolve) => setTimeout(resolve, kMsPerFrame));
+      if (playing === mine) await show(wanted + 1);
+    }
+    if (playing === mine) pause();
+  }
+  function pause() {
+    playing = null;
+    playButton(false);
+  }
+  const playOrPause = () => (playing ? pause() : play());
+  function playButton(plays) {
+    byId('play').textContent = plays ? '❚❚' : '▶';
+    byId('play').setAttribute('aria-pressed', plays);
+  }
+  /** To a frame that was asked for. */
+  function go(index) {
+    pause();
+    return show(index);
+  }
+
   function trouble(text) {
     byId('trouble').textContent = text;
     byId('trouble').hidden = false;
@@ -1062,7 +1090,7 @@
     byId('command').textContent = run.command;
     byId('title').textContent = run.title;
     byId('about').textContent = `cairn ${run.cairn}. Point at a pixel to see what is known of it; click an object to single it out` +
-      (run.frames > 1 ? '; ← and → change the frame.' : '.');
+      (run.frames > 1 ? '; ← and → change the frame, space plays.' : '.');
     byId('columns').append(...[4, 3, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} in a row`, onclick: () => {
       state.columns = n;
       layOut();
@@ -1078,17 +1106,25 @@
     if (run.evaluation) tiles();
     byId('frames').hidden = run.frames < 2;
     byId('slider').max = run.frames - 1;
-    byId('slider').addEventListener('input', (event) => show(Number(event.target.value)));
-    byId('previous').addEventListener('click', () => show(wanted - 1));
-    byId('next').addEventListener('click', () => show(wanted + 1));
+    byId('slider').addEventListener('input', (event) => go(Number(event.target.value)));
+    byId('previous').addEventListener('click', () => go(wanted - 1));
+    byId('next').addEventListener('click', () => go(wanted + 1));
+    byId('play').addEventListener('click', playOrPause);
+    // A button that was clicked, not reached by keys, leaves the space bar to play and pause.
+    byId('frames').addEventListener('click', (event) => { if (event.detail) event.target.blur(); });
     addEventListener('keydown', (event) => {
-      if (event.altKey || event.ctrlKey || event.metaKey || event.target.matches?.('select, input[type=range]')) return;
+      if (run.frames < 2 || event.altKey || event.ctrlKey || event.metaKey) return;
+      if (event.key === ' ' && !event.target.matches?.('button, select, summary, input[type=checkbox]')) {
+        event.preventDefault();
+        if (!event.repeat) playOrPause();
+      }
+      if (event.target.matches?.('select, input[type=range]')) return;
       const to = {ArrowLeft: wanted - 1, ArrowRight: wanted + 1, Home: 0, End: run.frames - 1}[event.key];
-      if (run.frames < 2 || to === undefined) return;
+      if (to === undefined) return;
       event.preventDefault();
-      show(to);
+      go(to);
     });
-    addEventListener('hashchange', () => show(Number(location.hash.slice(1)) - 1 || 0));
+    addEventListener('hashchange', () => go(Number(location.hash.slice(1)) - 1 || 0));
     if (typeof DecompressionStream === 'undefined') {
       trouble('This browser cannot unpack the pictures (no DecompressionStream): Chrome 80, Firefox 113, Safari 16.4 or later can.');
     }

@@ -356,6 +356,37 @@ class Page(unittest.TestCase):
         self.wait_for_frame(self.names.index(HOSTILE))
         self.assertEqual(self.name_shown(), HOSTILE)
 
+    def playing(self):
+        return self.find("#play").get_attribute("aria-pressed") == "true"
+
+    def test_plays_to_the_last_frame_and_stops(self):
+        self.open("segment")
+        self.browser.execute_script(
+            "window.seen = []; new MutationObserver(() => seen.push(document.documentElement.dataset.shown))"
+            ".observe(document.documentElement, {attributeFilter: ['data-shown']});")
+        self.assertFalse(self.playing())
+        self.find("#play").click()
+        self.assertTrue(self.playing())
+        self.wait_for_frame(2)
+        self.assertEqual(self.browser.execute_script("return seen"), ["1", "2"])
+        time.sleep(0.4)
+        self.assertFalse(self.playing())
+        # The space bar begins anew at the end and pauses; a frame asked for pauses, too.
+        body = self.find("body")
+        body.send_keys(Keys.SPACE)
+        self.wait_for_frame(0)
+        body.send_keys(Keys.SPACE)
+        self.assertFalse(self.playing())
+        at = self.browser.execute_script("return seen.length")
+        time.sleep(0.5)
+        self.assertEqual(self.browser.execute_script("return seen.length"), at)
+        self.assertEqual(self.browser.execute_script("return scrollY"), 0)
+        body.send_keys(Keys.SPACE)
+        self.assertTrue(self.playing())
+        body.send_keys(Keys.HOME)
+        self.assertFalse(self.playing())
+        self.wait_for_frame(0)
+
     def test_tables_sort_both_ways(self):
         self.open("segment")
         for name in ("confidence", "distance m", "area px"):
