@@ -129,7 +129,8 @@ struct Split {
 std::vector<Split> splits() {
   const fs::path real = "real";
   std::vector<fs::path> middlebury;
-  for (const char* name : kMiddlebury) middlebury.push_back(real / name);
+  std::transform(kMiddlebury.begin(), kMiddlebury.end(), std::back_inserter(middlebury),
+                 [&](const char* name) { return real / name; });
   return {{"dev 320x240", {"rendered/dev/320x240"}, true},
           {"dev 640x480", {"rendered/dev/640x480"}, true},
           {"train 320x240", {"rendered/train/320x240"}, true},
