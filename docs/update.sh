@@ -114,7 +114,7 @@ picture() {  # FILE NAME
 
 # What a browser shows of a page.
 screenshot() {  # PAGE FILE
-  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1280,860 --virtual-time-budget=4000 \
+  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1280,1180 --virtual-time-budget=4000 \
     --screenshot="$2" "file://$1" >/dev/null 2>&1
 }
 

@@ -491,7 +491,7 @@
     const offered = kPanels[name].filter((mode) => mode.needs.every((map) => state.maps[map]));
     const mode = offered[Math.min(state.modes[name], offered.length - 1)];
     const title = kPanels[name][0].name;
-    stage.style.aspectRatio = name === 'above' || !width ? '4 / 3' : `${width} / ${height}`;
+    stage.style.aspectRatio = mode?.draw || !width ? '4 / 3' : `${width} / ${height}`;
     if (!mode) {
       stage.replaceChildren(el('div', {class: 'none'}, 'not there'));
       caption.replaceChildren(el('h2', {}, title));
@@ -542,8 +542,9 @@
   function showLeftOut() {
     for (const box of document.querySelectorAll('.box')) box.remove();
     for (const [name, {stage}] of Object.entries(panels)) stage.append(...leftOutBox(name));
-    ringAbove(placeOnFloor((state.nearLeftOut ?? state.leftOut)?.position_m));
+    ringLeftOut();
   }
+  const ringLeftOut = () => ringAbove(placeOnFloor((state.nearLeftOut ?? state.leftOut)?.position_m));
   function repaintObjects() {
     for (const name of ['objects', 'truth']) if (panels[name] && state.maps) repaint(name, false);
     // Not drawn anew: what the pointer is on would be another then.
@@ -674,7 +675,7 @@
   function leave() {
     byId('tip').hidden = true;
     for (const cross of document.querySelectorAll('.cross')) cross.remove();
-    ringAbove(null);
+    ringLeftOut();
     for (const row of document.querySelectorAll('tr.near')) row.classList.remove('near');
   }
   function pickUnderPointer(event, name) {
@@ -1103,6 +1104,7 @@
     addEventListener('resize', layOut);
     layOut();
     makePanels();
+    if (!evaluates) byId('tables').style.setProperty('--first', '1.6fr');  // its objects have more columns
     if (run.evaluation) tiles();
     byId('frames').hidden = run.frames < 2;
     byId('slider').max = run.frames - 1;

@@ -39,6 +39,17 @@ TEST_F(PageAndCloudTest, AFolderOfFramesHasOnePageAndACloudForEach) {
   EXPECT_FALSE(fs::exists(at("out/a/segment.html")));
 }
 
+TEST_F(PageAndCloudTest, APageHasTheRightPictureWhereOneWasMatched) {
+  pair_in("frame");
+  write(at("given.pfm"), pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
+  ASSERT_EQ(run({"segment", path("frame"), "--html", "-o", path("matched")}).code, 0);
+  ASSERT_EQ(
+      run({"segment", path("frame"), "--disparity", path("given.pfm"), "--html", "-o", path("given")}).code,
+      0);
+  EXPECT_NE(content(at("matched/segment.html")).find(R"("right":"data:image/jpeg)"), std::string::npos);
+  EXPECT_NE(content(at("given/segment.html")).find(R"("right":"")"), std::string::npos);
+}
+
 TEST_F(PageAndCloudTest, ANewResultTakesOlderOnesAway) {
   pair_in("frame");
   write(at("frame") / "calib.txt", kCalibration);
@@ -82,7 +93,7 @@ TEST_F(PageAndCloudTest, EvaluateWritesAPageOfWhatThereIs) {
   EXPECT_TRUE(content(at("new/page") / "evaluation.html").starts_with("<!doctype html>"));
   write(at("out/frame") / "objects.json", R"({"timings_ms": {}, "objects": [7]})");
   refuses({"evaluate", path("out"), path("truth"), "--html", path("other")}, {"objects.json"});
-  for (const char* lost : {"objects.json", "objects.png", "reject.png", "confidence.png"}) {
+  for (const char* lost : {"objects.json", "objects.png", "reject.png", "confidence.png", "space.png"}) {
     fs::remove(at("out/frame") / lost);
   }
   EXPECT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("new/page")}).code, 0);
