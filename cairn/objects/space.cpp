@@ -31,9 +31,10 @@ class Behind {
     std::fill(floor_px_.begin(), floor_px_.end(), kNan);
     std::fill(wall_px_.begin(), wall_px_.end(), -std::numeric_limits<float>::infinity());
     for (const GroundPlane& wall : walls_) {
-      for (int x = 0; x < width_; ++x)
-        wall_px_[slot(x)] =
-            std::max(wall_px_[slot(x)], wall.disparity_px(static_cast<float>(x), static_cast<float>(y)));
+      for (int x = 0; x < width_; ++x) {
+        const float d = wall.disparity_px(static_cast<float>(x), static_cast<float>(y));
+        wall_px_[slot(x)] = std::max(wall_px_[slot(x)], d);
+      }
     }
     for (int x = 0; x < width_ && floor_; ++x) {
       const float d = floor_->disparity_px(static_cast<float>(x), static_cast<float>(y));
@@ -41,9 +42,8 @@ class Behind {
     }
     for (int x = 0; x < width_; ++x) {
       const float floor = floor_px_[slot(x)];
-      barrier_px_[slot(x)] = !std::isnan(floor) ? floor
-                             : floor_           ? -infinity_
-                                                : std::max(wall_px_[slot(x)], -infinity_);
+      const float beyond = floor_ ? -infinity_ : std::max(wall_px_[slot(x)], -infinity_);
+      barrier_px_[slot(x)] = std::isnan(floor) ? beyond : floor;
     }
   }
 
