@@ -649,7 +649,7 @@ class Object:
         """(nearest, farthest), m: where its depth lies with 95 %; None without a rig"""
     @property
     def extent_in_camera_m(self) -> Optional[Tuple[float, float, float]]:
-        """(x, y, z), m: the box around the points of its main part, 2nd to 98th percentile; None without a rig"""
+        """(x, y, z), m: the box around the points of its main part, without wild ones; None without a rig"""
     @property
     def box_on_floor(self) -> Optional[FloorBox]:
         """its box, upright on the floor: a FloorBox; None without a rig or a ground"""
