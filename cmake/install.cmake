@@ -18,10 +18,10 @@ endfunction()
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
   core/scratch
-  diagnosis/robust_fit scene/floor_search scene/plane_fit scene/plane_through_pairs
+  diagnosis/robust_fit disparity/islands scene/floor_search scene/plane_fit scene/plane_through_pairs
   pipeline/matched_scene pipeline/methods
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
-  image/gaussian image/sparse_points image/texture
+  image/gaussian image/local_contrast image/sparse_points image/texture
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
