@@ -300,10 +300,7 @@ std::size_t width_of(const std::string& text) {
 
 std::string describe(const EpipolarOffset& epipolar) {
   if (epipolar.outcome == EpipolarOutcome::off) return {};
-  std::string words = "epipolar lines: ";
-  for (const auto& outcome : kEpipolarOutcomes) {
-    if (outcome.value == epipolar.outcome) words += outcome.name;
-  }
+  std::string words = "epipolar lines: " + choice_name(epipolar.outcome, kEpipolarOutcomes);
   if (epipolar.outcome == EpipolarOutcome::aligned || epipolar.outcome == EpipolarOutcome::corrected) {
     constexpr double kDegrees = 57.29577951308232;
     words += ", the right image " + text_of("%+.2f", double(epipolar.rows)) + " rows lower, roll " +

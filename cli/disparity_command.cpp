@@ -68,9 +68,7 @@ std::string describe(const SceneDisparity& scene, const LoadedFrame& loaded, dou
     all += "ground: d = " + text_of("%.6f", double(p.a)) + " x " + text_of("%+.6f", double(p.b)) + " y " +
            text_of("%+.4f", double(p.c)) + ", support " + percent(double(scene.ground.support)) + "\n";
   } else {
-    for (const auto& refusal : kRefusals) {
-      if (refusal.value == scene.ground.refusal) all += "ground: none, " + std::string(refusal.name) + "\n";
-    }
+    all += "ground: none, " + choice_name(scene.ground.refusal, kRefusals) + "\n";
   }
   return all;
 }

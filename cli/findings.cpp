@@ -9,10 +9,7 @@
 namespace cairn::cli {
 
 std::string name_of(Severity severity) {
-  for (const auto& choice : kSeverities) {
-    if (choice.value == severity) return std::string(choice.name);
-  }
-  return {};
+  return choice_name(severity, kSeverities);
 }
 
 bool is_broken(const std::vector<Finding>& findings) {

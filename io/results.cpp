@@ -69,14 +69,8 @@ Json json(const std::optional<StereoRig>& rig) {
           {"doffs_px", json(rig->doffs_px)}};
 }
 
-/// Where the floor is, in metres.
-std::optional<FloorFrame> floor_of(const Frame& frame, const Provenance& provenance) {
-  if (!frame.ground.plane || !provenance.rig) return std::nullopt;
-  return floor_frame(*frame.ground.plane, *provenance.rig);
-}
-
 Json floor_json(const Frame& frame, const Provenance& provenance) {
-  const auto floor = floor_of(frame, provenance);
+  const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
   Json matrix = Json::array();
   for (const float entry : floor->floor_from_camera()) matrix.push_back(json(entry));
@@ -93,9 +87,7 @@ Json json(const Ground& ground) {
     j["plane"] = {{"a", json(ground.plane->a)}, {"b", json(ground.plane->b)}, {"c", json(ground.plane->c)}};
   j["support"] = json(ground.support);
   j["residual_px"] = json(ground.residual_px);
-  for (const auto& refusal : kRefusals) {
-    if (refusal.value == ground.refusal) j["refusal"] = std::string(refusal.name);
-  }
+  j["refusal"] = choice_name(ground.refusal, kRefusals);
   return j;
 }
 
@@ -104,18 +96,14 @@ Json json(const EpipolarOffset& epipolar) {
          {"rows_per_px", json(epipolar.rows_per_px)},
          {"points", epipolar.points},
          {"agreeing", epipolar.agreeing}};
-  for (const auto& outcome : kEpipolarOutcomes) {
-    if (outcome.value == epipolar.outcome) j["outcome"] = std::string(outcome.name);
-  }
+  j["outcome"] = choice_name(epipolar.outcome, kEpipolarOutcomes);
   return j;
 }
 
 Json json(const LeftOut& left) {
   const Rect box = left.box_px;
   Json j;
-  for (const auto& reason : kLeftOutReasons) {
-    if (reason.value == left.reason) j["reason"] = std::string(reason.name);
-  }
+  j["reason"] = choice_name(left.reason, kLeftOutReasons);
   j["bbox"] = {box.x, box.y, box.width, box.height};
   j["area"] = left.pixel_count;
   j["disparity_px"] = json(left.disparity_px);
@@ -126,7 +114,7 @@ Json json(const LeftOut& left) {
 
 /// null where nothing is known of a floor in metres.
 Json scan_json(const Frame& frame, const Provenance& provenance) {
-  const auto floor = floor_of(frame, provenance);
+  const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
   const ObstacleScan scan = scan_obstacles(frame.space, frame.disparity.disparity_px, *floor, *provenance.rig,
                                            provenance.config.space);
@@ -322,12 +310,13 @@ std::string npy_bytes(View<const float> image) {
 }
 
 bool wants_grid(const Result& r) {
-  return r.extras.grid && !r.frame.space.empty() && floor_of(r.frame, r.provenance).has_value();
+  return r.extras.grid && !r.frame.space.empty() && floor_frame(r.frame.ground, r.provenance.rig).has_value();
 }
 
 ObstacleGrid grid_of(const Result& r) {
-  return map_obstacles(r.frame.space, r.frame.disparity.disparity_px, *floor_of(r.frame, r.provenance),
-                       *r.provenance.rig, r.provenance.config.space);
+  return map_obstacles(r.frame.space, r.frame.disparity.disparity_px,
+                       *floor_frame(r.frame.ground, r.provenance.rig), *r.provenance.rig,
+                       r.provenance.config.space);
 }
 
 /// As ROS' map_server reads it: the row with the greatest y first.

@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 /// The vocabulary of a config's fields() function. Each stage's header has, beside its config struct,
@@ -49,6 +52,15 @@ struct Choice {
   std::string_view name;
   E value;
 };
+
+/// The name of a value; "?" for one that is none of the choices.
+template <class E, std::size_t N>
+std::string choice_name(E value, const std::array<Choice<E>, N>& choices) {
+  for (const Choice<E>& choice : choices) {
+    if (choice.value == value) return std::string(choice.name);
+  }
+  return "?";
+}
 
 /// No further limit: for bool.
 struct Any {};

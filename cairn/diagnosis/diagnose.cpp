@@ -210,12 +210,8 @@ void check_end_of_range(Case& c, const DisparityMap& map) {
 /// Of a segmented frame.
 void check_floor(Case& c, const Frame& frame) {
   if (frame.ground.plane || frame.ground.refusal == Refusal::off) return;
-  for (const auto& refusal : kRefusals) {
-    if (refusal.value == frame.ground.refusal) {
-      c.add(FindingKind::no_floor, Severity::note, 100 * known_share(frame.disparity),
-            std::string(refusal.name));
-    }
-  }
+  c.add(FindingKind::no_floor, Severity::note, 100 * known_share(frame.disparity),
+        choice_name(frame.ground.refusal, kRefusals));
 }
 
 void check_infinity(Case& c) {

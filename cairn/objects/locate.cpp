@@ -309,7 +309,7 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
                const std::optional<StereoRig>& rig, const Exec& exec) {
   if (objects.list.empty()) return objects;
   std::vector<Part> parts = parts_of(objects, disparity.disparity_px, exec);
-  const auto floor = rig && ground.plane ? floor_frame(*ground.plane, *rig) : std::nullopt;
+  const auto floor = floor_frame(ground, rig);
   parallel_for(exec, static_cast<int>(parts.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i) {
       Object& object = objects.list[i];

@@ -27,9 +27,7 @@ requires std::is_arithmetic_v<Number> std::string write(Number value) {
 
 template <class E, std::size_t N>
 std::string write(E value, const std::array<Choice<E>, N>& choices) {
-  const auto found =
-      std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c.value == value; });
-  return std::string(found == choices.end() ? "?" : found->name);
+  return choice_name(value, choices);
 }
 
 template <class T, class Domain>

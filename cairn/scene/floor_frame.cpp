@@ -68,4 +68,8 @@ std::optional<FloorFrame> floor_frame(const GroundPlane& ground, const StereoRig
   return frame;
 }
 
+std::optional<FloorFrame> floor_frame(const Ground& ground, const std::optional<StereoRig>& rig) {
+  return ground.plane && rig ? floor_frame(*ground.plane, *rig) : std::nullopt;
+}
+
 }  // namespace cairn

@@ -29,5 +29,7 @@ struct FloorFrame {
 
 /// nullopt for a plane that no floor below a camera can show: one through the camera, or above it.
 std::optional<FloorFrame> floor_frame(const GroundPlane& ground, const StereoRig& rig);
+/// The same; nullopt also where there is no ground, or no rig.
+std::optional<FloorFrame> floor_frame(const Ground& ground, const std::optional<StereoRig>& rig);
 
 }  // namespace cairn

@@ -216,8 +216,7 @@ const StereoRig& rig_of_frame(const PyFrame& self) {
 }
 
 std::optional<FloorFrame> floor_frame_of(const PyFrame& self) {
-  if (!self.provenance.rig || !self.frame.ground.plane) return std::nullopt;
-  return floor_frame(*self.frame.ground.plane, *self.provenance.rig);
+  return floor_frame(self.frame.ground, self.provenance.rig);
 }
 
 std::optional<ObstacleScan> scan_of(const PyFrame& self) {

@@ -85,7 +85,7 @@ Background walls(const Config& config, const Exec& exec, const FloatsArgument& e
 }
 
 std::string refusal(const Ground& self) {
-  return std::string(kRefusals.at(static_cast<std::size_t>(self.refusal)).name);
+  return choice_name(self.refusal, kRefusals);
 }
 
 std::string plane_text(const GroundPlane& p) {

@@ -245,13 +245,7 @@ void bind_classes(py::module_& m) {
 
   py::class_<LeftOut>(m, "LeftOut", "An obstacle that is no object, and why.")
       .def_property_readonly(
-          "reason",
-          [](const LeftOut& self) {
-            const auto* const found =
-                std::find_if(kLeftOutReasons.begin(), kLeftOutReasons.end(),
-                             [&](const auto& reason) { return reason.value == self.reason; });
-            return std::string(found->name);
-          },
+          "reason", [](const LeftOut& self) { return choice_name(self.reason, kLeftOutReasons); },
           "'background', 'too small' or 'low confidence'")
       .def_property_readonly(
           "box_px", [](const LeftOut& self) { return box(self.box_px); }, "(x, y, width, height), px")
@@ -264,13 +258,10 @@ void bind_classes(py::module_& m) {
                     "0 to 1: the best of a region that holds some of it; 0 where none was judged")
       .def("__repr__",
            [](const LeftOut& self) {
-             std::string reason;
-             for (const auto& known : kLeftOutReasons) {
-               if (known.value == self.reason) reason = known.name;
-             }
-             return "<cairn.LeftOut " + reason + ": " + std::to_string(self.pixel_count) + " px in box (" +
-                    std::to_string(self.box_px.x) + ", " + std::to_string(self.box_px.y) + ", " +
-                    std::to_string(self.box_px.width) + ", " + std::to_string(self.box_px.height) + ")>";
+             return "<cairn.LeftOut " + choice_name(self.reason, kLeftOutReasons) + ": " +
+                    std::to_string(self.pixel_count) + " px in box (" + std::to_string(self.box_px.x) + ", " +
+                    std::to_string(self.box_px.y) + ", " + std::to_string(self.box_px.width) + ", " +
+                    std::to_string(self.box_px.height) + ")>";
            })
       .def(pickled<LeftOut>());
 
