@@ -18,15 +18,27 @@ float likelihood(float odds_logarithm) {
 
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
                              const ChoiceLimits& limits) {
+  return choose_by_scores(tree, score_nodes(tree, whole_object, limits), limits);
+}
+
+std::vector<float> score_nodes(const MergeTree& tree, const FittedTrees& whole_object,
+                               const ChoiceLimits& limits) {
+  std::vector<float> scores(tree.nodes.size());
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const MergeNode& node = tree.nodes[i];
+    if (node.area >= limits.min_area) scores[i] = likelihood(whole_object(node.features));
+  }
+  return scores;
+}
+
+ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores, const ChoiceLimits& limits) {
   const std::size_t count = tree.nodes.size();
-  std::vector<float> scores(count);
   std::vector<double> best(count);  // what the best choice at or below each node exceeds min_score by
   std::vector<bool> taken(count);   // that choice is the node itself
   for (std::size_t i = 0; i < count; ++i) {
     const MergeNode& node = tree.nodes[i];
     if (node.part_a >= 0) best[i] = best[slot(node.part_a)] + best[slot(node.part_b)];
     if (node.area < limits.min_area) continue;
-    scores[i] = likelihood(whole_object(node.features));
     const double gain = double{scores[i]} - limits.min_score;
     taken[i] = gain > 0 && gain >= best[i];
     if (taken[i]) best[i] = gain;

@@ -28,6 +28,13 @@ struct ChosenObjects {
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
                              const ChoiceLimits& limits);
 
+/// Its two halves, for who knows more of the regions than their features. First: how likely each node of the
+/// tree is a whole object, 0 … 1; 0 where it is smaller than min_area.
+std::vector<float> score_nodes(const MergeTree& tree, const FittedTrees& whole_object,
+                               const ChoiceLimits& limits);
+/// Second: the choice itself, by these scores.
+ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores, const ChoiceLimits& limits);
+
 /// The objects as regions 1, 2 … with the statistics of their disparities, in px; region 0 is all else
 /// (is_background).
 Segmentation groups_of(const Superpixels& superpixels, const ChosenObjects& chosen,

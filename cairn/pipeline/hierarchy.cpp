@@ -38,46 +38,60 @@ SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, con
   return cut;
 }
 
-Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
-                           const Exec& exec) {
-  Observed stage(exec);
-  SuperpixelScene cut = cut_scene(given, rig, config, exec, stage);
-  SceneDisparity& found = cut.scene.found;
-  const Superpixels& superpixels = cut.superpixels;
+GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
+                      const Exec& exec, Observed& stage) {
+  GrownScene grown{cut_scene(given, rig, config, exec, stage), {}, {}};
+  const SuperpixelScene& cut = grown.cut;
   Later<Image<float>> confidence(exec, [&](const Exec& beside) {
-    return estimate_confidence(cut.scene.matches, found.disparity, confidence_model(config.match.method),
-                               beside);
+    return estimate_confidence(cut.scene.matches, cut.scene.found.disparity,
+                               confidence_model(config.match.method), beside);
   });
 
-  // All that the pieces may fuse to, by every cue …
-  const MergeTree tree =
-      stage("grow_merge_tree", grow_merge_tree(superpixels, cut.cues(given), kSameThing, exec));
+  // All that the pieces may fuse to, by every cue.
+  grown.tree = stage("grow_merge_tree", grow_merge_tree(cut.superpixels, cut.cues(given), kSameThing, exec));
+  grown.confidence = stage("estimate_confidence", confidence.get());
+  return grown;
+}
 
-  // … and which of these regions are objects, and where.
-  const ChosenObjects chosen = stage(
-      "choose_objects", choose_objects(tree, kWholeObject, limits_of(config.objects, given.left.size())));
+Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given,
+               const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage) {
+  SuperpixelScene& cut = grown.cut;
+  SceneDisparity& found = cut.scene.found;
+  const Superpixels& superpixels = cut.superpixels;
+
+  // The chosen regions as objects, and where they are.
   Frame frame;
+  frame.confidence = std::move(grown.confidence);
   frame.superpixels = stage("superpixels", segmentation_of(superpixels, given.left, exec));
   frame.groups = stage("groups", groups_of(superpixels, chosen, found.disparity, exec));
   frame.objects = stage("measure", measure(frame.groups.labels, chosen.scores, found.disparity, given.left,
                                            given.left_rgb, cut.scene.noise_sigma, exec));
   frame.objects = stage("locate", locate(std::move(frame.objects), found.disparity, found.ground, rig, exec));
-  frame.confidence = stage("estimate_confidence", confidence.get());
 
   // What else stands in the way, and where the floor is free.
   const SpaceCues seen{found.disparity, cut.seen_px,        frame.confidence,    found.ground,
                        cut.background,  superpixels.labels, frame.objects.labels};
+  const std::int64_t min_area = limits_of(config.objects, given.left.size()).min_area;
   frame.space = stage("label_space", label_space(seen, rig, config.ground, exec));
-  frame.left_out = stage("left_out_of", left_out_of(frame.space, seen, chosen.likeliest, rig,
-                                                    {limits_of(config.objects, given.left.size()).min_area,
-                                                     wall_tolerance_px(config.background, given.left.size())},
-                                                    exec));
+  frame.left_out = stage(
+      "left_out_of", left_out_of(frame.space, seen, chosen.likeliest, rig,
+                                 {min_area, wall_tolerance_px(config.background, given.left.size())}, exec));
   if (!found.floor.empty()) found.floor = floor_of(frame.space, exec);
   frame.disparity = std::move(found.disparity);
   frame.ground = found.ground;
   frame.floor = std::move(found.floor);
   frame.epipolar = found.epipolar;
   return frame;
+}
+
+Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
+                           const Exec& exec) {
+  Observed stage(exec);
+  GrownScene grown = grow_scene(given, rig, config, exec, stage);
+  const ChosenObjects chosen =
+      stage("choose_objects",
+            choose_objects(grown.tree, kWholeObject, limits_of(config.objects, given.left.size())));
+  return frame_of(std::move(grown), chosen, given, rig, config, exec, stage);
 }
 
 }  // namespace cairn

@@ -28,6 +28,19 @@ struct SuperpixelScene {
 SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                           const Exec& exec, Observed& stage);
 
+/// Every region that may be an object, and what they were grown from.
+struct GrownScene {
+  SuperpixelScene cut;
+  MergeTree tree;
+  Image<float> confidence;  // estimate_confidence()
+};
+/// segment_by_hierarchy() as far as to the tree …
+GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
+                      const Exec& exec, Observed& stage);
+/// … and from the choice among its regions on, which may know more than one frame shows.
+Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given,
+               const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage);
+
 /// fusion.method=hierarchy, hierarchy.cpp: superpixels fuse by every cue to a tree of regions, of which those
 /// that are likeliest whole objects are chosen.
 Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
