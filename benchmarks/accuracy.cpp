@@ -495,17 +495,18 @@ std::vector<Matcher> all_matchers() {
                    [config = preset.config](const TrueFrame& frame, const Exec& exec) {
                      Config own = config;
                      own.match.num_disparities = frame.num_disparities;
-                     const auto& [left, right] = frame.pictures;
-                     return estimate_disparity(StereoPair::from(left.gray, right.gray, left.rgb), frame.rig,
-                                               own, exec)
+                     const io::Picture& left = frame.pictures.left;
+                     return estimate_disparity(
+                                StereoPair::from(left.gray, frame.pictures.right.gray, left.rgb), frame.rig,
+                                own, exec)
                          .disparity.disparity_px.clone();
                    }});
   }
   for (const OpenCvMatcher& matcher : accurate_opencv_matchers()) {
     all.push_back({"OpenCV " + std::string(matcher.name), [&matcher](const TrueFrame& frame, const Exec&) {
-                     const auto& [left, right] = frame.pictures;
+                     const io::PicturePair& pictures = frame.pictures;
                      const ReadyMatcher ready = matcher.prepare({.num_disparities = frame.num_disparities});
-                     ready.compute(StereoPair::from(left.gray, right.gray));
+                     ready.compute(StereoPair::from(pictures.left.gray, pictures.right.gray));
                      return ready.disparity_px();
                    }});
   }

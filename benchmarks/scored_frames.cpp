@@ -48,9 +48,9 @@ std::vector<TrueFrame> load_true_frames(const std::filesystem::path& folder) {
 
 Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec& exec) {
   config.match.num_disparities = frame.num_disparities;
-  const auto& [left, right] = frame.pictures;
+  const io::Picture& left = frame.pictures.left;
   const View<const Rgb> colour = grey ? View<const Rgb>{} : left.rgb.view();
-  return segment(StereoPair::from(left.gray, right.gray, colour), frame.rig, config, exec);
+  return segment(StereoPair::from(left.gray, frame.pictures.right.gray, colour), frame.rig, config, exec);
 }
 
 Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec& exec) {

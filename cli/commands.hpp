@@ -13,13 +13,18 @@ using Work = std::function<int()>;
 
 /// Each declares its options on `app` and returns the work that uses them.
 Work declare_segment(CLI::App& app);
+Work declare_follow(CLI::App& app);
+Work declare_odometry(CLI::App& app);
 Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
 Work declare_bench(CLI::App& app);
 Work declare_tune(CLI::App& app);
 Work declare_calibrate(CLI::App& app);
 Work declare_rectify(CLI::App& app);
+Work declare_record(CLI::App& app);
 Work declare_doctor(CLI::App& app);
+Work declare_map(CLI::App& app);
+Work declare_odometry(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
 Work declare_help(CLI::App& app);
@@ -37,6 +42,10 @@ inline constexpr std::array kCommands{
             "cairn segment frames/ --html -o results\n"
             "cairn segment left.png right.png --preset paper --set match.window_size=11\n",
             declare_segment},
+    Command{"follow", "follow the camera and the objects through a sequence",
+            "cairn follow sequence/ --html -o result\n"
+            "cairn follow sequence/ --map room.db --set tracking.min_hits=2\n",
+            declare_follow},
     Command{"disparity", "match a stereo pair and check every match",
             "cairn disparity left.png right.png -o disparity.pfm --view disparity.png\n"
             "cairn disparity left.png right.png --calib calib.txt --ply cloud.ply\n",
@@ -59,6 +68,18 @@ inline constexpr std::array kCommands{
             "cairn calibrate boards/ --board 9x6 --square 0.025 -o calib.yaml\n", declare_calibrate},
     Command{"rectify", "turn raw pictures into those of a rectified pair",
             "cairn rectify left.png right.png --calib calib.yaml --nearest 0.5 -o pair\n", declare_rectify},
+    Command{"odometry", "estimate the camera's motion through a sequence, without objects",
+            "cairn odometry sequence/ -o poses.tum\n"
+            "cairn odometry sequence/ --set odometry.max_features=500 --form kitti\n",
+            declare_odometry},
+    Command{"record", "write any sequence as a folder of frames, rectified and with stamps",
+            "cairn record sequence/ --frames 1:4 -o recorded\n", declare_record},
+    Command{"map", "look at a map of landmarks, compare, merge and export it",
+            "cairn map show room.db\n"
+            "cairn map check room.db\n"
+            "cairn map export room.db --form geojson -o room.geojson\n"
+            "cairn map merge room.db corridor.db -o both.db\n",
+            declare_map},
     Command{"config", "show every option with its value, unit, range and meaning",
             "cairn config --preset paper\n"
             "cairn config --changed --set objects.min_confidence=0.5 > mine.yaml\n",

@@ -38,18 +38,22 @@ std::string_view name_in(std::string_view assignment) {
   return assignment.substr(0, assignment.find('='));
 }
 
-void set_from_text(Config& config, const std::string& assignment) {
+using Elsewhere = std::function<bool(std::string_view, std::string_view)>;
+
+void set_from_text(Config& config, const std::string& assignment, const Elsewhere& elsewhere) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw Error("--set " + assignment + ": expected NAME=VALUE, e.g. match.window_size=9");
   }
-  set(config, std::string_view(assignment).substr(0, equals),
-      std::string_view(assignment).substr(equals + 1));
+  const std::string_view name = name_in(assignment);
+  const std::string_view value = std::string_view(assignment).substr(equals + 1);
+  if (!elsewhere || !elsewhere(name, value)) set(config, name, value);
 }
 
 }  // namespace
 
-ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities) {
+ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities,
+                       const Elsewhere& elsewhere) {
   ResolvedConfig resolved;
   const auto from_preset = [&](std::string_view name) {
     Config config = Config::preset(name);
@@ -58,13 +62,17 @@ ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrat
     return config;
   };
   const auto set_all = [&](Config& config) {
-    for (const std::string& assignment : options.sets) set_from_text(config, assignment);
+    for (const std::string& assignment : options.sets) set_from_text(config, assignment, elsewhere);
   };
   resolved.config = from_preset(options.preset);
-  if (!options.file.empty()) io::load_config(options.file, resolved.config, from_preset, set_all);
+  if (!options.file.empty()) io::load_config(options.file, resolved.config, from_preset, set_all, elsewhere);
   set_all(resolved.config);
   // Only now: in which order they were set is of no account.
-  for (const std::string& assignment : options.sets) require_active(resolved.config, name_in(assignment));
+  for (const std::string& assignment : options.sets) {
+    const std::string_view name = name_in(assignment);
+    const std::string_view value = std::string_view(assignment).substr(name.size() + 1);
+    if (!elsewhere || !elsewhere(name, value)) require_active(resolved.config, name);
+  }
   return resolved;
 }
 

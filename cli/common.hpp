@@ -8,6 +8,7 @@
 #include <cairn/disparity/disparity_map.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <filesystem>
+#include <functional>
 #include <io/dataset.hpp>
 #include <io/image_files.hpp>
 #include <io/results.hpp>
@@ -31,8 +32,13 @@ struct ResolvedConfig {
   std::string preset;  // what it started from: the config file's word, else --preset
 };
 /// Preset, then a calibration's number of disparities, then the config file, then --set; later ones win.
-ResolvedConfig resolve(const ConfigOptions& options,
-                       std::optional<int> calibrated_disparities = std::nullopt);
+/// `elsewhere` takes the options of another configuration, see io::load_config().
+ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities = std::nullopt,
+                       const std::function<bool(std::string_view, std::string_view)>& elsewhere = {});
+
+/// The options of a sequence alone, as the config options leave them. Throws Error where sequences are not
+/// built in.
+std::vector<OptionInfo> sequence_options(const ConfigOptions& config);
 
 struct ExecOptions {
   int threads = 0;  // 0 = one for each processor

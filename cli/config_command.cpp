@@ -13,6 +13,7 @@ struct ShowOptions {
   ConfigOptions config;
   bool markdown = false;
   bool changed = false;
+  bool sequence = false;
 };
 
 std::string escaped(std::string_view cell) {
@@ -21,10 +22,10 @@ std::string escaped(std::string_view cell) {
   return text;
 }
 
-std::string markdown(const Config& config) {
+std::string markdown(const std::vector<OptionInfo>& options) {
   std::string all =
       "| option | default | unit | values | meaning | read while |\n|---|---|---|---|---|---|\n";
-  for (const OptionInfo& o : options(config)) {
+  for (const OptionInfo& o : options) {
     all += "| `" + o.name + "` | " + (o.value.empty() ? "" : "`" + escaped(o.value) + "`") + " | " +
            escaped(o.unit) + " | " + escaped(o.domain) + " | " + escaped(o.help) + " |" +
            (o.needs.empty() ? "" : " `" + o.needs + "`") + " |\n";
@@ -46,12 +47,20 @@ Work declare_config(CLI::App& app) {
          "only the preset's name and the options that differ from it, so that all others keep following "
          "the calibration and later versions")
       ->excludes("--markdown");
+  app.add_flag("--sequence", show->sequence,
+               "the options that `cairn follow` reads beside those of a frame, instead of these")
+      ->excludes("--changed");
   return [show] {
+    if (show->sequence) {
+      const std::vector<OptionInfo> all = sequence_options(show->config);
+      std::cout << (show->markdown ? markdown(all) : io::options_yaml(all));
+      return 0;
+    }
     const ResolvedConfig resolved = resolve(show->config);
     if (show->changed) {
       std::cout << io::changed_config_yaml(resolved.preset, resolved.config);
     } else {
-      std::cout << (show->markdown ? markdown(resolved.config) : io::config_yaml(resolved.config));
+      std::cout << (show->markdown ? markdown(options(resolved.config)) : io::config_yaml(resolved.config));
     }
     return 0;
   };

@@ -21,6 +21,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "evaluate_files.hpp"
+#include "evaluate_sequence.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -34,6 +35,8 @@ struct EvaluateOptions {
   std::string truth;
   ObjectErrorConfig objects;
   int skip_left = 0;
+  bool sequence = false;
+  bool tentative = false;
   std::optional<std::string> json;
   std::optional<std::string> html;
   std::optional<std::string> csv;
@@ -734,12 +737,31 @@ int compare(const EvaluateOptions& options) {
   return code;
 }
 
+/// Of a sequence, or of two trajectories; none where it is neither.
+std::optional<int> evaluate_over_time(const EvaluateOptions& options) {
+  const auto is_trajectory = [](const std::string& path) {
+    const fs::path file(path);
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored) &&
+           (file.extension() == ".tum" || file.extension() == ".txt" || file.extension() == ".csv");
+  };
+  const bool trajectories =
+      !options.sequence && std::all_of(options.results.begin(), options.results.end(), is_trajectory);
+  if (options.tentative && !options.sequence) throw Error("--tentative: is read with --sequence alone");
+  if (!options.sequence && !trajectories) return std::nullopt;
+  if (options.html) throw Error("--html " + *options.html + ": is of single frames, found a sequence");
+  const EvaluateSequenceOptions over_time{options.results,   options.truth, options.objects.min_area,
+                                          options.tentative, options.json,  options.csv};
+  return trajectories ? evaluate_trajectory(over_time) : evaluate_sequence(over_time);
+}
+
 int evaluate(EvaluateOptions& options) {
   options.results = options.folders;
   options.truth = options.results.back();
   options.results.pop_back();
   if (options.results.empty())
     throw Error("TRUTH: found none behind " + options.truth + ", expected RESULT and then TRUTH");
+  if (const std::optional<int> code = evaluate_over_time(options)) return *code;
   if (options.results.size() > 1) return compare(options);
   std::vector<Run> runs;
   runs.push_back({options.results.front(), score_all(options.results.front(), options)});
@@ -765,7 +787,8 @@ Work declare_evaluate(CLI::App& app) {
          "RESULT", options->folders,
          "one RESULT or more, which are put side by side, then TRUTH. RESULT: what cairn segment -o wrote, "
          "one frame's folder or a folder of them; TRUTH: folder with objects.png and/or disp_left.png (or "
-         "../gt beside it), a folder of such folders, or KITTI's")
+         "../gt beside it), a folder of such folders, or KITTI's. Or trajectories: files of poses in "
+         "TUM's, KITTI's or EuRoC's form; TRUTH may be a folder of frames with pose.txt")
       ->required()
       ->type_name("");
   app.add_option("--min-area", options->objects.min_area, "px; smaller true objects are not scored")
@@ -781,6 +804,9 @@ Work declare_evaluate(CLI::App& app) {
       ->check(CLI::Range(0, 1 << 20).name(""))
       ->type_name("N")
       ->capture_default_str();
+  app.add_flag("--sequence", options->sequence,
+               "RESULT is of cairn follow, or MOTS text; TRUTH its folder of frames, or MOTS text");
+  app.add_flag("--tentative", options->tentative, "with --sequence: count unconfirmed tracks, too");
   app.add_option("--json", options->json, "also write the whole evaluation into this file, as JSON")
       ->type_name("FILE");
   app.add_option("--html", options->html,

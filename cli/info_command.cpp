@@ -16,8 +16,11 @@ std::string names(const std::vector<Target>& targets) {
   return all;
 }
 
-const char* yes_or_no(bool built_in) {
-  return built_in ? "yes" : "no";
+/// One thing that may be left out of a build, and what it needs.
+std::string built_in(std::string what, bool is_in, const char* packages) {
+  constexpr std::size_t kColumn = 42;
+  what.resize(kColumn, ' ');
+  return "  " + what + (is_in ? "yes" : std::string("no; needs ") + packages) + "\n";
 }
 
 int show(const ExecOptions& options) {
@@ -29,11 +32,15 @@ int show(const ExecOptions& options) {
             << "  active     " << name(active_target(exec)) << "\n"
             << "threads      " << exec.threads() << "\n"
             << "built in\n"
-            << "  SIMD (Highway)                          " << yes_or_no(CAIRN_WITH_HWY != 0) << "\n"
-            << "  threads (oneTBB)                        " << yes_or_no(CAIRN_WITH_TBB != 0) << "\n"
-            << "  calibrate, rectify (OpenCV's calib3d)   " << yes_or_no(CAIRN_WITH_CALIBRATION != 0) << "\n"
-            << "  peers in bench (OpenCV's calib3d)       " << yes_or_no(!report::opencv_version().empty())
-            << "\n";
+            << built_in("SIMD (Highway)", CAIRN_WITH_HWY != 0, "libhwy-dev, CAIRN_SIMD=ON")
+            << built_in("threads (oneTBB)", CAIRN_WITH_TBB != 0, "libtbb-dev, CAIRN_TBB=ON")
+            << built_in("calibrate, rectify", CAIRN_WITH_CALIBRATION != 0, "libopencv-calib3d-dev")
+            << built_in("OpenCV's matchers in bench", !report::opencv_version().empty(),
+                        "libopencv-calib3d-dev")
+            << built_in("sequences: follow, odometry, map, record", CAIRN_WITH_SEQUENCES != 0,
+                        "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "
+                        "libsqlitecpp-dev")
+            << built_in("videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev");
   return 0;
 }
 

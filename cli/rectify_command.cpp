@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <algorithm>
 #include <cairn/core/error.hpp>
-#include <cmath>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
 #include <io/raw_calibration.hpp>
@@ -20,10 +18,8 @@ namespace fs = std::filesystem;
 struct RectifyOptions {
   InputOptions input;
   std::string output;
-  double nearest_m = 0;  // 0 = kNearestBaselines
+  double nearest_m = 0;  // 0 = five baselines
 };
-
-constexpr double kNearestBaselines = 5;  // a fifth of the focal length, in disparities
 
 void save(const fs::path& path, const io::Picture& picture) {
   if (picture.rgb.empty()) {
@@ -31,18 +27,6 @@ void save(const fs::path& path, const io::Picture& picture) {
   } else {
     io::save_png(path, picture.rgb.view());
   }
-}
-
-/// The disparities down to the nearest distance, a multiple of 16 that fits the pictures.
-int disparities_to(double nearest_m, const StereoRig& rig, int width) {
-  constexpr int kStep = 16;
-  constexpr int kMost = 1024;
-  const auto baseline = static_cast<double>(rig.baseline_m);
-  if (nearest_m == 0) nearest_m = kNearestBaselines * baseline;
-  const double last =
-      static_cast<double>(rig.focal_px) * baseline / nearest_m - static_cast<double>(rig.doffs_px);
-  const double steps = std::floor(std::max(last, 0.0) / kStep) + 1;
-  return std::min(static_cast<int>(std::min(steps * kStep, double{kMost})), width);
 }
 
 int rectify(const RectifyOptions& options) {
@@ -65,7 +49,7 @@ int rectify(const RectifyOptions& options) {
     save(folder / "right.png", rectified.right);
     const Size size = rectified.left.gray.size();
     io::save_calibration(folder / "calib.txt", rectify_pair.rig(), size,
-                         disparities_to(options.nearest_m, rectify_pair.rig(), size.width));
+                         io::disparities_down_to(options.nearest_m, rectify_pair.rig(), size.width));
   }
   progress.clear();
   std::cout << "rectified " << frames.size() << (frames.size() == 1 ? " pair into " : " pairs into ")

@@ -18,6 +18,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "tune_sequence.hpp"
 #include "tuning_frames.hpp"
 
 namespace cairn::cli {
@@ -33,6 +34,7 @@ struct TuneOptions {
   InputOptions input;  // all but its pictures
   ExecOptions exec;
   bool truth = false;
+  bool sequence = false;
   std::vector<std::string> patterns;
   std::string budget = "60s";
   int evaluations = 0;            // 0 = as many as the budget allows
@@ -389,11 +391,24 @@ std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+int tune_over_time(const TuneOptions& options, Seconds budget) {
+  if (options.truth) throw Error("--truth: is of single frames; --sequence goes by steadiness alone");
+  if (!options.json.empty()) throw Error("--json: is not written with --sequence");
+  if (options.folders.size() != 1)
+    throw Error("--sequence: found " + std::to_string(options.folders.size()) + " sources, expected one");
+  const Interruptible interruptible;
+  return tune_sequence(
+      {options.folders.front(), options.input.calib, options.input.config, options.exec, options.patterns,
+       options.evaluations, budget.count(), options.holdout, options.seed, options.output},
+      [] { return interrupted != 0; });
+}
+
 int tune_folder(const TuneOptions& options) {
   const auto budget = parse_budget(options.budget);
   (void)wanted_target(options.exec.target);
   require_writable(options.output);
   if (!options.json.empty()) require_writable(options.json);
+  if (options.sequence) return tune_over_time(options, budget);
   const Task task = read_task(options);
   const Tuning tuned = tune_task(task, options, budget);
   io::write_file(options.output, config_file(task, tuned));
@@ -418,6 +433,9 @@ Work declare_tune(CLI::App& app) {
   app.add_flag("--truth", options->truth,
                "make the paper's E small: the frames' folders hold objects.png (or else disp_left.png: bad "
                "disparities)");
+  app.add_flag("--sequence", options->sequence,
+               "FOLDER is a source of cairn follow; make its objects steady over time: many, sure and where "
+               "they are expected");
   app.add_option(
          "--options", options->patterns,
          "what may be changed: names or beginnings, e.g. match.*,superpixels.*; default: a sensible choice")

@@ -1,15 +1,26 @@
-# What `cmake --install` puts in place, in the components library, dev and tools; docs/install.md says how it is used.
+# What `cmake --install` puts in place, in the components library, sequences, video, dev and tools; docs/install.md says how
+# it is used.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/cairn)
 
-# cairn_install_library(TARGET EXPORT)
-function(cairn_install_library target export)
-  install(TARGETS ${target} EXPORT ${export}
-    LIBRARY COMPONENT library NAMELINK_COMPONENT dev
+# cairn_install_library(TARGETS EXPORT COMPONENT): the shared libraries in a component, what others build with in `dev`.
+function(cairn_install_library targets export component)
+  install(TARGETS ${targets} EXPORT ${export}
+    LIBRARY COMPONENT ${component} NAMELINK_COMPONENT dev
     ARCHIVE COMPONENT dev
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT ${export} NAMESPACE cairn:: FILE ${export}.cmake DESTINATION ${package_dir} COMPONENT dev)
+endfunction()
+
+# cairn_install_headers(FOLDERS...): below <cairn/...>
+function(cairn_install_headers)
+  foreach(folder IN LISTS ARGN)
+    install(DIRECTORY ${folder}/ DESTINATION ${include_dir}/${folder} COMPONENT dev FILES_MATCHING
+      PATTERN "*.hpp"
+      PATTERN video EXCLUDE
+      REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  endforeach()
 endfunction()
 
 # ---- libraries and their headers ----
@@ -19,27 +30,29 @@ set(private_headers
   core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
   core/scratch
   diagnosis/robust_fit disparity/islands scene/floor_search scene/plane_fit scene/plane_through_pairs
-  pipeline/matched_scene pipeline/methods
+  pipeline/matched_scene pipeline/methods pipeline/option_walk
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
   image/gaussian image/local_contrast image/sparse_points image/texture
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
-  io/calibration_forms io/raster io/read_file page/html_template)
+  tracking/assign tracking/kalman tracking/motion_fit landmarks/geometry
+  source/frame_list source/frame_watch source/json_line source/open_video source/text_lines
+  io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts)
 list(JOIN private_headers "|" private_headers)
 
-cairn_install_library(cairn cairnTargets)
+cairn_install_library(cairn cairnTargets library)
 install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   PATTERN "*.hpp"
   PATTERN "*-inl.hpp" EXCLUDE
   REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
 if(CAIRN_IO)
-  cairn_install_library(cairn_io cairnIoTargets)
-  foreach(folder io page)
-    install(DIRECTORY ${folder}/ DESTINATION ${include_dir}/${folder} COMPONENT dev FILES_MATCHING
-      PATTERN "*.hpp"
-      REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
-  endforeach()
+  cairn_install_library(cairn_io cairnIoTargets library)
+  cairn_install_headers(io page)
+  if(CAIRN_HAS_TRACKING)
+    cairn_install_library("cairn_tracking;cairn_landmarks;cairn_source;cairn_sequences" cairnSequencesTargets sequences)
+    cairn_install_headers(tracking landmarks source)
+  endif()
   install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help names these pages.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING
@@ -56,23 +69,27 @@ get_target_property(type cairn TYPE)
 if(type STREQUAL "STATIC_LIBRARY")
   set(static_library ON)
 endif()
+set(CAIRN_VIDEO_PACKAGE)
+if(CAIRN_HAS_VIDEO AND NOT TARGET cairn_video)  # linked, and no module of its own
+  set(CAIRN_VIDEO_PACKAGE OpenCVVideoio)
+endif()
 configure_package_config_file(cmake/cairnConfig.cmake.in cairnConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(cairnConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cairnConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/cairnConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT dev)
 if(CAIRN_IO AND static_library)
-  install(FILES cmake/FindOpenCVImgproc.cmake cmake/FindOpenCVCalib3d.cmake DESTINATION ${package_dir} COMPONENT dev)
+  install(FILES cmake/FindOpenCVImgproc.cmake cmake/FindOpenCVCalib3d.cmake cmake/FindOpenCVVideo.cmake
+    cmake/FindOpenCVVideoio.cmake DESTINATION ${package_dir} COMPONENT dev)
 endif()
 
 # ---- for pkg-config ----
 
-# cairn_install_pkgconfig(NAME DESCRIPTION REQUIRES STATIC_REQUIRES STATIC_LIBS): the last two only for static libraries. As
-# Requires.private of a shared one pkg-config would still want them to be installed.
-function(cairn_install_pkgconfig name description requires static_requires static_libs)
+# cairn_install_pkgconfig(NAME DESCRIPTION LIBS REQUIRES STATIC_REQUIRES STATIC_LIBS): the last two only for static
+# libraries. As Requires.private of a shared one pkg-config would still want them to be installed.
+function(cairn_install_pkgconfig name description libs requires static_requires static_libs)
   # The prefix is told from where the file lies, so that an installed tree may be moved.
   file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
-  set(libs "-l${name}")
   if(static_library)
     string(APPEND requires " ${static_requires}")
     string(APPEND libs " ${static_libs}")
@@ -89,21 +106,29 @@ if(CAIRN_TBB)
   list(APPEND static_requires tbb)
 endif()
 list(JOIN static_requires " " static_requires)
-cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "" "${static_requires}" "-pthread")
+cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "-lcairn" "" "${static_requires}" "-pthread")
 if(CAIRN_IO)
   # OpenCV by its libraries: its own .pc file names every module.
   set(opencv_libs "-lopencv_imgproc -lopencv_core")
   if(CAIRN_HAS_CALIBRATION)
     string(PREPEND opencv_libs "-lopencv_calib3d ")
   endif()
-  cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results"
+  cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results" "-lcairn-io"
     "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "${opencv_libs}")
+  if(CAIRN_HAS_TRACKING)
+    cairn_install_pkgconfig(cairn-sequences "Sequences with cairn: odometry, tracks, landmarks, sources of frames"
+      "-lcairn-source -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3"
+      "-lSQLiteCpp -lopencv_video -lopencv_calib3d -ldl")
+  endif()
 endif()
 
 # ---- the command ----
 
 if(CAIRN_IO)
   install(TARGETS cairn_cli RUNTIME COMPONENT tools)
+  if(TARGET cairn_video)
+    install(TARGETS cairn_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT video)
+  endif()
   set(manual ${PROJECT_BINARY_DIR}/manual)
   foreach(section 1 7)
     install(DIRECTORY ${manual}/man${section} DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT tools)
@@ -112,6 +137,9 @@ if(CAIRN_IO)
     install(DIRECTORY ${manual}/${folder}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT tools)
   endforeach()
   install(DIRECTORY samples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools)
+  if(CAIRN_HAS_TRACKING)
+    install(DIRECTORY sequences DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
+  endif()
 endif()
 if(NOT CAIRN_DEBIAN)  # there it is each package's copyright file
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)

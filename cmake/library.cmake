@@ -1,4 +1,4 @@
-# cairn_library(TARGET): what our two libraries have in common, static or shared (BUILD_SHARED_LIBS).
+# cairn_library(TARGET): what our libraries have in common, static or shared (BUILD_SHARED_LIBS).
 include(CheckLinkerFlag)
 set(CAIRN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/exports.map)
 check_linker_flag(CXX "LINKER:--version-script=${CAIRN_EXPORTS}" CAIRN_HAS_VERSION_SCRIPT)
@@ -22,4 +22,13 @@ function(cairn_library target)
     target_link_options(${target} PRIVATE LINKER:--version-script=${CAIRN_EXPORTS} LINKER:--no-undefined)
     set_target_properties(${target} PROPERTIES LINK_DEPENDS ${CAIRN_EXPORTS})
   endif()
+endfunction()
+
+# cairn_headers_as_installed(TARGET FOLDERS...): <cairn/FOLDER/...> in the build, too. Links, so that an edit is seen.
+function(cairn_headers_as_installed target)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/cairn)
+  foreach(folder IN LISTS ARGN)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/include/cairn/${folder} SYMBOLIC)
+  endforeach()
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
 endfunction()

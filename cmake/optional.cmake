@@ -1,12 +1,18 @@
-# cairn_wants(OPTION PACKAGE RESULT): whether what OPTION (AUTO, ON or OFF) stands for is built. AUTO: where PACKAGE is found;
-# ON demands it. A macro: what find_package defines must stay with who asks.
-macro(cairn_wants option package result)
+# cairn_wants(OPTION PACKAGES RESULT): whether what OPTION (AUTO, ON or OFF) stands for is built. AUTO: where all PACKAGES are
+# found; ON demands them. A macro: what find_package defines must stay with who asks.
+macro(cairn_wants option packages result)
   set(${result} OFF)
-  if(${option} STREQUAL "AUTO")
-    find_package(${package} QUIET)
-    set(${result} ${${package}_FOUND})
-  elseif(${option})
-    find_package(${package} REQUIRED)
+  if(${option})  # AUTO, too
     set(${result} ON)
+    foreach(cairn_package ${packages})
+      if(${option} STREQUAL "AUTO")
+        find_package(${cairn_package} QUIET)
+        if(NOT ${cairn_package}_FOUND)
+          set(${result} OFF)
+        endif()
+      else()
+        find_package(${cairn_package} REQUIRED)
+      endif()
+    endforeach()
   endif()
 endmacro()

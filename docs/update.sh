@@ -45,6 +45,22 @@ TEXT
       rest = substr($0, length($2) + length($3) + 3)
       printf "|%s|%s|%s%s\n", $2, $3, paper[$2] == $3 ? " " : paper[$2], rest
     }' <("$build_dir/cairn" config --preset paper --markdown) <("$build_dir/cairn" config --markdown)
+  cat <<'TEXT'
+
+# Options of a sequence
+
+`cairn follow` reads these beside all above; `cairn config --sequence` prints them.
+TEXT
+  awk -F'|' '
+    !/^\| `/ { next }
+    {
+      split($2, name, /[`.]/)
+      if (name[2] != section) {
+        section = name[2]
+        printf "\n## %s\n\n| option | default | unit | values | meaning | read while |\n|---|---|---|---|---|---|\n", section
+      }
+      print
+    }' <("$build_dir/cairn" config --sequence --markdown)
 }
 
 code_of() {  # FILE#NAME

@@ -57,36 +57,67 @@ fs::path temporary_beside(const fs::path& path) {
   return path.parent_path() / ("." + path.filename().string().substr(0, 200) + "." + mark + ".tmp");
 }
 
-void write_directly(const fs::path& path, std::string_view bytes) {
-  OutputFile file(path, 0);
-  if (!file.is_open() || !file.write(bytes) || !file.closed()) refuse(path, errno);
+/// A device or a pipe, which has no content to be replaced.
+bool takes_bytes_directly(const fs::path& path) {
+  std::error_code unknown;
+  const fs::file_status status = fs::status(path, unknown);
+  return fs::exists(status) && !fs::is_regular_file(status);
 }
 
-void write_and_rename(const fs::path& path, std::string_view bytes) {
-  const fs::path temporary = temporary_beside(path);
-  OutputFile file(temporary, O_CREAT | O_EXCL);
-  if (!file.is_open()) refuse(path, errno);
-  if (!file.write(bytes) || !file.closed() || ::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int reason = errno;
-    ::unlink(temporary.c_str());
-    refuse(path, reason);
-  }
+/// Where the bytes of `path` are to be in the end: behind a symbolic link. Refuses what can be no file.
+fs::path target_of(const fs::path& path) {
+  if (path.filename().empty()) refuse(path, path.empty() ? ENOENT : EISDIR);
+  std::error_code unknown;
+  if (fs::is_directory(fs::status(path, unknown))) refuse(path, EISDIR);
+  if (takes_bytes_directly(path) || !fs::is_symlink(fs::symlink_status(path, unknown))) return path;
+  fs::path target = fs::weakly_canonical(path, unknown);
+  if (unknown) refuse(path, unknown.value());
+  return target;
 }
 
 }  // namespace
 
-void write_file(const fs::path& path, std::string_view bytes) {
-  if (path.filename().empty()) refuse(path, path.empty() ? ENOENT : EISDIR);
-  std::error_code unknown;
-  const fs::file_status status = fs::status(path, unknown);
-  if (fs::is_directory(status)) refuse(path, EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status)) return write_directly(path, bytes);
-  if (fs::is_symlink(fs::symlink_status(path, unknown))) {
-    const fs::path target = fs::weakly_canonical(path, unknown);
-    if (unknown) refuse(path, unknown.value());
-    return write_and_rename(target, bytes);
+struct GrowingFile::State {
+  explicit State(const fs::path& final_path)
+      : path(target_of(final_path)),
+        temporary(takes_bytes_directly(path) ? fs::path() : temporary_beside(path)),
+        file(temporary.empty() ? path : temporary, temporary.empty() ? 0 : O_CREAT | O_EXCL) {
+    if (!file.is_open()) refuse(path, errno);
   }
-  write_and_rename(path, bytes);
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (!temporary.empty() && !is_finished) ::unlink(temporary.c_str());
+  }
+
+  fs::path path;
+  fs::path temporary;  // empty where the bytes go to `path` directly
+  OutputFile file;
+  bool is_finished = false;
+};
+
+GrowingFile::GrowingFile(const fs::path& path) : state_(std::make_unique<State>(path)) {}
+GrowingFile::GrowingFile(GrowingFile&&) noexcept = default;
+GrowingFile& GrowingFile::operator=(GrowingFile&&) noexcept = default;
+GrowingFile::~GrowingFile() = default;
+
+void GrowingFile::append(std::string_view bytes) {
+  if (!state_->file.write(bytes)) refuse(state_->path, errno);
+}
+
+void GrowingFile::finish() {
+  State& state = *state_;
+  if (!state.file.closed() ||
+      (!state.temporary.empty() && ::rename(state.temporary.c_str(), state.path.c_str()) != 0)) {
+    refuse(state.path, errno);
+  }
+  state.is_finished = true;
+}
+
+void write_file(const fs::path& path, std::string_view bytes) {
+  GrowingFile file(path);
+  file.append(bytes);
+  file.finish();
 }
 
 void make_folder(const fs::path& path) {

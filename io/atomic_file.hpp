@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 namespace cairn::io {
@@ -12,6 +13,24 @@ namespace cairn::io {
 /// no trace is left. A symbolic link is followed; a device (/dev/null, /dev/stdout) is written directly.
 /// Throws Error (names `path` and the system's reason).
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// The same of a file that is written bit by bit: it has its final name when finish() has returned. One that
+/// is not finished leaves no trace.
+class GrowingFile {
+ public:
+  /// Throws Error as write_file() does.
+  explicit GrowingFile(const std::filesystem::path& path);
+  GrowingFile(GrowingFile&&) noexcept;
+  GrowingFile& operator=(GrowingFile&&) noexcept;
+  ~GrowingFile();
+
+  void append(std::string_view bytes);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Makes a folder with all its parents; fine where it is there already. Throws Error.
 void make_folder(const std::filesystem::path& path);

@@ -381,14 +381,14 @@ Calibration load_calibration(const fs::path& path, bool grey_cameras) {
 }
 
 void save_calibration(const fs::path& path, const StereoRig& rig, Size image,
-                      std::optional<int> num_disparities) {
+                      std::optional<int> num_disparities, const KnownGround& ground) {
   std::string file;
-  const auto add = [&](const char* key, float value) {
+  const auto digits_of = [](float value) {
     std::array<char, 32> digits{};
-    file +=
-        std::string(key) + "=" +
-        std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr) +
-        "\n";
+    return std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  };
+  const auto add = [&](const char* key, float value) {
+    file += std::string(key) + "=" + digits_of(value) + "\n";
   };
   add("fx", rig.focal_px);
   add("fy", rig.focal_px);
@@ -398,6 +398,17 @@ void save_calibration(const fs::path& path, const StereoRig& rig, Size image,
   add("doffs", rig.doffs_px);
   file += "width=" + std::to_string(image.width) + "\nheight=" + std::to_string(image.height) + "\n";
   if (num_disparities) file += "ndisp=" + std::to_string(*num_disparities) + "\n";
+  if (!ground.points.empty()) {
+    file += std::string(kGroundPointsKey) + "=";
+    for (const PointPair& point : ground.points) {
+      file += digits_of(point.x_left) + "," + digits_of(point.y_left) + "," + digits_of(point.x_right) + "," +
+              digits_of(point.y_right) + ";";
+    }
+    file.back() = '\n';
+  }
+  if (ground.camera_height_m) add("camera_height", *ground.camera_height_m);
+  if (ground.camera_pitch_deg != 0) add("camera_pitch", ground.camera_pitch_deg);
+  if (ground.camera_roll_deg != 0) add("camera_roll", ground.camera_roll_deg);
   write_file(path, file);
 }
 
@@ -415,6 +426,18 @@ void check_ground(const KnownGround& known) {
   check(double{known.camera_pitch_deg}, "camera_pitch", -kMostTilt, kMostTilt);
   check(double{known.camera_roll_deg}, "camera_roll", -kMostTilt, kMostTilt);
   if (!known.points.empty()) (void)ground_from_points(known.points);
+}
+
+int disparities_down_to(double nearest_m, const StereoRig& rig, int width) {
+  constexpr int kStep = 16;
+  constexpr int kMost = 1024;
+  constexpr double kNearestBaselines = 5;
+  const auto baseline = static_cast<double>(rig.baseline_m);
+  if (nearest_m == 0) nearest_m = kNearestBaselines * baseline;
+  const double last =
+      static_cast<double>(rig.focal_px) * baseline / nearest_m - static_cast<double>(rig.doffs_px);
+  const double steps = std::floor(std::max(last, 0.0) / kStep) + 1;
+  return std::min(static_cast<int>(std::min(steps * kStep, double{kMost})), width);
 }
 
 void check_size(const Calibration& calibration, Size image, const fs::path& path) {

@@ -41,10 +41,14 @@ class ImpossibleCalibration : public Error {
 /// Of KITTI's four cameras the colour pair counts, unless `grey_cameras`.
 Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
 
-/// Writes a rectified pair's calibration as key=value lines, whole or not at all; `num_disparities` as ndisp.
-/// Throws Error.
+/// Writes a rectified pair's calibration as key=value lines, whole or not at all; `num_disparities` as ndisp,
+/// and how the rig is mounted. Throws Error.
 void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image,
-                      std::optional<int> num_disparities = std::nullopt);
+                      std::optional<int> num_disparities = std::nullopt, const KnownGround& ground = {});
+
+/// The number of disparities that reaches down to `nearest_m` (0: five baselines, a fifth of the focal length
+/// in disparities): a multiple of 16, but no more than the pictures' width.
+int disparities_down_to(double nearest_m, const StereoRig& rig, int width);
 
 /// Throws Error where the calibration was made for pictures of another size.
 void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);

@@ -9,6 +9,8 @@
 #include <io/read_file.hpp>
 #include <utility>
 
+#include "yaml_text.hpp"
+
 namespace cairn::io {
 namespace {
 
@@ -33,7 +35,7 @@ std::string_view without_directive(std::string_view text) {
 
 std::vector<YAML::Node> documents_of(std::string_view text) {
   try {
-    return YAML::LoadAll(std::string(without_directive(text)));
+    return yaml_documents(std::string(without_directive(text)));
   } catch (const YAML::Exception& exception) {
     const std::string line =
         exception.mark.is_null() ? "" : "line " + std::to_string(exception.mark.line + 1) + ": ";

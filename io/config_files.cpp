@@ -9,6 +9,8 @@
 #include <io/read_file.hpp>
 #include <string_view>
 
+#include "yaml_text.hpp"
+
 namespace cairn::io {
 namespace {
 
@@ -39,11 +41,15 @@ struct SetAt {
   std::string line;
 };
 
+using Elsewhere = std::function<bool(std::string_view, std::string_view)>;
+
 /// Every option that is gone says so whatever its value was: points were lists.
 void set_at(Config& config, const std::string& name, const YAML::Node& key, const YAML::Node& value,
-            std::vector<SetAt>& options) {
+            const Elsewhere& elsewhere, std::vector<SetAt>& options) {
   try {
-    set(config, name, value.IsSequence() ? "a list" : text_of(value));
+    const std::string text = value.IsSequence() ? "a list" : text_of(value);
+    if (elsewhere && elsewhere(name, text)) return;
+    set(config, name, text);
   } catch (const Error& error) {
     const std::string what = error.what();
     throw Error(what.starts_with("line ") ? what : at_line(key.Mark()) + what);
@@ -52,9 +58,9 @@ void set_at(Config& config, const std::string& name, const YAML::Node& key, cons
 }
 
 void read_section(Config& config, const std::string& section, const YAML::Node& map,
-                  std::vector<SetAt>& options) {
+                  const Elsewhere& elsewhere, std::vector<SetAt>& options) {
   for (const auto& entry : map) {
-    set_at(config, section + "." + key_of(entry.first), entry.first, entry.second, options);
+    set_at(config, section + "." + key_of(entry.first), entry.first, entry.second, elsewhere, options);
   }
 }
 
@@ -70,7 +76,7 @@ void read_preset(Config& config, const YAML::Node& value, const FromPreset& from
 }
 
 void read_root(Config& config, const YAML::Node& root, const FromPreset& from_preset,
-               std::vector<SetAt>& options) {
+               const Elsewhere& elsewhere, std::vector<SetAt>& options) {
   if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments alone: nothing is set
   if (!root.IsMap()) throw Error("is no map of options, expected lines such as 'match.window_size: 9'");
   bool first = true;
@@ -84,11 +90,11 @@ void read_root(Config& config, const YAML::Node& root, const FromPreset& from_pr
     if (key == "preset") {
       read_preset(config, entry.second, from_preset);
     } else if (entry.second.IsMap()) {
-      read_section(config, key, entry.second, options);
+      read_section(config, key, entry.second, elsewhere, options);
     } else if (entry.second.IsNull() && key.find('.') == std::string::npos) {
       continue;  // a section whose every line is commented out
     } else {
-      set_at(config, key, entry.first, entry.second, options);
+      set_at(config, key, entry.first, entry.second, elsewhere, options);
     }
   }
 }
@@ -118,16 +124,16 @@ void require_effects(const std::vector<SetAt>& options, const Config& of_file, c
 }  // namespace
 
 void load_config(const fs::path& path, Config& config, const FromPreset& from_preset,
-                 const std::function<void(Config&)>& on_top) {
+                 const std::function<void(Config&)>& on_top, const Elsewhere& elsewhere) {
   const std::string text = read_file(path, kMostTextBytes);
   Config read = config;
   std::vector<SetAt> options;
   try {
     if (text.find('\0') != std::string::npos) throw Error("is no text, expected options in YAML");
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    const std::vector<YAML::Node> documents = yaml_documents(text);
     if (documents.size() > 1)
       throw Error("has " + std::to_string(documents.size()) + " documents, expected one");
-    if (!documents.empty()) read_root(read, documents.front(), from_preset, options);
+    if (!documents.empty()) read_root(read, documents.front(), from_preset, elsewhere, options);
   } catch (const YAML::Exception& exception) {
     throw Error(path.string() + ": " + at_line(exception.mark) + "is no YAML: " + exception.msg);
   } catch (const Error& error) {
@@ -143,12 +149,11 @@ void load_config(const fs::path& path, Config& config, const FromPreset& from_pr
   config = std::move(read);
 }
 
-namespace {
-
-std::string yaml_of(const std::vector<OptionInfo>& options) {
+std::string options_yaml(const std::vector<OptionInfo>& options) {
   std::string text;
   std::string section;
   for (const OptionInfo& option : options) {
+    if (!option.active) continue;
     const std::size_t dot = option.name.find('.');
     if (option.name.substr(0, dot) != section) {
       section = option.name.substr(0, dot);
@@ -161,10 +166,8 @@ std::string yaml_of(const std::vector<OptionInfo>& options) {
   return text;
 }
 
-}  // namespace
-
 std::string config_yaml(const Config& config) {
-  return yaml_of(active_options(config));
+  return options_yaml(options(config));
 }
 
 std::string changed_config_yaml(std::string_view preset, const Config& config,
@@ -176,7 +179,7 @@ std::string changed_config_yaml(std::string_view preset, const Config& config,
     const bool wanted = std::find(also.begin(), also.end(), all[i].name) != also.end();
     if (all[i].active && (wanted || all[i].value != known[i].value)) changed.push_back(all[i]);
   }
-  return "preset: " + std::string(preset) + "\n" + yaml_of(changed);
+  return "preset: " + std::string(preset) + "\n" + options_yaml(changed);
 }
 
 }  // namespace cairn::io

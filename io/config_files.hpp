@@ -23,14 +23,18 @@ namespace cairn::io {
 /// what keeps an option of the file from having any effect; `config` is then as it was. `from_preset` makes
 /// what a `preset:` line starts from (the command adds there what a calibration says). `on_top` sets what
 /// comes on top of the file (--set, keywords): an option that the file itself leaves without effect may get
-/// one from it.
+/// one from it. `elsewhere` is asked first for every option, and takes those that are of another
+/// configuration (that of a sequence) by returning true; it throws Error as set() does.
 void load_config(const std::filesystem::path& path, Config& config,
                  const std::function<Config(std::string_view)>& from_preset = Config::preset,
-                 const std::function<void(Config&)>& on_top = {});
+                 const std::function<void(Config&)>& on_top = {},
+                 const std::function<bool(std::string_view name, std::string_view value)>& elsewhere = {});
 
 /// Every option that `config` reads with its value, in the form that load_config() reads, one comment per
 /// option.
 std::string config_yaml(const Config& config);
+/// The same of options from anywhere: those that are read.
+std::string options_yaml(const std::vector<OptionInfo>& options);
 
 /// The same, short: the preset's name and the options in which `config` differs from it; those in `also`
 /// whatever they are.

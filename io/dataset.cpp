@@ -72,13 +72,6 @@ std::optional<fs::path> picture(const fs::path& folder, const std::string& stem)
   return std::nullopt;
 }
 
-std::optional<fs::path> calibration(const fs::path& folder) {
-  for (const char* name : kCalibrations) {
-    if (std::optional<fs::path> found = file(folder / name)) return found;
-  }
-  return std::nullopt;
-}
-
 /// Without a slash at its end, "." written out: so that it has a name and a parent.
 fs::path clean(const fs::path& folder) {
   fs::path path = fs::absolute(folder).lexically_normal();
@@ -91,8 +84,8 @@ fs::path truth_beside(const fs::path& folder) {
 
 /// A frame's own, else that of the truth beside it.
 std::optional<fs::path> calibration_of(const fs::path& folder) {
-  std::optional<fs::path> calib = calibration(folder);
-  return calib ? calib : calibration(truth_beside(folder));
+  std::optional<fs::path> calib = calibration_in(folder);
+  return calib ? calib : calibration_in(truth_beside(folder));
 }
 
 std::optional<FrameFiles> frame_in(const fs::path& folder) {
@@ -128,7 +121,7 @@ std::optional<TruthFiles> truth_in(const fs::path& folder) {
   if (!truth.occlusion) truth.occlusion = file(folder / "mask0nocc.png");
   truth.ground = file(folder / "ground.png");
   truth.ground_plane = file(folder / "ground.txt");
-  truth.calib = calibration(folder);
+  truth.calib = calibration_in(folder);
   std::error_code unknown;
   truth.partial = fs::exists(folder / "partial", unknown);
   return truth;
@@ -256,6 +249,13 @@ std::optional<fs::path> frames_deeper(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::optional<fs::path> calibration_in(const fs::path& folder) {
+  for (const char* name : kCalibrations) {
+    if (std::optional<fs::path> found = file(folder / name)) return found;
+  }
+  return std::nullopt;
+}
 
 std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
   check_folder(folder);

@@ -37,6 +37,9 @@ std::vector<FrameFiles> find_frames(const std::filesystem::path& folder,
 /// alone, they are all taken, though one of them be left.png. Throws Error where there is none.
 std::vector<FrameFiles> find_pairs(const std::filesystem::path& folder);
 
+/// The calibration in a folder: calib.txt, calib.yaml and the like, the first that is there.
+std::optional<std::filesystem::path> calibration_in(const std::filesystem::path& folder);
+
 /// What is known to be true of one frame; every part may be missing.
 struct TruthFiles {
   std::filesystem::path folder;                       // where it was found

@@ -99,7 +99,7 @@ Picture load_picture(const fs::path& path, const Pool& pool) {
   return picture_of(raster, depth_of(raster), pool);
 }
 
-PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& pool) {
+PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& pool, int least_bits) {
   const Raster first = read_raster(left, Palette::colours);
   const Raster second = read_raster(right, Palette::colours);
   if (first.size != second.size) {
@@ -110,8 +110,9 @@ PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& p
     throw Error(right.string() + ": has " + std::to_string(8 * second.bytes_each) + " bits, expected " +
                 std::to_string(8 * first.bytes_each) + " as " + left.string() + " has: a pair has one scale");
   }
-  const int depth = std::max(depth_of(first), depth_of(second));
-  return {picture_of(first, depth, pool), picture_of(second, depth, pool)};
+  int depth = std::max(depth_of(first), depth_of(second));
+  if (first.bytes_each > 1) depth = std::max(depth, least_bits);
+  return {picture_of(first, depth, pool), picture_of(second, depth, pool), depth};
 }
 
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool) {

@@ -24,6 +24,7 @@ struct Picture {
 struct PicturePair {
   Picture left;
   Picture right;
+  int bits = 8;  // that the brighter one needed
 };
 
 /// A picture of more than 8 bits loses its low bits: v >> (bits − 8), where `bits` is what the brightest
@@ -34,10 +35,11 @@ struct PicturePair {
 Picture load_picture(const std::filesystem::path& path, const Pool& pool = {});
 
 /// Both pictures reduced by the same shift (the one that the brighter needs), so that a difference of
-/// exposure between them stays what it was. Throws Error as well where sizes differ, or one has 8 bits and
-/// the other more.
+/// exposure between them stays what it was. Deep pictures that need less than `least_bits` are reduced as if
+/// they needed those: the frames of a sequence keep one scale with it. Throws Error as well where sizes
+/// differ, or one has 8 bits and the other more.
 PicturePair load_pair(const std::filesystem::path& left, const std::filesystem::path& right,
-                      const Pool& pool = {});
+                      const Pool& pool = {}, int least_bits = 8);
 
 /// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});

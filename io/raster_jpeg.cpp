@@ -7,11 +7,13 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <csetjmp>
-#include <cstdlib>
+#include <exception>
 #include <io/raster.hpp>
 #include <string>
+#include <utility>
 
 // libjpeg itself rather than OpenCV's use of it: a truncated file is a mere warning there, printed, and grey
 // pixels.
@@ -52,17 +54,54 @@ struct Reader {
   Complaints complaints;
 };
 
+/// Where libjpeg writes. Its own destination in memory (jpeg_mem_dest) leaves a pointer to a freed buffer
+/// where a later one cannot be had.
+struct Destination {
+  jpeg_destination_mgr manager{};  // first, so that libjpeg's pointer to it is a pointer to this
+  std::string file;
+};
+
+Destination& destination(j_compress_ptr jpeg) {
+  return *reinterpret_cast<Destination*>(jpeg->dest);
+}
+/// Room behind the first `used` bytes. No exception may cross libjpeg, and its longjmp no destructor.
+void make_room(j_compress_ptr jpeg, std::size_t used) {
+  constexpr std::size_t kLeast = std::size_t{1} << 16;
+  bool has_room = true;
+  try {
+    destination(jpeg).file.resize(std::max(kLeast, 2 * used));
+  } catch (const std::exception&) {
+    has_room = false;
+  }
+  if (!has_room) ERREXIT1(jpeg, JERR_OUT_OF_MEMORY, 0);
+  Destination& to = destination(jpeg);
+  to.manager.next_output_byte = reinterpret_cast<JOCTET*>(to.file.data()) + used;
+  to.manager.free_in_buffer = to.file.size() - used;
+}
+void begin_file(j_compress_ptr jpeg) {
+  make_room(jpeg, 0);
+}
+boolean grow_file(j_compress_ptr jpeg) {
+  make_room(jpeg, destination(jpeg).file.size());  // libjpeg calls when all of it is used
+  return TRUE;
+}
+void end_file(j_compress_ptr jpeg) {
+  Destination& to = destination(jpeg);
+  to.file.resize(to.file.size() - to.manager.free_in_buffer);
+}
+
 struct Writer {
-  Writer() { jpeg.err = prepared(complaints); }
+  Writer() {
+    jpeg.err = prepared(complaints);
+    to.manager.init_destination = begin_file;
+    to.manager.empty_output_buffer = grow_file;
+    to.manager.term_destination = end_file;
+  }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
-  ~Writer() {
-    jpeg_destroy_compress(&jpeg);
-    std::free(file);  // NOLINT(cppcoreguidelines-no-malloc): libjpeg's own
-  }
+  ~Writer() { jpeg_destroy_compress(&jpeg); }
   jpeg_compress_struct jpeg{};
-  unsigned char* file = nullptr;
-  unsigned long bytes = 0;
+  Destination to;
   Complaints complaints;
 };
 
@@ -119,7 +158,7 @@ std::string encode_jpeg(const PixelRows& rows) {
   jpeg_compress_struct& jpeg = writer.jpeg;
   const auto steps = [&] {
     jpeg_create_compress(&jpeg);
-    jpeg_mem_dest(&jpeg, &writer.file, &writer.bytes);
+    jpeg.dest = &writer.to.manager;
     jpeg.image_width = static_cast<JDIMENSION>(rows.size.width);
     jpeg.image_height = static_cast<JDIMENSION>(rows.size.height);
     jpeg.input_components = rows.channels;
@@ -137,7 +176,7 @@ std::string encode_jpeg(const PixelRows& rows) {
   if (!succeeds(writer.complaints, steps)) {
     throw Error(std::string("cannot be encoded as JPEG: ") + writer.complaints.text);
   }
-  return {reinterpret_cast<const char*>(writer.file), writer.bytes};
+  return std::move(writer.to.file);
 }
 
 }  // namespace cairn::io

@@ -491,6 +491,20 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
   }
 }
 
+namespace {
+
+/// JSON's conversions to integers do not ask whether the number fits.
+ObjectId id_of(const nlohmann::json& value) {
+  constexpr std::int64_t kMost = 65'535;
+  if (!value.is_number_integer() || value < 1 || value > kMost) {
+    throw Error("an object's `id` is " + (value.is_number() ? value.dump() : std::string("no number")) +
+                ", expected a whole number from 1 to " + std::to_string(kMost));
+  }
+  return ObjectId{value.get<std::int32_t>()};
+}
+
+}  // namespace
+
 std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
   constexpr std::size_t kMost = std::size_t{256} << 20;
   const std::string text = read_file(path, kMost);
@@ -498,9 +512,11 @@ std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
     std::vector<ObjectConfidence> all;
     const auto whole = nlohmann::json::parse(text);
     for (const auto& object : whole.at("objects")) {
-      all.push_back({ObjectId{object.at("id").get<std::int32_t>()}, object.at("confidence").get<double>()});
+      all.push_back({id_of(object.at("id")), object.at("confidence").get<double>()});
     }
     return all;
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
   } catch (const nlohmann::json::exception&) {
     throw Error(path.string() +
                 ": no objects.json of cairn, expected a list `objects` with `id` and `confidence`");

@@ -152,8 +152,8 @@ cv::Mat borrowed(View<const Rgb> image) {
 }
 
 template <class T>
-Image<T> remapped(const Image<T>& image, const cv::Mat& x, const cv::Mat& y) {
-  Image<T> result(image.size());
+Image<T> remapped(const Image<T>& image, const cv::Mat& x, const cv::Mat& y, const Pool& pool) {
+  Image<T> result(image.size(), pool);
   cv::Mat out = borrowed(View<const T>(result.view()));
   cv::remap(borrowed(View<const T>(image.view())), out, x, y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
   return result;
@@ -202,6 +202,7 @@ Rectifier::Rectifier(const RawCalibration& calibration) : maps_(std::make_unique
     };
     map(raw.left, maps_->left_x, maps_->left_y);
     map(raw.right, maps_->right_x, maps_->right_y);
+    left_rotation_ = *raw.left.rotation;
     rig_ = rig_of(*raw.left.projection, *raw.right.projection);
     return 0;
   });
@@ -209,19 +210,19 @@ Rectifier::Rectifier(const RawCalibration& calibration) : maps_(std::make_unique
 
 Rectifier::~Rectifier() = default;
 
-PicturePair Rectifier::operator()(const PicturePair& raw) const {
+PicturePair Rectifier::operator()(const PicturePair& raw, const Pool& pool) const {
   if (raw.left.gray.size() != maps_->size) {
     throw Error("the calibration is for " + text(maps_->size) + ", the pictures are " +
                 text(raw.left.gray.size()));
   }
   return with_opencv("rectifying", [&] {
-    const auto rectified = [](const Picture& picture, const cv::Mat& x, const cv::Mat& y) {
-      Picture result{remapped(picture.gray, x, y), {}};
-      if (!picture.rgb.empty()) result.rgb = remapped(picture.rgb, x, y);
+    const auto rectified = [&](const Picture& picture, const cv::Mat& x, const cv::Mat& y) {
+      Picture result{remapped(picture.gray, x, y, pool), {}};
+      if (!picture.rgb.empty()) result.rgb = remapped(picture.rgb, x, y, pool);
       return result;
     };
     return PicturePair{rectified(raw.left, maps_->left_x, maps_->left_y),
-                       rectified(raw.right, maps_->right_x, maps_->right_y)};
+                       rectified(raw.right, maps_->right_x, maps_->right_y), raw.bits};
   });
 }
 

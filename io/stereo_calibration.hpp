@@ -56,14 +56,17 @@ class Rectifier {
   Rectifier& operator=(const Rectifier&) = delete;
 
   /// Pictures of the calibration's size, with what lies beyond their border black. Throws Error for others.
-  [[nodiscard]] PicturePair operator()(const PicturePair& raw) const;
+  [[nodiscard]] PicturePair operator()(const PicturePair& raw, const Pool& pool = {}) const;
   /// The rectified pair's calibration.
   [[nodiscard]] const StereoRig& rig() const { return rig_; }
+  /// The rotation from the raw left camera to the rectified one, row by row.
+  [[nodiscard]] const std::array<double, 9>& left_rotation() const { return left_rotation_; }
 
  private:
   struct Maps;
   std::unique_ptr<Maps> maps_;
   StereoRig rig_;
+  std::array<double, 9> left_rotation_{1, 0, 0, 0, 1, 0, 0, 0, 1};
 };
 
 }  // namespace cairn::io

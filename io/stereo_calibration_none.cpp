@@ -25,7 +25,7 @@ Rectifier::Rectifier(const RawCalibration&) {
   not_built_in();
 }
 Rectifier::~Rectifier() = default;
-PicturePair Rectifier::operator()(const PicturePair&) const {
+PicturePair Rectifier::operator()(const PicturePair&, const Pool&) const {
   not_built_in();
 }
 

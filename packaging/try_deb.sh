@@ -53,7 +53,7 @@ inside apt-get update >/dev/null
 before=$(count_packages)
 
 say "the command"
-mapfile -t tools < <(packages_named 'libcairn[0-9]*'; packages_named cairn)
+mapfile -t tools < <(packages_named 'libcairn[0-9]*'; packages_named 'libcairn-sequences*'; packages_named cairn)
 install_inside "${tools[@]}"
 echo "$(inside cairn --version); $(($(count_packages) - before)) packages came along or are its own"
 for sample in "$source_dir"/samples/*/; do
@@ -63,6 +63,10 @@ for sample in "$source_dir"/samples/*/; do
     [[ -s $root/tmp/demo/$name/$file ]] || fail "cairn segment left no $file for $name"
   done
 done
+if compgen -G "$packages/libcairn-sequences*.deb" >/dev/null; then
+  inside cairn follow /usr/share/doc/cairn/sequences/rolling_ball -o /tmp/followed
+  [[ $(wc -l <"$root/tmp/followed/tracks.jsonl") == 6 ]] || fail "cairn follow left no six frames"
+fi
 inside cairn evaluate /tmp/demo/four_in_a_row /usr/share/doc/cairn/examples/four_in_a_row
 [[ -s $root/usr/share/man/man1/cairn-segment.1.gz ]] || fail "no manual page"
 inside bash -c 'source /usr/share/bash-completion/completions/cairn && complete -p cairn' >/dev/null ||
@@ -75,6 +79,8 @@ inside cmake -S /cairn/consumer -B /cairn/build >/dev/null
 inside cmake --build /cairn/build -- --no-print-directory >/dev/null
 inside /cairn/build/core
 inside /cairn/build/matrices
+[[ ! -x $root/cairn/build/sequences ]] ||
+  inside /cairn/build/sequences /usr/share/doc/cairn/sequences/rolling_ball /tmp/demo/by_library.db
 inside /cairn/build/files /usr/share/doc/cairn/examples/overlap /tmp/demo/by_library
 # shellcheck disable=SC2016  # for the shell inside
 inside bash -c 'g++ -std=c++20 /cairn/consumer/core.cpp -o /cairn/core $(pkg-config --cflags --libs cairn) && /cairn/core'

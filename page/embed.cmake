@@ -3,10 +3,13 @@
 #
 # cmake -DFOLDER=… -DOUT=… -P embed.cmake: the files of the page as string constants of a C++ source.
 set(source "// Made from page/ by page/embed.cmake.\n#include <page/html_template.hpp>\n\nnamespace cairn::io {\n\n")
-foreach(part IN ITEMS Layout:page.html Style:page.css Script:page.js)
+foreach(part IN ITEMS
+    SharedStyle:shared.css SharedScript:shared.js
+    PageLayout:page.html PageStyle:page.css PageScript:page.js
+    FollowLayout:follow.html FollowStyle:follow.css FollowScript:follow.js)
   string(REGEX MATCH "(.*):(.*)" unused ${part})
   file(READ ${FOLDER}/${CMAKE_MATCH_2} content)
-  string(APPEND source "const std::string_view kPage${CMAKE_MATCH_1} = R\"cairn(${content})cairn\";\n\n")
+  string(APPEND source "const std::string_view k${CMAKE_MATCH_1} = R\"cairn(${content})cairn\";\n\n")
 endforeach()
 string(APPEND source "}  // namespace cairn::io\n")
 file(WRITE ${OUT} "${source}")

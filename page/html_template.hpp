@@ -4,11 +4,17 @@
 
 #include <string_view>
 
-/// page.html, page.css and page.js, built into the program; internal to the page.
+/// The layouts, styles and scripts of the pages, built into the program; internal to the pages. A layout has
+/// the places {{title}}, {{style}}, {{data}} and {{script}}.
 namespace cairn::io {
 
-extern const std::string_view kPageLayout;  // page.html, with {{title}}, {{style}}, {{data}} and {{script}}
-extern const std::string_view kPageStyle;   // page.css
-extern const std::string_view kPageScript;  // page.js
+extern const std::string_view kSharedStyle;   // shared.css, before each page's own
+extern const std::string_view kSharedScript;  // shared.js, before each page's own
+extern const std::string_view kPageLayout;    // page.html
+extern const std::string_view kPageStyle;     // page.css
+extern const std::string_view kPageScript;    // page.js
+extern const std::string_view kFollowLayout;  // follow.html
+extern const std::string_view kFollowStyle;   // follow.css
+extern const std::string_view kFollowScript;  // follow.js
 
 }  // namespace cairn::io

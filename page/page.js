@@ -2,50 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // The page of `cairn segment --html` and `cairn evaluate --html`. Its data are JSON blocks beside this script
-// (page/html_page.cpp): `run`, and for each frame `facts-N`, read at once, and `maps-N`, read when it is shown.
-'use strict';
+// (page/html_page.cpp): `run`, and for each frame `facts-N`, read at once, and `maps-N`, read when it is shown. It
+// follows shared.js in one <script>.
 (() => {
-  // ---- small helpers ----
-
-  const byId = (id) => document.getElementById(id);
-  const block = (id) => JSON.parse(byId(id).textContent);
-
-  /** An element; properties that are no attributes of their own begin with "on" (listeners) or are `style`. */
-  function el(tag, properties = {}, ...children) {
-    const node = document.createElement(tag);
-    for (const [name, value] of Object.entries(properties)) {
-      if (value === undefined || value === null || value === false) continue;
-      if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
-      else if (name === 'style') Object.assign(node.style, value);
-      else node.setAttribute(name, value === true ? '' : value);
-    }
-    node.append(...children.flat().filter((child) => child !== null && child !== undefined));
-    return node;
-  }
-
-  const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
-  const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits) : '–');
-  const percent = (share, digits = 1) => (isNumber(share) ? `${(100 * share).toFixed(digits)} %` : '–');
-  const counted = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
-  const words = (name) => name.replaceAll('_', ' ');
-
-  /** "#rrggbb" as the four bytes of a canvas' pixel, in this machine's order (little endian everywhere). */
-  function pixel(colour, alpha = 255) {
-    const n = parseInt(colour.slice(1), 16);
-    return ((alpha << 24) | ((n & 255) << 16) | (n & 0xff00) | (n >> 16)) >>> 0;
-  }
-  const mixed = (a, b, shareOfB) => {
-    const channel = (shift) => {
-      const from = (parseInt(a.slice(1), 16) >> shift) & 255;
-      const to = (parseInt(b.slice(1), 16) >> shift) & 255;
-      return Math.round(from + (to - from) * shareOfB) << shift;
-    };
-    return '#' + (channel(16) | channel(8) | channel(0)).toString(16).padStart(6, '0');
-  };
-
   // ---- data ----
 
-  const run = block('run');
   const evaluates = run.command === 'evaluate';
   const frames = Array.from({length: run.frames}, (_, i) => {
     const facts = block(`facts-${i}`);
@@ -58,43 +19,13 @@
     return facts;
   });
 
-  // Not PNGs that a canvas gives back: browsers that guard against fingerprinting alter what is read from one.
-  async function inflated(text) {
-    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
-  }
-
-  /** The numbers of a packed map; null where there is none. */
-  async function unpacked(map, count) {
-    if (!map) return null;
-    const planes = await inflated(map.data);
-    const values = new Uint32Array(count);
-    const mask = map.bytes === 4 ? 0xffffffff : 2 ** (8 * map.bytes) - 1;
-    let value = 0;
-    for (let i = 0; i < count; ++i) {
-      for (let k = 0; k < map.bytes; ++k) value += planes[k * count + i] * 2 ** (8 * k);
-      value = (value & mask) >>> 0;
-      values[i] = value;
-    }
-    return values;
-  }
-
   async function disparities(map, count) {
     const steps = await unpacked(map, count);
     return steps && Float32Array.from(steps, (n) => (n === 0 ? NaN : map.low + (n - 1) / map.steps));
   }
 
   const kMostPixelsKept = 5e6;  // some 40 bytes each
-  const decoded = new Map();  // the frames seen last, so that the slider goes back at once
-  function mapsOf(index) {
-    if (!decoded.has(index)) {
-      decoded.set(index, decode(index));
-      const most = Math.max(2, Math.floor(kMostPixelsKept / (frames[index].width * frames[index].height || 1)));
-      while (decoded.size > most) decoded.delete(decoded.keys().next().value);
-    }
-    return decoded.get(index);
-  }
+  const mapsOf = keptLast(decode, (index) => Math.max(2, Math.floor(kMostPixelsKept / (frames[index].width * frames[index].height || 1))));
   async function decode(index) {
     const packed = block(`maps-${index}`);
     const count = frames[index].width * frames[index].height;
@@ -105,12 +36,7 @@
     maps.true_disparity = await disparities(packed.true_disparity, count);
     const truth = await unpacked(packed.true_objects, count);
     maps.true_objects = truth && Int32Array.from(truth, (n) => n - 1);  // −1 = don't care
-    for (const source of [maps.left, maps.right]) {
-      if (!source) continue;
-      const image = new Image();
-      image.src = source;
-      await image.decode().catch(() => {});
-    }
+    for (const source of [maps.left, maps.right]) await decodedPicture(source);  // so that it is there at once when it is shown
     return maps;
   }
 
@@ -151,12 +77,11 @@
     object?.position_m ? `${fixed(object.position_m[2], 2)} m`
       : isNumber(object?.disparity_px) ? `${fixed(object.disparity_px, 1)} px` : '';
 
-  const objectColour = (id) => run.look.objects[id % run.look.objects.length];
   /** A true object has the colour of ours that it is compared with; a missed one has none. */
   const kMissed = '#ff4d6a', kNotScored = '#b8bec6';
   const truthColour = (id) => {
     const ours = current().truth.get(id)?.ours;
-    return ours ? objectColour(ours) : current().truth.has(id) ? kMissed : kNotScored;
+    return ours ? idColour(ours) : current().truth.has(id) ? kMissed : kNotScored;
   };
   const reasonOf = (bits) => run.look.reasons.find((reason) => bits & reason.bit) ?? run.look.reasons[0];
   const reasonsOf = (bits) => run.look.reasons.filter((reason) => bits & reason.bit).map((r) => r.name);
@@ -213,11 +138,6 @@
       el('div', {class: 'ticks'}, steps.map((d) => el('span', {}, text(d)))));
   }
 
-  function chip(colour, name, share, properties = {}) {
-    return el('span', {class: `chip${share === 0 ? ' off' : ''}`, ...properties},
-      el('i', {style: {background: colour}}), el('b', {}, name), isNumber(share) ? percent(share) : null);
-  }
-
   function paintConfidence(out, {confidence, disparity}) {
     const ramp = Array.from({length: 256}, (_, c) => pixel(mixed(kUnsure, kSure, c / 255)));
     let sure = 0, valid = 0;
@@ -262,12 +182,6 @@
     };
   }
 
-  /** Whether a neighbour to the right or below has another label. */
-  function onBorder(labels, i, width) {
-    return ((i + 1) % width !== 0 && labels[i + 1] !== labels[i]) ||
-      (i + width < labels.length && labels[i + width] !== labels[i]);
-  }
-
   function paintRegions(out, labels) {
     const {width} = current();
     const colours = kRegionColours.map((c) => pixel(c, 150)), border = pixel('#111111', 190);
@@ -279,58 +193,13 @@
     return {count: counted(seen.size, 'region'), legend: []};
   }
 
-  function paintObjects(out, labels, colourOf, chosen) {
-    const {width} = current();
-    const inside = new Map(), edge = new Map(), shade = pixel('#000000', 50);
-    for (let i = 0; i < out.length; ++i) {
-      const id = labels[i];
-      if (id <= 0) {
-        out[i] = id < 0 ? pixel('#9aa0a8', 110) : shade;
-        continue;
-      }
-      if (!inside.has(id)) {
-        const dim = chosen !== null && chosen !== id;
-        inside.set(id, pixel(colourOf(id), dim ? 35 : chosen === id ? 175 : 125));
-        edge.set(id, pixel(mixed(colourOf(id), '#ffffff', 0.4), dim ? 90 : 255));
-      }
-      const outline = onBorder(labels, i, width) || (i % width !== 0 && labels[i - 1] !== id) ||
-        (i >= width && labels[i - width] !== id);
-      out[i] = (outline ? edge : inside).get(id);
-    }
-  }
-
-  function marks(places, textOf, chosen) {
-    const {width, height} = current();
-    return places.map(({id, x, y}) => el('span', {
-      class: `mark${chosen !== null && chosen !== id ? ' dim' : ''}`,
-      style: {left: `${100 * (x + 0.5) / width}%`, top: `${100 * (y + 0.5) / height}%`},
-    }, textOf(id)));
-  }
-
-  /** Moves marks into the picture where they reach over its sides, and down where they would lie on others. */
-  function partMarks(all) {
-    const placed = [];
-    for (const mark of all) {
-      const inside = mark.parentElement.getBoundingClientRect(), at = mark.getBoundingClientRect();
-      const right = Math.max(0, inside.left + 2 - at.left) + Math.min(0, inside.right - 2 - at.right);
-      if (right) mark.style.marginLeft = `${right}px`;
-      const box = mark.getBoundingClientRect();
-      let down = 0;
-      const hits = (other) => box.left < other.right && other.left < box.right &&
-        box.top + down < other.bottom && other.top < box.bottom + down;
-      for (let other = placed.find(hits); other && down < 60; other = placed.find(hits)) down = other.bottom - box.top + 0.5;
-      placed.push({left: box.left, right: box.right, top: box.top + down, bottom: box.bottom + down});
-      if (down) mark.style.marginTop = `${down}px`;
-    }
-  }
-
   function paintFound(out, {objects}) {
     const chosen = state.near ?? state.picked;
-    paintObjects(out, objects, objectColour, chosen);
+    paintLabels(out, objects, current().width, idColour, chosen);
     const {found, objects: places, ours} = current();
     return {
       count: counted(places.length, 'object'),
-      marks: marks(places, (id) => [id, distanceText(found.get(id))].filter((t) => t !== '').join(': '), chosen),
+      marks: marks(places, (id) => [id, distanceText(found.get(id))].filter((t) => t !== '').join(': '), chosen, current()),
       legend: evaluates && ours.size ? [el('div', {class: 'chips'}, verdicts())] : [],
     };
   }
@@ -348,11 +217,11 @@
     // A true object belongs to ours that it is compared with, so the two are chosen together.
     const ours = state.near ?? state.picked;
     const chosen = ours === null ? null : [...current().truth.values()].find((t) => t.ours === ours)?.id ?? -2;
-    paintObjects(out, labels, truthColour, chosen);
+    paintLabels(out, labels, current().width, truthColour, chosen);
     const {truth, true_objects: places} = current();
     return {
       count: counted(places.length, 'object'),
-      marks: marks(places, (id) => `${id}: ${errorText(truth.get(id))}`, chosen),
+      marks: marks(places, (id) => `${id}: ${errorText(truth.get(id))}`, chosen, current()),
       legend: [el('div', {class: 'chips'}, el('span', {}, 'coloured as ours that fits best'),
         [...truth.values()].some((t) => !t.ours) ? chip(kMissed, 'missed') : null,
         places.some(({id}) => !truth.has(id)) ? chip(kNotScored, 'not scored') : null)],
@@ -382,7 +251,6 @@
 
   // ---- from above ----
 
-  const polar = (radius, angle) => [radius * Math.cos(angle), radius * Math.sin(angle)];
   function cornersOf({centre_m: [x, y], size_m: [long, short], yaw_rad: yaw}) {
     const [ax, ay] = polar(long / 2, yaw), [bx, by] = polar(short / 2, yaw + Math.PI / 2);
     return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([a, b]) => [x + a * ax + b * bx, y + a * ay + b * by]);
@@ -411,7 +279,7 @@
     const at = ([x, y]) => [wide / 2 - scale * y, high - bottom - scale * x].map((v) => v.toFixed(1));
     drawnPlace = at;
     const arc = (radius) => `M${at(polar(radius, right))}A${scale * radius} ${scale * radius} 0 0 0 ${at(polar(radius, left))}`;
-    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((metre) => reach / metre < 7) ?? 200;
+    const step = roundStep(reach, 7);
     const rings = Array.from({length: Math.floor(reach / step)}, (_, i) => Number((step * (i + 1)).toPrecision(3)));
     const drawing = svg('svg', {class: 'above', viewBox: `0 0 ${wide} ${high}`, role: 'img', 'aria-label': 'The floor from above'},
       svg('path', {class: 'seen', fill: kSeen, d: `${arc(reach)}L${at([0, 0])}Z`}),
@@ -423,7 +291,7 @@
       ...boxes.map(({id, corners, box_on_floor: {centre_m: centre, size_m: size}}) => svg('g', {
         class: 'thing', 'data-key': id,
         onpointerenter: () => near(id), onpointerleave: () => near(null), onclick: () => pick(id === state.picked ? null : id),
-      }, svg('polygon', {points: corners.map(at).join(' '), fill: objectColour(id), stroke: mixed(objectColour(id), '#ffffff', 0.4)}),
+      }, svg('polygon', {points: corners.map(at).join(' '), fill: idColour(id), stroke: mixed(idColour(id), '#ffffff', 0.4)}),
       svg('text', {x: at(centre)[0], y: Number(at(centre)[1]) + 4}, String(id)),
       svg('title', {}, `object ${id}: ${size.slice(0, 2).map((length) => fixed(length, 2)).join(' × ')} m, ${fixed(size[2], 2)} m high`))),
       svg('path', {class: 'camera', d: `M${at([0, 0])}l-7 10h14Z`}), svg('circle', {class: 'here', r: 6, visibility: 'hidden'}));
@@ -554,7 +422,7 @@
   /** The object that the pointer is on, outside of the pictures. */
   function near(id) {
     state.near = id;
-    markRow(id);
+    markRow('objects', id);
     repaintObjects();
   }
 
@@ -582,20 +450,8 @@
 
   /** The pixel of the left picture that the pointer is on, or the one matched with it. */
   function placeOf(event, name) {
-    const {stage, isRight} = panels[name];
-    const box = stage.getBoundingClientRect();
-    const {width, height} = current();
-    const x = Math.floor((event.clientX - box.left) / box.width * width);
-    const y = Math.floor((event.clientY - box.top) / box.height * height);
-    if (x < 0 || y < 0 || x >= width || y >= height) return null;
-    return isRight ? fromRight({x, y}) : {x, y, i: y * width + x};
-  }
-
-  function rows(pairs) {
-    return el('dl', {}, pairs.filter(([, value]) => value !== null).flatMap(([key, value]) => [el('dt', {}, key), el('dd', {}, value)]));
-  }
-  function group(title, pairs) {
-    return el('div', {class: 'group'}, title ? el('b', {}, title) : null, rows(pairs));
+    const {stage, isRight} = panels[name], at = pixelUnder(event, stage, current());
+    return at && isRight ? fromRight(at) : at;
   }
 
   /** What is known of one pixel. */
@@ -646,14 +502,7 @@
   function point(event, name) {
     const at = state.maps && placeOf(event, name);
     if (!at) return leave();
-    const tip = byId('tip'), gap = 14;
-    tip.replaceChildren(...described(at));
-    tip.hidden = false;
-    const {width, height} = tip.getBoundingClientRect();
-    const left = event.clientX + gap + width > innerWidth ? event.clientX - gap - width : event.clientX + gap;
-    const top = event.clientY + gap + height > innerHeight ? event.clientY - gap - height : event.clientY + gap;
-    tip.style.left = `${Math.max(0, left)}px`;
-    tip.style.top = `${Math.max(0, top)}px`;
+    showTip(event, ...described(at));
     const disparity = state.maps.disparity?.[at.i];
     for (const [other, {stage, isRight}] of Object.entries(panels)) {
       let cross = stage.querySelector('.cross');
@@ -667,13 +516,10 @@
       cross.style.top = `${100 * (y + 0.5) / current().height}%`;
     }
     ringAbove(placeOnFloor(placeInCamera(at.x, at.y, disparity)));
-    markRow(state.maps.objects?.[at.i] ?? 0);
-  }
-  function markRow(id) {
-    for (const row of document.querySelectorAll('#objects tbody tr')) row.classList.toggle('near', row.dataset.key === String(id));
+    markRow('objects', state.maps.objects?.[at.i] ?? 0);
   }
   function leave() {
-    byId('tip').hidden = true;
+    hideTip();
     for (const cross of document.querySelectorAll('.cross')) cross.remove();
     ringLeftOut();
     for (const row of document.querySelectorAll('tr.near')) row.classList.remove('near');
@@ -689,70 +535,7 @@
     selectRow('objects', id);
     repaintObjects();
   }
-  function selectRow(table, key) {
-    for (const row of document.querySelectorAll(`#${table} tbody tr`)) {
-      row.setAttribute('aria-selected', row.dataset.key === String(key));
-      if (row.dataset.key !== String(key)) continue;
-      // Its table is scrolled, not the page: the picture that was clicked stays where it is.
-      const box = row.closest('.scroll');
-      if (row.offsetTop < box.scrollTop + row.offsetHeight || row.offsetTop + row.offsetHeight > box.scrollTop + box.clientHeight) {
-        box.scrollTop = row.offsetTop - box.clientHeight / 2;
-      }
-    }
-  }
-
   // ---- tables ----
-
-  const sorting = {};  // table → {column, descending}, which outlives the frame
-
-  /**
-   * A table whose heads sort. columns: {name, title, text, value (what is sorted by), show (a cell's nodes), bad}.
-   * What has no value comes last, whichever way.
-   */
-  function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
-    const body = el('tbody');
-    const heads = columns.map((column, c) => el('th', {scope: 'col', class: column.text ? 'text' : null, 'aria-sort': 'none'},
-      column.name === '' ? null : el('button', {type: 'button', title: column.title, onclick: () => {
-        const before = sorting[id];
-        sorting[id] = {column: c, descending: before?.column === c ? !before.descending : false};
-        fill();
-      }}, column.name)));
-    const fill = () => {
-      const {column, descending} = sorting[id] ?? {};
-      const rowsShown = [...data];
-      if (column !== undefined) {
-        const valueOf = columns[column].value, sign = descending ? -1 : 1;
-        const missing = (v) => v === null || v === undefined || Number.isNaN(v);
-        rowsShown.sort((a, b) => {
-          const p = valueOf(a), q = valueOf(b);
-          if (missing(p) || missing(q)) return missing(p) - missing(q);
-          return sign * (typeof p === 'string' ? p.localeCompare(q, 'en', {numeric: true}) : p - q);
-        });
-      }
-      heads.forEach((head, c) => head.setAttribute('aria-sort', c !== column ? 'none' : descending ? 'descending' : 'ascending'));
-      body.replaceChildren(...rowsShown.map((row) => {
-        const name = key?.(row);
-        return el('tr', {
-          'data-key': name, class: pickRow ? 'pick' : null, 'aria-selected': selected ? String(selected(row)) : null,
-          onclick: pickRow && (() => pickRow(row)),
-          onpointerenter: enter && (() => enter(row)), onpointerleave: enter && (() => enter(null)),
-        }, columns.map((column) => el('td', {
-          class: [column.text ? 'text' : '', column.grow ? 'grow' : '', column.bad?.(row) ? 'bad' : ''].join(' ').trim() || null,
-        }, column.show(row))));
-      }));
-    };
-    fill();
-    return el('div', {class: 'scroll'}, el('table', {id}, el('thead', {}, el('tr', {}, heads)), body));
-  }
-
-  /** A column of numbers. */
-  const number = (name, value, digits, more = {}) => ({name, value, show: (row) => fixed(value(row), digits), ...more});
-  const share = (name, value, more = {}) => ({name, value, show: (row) => (isNumber(value(row)) ? fixed(100 * value(row), 1) : '–'), ...more});
-  const swatch = (colour) => el('span', {class: 'swatch', style: {background: colour}});
-
-  function card(title, note, ...content) {
-    return el('div', {class: 'card'}, el('div', {class: 'head'}, el('h2', {}, title), note ? el('span', {class: 'note'}, note) : null), ...content);
-  }
 
   function objectsCard() {
     const {found, objects: places, ours, name} = current();
@@ -760,7 +543,7 @@
     const note = run.frames > 1 ? name : null;
     if (!list.length) return card(evaluates ? 'Objects found' : 'Objects', note, el('p', {class: 'empty'}, 'none'));
     const has = (property) => list.some((o) => o[property]);
-    const columns = [{name: 'id', value: (o) => o.id, show: (o) => [swatch(objectColour(o.id)), o.id]}];
+    const columns = [{name: 'id', value: (o) => o.id, show: (o) => [swatch(idColour(o.id)), o.id]}];
     if (has('position_m')) columns.push(number('distance m', (o) => o.position_m?.[2], 2));
     if (has('depth_interval_m')) {
       columns.push({name: 'interval m', title: 'holds its distance with 95 %; sorts by its width',
@@ -913,16 +696,6 @@
   const binText = (bin) => bin === kBins ? `${100 * kCap} % and more, or missed`
     : `${Math.round(100 * kCap * bin / kBins)} to ${Math.round(100 * kCap * (bin + 1) / kBins)} %`;
 
-  function svg(tag, properties, ...children) {
-    const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
-    for (const [name, value] of Object.entries(properties)) {
-      if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
-      else node.setAttribute(name, value);
-    }
-    node.append(...children);
-    return node;
-  }
-
   function histogramCard() {
     const counts = Array.from({length: kBins + 1}, () => 0);
     for (const score of allTrue) ++counts[binOf(score)];
@@ -1058,19 +831,10 @@
     playButton(false);
   }
   const playOrPause = () => (playing ? pause() : play());
-  function playButton(plays) {
-    byId('play').textContent = plays ? '❚❚' : '▶';
-    byId('play').setAttribute('aria-pressed', plays);
-  }
   /** To a frame that was asked for. */
   function go(index) {
     pause();
     return show(index);
-  }
-
-  function trouble(text) {
-    byId('trouble').textContent = text;
-    byId('trouble').hidden = false;
   }
 
   function layOut() {
@@ -1088,48 +852,22 @@
   }
 
   function begin() {
-    byId('command').textContent = run.command;
-    byId('title').textContent = run.title;
+    beginPage();
     byId('about').textContent = `cairn ${run.cairn}. Point at a pixel to see what is known of it; click an object to single it out` +
       (run.frames > 1 ? '; ← and → change the frame, space plays.' : '.');
     byId('columns').append(...[4, 3, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} in a row`, onclick: () => {
       state.columns = n;
       layOut();
     }}, String(n))));
-    byId('theme').addEventListener('click', () => {
-      const root = document.documentElement;
-      const dark = root.dataset.theme ? root.dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
-      root.dataset.theme = dark ? 'light' : 'dark';
-    });
     addEventListener('resize', layOut);
     layOut();
     makePanels();
     if (!evaluates) byId('tables').style.setProperty('--first', '1.6fr');  // its objects have more columns
     if (run.evaluation) tiles();
     byId('frames').hidden = run.frames < 2;
-    byId('slider').max = run.frames - 1;
     byId('slider').addEventListener('input', (event) => go(Number(event.target.value)));
-    byId('previous').addEventListener('click', () => go(wanted - 1));
-    byId('next').addEventListener('click', () => go(wanted + 1));
-    byId('play').addEventListener('click', playOrPause);
-    // A button that was clicked, not reached by keys, leaves the space bar to play and pause.
-    byId('frames').addEventListener('click', (event) => { if (event.detail) event.target.blur(); });
-    addEventListener('keydown', (event) => {
-      if (run.frames < 2 || event.altKey || event.ctrlKey || event.metaKey) return;
-      if (event.key === ' ' && !event.target.matches?.('button, select, summary, input[type=checkbox]')) {
-        event.preventDefault();
-        if (!event.repeat) playOrPause();
-      }
-      if (event.target.matches?.('select, input[type=range]')) return;
-      const to = {ArrowLeft: wanted - 1, ArrowRight: wanted + 1, Home: 0, End: run.frames - 1}[event.key];
-      if (to === undefined) return;
-      event.preventDefault();
-      go(to);
-    });
+    leadThroughFrames({wanted: () => wanted, go, playOrPause});
     addEventListener('hashchange', () => go(Number(location.hash.slice(1)) - 1 || 0));
-    if (typeof DecompressionStream === 'undefined') {
-      trouble('This browser cannot unpack the pictures (no DecompressionStream): Chrome 80, Firefox 113, Safari 16.4 or later can.');
-    }
     show(Number(location.hash.slice(1)) - 1 || 0);
   }
   begin();

@@ -20,5 +20,6 @@ void bind_evaluation(pybind11::module_& m);  // comparison with truth
 void bind_diagnosis(pybind11::module_& m);   // what is wrong with a rig
 void bind_tuning(pybind11::module_& m);      // options that do best on frames
 void bind_io(pybind11::module_& m);          // files and pictures
+void bind_follow(pybind11::module_& m);      // sequences
 
 }  // namespace cairn::python

@@ -17,6 +17,7 @@
 
 #include "bindings.hpp"
 #include "disparity.hpp"
+#include "frame.hpp"
 #include "objects.hpp"
 #include "options.hpp"
 #include "pickling.hpp"
@@ -25,20 +26,13 @@
 namespace cairn::python {
 namespace {
 
-/// A frame, what it was made of and how.
-struct PyFrame {
-  Picture left;
-  Frame frame;
-  io::Provenance provenance;
-};
-
 py::tuple frame_state(const PyFrame& self) {
   return versioned(py::make_tuple(self.left.copy(), state_of(self.frame), state_of(self.provenance)));
 }
 
 std::unique_ptr<PyFrame> frame_of(const py::tuple& state) {
   const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
-  auto frame = std::make_unique<PyFrame>(PyFrame{Picture(parts[0], "left", false, {}), {}, {}});
+  auto frame = std::make_unique<PyFrame>(Picture(parts[0], "left", false, {}), Frame{}, io::Provenance{});
   restore(parts[1], frame->frame);
   restore(parts[2], frame->provenance);
   return frame;
@@ -73,7 +67,7 @@ std::unique_ptr<PyFrame> segment_pair(const ImageArgument& left, const ImageArgu
       recipe.config.preset, recipe.for_size(pair.size()), recipe.calibration.calibration.rig, {}};
   time_stages(exec, provenance.timings);
   Frame frame = released([&] { return segment(pair, provenance.rig, provenance.config, exec); });
-  return std::make_unique<PyFrame>(PyFrame{std::move(l), std::move(frame), std::move(provenance)});
+  return std::make_unique<PyFrame>(std::move(l), std::move(frame), std::move(provenance));
 }
 
 std::unique_ptr<PyFrame> segment_given(const ImageArgument& left, const DisparityArgument& map, bool bgr,
@@ -86,7 +80,7 @@ std::unique_ptr<PyFrame> segment_given(const ImageArgument& left, const Disparit
   Frame frame = released([&] {
     return segment(l.gray(), l.rgb(), disparity.taken(exec), provenance.rig, provenance.config, exec);
   });
-  return std::make_unique<PyFrame>(PyFrame{std::move(l), std::move(frame), std::move(provenance)});
+  return std::make_unique<PyFrame>(std::move(l), std::move(frame), std::move(provenance));
 }
 
 std::unique_ptr<PyFrame> segment_any(const ImageArgument& left, const ImageArgument& right,

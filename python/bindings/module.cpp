@@ -55,6 +55,7 @@ PYBIND11_MODULE(_cairn, m) {
   cairn::python::bind_diagnosis(m);
   cairn::python::bind_tuning(m);
   cairn::python::bind_io(m);
+  cairn::python::bind_follow(m);
 
   cairn::python::refuse_plainly(m);
   m.attr("__name__") = own_name;

@@ -76,13 +76,7 @@ void set_groups(Config& config, const py::kwargs& groups) {
     const auto group = key.cast<std::string>();
     const bool has_options = py::isinstance<py::dict>(value) && py::len(value) > 0;
     if (!is_group(group) && !has_options) refuse_keyword(group);
-    if (!py::isinstance<py::dict>(value)) {
-      throw ArgumentError("options " + group + ": found " + shown(value) +
-                          ", expected a dict such as match={\"num_disparities\": 64}");
-    }
-    for (const auto& [name, setting] : py::reinterpret_borrow<py::dict>(value)) {
-      set(config, group + "." + py::str(name).cast<std::string>(), option_text(setting));
-    }
+    for (const auto& [name, text] : settings_of(group, value)) set(config, name, text);
   }
 }
 
@@ -95,7 +89,7 @@ void require_effects(const Config& config, const py::kwargs& groups) {
 }
 
 PyConfig built(const std::string& preset, const std::optional<std::string>& file, const py::kwargs& groups,
-               std::optional<int> range) {
+               const Elsewhere& elsewhere, std::optional<int> range) {
   PyConfig made;
   const auto from_preset = [&](std::string_view name) {
     made.preset = name;
@@ -105,7 +99,7 @@ PyConfig built(const std::string& preset, const std::optional<std::string>& file
   };
   made.config = from_preset(preset);
   const auto keywords = [&](Config& config) { set_groups(config, groups); };
-  if (file) io::load_config(*file, made.config, from_preset, keywords);
+  if (file) io::load_config(*file, made.config, from_preset, keywords, elsewhere);
   keywords(made.config);
   require_effects(made.config, groups);
   return made;
@@ -170,6 +164,18 @@ std::vector<std::string> names_of(const std::vector<Target>& targets) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> settings_of(const std::string& group,
+                                                             const py::handle& value) {
+  if (!py::isinstance<py::dict>(value)) {
+    throw ArgumentError("options " + group + ": found " + shown(value) +
+                        ", expected a dict such as match={\"num_disparities\": 64}");
+  }
+  std::vector<std::pair<std::string, std::string>> settings;
+  for (const auto& [name, setting] : py::reinterpret_borrow<py::dict>(value))
+    settings.emplace_back(group + "." + py::str(name).cast<std::string>(), option_text(setting));
+  return settings;
+}
+
 py::object option_of(const PyConfig& self, const std::string& name) {
   for (const OptionInfo& option : options(self.config)) {
     if (option.name == name) return option_value(option);
@@ -188,19 +194,20 @@ Config PyConfig::suited(const io::Calibration& calibration) const {
 }
 
 PyConfig make_config(const std::string& preset, const std::optional<std::string>& file,
-                     const py::kwargs& groups) {
-  PyConfig made = built(preset, file, groups, std::nullopt);
+                     const py::kwargs& groups, const Elsewhere& elsewhere) {
+  PyConfig made = built(preset, file, groups, elsewhere, std::nullopt);
   // Given is what does not follow the default.
   const int other = made.config.match.num_disparities + 1;
-  made.range_given = built(preset, file, groups, other).config.match.num_disparities != other;
+  made.range_given = built(preset, file, groups, elsewhere, other).config.match.num_disparities != other;
   return made;
 }
 
-PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups) {
+PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups,
+                   const Elsewhere& elsewhere) {
   if (config.is_none()) return make_config(preset, std::nullopt, groups);
   if (!py::isinstance<PyConfig>(config)) {
     const std::string file = file_name(config, "config", "a cairn.Config, the name of a file, or None");
-    return make_config(preset, file, groups);
+    return make_config(preset, file, groups, elsewhere);
   }
   auto made = config.cast<PyConfig>();
   if (preset != "default" && preset != made.preset) {

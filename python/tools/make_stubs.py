@@ -58,8 +58,13 @@ ARGUMENTS = {
     "exec": "Optional[Exec]",
     "file": "Optional[PathLike]",
     "progress": "Optional[Callable[[Dict[str, Any]], object]]",
+    "stamp_ns": "Optional[int]",
+    "pose": "Optional[FloatsLike]",
+    "now_from_before": "FloatsLike",
+    "covariance": "FloatsLike",
 }
-RETURNS = {"__iter__": {"Objects": "Iterator[Object]", "GroundPlane": "Iterator[float]"}}
+RETURNS = {"__iter__": {"Objects": "Iterator[Object]", "GroundPlane": "Iterator[float]", "Following": "Following"},
+           "__enter__": {"Following": "Following"}}
 # pybind11 knows only that it is a dict.
 PROPERTIES = {
     "as_dict": "Dict[str, Dict[str, Any]]",
@@ -70,6 +75,7 @@ PROPERTIES = {
     "motion": "Dict[int, float]",
     "agreement": "Dict[int, float]",
     "changes": "Dict[str, Tuple[Any, Any]]",
+    "frame": "Frame",
 }
 
 
@@ -89,12 +95,16 @@ def group_class(group):
     return "".join(word.capitalize() for word in group.split("_")) + "Options"
 
 
+def all_options():
+    return cairn.options() + cairn.follow_options()
+
+
 def option_arguments(name):
     """The keywords that **kwargs of a function stands for."""
     grouped, groups = _cairn._options_of.get(name, (False, []))
     if grouped:
         return [f"{group}: {group_class(group)} = ..." for group in groups]
-    return [f"{o.name.split('.')[1]}: {option_type(o)} = ..." for g in groups for o in cairn.options() if o.group == g]
+    return [f"{o.name.split('.')[1]}: {option_type(o)} = ..." for g in groups for o in all_options() if o.group == g]
 
 
 def split_arguments(text):
@@ -137,8 +147,10 @@ def signature(line, function, owner=None):
             if options and "*" not in shown:
                 shown.append("*")
             shown += options
-        elif text == "/" or text == "*args":
+        elif text == "/" or (text == "*args" and name != "__exit__"):
             continue
+        elif text == "*args":
+            shown.append("*args: object")
         else:
             shown.append(argument(text, owner if name == "__init__" else function))
     if shown and shown[-1] == "*":
@@ -174,7 +186,9 @@ def function_stub(name, function, owner=None, decorator=""):
 
 def property_stub(name, value):
     line, _, text = (value.fget.__doc__ or "").strip().partition("\n")
-    kind = PROPERTIES.get(name) or typed(re.search(r"-> (.*)$", line).group(1))
+    kind = typed(re.search(r"-> (.*)$", line).group(1))
+    if kind in ("Dict[str, Any]", "object"):
+        kind = PROPERTIES.get(name, kind)
     return f"@property\ndef {name}(self) -> {kind}:" + doc_of(value.__doc__ or text)
 
 
@@ -196,7 +210,7 @@ def class_stub(name, cls):
 
 def options_stub(group):
     lines = [f"class {group_class(group)}(TypedDict, total=False):"]
-    for o in cairn.options():
+    for o in all_options():
         if o.group == group:
             unit = f"{o.unit}, " if o.unit else ""
             needs = f", read while {o.needs}" if o.needs else ""
@@ -206,7 +220,7 @@ def options_stub(group):
 
 def stubs():
     blocks = []
-    for group in dict.fromkeys(o.group for o in cairn.options()):
+    for group in dict.fromkeys(o.group for o in all_options()):
         blocks.append(options_stub(group))
     for name in sorted(cairn.__all__):
         value = getattr(cairn, name)

@@ -23,6 +23,7 @@ TEST_F(Command, ShowsHelpForEveryCommandAndForNone) {
                                                     {"doctor", "--help"},
                                                     {"calibrate", "--help"},
                                                     {"rectify", "--help"},
+                                                    {"map", "--help"},
                                                     {"config", "--help"},
                                                     {"info", "--help"},
                                                     {"help", "--help"}}) {

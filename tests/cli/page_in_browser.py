@@ -7,53 +7,25 @@ import base64
 import io
 import json
 import math
-import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
-try:
-    from PIL import Image, ImageChops, ImageStat
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.actions.action_builder import ActionBuilder
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-    from selenium.webdriver.support.select import Select
-except ImportError as missing:
-    print(f"skipped: no {missing.name}")
-    sys.exit(77)
-for program in ("chromium", "chromedriver"):
-    if not shutil.which(program):
-        print(f"skipped: no {program}")
-        sys.exit(77)
+from in_browser import HOSTILE, SOURCE, PageTest, browser, cairn
+from PIL import Image, ImageChops, ImageStat
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.select import Select
 
-CAIRN, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 REASONS = {1: "border", 2: "left-right", 4: "not unique", 8: "flat", 16: "no texture", 32: "below ground", 64: "speckle",
            128: "no data"}
-HOSTILE = "<!--<script> & \"x\""  # a name that must be shown, not obeyed
 
 
-def cairn(*arguments):
-    subprocess.run([CAIRN, *map(str, arguments)], check=True, capture_output=True)
-
-
-def browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = shutil.which("chromium")
-    # No sandbox: Chromium refuses to run as root with one, and the page is our own.
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1366,1000"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
-
-
-class Page(unittest.TestCase):
+class Page(PageTest):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -78,35 +50,7 @@ class Page(unittest.TestCase):
     # ---- helpers ----
 
     def open(self, command):
-        self.browser.get("about:blank")
-        self.browser.get(self.pages[command].as_uri())
-        self.wait_for_frame(0)
-
-    def tearDown(self):
-        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [])
-
-    def wait_for_frame(self, index):
-        for _ in range(200):
-            if self.browser.execute_script("return document.documentElement.dataset.shown") == str(index):
-                return
-            time.sleep(0.025)
-        self.fail(f"frame {index} is not shown")
-
-    def find(self, selector):
-        return self.browser.find_element(By.CSS_SELECTOR, selector)
-
-    def find_all(self, selector):
-        return self.browser.find_elements(By.CSS_SELECTOR, selector)
-
-    def name_shown(self):
-        return self.browser.execute_script("return document.querySelector('#frame-name').firstChild.textContent")
-
-    def column(self, table, name):
-        """The texts of a column, from the top."""
-        return self.browser.execute_script(
-            "const t = document.getElementById(arguments[0]);"
-            "const c = [...t.tHead.rows[0].cells].findIndex((h) => h.textContent === arguments[1]);"
-            "return [...t.tBodies[0].rows].map((r) => r.cells[c].textContent);", table, name)
+        self.load(self.pages[command])
 
     def head(self, table, name):
         for cell in self.find_all(f"#{table} th"):
@@ -121,12 +65,7 @@ class Page(unittest.TestCase):
     def point_at(self, panel, x, y):
         """Moves the pointer to the middle of a pixel and returns what the page says of it."""
         stage = self.find(f"[data-panel={panel}] .stage")
-        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", stage)
-        left, top, wide, high = self.browser.execute_script(
-            "const b = arguments[0].getBoundingClientRect(); return [b.left, b.top, b.width, b.height]", stage)
-        mouse = ActionBuilder(self.browser, duration=0)  # in the window's own px: an element's middle is rounded
-        mouse.pointer_action.move_to_location(round(left + (x + 0.5) / 320 * wide), round(top + (y + 0.5) / 240 * high))
-        mouse.perform()
+        self.move_pointer(stage, (x + 0.5) / 320, (y + 0.5) / 240)
         tip = self.find("#tip")
         self.assertTrue(tip.is_displayed())
         return tip.text
@@ -144,17 +83,12 @@ class Page(unittest.TestCase):
         chips = [chip.text.rsplit(" %", 1)[0].rsplit("\n", 1) for chip in self.find_all(f"[data-panel={panel}] .chip")]
         return {name: float(share) for name, share in chips}
 
-    def keep(self, name):
-        if folder := os.environ.get("CAIRN_SCREENSHOTS"):
-            self.browser.save_screenshot(str(pathlib.Path(folder) / f"{name}.png"))
-
     # ---- tests ----
 
     def test_asks_the_network_for_nothing(self):
         for command in self.pages:
             self.open(command)
-            asked = self.browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
-            self.assertEqual([name for name in asked if not name.startswith("data:")], [])
+            self.assertEqual(self.asked_of_the_network(), [])
 
     def test_has_all_pictures_and_tables(self):
         self.open("segment")

@@ -2,11 +2,15 @@
 
 # Each public header compiles alone, and twice over: one generated source per header.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-  ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp ${PROJECT_SOURCE_DIR}/page/*.hpp)
+  ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp ${PROJECT_SOURCE_DIR}/page/*.hpp
+  ${PROJECT_SOURCE_DIR}/tracking/*.hpp ${PROJECT_SOURCE_DIR}/landmarks/*.hpp ${PROJECT_SOURCE_DIR}/source/*.hpp)
 # What a kernel's source includes once per instruction set is no header in this sense.
 list(FILTER headers EXCLUDE REGEX "-inl\\.hpp$")
 if(NOT CAIRN_IO)
   list(FILTER headers EXCLUDE REGEX "^(io|page)/|^cairn/opencv\\.hpp$")
+endif()
+if(NOT CAIRN_HAS_TRACKING)
+  list(FILTER headers EXCLUDE REGEX "^(tracking|landmarks|source)/")
 endif()
 set(alone_sources)
 foreach(header IN LISTS headers)
@@ -20,6 +24,11 @@ target_link_libraries(cairn_headers_alone PRIVATE cairn_options cairn::cairn)
 if(CAIRN_IO)
   find_package(OpenCVImgproc REQUIRED)
   target_link_libraries(cairn_headers_alone PRIVATE cairn::io OpenCVImgproc::imgproc)
+endif()
+if(CAIRN_HAS_TRACKING)
+  find_package(Eigen3 REQUIRED NO_MODULE)  # in headers that are not installed
+  find_package(nlohmann_json REQUIRED)
+  target_link_libraries(cairn_headers_alone PRIVATE cairn::sequences Eigen3::Eigen nlohmann_json::nlohmann_json)
 endif()
 
 function(cairn_contract name)
@@ -72,4 +81,8 @@ if(TARGET 01_objects_from_a_pair)
   cairn_contract(example_01_runs 01_objects_from_a_pair ${PROJECT_SOURCE_DIR}/samples/four_in_a_row)
   cairn_contract(example_02_runs 02_stage_by_stage ${PROJECT_SOURCE_DIR}/samples/glossy_floor)
   cairn_contract(example_03_runs 03_your_own_check ${PROJECT_SOURCE_DIR}/samples/dim_light)
+endif()
+if(TARGET 05_follow_a_sequence)
+  cairn_contract(example_05_runs 05_follow_a_sequence ${PROJECT_SOURCE_DIR}/sequences/rolling_ball)
+  set_tests_properties(contracts/example_05_runs PROPERTIES PASS_REGULAR_EXPRESSION "005: camera at.*track [0-9]+ at [^\n]*, moving")
 endif()

@@ -38,6 +38,10 @@ run_programs() {
     "$scratch/build/$program" "$source_dir/samples/four_in_a_row" "$scratch/result"
     ran=$((ran + 1))
   done
+  if [[ -x $scratch/build/sequences ]]; then
+    "$scratch/build/sequences" "$source_dir/sequences/rolling_ball" "$scratch/map.db"
+    ran=$((ran + 1))
+  fi
   echo "$ran programs"
   [[ -x $scratch/build/core ]]
 }
@@ -61,11 +65,21 @@ lose_io() {
   grep -q 'CMakeLists.txt:4' <<<"$said" && grep -q 'component io is missing: yaml-cpp' <<<"$said" || { echo "$said"; exit 1; }
 }
 
+# The installed command finds its module: what it says of a video that is none comes from there.
+find_video_module() {
+  [[ -e $(find "$scratch/prefix" -name cairn-video.so) ]] || return 0
+  echo "no video" >"$scratch/broken.mp4"
+  local said
+  said=$("$scratch/prefix/bin/cairn" follow "$scratch/broken.mp4" --layout side_by_side 2>&1) && { echo "$said"; exit 1; }
+  ! grep -q 'cairn-video.so\|videoio' <<<"$said" && grep -q 'broken.mp4' <<<"$said" || { echo "$said"; exit 1; }
+}
+
 case $how in
   cmake)
     install_and_move
     build_consumer -DCMAKE_PREFIX_PATH="$scratch/prefix"
     run_programs
+    find_video_module
     if [[ -x $scratch/build/files && -e $(find "$scratch/prefix" -name libcairn.a) ]]; then lose_io; fi
     ;;
   pkg-config)
@@ -75,6 +89,9 @@ case $how in
     compile cairn "$source_dir/tests/consumer/core.cpp" "$scratch/build/core"
     if [[ -e $PKG_CONFIG_PATH/cairn-io.pc ]]; then
       compile cairn-io "$source_dir/tests/consumer/files.cpp" "$scratch/build/files"
+    fi
+    if [[ -e $PKG_CONFIG_PATH/cairn-sequences.pc ]]; then
+      compile cairn-sequences "$source_dir/tests/consumer/sequences.cpp" "$scratch/build/sequences"
     fi
     run_programs
     ;;

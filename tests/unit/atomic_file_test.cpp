@@ -85,6 +85,35 @@ TEST(AtomicFile, WritesToADeviceWithoutReplacingIt) {
   }
 }
 
+TEST(AtomicFile, AGrowingFileHasItsNameOnlyWhenItIsWhole) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.with("out.txt", "old");
+  {
+    io::GrowingFile file(path);
+    file.append("new ");
+    EXPECT_EQ(bytes_of(path), "old");
+    file.append("and whole");
+    EXPECT_EQ(bytes_of(path), "old");
+    file.finish();
+    EXPECT_EQ(bytes_of(path), "new and whole");
+  }
+  EXPECT_EQ(bytes_of(path), "new and whole");
+  EXPECT_EQ(entries(folder.path()), 1);
+}
+
+TEST(AtomicFile, AGrowingFileThatIsNotFinishedLeavesNoTrace) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.with("out.txt", "old");
+  {
+    io::GrowingFile file(path);
+    file.append("half");
+    io::GrowingFile moved = std::move(file);
+    moved.append(" of it");
+  }
+  EXPECT_EQ(bytes_of(path), "old");
+  EXPECT_EQ(entries(folder.path()), 1);
+}
+
 TEST(AtomicFile, ManyWritersOfOneFileLeaveOneWholeFile) {
   const TemporaryFolder folder;
   std::vector<std::thread> writers;

@@ -11,6 +11,7 @@
 #include <io/dataset.hpp>
 #include <io/image_files.hpp>
 #include <string>
+#include <support/collection.hpp>
 #include <vector>
 
 /// The doctor has nothing to say of good pairs, real and rendered.
@@ -18,11 +19,6 @@ namespace cairn {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path data() {
-  const char* named = std::getenv("CAIRN_DATA");
-  return named != nullptr ? fs::path(named) : fs::path(CAIRN_SOURCE_DIR) / "../shared/data";
-}
 
 /// Every folder below with a left picture.
 std::vector<fs::path> pairs_below(const fs::path& folder) {
@@ -36,7 +32,7 @@ std::vector<fs::path> pairs_below(const fs::path& folder) {
 class GoodPairs : public testing::TestWithParam<const char*> {};
 
 TEST_P(GoodPairs, AreNothingToComplainAbout) {
-  const auto pairs = pairs_below(data() / GetParam());
+  const auto pairs = pairs_below(collection() / GetParam());
   if (pairs.empty()) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
   for (const fs::path& folder : pairs) {
     const auto frame = io::find_frames(folder).front();
@@ -65,8 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Collections, GoodPairs,
 class GoodSequences : public testing::TestWithParam<const char*> {};
 
 TEST_P(GoodSequences, RunTogetherAndAreFoundOutWhereTheyAreMadeNotTo) {
-  if (!fs::exists(data() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
-  const auto frames = io::find_frames(data() / GetParam());
+  if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
+  const auto frames = io::find_frames(collection() / GetParam());
   std::vector<io::PicturePair> pictures;
   for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
   for (const int late : {0, 1}) {
@@ -82,8 +78,8 @@ TEST_P(GoodSequences, RunTogetherAndAreFoundOutWhereTheyAreMadeNotTo) {
 }
 
 TEST_P(GoodSequences, AreFoundOutWhereTheyAreMadeNotToRunTogetherFromTheMiddleOn) {
-  if (!fs::exists(data() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
-  const auto frames = io::find_frames(data() / GetParam());
+  if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
+  const auto frames = io::find_frames(collection() / GetParam());
   std::vector<io::PicturePair> pictures;
   for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
   std::vector<StereoPair> pairs;  // the left camera loses a picture
@@ -99,7 +95,7 @@ TEST_P(GoodSequences, AreFoundOutWhereTheyAreMadeNotToRunTogetherFromTheMiddleOn
 }
 
 TEST(SlowSequence, IsNotSaidToRunTogether) {
-  const fs::path folder = data() / "real/sequences/conveyor_box";
+  const fs::path folder = collection() / "real/sequences/conveyor_box";
   if (!fs::exists(folder)) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   std::vector<io::PicturePair> pictures;
   for (const auto& frame : io::find_frames(folder))

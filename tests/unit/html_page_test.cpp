@@ -4,7 +4,6 @@
 // What stands in the page's data blocks, read back as the page's script reads it. That the page works is
 // tested in a browser: cli/page_in_browser.py.
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <page/html_page.hpp>
 
+#include "support/packed_map.hpp"
+
 namespace cairn::io {
 namespace {
 
@@ -23,46 +24,9 @@ using Json = nlohmann::json;
 constexpr Size kSize{37, 23};
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-std::string bytes_of_base64(const std::string& text) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes += static_cast<char>(bits >> count & 255);
-  }
-  return bytes;
-}
-
-std::vector<std::uint32_t> unpacked(const Json& map) {
-  const auto count = static_cast<std::size_t>(kSize.area());
-  const std::size_t bytes_each = map.at("bytes");
-  const std::string deflated = bytes_of_base64(map.at("data"));
-  std::vector<std::uint8_t> planes(count * bytes_each);
-  uLongf length = planes.size();
-  EXPECT_EQ(
-      uncompress(planes.data(), &length, reinterpret_cast<const Bytef*>(deflated.data()), deflated.size()),
-      Z_OK);
-  EXPECT_EQ(length, planes.size());
-  std::vector<std::uint32_t> values(count);
-  const std::uint64_t modulus = std::uint64_t{1} << (8 * bytes_each);
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < bytes_each; ++k) value += std::uint64_t{planes[k * count + i]} << (8 * k);
-    value %= modulus;
-    values[i] = static_cast<std::uint32_t>(value);
-  }
-  return values;
-}
-
 template <class T, class Expected>
 void expect_map(const Json& map, const Image<T>& image, const Expected& expected) {
-  const auto values = unpacked(map);
+  const auto values = support::unpacked(map, static_cast<std::size_t>(kSize.area()));
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
       ASSERT_EQ(values[static_cast<std::size_t>(y * kSize.width + x)], expected(image(x, y)))
@@ -92,7 +56,7 @@ template <class T>
 void expect_picture(const std::string& uri, int channels, const Image<T>& expected) {
   const std::string head = "data:image/jpeg;base64,";
   ASSERT_TRUE(uri.starts_with(head));
-  const Raster raster = decode_jpeg(bytes_of_base64(uri.substr(head.size())));
+  const Raster raster = decode_jpeg(support::bytes_of_base64(uri.substr(head.size())));
   ASSERT_EQ(raster.size, kSize);
   ASSERT_EQ(raster.channels, channels);
   int worst = 0;
@@ -149,7 +113,7 @@ TEST(HtmlPage, KeepsDisparitiesToHalfOf64thOfAPixelAndHolesAsHoles) {
   frame.disparity_px = disparity;
   const EncodedFrame encoded = encode_frame(frame);
   const Json map = Json::parse(encoded.maps).at("disparity");
-  const auto values = unpacked(map);
+  const auto values = support::unpacked(map, static_cast<std::size_t>(kSize.area()));
   int holes = 0;
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
@@ -220,14 +184,6 @@ TEST(HtmlPage, LeavesTheMasksOfObjectsJsonOut) {
   EXPECT_EQ(facts.at("result").at("objects").at(0), (Json{{"id", 1}, {"confidence", 0.5}}));
 }
 
-/// The text between a block's tags.
-std::string block(const std::string& page, const std::string& id) {
-  const std::string open = "id=\"" + id + "\">";
-  const std::size_t begin = page.find(open);
-  if (begin == std::string::npos) return {};
-  return page.substr(begin + open.size(), page.find("</script", begin) - begin - open.size());
-}
-
 TEST(HtmlPage, IsOnePageThatNeedsNothingElse) {
   const Image<Gray> grey(kSize, Gray{80}, {});
   PageFrame frame;
@@ -244,9 +200,9 @@ TEST(HtmlPage, IsOnePageThatNeedsNothingElse) {
   EXPECT_EQ(page.find("http:"), page.rfind("http:"));
   EXPECT_EQ(page.find(" src=\""), std::string::npos);
   EXPECT_EQ(page.find("<link"), std::string::npos);
-  EXPECT_EQ(Json::parse(block(page, "run")).at("frames"), 2);
-  EXPECT_EQ(Json::parse(block(page, "facts-1")).at("name"), "one");
-  EXPECT_TRUE(Json::parse(block(page, "maps-1")).at("left").is_string());
+  EXPECT_EQ(Json::parse(support::block(page, "run")).at("frames"), 2);
+  EXPECT_EQ(Json::parse(support::block(page, "facts-1")).at("name"), "one");
+  EXPECT_TRUE(Json::parse(support::block(page, "maps-1")).at("left").is_string());
 }
 
 TEST(HtmlPage, BearsAnyName) {
@@ -256,7 +212,7 @@ TEST(HtmlPage, BearsAnyName) {
         std::string("{{style}}"), std::string("\"&'\\"), std::string("\xff\xfe not UTF-8")}) {
     frame.name = name;
     const std::string page = html_page({"segment", name, {}}, {encode_frame(frame)});
-    const Json facts = Json::parse(block(page, "facts-0"));
+    const Json facts = Json::parse(support::block(page, "facts-0"));
     const bool is_utf8 = name.find('\xff') == std::string::npos;
     EXPECT_TRUE(!is_utf8 || facts.at("name") == name) << name;
     EXPECT_EQ(page.find("<script>alert"), std::string::npos);

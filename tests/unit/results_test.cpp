@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <support/temporary_folder.hpp>
 
 namespace cairn::io {
 namespace {
@@ -321,6 +322,15 @@ TEST_F(ResultFolder, ObjectsJsonOfAnotherKindIsRefused) {
   EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
   std::ofstream(root_ / "objects.json") << "{";
   EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
+}
+
+TEST_F(ResultFolder, AnIdThatIsNoIdIsRefusedBeforeItBecomesANumber) {
+  for (const char* id : {"2e128", "-1", "0", "1.5", "65536", "18446744073709551615", "[[1]]", "null"}) {
+    const fs::path path = root_ / "objects.json";
+    std::ofstream(path) << R"({"objects": [{"id": )" << id << R"(, "confidence": 0.5}]})";
+    const std::string message = support::refusal([&] { (void)load_confidences(path); });
+    EXPECT_TRUE(support::has(message, {path.string(), "`id` is ", "a whole number from 1 to 65535"})) << id;
+  }
 }
 
 TEST_F(ResultFolder, HoldsDepthAndGridOnRequest) {

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "evaluate_sequence.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cmath>
+#include <filesystem>
+#include <io/atomic_file.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+#include <source/trajectory_files.hpp>
+
+#include "common.hpp"
+#include "sequence_scores.hpp"
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// JSON has neither NaN nor infinity: null.
+Json json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// The value that this share of all does not exceed; NaN of none.
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nan("");
+  std::sort(values.begin(), values.end());
+  const double at = std::ceil(share * static_cast<double>(values.size())) - 1;
+  return values[static_cast<std::size_t>(std::max(0.0, at))];
+}
+
+double share(int part, int whole) {
+  return whole > 0 ? part / static_cast<double>(whole) : std::nan("");
+}
+
+std::string points(double value) {
+  return text_of("%.1f", 100 * value);
+}
+
+std::string metres(double value) {
+  return text_of("%.3f m", value);
+}
+
+// ---- as JSON ----
+
+Json json(const TrackErrors& e) {
+  return {{"HOTA", e.hota},         {"DetA", e.det_a},     {"DetRe", e.det_re},   {"DetPr", e.det_pr},
+          {"AssA", e.ass_a},        {"AssRe", e.ass_re},   {"AssPr", e.ass_pr},   {"LocA", e.loc_a},
+          {"MOTA", e.mota},         {"MOTP", e.motp},      {"CLR_TP", e.right},   {"CLR_FN", e.missed},
+          {"CLR_FP", e.wrong},      {"IDSW", e.switches},  {"Frag", e.fragments}, {"MT", e.mostly_tracked},
+          {"PT", e.partly_tracked}, {"ML", e.mostly_lost}, {"IDF1", e.id_f1},     {"IDP", e.id_precision},
+          {"IDR", e.id_recall},     {"IDTP", e.id_right},  {"IDFN", e.id_missed}, {"IDFP", e.id_wrong}};
+}
+
+Json places_json(const std::vector<double>& errors_m) {
+  return {{"compared", errors_m.size()},
+          {"median_m", json(percentile(errors_m, 0.5))},
+          {"p95_m", json(percentile(errors_m, 0.95))}};
+}
+
+Json json(const TrajectoryError& e) {
+  return {{"compared", e.compared},
+          {"missing", e.missing},
+          {"path_m", e.path_m},
+          {"ate_rmse_m", json(e.ate_rmse_m)},
+          {"ate_max_m", json(e.ate_max_m)},
+          {"rpe_frame_m", json(e.rpe_frame_m)},
+          {"rpe_frame_deg", json(kDegrees * e.rpe_frame_rad)},
+          {"rpe_metre_m", json(e.rpe_metre_m)},
+          {"rpe_metre_deg", json(kDegrees * e.rpe_metre_rad)},
+          {"sub_paths", e.sub_paths},
+          {"t_rel", json(e.t_rel)},
+          {"r_rel_deg_per_m", json(kDegrees * e.r_rel_rad_per_m)},
+          {"end_error_m", json(e.end_error_m)},
+          {"end_error_deg", json(kDegrees * e.end_error_rad)},
+          {"end_drift", json(e.end_drift)}};
+}
+
+Json moving_json(const MovingErrors& e) {
+  if (!e.is_known) return nullptr;
+  Json detected = Json::object();
+  for (const auto& [id, frames] : e.frames_to_detect)
+    detected[std::to_string(id)] = frames ? Json(*frames) : Json(nullptr);
+  return {{"frames_to_detect", detected},         {"moving", e.moving},
+          {"moving_labelled", e.labelled},        {"at_rest", e.at_rest},
+          {"at_rest_labelled", e.labelled_wrong}, {"false_share", json(share(e.labelled_wrong, e.at_rest))}};
+}
+
+Json landmarks_json(const LandmarkErrors& e) {
+  if (!e.is_known) return nullptr;
+  return {{"in_view_again", e.again},
+          {"re_identified", e.re_identified},
+          {"wrong", e.wrong},
+          {"repeatability", json(share(e.re_identified, e.again))},
+          {"false_share", json(share(e.wrong, e.re_identified + e.wrong))}};
+}
+
+Json changes_json(const ChangeErrors& e) {
+  if (!e.is_known) return nullptr;
+  return {{"expected", e.expected},
+          {"found", e.found},
+          {"reported", e.reported},
+          {"wrong", e.wrong},
+          {"precision", json(share(e.reported - e.wrong, e.reported))},
+          {"recall", json(share(e.found, e.expected))},
+          {"median_error_m", json(percentile(e.errors_m, 0.5))}};
+}
+
+Json summary_json(const SequenceScores& s) {
+  const ObjectSummary& o = s.objects;
+  return {{"frames", s.frames},
+          {"tracks", json(s.tracks)},
+          {"oracle_ids", json(s.oracle)},
+          {"objects",
+           {{"scored", o.true_objects},
+            {"found_50", o.found_50},
+            {"found_75", o.found_75},
+            {"recall_50", json(o.recall_50())},
+            {"recall_75", json(o.recall_75())},
+            {"ours", o.our_objects},
+            {"precision_50", json(o.precision_50())},
+            {"precision_75", json(o.precision_75())},
+            {"phantoms_per_frame", json(o.phantoms_per_frame())},
+            {"mean_error", json(o.mean_error)},
+            {"median_error", json(o.median_error)},
+            {"mean_boundary_f", json(o.mean_boundary_f)}}},
+          {"steadiness",
+           {{"object_frames", s.steadiness.object_frames},
+            {"found_again", s.steadiness.found_again},
+            {"found_again_per_100", json(100 * share(s.steadiness.found_again, s.steadiness.object_frames))},
+            {"mean_iou_difference", json(s.steadiness.iou_difference)}}},
+          {"positions",
+           {{"in_map", places_json(s.places.in_map_m)},
+            {"in_camera", places_json(s.places.in_camera_m)},
+            {"with_covariance", s.places.stated},
+            {"inside_95", json(share(s.places.inside, s.places.stated))}}},
+          {"moving", moving_json(s.moving)},
+          {"landmarks", landmarks_json(s.landmarks)},
+          {"changes", changes_json(s.changes)},
+          {"trajectory", s.trajectory ? json(*s.trajectory) : Json(nullptr)}};
+}
+
+std::string dumped(const Json& json) {
+  // A folder's name may be no UTF-8, which is no reason to fail.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string whole_json(const SequenceScores& s, const EvaluateSequenceOptions& options) {
+  return dumped({{"cairn", CAIRN_VERSION},
+                 {"options", {{"min_area_px", options.min_area}, {"tentative", options.tentative}}},
+                 {"summary", summary_json(s)},
+                 {"cut_off", s.is_cut_off},
+                 {"without_result", s.without_result},
+                 {"without_truth", s.without_truth}});
+}
+
+// ---- as CSV: one row for each run ----
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string all = "\"";
+  for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return all + "\"";
+}
+
+/// One line for each run below the names; what a run does not have is empty. Frames to detect are left out:
+/// their names are the objects', which differ from truth to truth.
+std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
+  std::vector<std::string> names;
+  std::vector<std::map<std::string, std::string>> rows;
+  for (const auto& [run, summary] : runs) {
+    Json known = summary;
+    if (known.contains("moving") && known["moving"].is_object()) known["moving"].erase("frames_to_detect");
+    std::map<std::string, std::string> row;
+    const Json flat = known.flatten();
+    for (const auto& [pointer, value] : flat.items()) {
+      std::string name = pointer.substr(1);
+      std::replace(name.begin(), name.end(), '/', '.');
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      row[name] = value.is_null() ? "" : value.dump();
+    }
+    rows.push_back(std::move(row));
+  }
+  // What one run lacks as a whole, like `moving`, has no value of its own where another one has its parts.
+  std::erase_if(names, [&](const std::string& name) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& other) { return other.starts_with(name + "."); });
+  });
+  std::string text = "run";
+  for (const std::string& name : names) text += "," + name;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    text += "\n" + quoted(runs[i].first);
+    for (const std::string& name : names) text += "," + rows[i][name];
+  }
+  return text + "\n";
+}
+
+// ---- as text ----
+
+std::string track_table(const SequenceScores& s) {
+  Table table({"objects over time", "tracks", "oracle ids"});
+  const auto row = [&](const char* name, auto&& figure) {
+    table.add({name, figure(s.tracks), figure(s.oracle)});
+  };
+  row("HOTA", [](const TrackErrors& e) { return points(e.hota); });
+  row("DetA", [](const TrackErrors& e) { return points(e.det_a); });
+  row("AssA", [](const TrackErrors& e) { return points(e.ass_a); });
+  row("LocA", [](const TrackErrors& e) { return points(e.loc_a); });
+  row("MOTA", [](const TrackErrors& e) { return points(e.mota); });
+  row("MOTP", [](const TrackErrors& e) { return points(e.motp); });
+  row("IDF1", [](const TrackErrors& e) { return points(e.id_f1); });
+  row("IDP", [](const TrackErrors& e) { return points(e.id_precision); });
+  row("IDR", [](const TrackErrors& e) { return points(e.id_recall); });
+  row("switches", [](const TrackErrors& e) { return std::to_string(e.switches); });
+  row("fragments", [](const TrackErrors& e) { return std::to_string(e.fragments); });
+  row("mostly tracked", [](const TrackErrors& e) { return std::to_string(e.mostly_tracked); });
+  row("partly tracked", [](const TrackErrors& e) { return std::to_string(e.partly_tracked); });
+  row("mostly lost", [](const TrackErrors& e) { return std::to_string(e.mostly_lost); });
+  return table.text();
+}
+
+std::string place_lines(const PlaceErrors& places) {
+  if (places.in_camera_m.empty())
+    return "positions           not compared: no place in the truth, or no match\n";
+  std::string all;
+  if (!places.in_map_m.empty()) {
+    all += "positions           in the map: median " + metres(percentile(places.in_map_m, 0.5)) +
+           "   95 % below " + metres(percentile(places.in_map_m, 0.95)) + "   of " +
+           std::to_string(places.in_map_m.size()) + "\n";
+  }
+  all += std::string(all.empty() ? "positions           " : "                    ") +
+         "from the camera: median " + metres(percentile(places.in_camera_m, 0.5)) + "   95 % below " +
+         metres(percentile(places.in_camera_m, 0.95)) + "\n";
+  if (places.stated > 0)
+    all += "                    in the ellipsoid stated to hold 95 %: " +
+           percent(share(places.inside, places.stated)) + "\n";
+  return all;
+}
+
+std::string moving_lines(const MovingErrors& e) {
+  if (!e.is_known) return {};
+  std::string all = "moving              ";
+  for (const auto& [id, frames] : e.frames_to_detect) {
+    all += "object " + std::to_string(id) + ": " +
+           (frames ? "after " + std::to_string(*frames) + " frames" : std::string("never seen to move")) +
+           "   ";
+  }
+  if (e.moving > 0) all += percent(share(e.labelled, e.moving)) + " of the frames in which it moves   ";
+  return all + "false: " + percent(share(e.labelled_wrong, e.at_rest)) + " of " + std::to_string(e.at_rest) +
+         " at rest\n";
+}
+
+std::string trajectory_lines(const TrajectoryError& e) {
+  std::string all = "trajectory          " + std::to_string(e.compared) + " poses, " +
+                    text_of("%.2f m", e.path_m) + " of path, " + std::to_string(e.missing) + " missing\n";
+  all += "  ATE               RMS " + text_of("%.4f m", e.ate_rmse_m) + "   at most " +
+         text_of("%.4f m", e.ate_max_m) + "\n";
+  all += "  RPE               per frame " + text_of("%.4f m", e.rpe_frame_m) + ", " +
+         text_of("%.3f°", kDegrees * e.rpe_frame_rad) + "   per metre " + text_of("%.4f m", e.rpe_metre_m) +
+         ", " + text_of("%.3f°", kDegrees * e.rpe_metre_rad) + "\n";
+  all += "  sub-paths         " + std::to_string(e.sub_paths) + ", t_rel " +
+         text_of("%.2f %%", 100 * e.t_rel) + ", r_rel " +
+         text_of("%.3f° per 100 m", 100 * kDegrees * e.r_rel_rad_per_m) + "\n";
+  all += "  end               " + text_of("%.4f m", e.end_error_m) + ", " +
+         text_of("%.3f°", kDegrees * e.end_error_rad) + ", " +
+         text_of("%.2f %% of the path", 100 * e.end_drift) + "\n";
+  return all;
+}
+
+std::string lines_of(const SequenceScores& s) {
+  const ObjectSummary& o = s.objects;
+  std::string all = track_table(s) + "\n";
+  all += "objects             " + std::to_string(o.true_objects) + " true ones in " +
+         std::to_string(s.frames) + " frames, " + std::to_string(o.our_objects) + " of ours\n";
+  all += "found               IoU >= 0.5: " + percent(o.recall_50()) +
+         "   IoU >= 0.75: " + percent(o.recall_75()) + "\n";
+  all += "precision           " +
+         (o.complete_frames > 0
+              ? "IoU >= 0.5: " + percent(o.precision_50()) + "   IoU >= 0.75: " + percent(o.precision_75())
+              : std::string("not known: the truth is partial")) +
+         "\n";
+  all += "E                   mean " + percent(o.mean_error) + "   median " + percent(o.median_error) + "\n";
+  all += "lost and found      " + std::to_string(s.steadiness.found_again) + " times, " +
+         text_of("%.2f", 100 * share(s.steadiness.found_again, s.steadiness.object_frames)) +
+         " in 100 frames of an object   IoU changes by " + text_of("%.3f", s.steadiness.iou_difference) +
+         " a frame\n";
+  all += place_lines(s.places) + moving_lines(s.moving);
+  if (s.landmarks.is_known) {
+    all += "landmarks           in view again: " + std::to_string(s.landmarks.again) +
+           "   known again: " + std::to_string(s.landmarks.re_identified) +
+           "   taken for another: " + std::to_string(s.landmarks.wrong) + "\n";
+  }
+  if (s.changes.is_known) {
+    all += "changes             found " + std::to_string(s.changes.found) + " of " +
+           std::to_string(s.changes.expected) + "   wrong: " + std::to_string(s.changes.wrong) + " of " +
+           std::to_string(s.changes.reported) + " reported";
+    if (!s.changes.errors_m.empty()) all += "   way off by " + metres(percentile(s.changes.errors_m, 0.5));
+    all += "\n";
+  }
+  if (s.trajectory) all += trajectory_lines(*s.trajectory);
+  if (s.is_cut_off) all += "cut off             the last line of tracks.jsonl, which is left out\n";
+  const auto frames = [](std::size_t count) {
+    return std::to_string(count) + (count == 1 ? " frame" : " frames");
+  };
+  if (!s.without_result.empty())
+    all += "no result           " + frames(s.without_result.size()) + " of the truth, first " +
+           s.without_result.front() + "\n";
+  if (!s.without_truth.empty())
+    all += "no truth            " + frames(s.without_truth.size()) + " of the result, first " +
+           s.without_truth.front() + "\n";
+  return all;
+}
+
+std::string run_table(const std::vector<SequenceScores>& runs) {
+  Table table({"run", "frames", "HOTA", "oracle", "AssA", "IDF1", "IDSW", "found %", "0.75 %", "precision %",
+               "mean E %", "lost+found", "place m", "p95 m", "drift %"});
+  for (const SequenceScores& s : runs) {
+    table.add({s.name, std::to_string(s.frames), points(s.tracks.hota), points(s.oracle.hota),
+               points(s.tracks.ass_a), points(s.tracks.id_f1), std::to_string(s.tracks.switches),
+               points(s.objects.recall_50()), points(s.objects.recall_75()), points(s.objects.precision_50()),
+               points(s.objects.mean_error), std::to_string(s.steadiness.found_again),
+               text_of("%.3f", percentile(s.places.in_map_m, 0.5)),
+               text_of("%.3f", percentile(s.places.in_map_m, 0.95)),
+               s.trajectory ? text_of("%.2f", 100 * s.trajectory->end_drift) : ""});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+int evaluate_sequence(const EvaluateSequenceOptions& options) {
+  if (options.json && options.results.size() > 1)
+    throw Error("--json " + *options.json + ": is of one run, found " +
+                std::to_string(options.results.size()) + "; --csv takes several");
+  const io::TrueSequence truth = io::load_truth(options.truth);
+  std::vector<SequenceScores> runs;
+  for (const std::string& result : options.results)
+    runs.push_back(score_sequence(result, truth, {options.min_area, options.tentative}));
+  if (options.json) io::write_file(*options.json, whole_json(runs.front(), options));
+  if (options.csv) {
+    std::vector<std::pair<std::string, Json>> summaries;
+    for (const SequenceScores& run : runs) summaries.emplace_back(run.name, summary_json(run));
+    io::write_file(*options.csv, csv(summaries));
+  }
+  if (runs.size() == 1) {
+    std::cout << lines_of(runs.front());
+    return 0;
+  }
+  std::cout << run_table(runs);
+  for (const SequenceScores& run : runs) {
+    if (run.without_result != runs.front().without_result)
+      std::cout << "not the same frames in " << runs.front().name << " and " << run.name << "\n";
+  }
+  return 0;
+}
+
+int evaluate_trajectory(const EvaluateSequenceOptions& options) {
+  if (options.json && options.results.size() > 1)
+    throw Error("--json " + *options.json + ": is of one run, found " +
+                std::to_string(options.results.size()) + "; --csv takes several");
+  const io::Trajectory truth = io::load_trajectory(options.truth);
+  std::vector<std::pair<std::string, Json>> summaries;
+  std::string text;
+  for (const std::string& result : options.results) {
+    io::Trajectory ours = io::load_trajectory(result);
+    if (ours.has_stamps != truth.has_stamps) {
+      // KITTI's poses have no stamps: the k-th belongs to the k-th, and that needs as many on both sides.
+      if (ours.poses.size() != truth.poses.size())
+        throw Error((ours.has_stamps ? options.truth : result) + ": has no stamps, and " +
+                    std::to_string((ours.has_stamps ? truth : ours).poses.size()) + " poses, expected " +
+                    std::to_string((ours.has_stamps ? ours : truth).poses.size()));
+      for (std::size_t k = 0; k < ours.poses.size(); ++k) ours.poses[k].stamp = truth.poses[k].stamp;
+    }
+    const TrajectoryError error = trajectory_error(ours.poses, truth.poses);
+    if (error.compared < 2) {
+      const auto seconds = [](const io::Trajectory& file) {
+        return text_of("%.2f", seconds_between({}, file.poses.front().stamp)) + " to " +
+               text_of("%.2f s", seconds_between({}, file.poses.back().stamp));
+      };
+      throw Error(result + ": its stamps are " + seconds(ours) + ", those of " + options.truth + " " +
+                  seconds(truth) + ", expected at least two within 0.01 s of each other");
+    }
+    if (options.results.size() > 1) text += result + "\n";
+    text += trajectory_lines(error);
+    summaries.emplace_back(result, Json{{"trajectory", json(error)}});
+  }
+  if (options.json)
+    io::write_file(*options.json, dumped({{"cairn", CAIRN_VERSION}, {"summary", summaries.front().second}}));
+  if (options.csv) io::write_file(*options.csv, csv(summaries));
+  std::cout << text;
+  return 0;
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <optional>
+#include <tracking/follow_config.hpp>
+
+#include "common.hpp"
+
+namespace cairn::cli {
+
+/// As resolve(), with the options of a sequence, which may stand in the same file and behind the same --set.
+FollowConfig resolve_follow(const ConfigOptions& options,
+                            std::optional<int> calibrated_disparities = std::nullopt,
+                            KnownGround ground = {});
+
+}  // namespace cairn::cli

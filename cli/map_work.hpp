@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cairn::cli {
+
+/// What `cairn map` was asked for.
+struct MapOptions {
+  std::string action;
+  std::string file;
+  std::string other;
+  std::string form = "geojson";
+  std::string output;
+  std::vector<std::int64_t> ids;
+  bool gone = false;
+  std::int64_t run = 0;
+};
+
+/// Does it, and returns the exit code. Throws Error; always where sequences are not built in.
+int work_on_map(const MapOptions& options);
+
+}  // namespace cairn::cli

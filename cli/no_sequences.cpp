@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// In place of the commands for sequences, where what they need was not installed.
+#include <cairn/core/error.hpp>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "evaluate_sequence.hpp"
+#include "tune_sequence.hpp"
+
+namespace cairn::cli {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw Error(
+      "sequences are not built in: they need OpenCV's video and calib3d, Eigen, dlib and SQLiteCpp "
+      "(libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev libsqlitecpp-dev); "
+      "./dev build installs them");
+}
+
+Work not_built_in(CLI::App& app) {
+  app.allow_extras();
+  return []() -> int { refuse(); };
+}
+
+}  // namespace
+
+std::vector<OptionInfo> sequence_options(const ConfigOptions&) {
+  refuse();
+}
+
+Work declare_follow(CLI::App& app) {
+  return not_built_in(app);
+}
+Work declare_map(CLI::App& app) {
+  return not_built_in(app);
+}
+Work declare_odometry(CLI::App& app) {
+  return not_built_in(app);
+}
+Work declare_record(CLI::App& app) {
+  return not_built_in(app);
+}
+
+int evaluate_sequence(const EvaluateSequenceOptions& /*options*/) {
+  refuse();
+}
+int tune_sequence(const TuneSequenceOptions& /*options*/, const std::function<bool()>& /*stop*/) {
+  refuse();
+}
+int evaluate_trajectory(const EvaluateSequenceOptions& /*options*/) {
+  refuse();
+}
+
+}  // namespace cairn::cli

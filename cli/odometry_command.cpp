@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <chrono>
+#include <io/atomic_file.hpp>
+#include <iostream>
+#include <map>
+#include <source/sequence_run.hpp>
+#include <source/trajectory_files.hpp>
+#include <tracking/first_pose.hpp>
+#include <tracking/odometry.hpp>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "follow_options.hpp"
+#include "source_options.hpp"
+
+namespace cairn::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct OdometryOptions {
+  SourceInput input;
+  ConfigOptions config;
+  ExecOptions exec;
+  std::string wheels;
+  std::string imu;
+  std::string form = "tum";
+  std::string output;
+};
+
+FollowConfig resolve_odometry(const OdometryOptions& options, const io::Sequence& source) {
+  FollowConfig config = resolve_follow(options.config, source.disparities(), source.ground());
+  if (config.odometry.method == OdometryMethod::off)
+    throw Error("option odometry.method: is off, expected keyframe or frame: nothing else is done here");
+  return config;
+}
+
+std::unique_ptr<io::MotionPriors> load_priors(const OdometryOptions& options, const io::Sequence& source) {
+  refuse_two_priors(options.wheels, options.imu);
+  const auto named = [](const std::string& file) {
+    return file.empty() ? std::nullopt : std::optional<std::filesystem::path>(file);
+  };
+  return io::open_priors(named(options.wheels), named(options.imu), options.input.source, source);
+}
+
+/// What the frames have come to, for the last line.
+struct Run {
+  std::vector<TimedPose> poses;  // known ones; all of them where the form has a line for each frame
+  std::vector<double> milliseconds;
+  std::map<std::string, int> refusals;
+  std::size_t frames = 0;
+  std::size_t lost = 0;
+  std::size_t keyframes = 0;
+  std::size_t with_prior = 0;
+  double path_m = 0;
+};
+
+void add(Run& run, const OdometryStep& step, Stamp stamp, bool keep_lost) {
+  if (step.motion.is_new_keyframe) ++run.keyframes;
+  if (step.motion.refusal != MotionRefusal::none)
+    ++run.refusals[choice_name(step.motion.refusal, kMotionRefusals)];
+  if (step.state.lost) ++run.lost;
+  if (!step.state.lost && run.frames > 0) run.path_m += length(step.motion.now_from_before.translation_m);
+  if (!step.state.lost || keep_lost) run.poses.push_back({stamp, step.state.map_from_camera});
+  ++run.frames;
+}
+
+std::string summary(const Run& run, const io::MotionPriors* priors) {
+  std::string all = std::to_string(run.frames) + (run.frames == 1 ? " frame, " : " frames, ") +
+                    text_of("%.2f m", run.path_m) + " of path, " + std::to_string(run.keyframes) +
+                    (run.keyframes == 1 ? " keyframe" : " keyframes");
+  if (!run.milliseconds.empty()) {
+    std::vector<double> sorted = run.milliseconds;
+    std::sort(sorted.begin(), sorted.end());
+    all += ", " + text_of("%.1f ms", sorted[sorted.size() / 2]) + " a frame without the matching";
+  }
+  all += "\n";
+  if (priors != nullptr)
+    all += "prior: " + priors->description() + ", used for " + std::to_string(run.with_prior) + " frames\n";
+  for (const auto& [reason, count] : run.refusals)
+    all += "refused: " + std::to_string(count) + " " + reason + "\n";
+  if (run.lost > 0) all += "lost: " + std::to_string(run.lost) + " frames, whose place is not known\n";
+  return all;
+}
+
+io::TrajectoryForm form_named(const std::string& name) {
+  for (const auto& choice : io::kTrajectoryForms)
+    if (choice.name == name) return choice.value;
+  throw Error("--form: found " + name + ", expected tum, kitti or euroc");
+}
+
+int estimate(const OdometryOptions& options) {
+  const io::TrajectoryForm form = form_named(options.form);
+  const Exec exec = make_exec(options.exec);
+  const std::unique_ptr<io::Sequence> source = open_source(options.input, exec.pool);
+  const FollowConfig config = resolve_odometry(options, *source);
+  if (!source->rig())
+    throw Error(options.input.source + ": has no calibration, and so no metres; give one with --calib");
+  const StereoRig rig = *source->rig();
+  const std::unique_ptr<io::MotionPriors> priors = load_priors(options, *source);
+
+  Run run;
+  OdometryState state;
+  Pose from_level;
+  std::optional<Stamp> before;
+  const Progress progress(source->size().value_or(2));
+  while (const std::optional<io::SequenceFrame> frame = source->next()) {
+    progress.at(run.frames, frame->name);
+    const SceneDisparity scene = estimate_disparity(
+        StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), rig, config.segmentation, exec);
+    const auto start = Clock::now();
+    if (!before) {
+      const Pose first = first_pose(scene.ground, rig);
+      from_level = camera_from_level(first);
+      state = begin_odometry(first);
+    }
+    std::optional<MotionPrior> prior;
+    if (priors && before) prior = priors->between(*before, frame->stamp, from_level);
+    if (prior) ++run.with_prior;
+    if (frame->after_gap) state = after_gap(std::move(state));
+    const OdometryStep step = advance_odometry(state, frame->left.gray, scene.disparity, scene.confidence, {},
+                                               rig, prior, config.odometry);
+    run.milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    add(run, step, frame->stamp, form == io::TrajectoryForm::kitti);
+    state = step.state;
+    before = frame->stamp;
+  }
+  progress.clear();
+  const std::string text = io::trajectory_text(run.poses, form);
+  if (options.output.empty()) {
+    std::cout << text;
+  } else {
+    io::write_file(options.output, text);
+  }
+  std::cerr << remarks_text(*source) << summary(run, priors.get());
+  return exit_code_of(*source);
+}
+
+}  // namespace
+
+Work declare_odometry(CLI::App& app) {
+  auto options = std::make_shared<OdometryOptions>();
+  add_source_options(app, options->input);
+  app.add_option("--odometry", options->wheels,
+                 "what the wheels say: t_s,v_m_per_s,omega_rad_per_s, or poses")
+      ->type_name("FILE");
+  app.add_option("--imu", options->imu, "a gyroscope's rates, as EuRoC's data.csv has them")
+      ->type_name("FILE");
+  app.add_option("--form", options->form, "of the poses: tum, kitti or euroc")
+      ->type_name("NAME")
+      ->capture_default_str();
+  add_config_options(app, options->config);
+  add_exec_options(app, options->exec);
+  app.add_option("-o,--output", options->output, "file for the poses; otherwise they are printed")
+      ->type_name("FILE");
+  app.footer(
+      "A pose is map_from_camera of the left camera (x right, y down, z forward); the map's origin is on "
+      "the\n"
+      "floor below the first frame's camera, x forward, y left, z up. Frames that are lost have no line, "
+      "but\n"
+      "with --form kitti. docs/stages/odometry.md tells how it works and how far it may be trusted.");
+  return [options] { return estimate(*options); };
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "source_options.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cstdlib>
+
+namespace cairn::cli {
+
+void add_source_options(CLI::App& app, SourceInput& input) {
+  app.add_option(
+         "SOURCE", input.source,
+         "folder of frames, of KITTI's or EuRoC's; a video; or LEFT,RIGHT: two folders, two videos, or "
+         "two patterns such as left_%04d.png,right_%04d.png")
+      ->required()
+      ->type_name("");
+  app.add_option("--calib", input.options.calib,
+                 "calibration; default: that of the first frame, else of the folder, else none: no metres")
+      ->type_name("FILE");
+  app.add_flag("--rectify", input.options.rectify,
+               "the images are raw: rectify them by --calib FILE of the raw cameras (always so of EuRoC's)");
+  app.add_option("--layout", input.options.layout, "of one video: side_by_side or top_bottom")
+      ->type_name("NAME");
+  app.add_option(
+         "--rate", input.options.rate_hz,
+         "frames per second where there are no stamps, and instead of a video's (default: the source's "
+         "own, else 10)")
+      ->type_name("HZ");
+  app.add_option("--frames", input.frames,
+                 "only these: FIRST:END or FIRST:END:STEP, or a number of first ones")
+      ->type_name("A:B:STEP");
+  app.add_option("--max-gap", input.options.max_gap_s, "longer pauses part a sequence")
+      ->type_name("S")
+      ->capture_default_str();
+  app.add_option("--max-skew", input.options.max_skew_ms,
+                 "between left and right of one pair, where each camera has stamps of its own")
+      ->type_name("MS")
+      ->capture_default_str();
+}
+
+std::unique_ptr<io::Sequence> open_source(const SourceInput& input, const Pool& pool) {
+  // FFmpeg would complain in lines of its own; "-8" is its quiet.
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+  io::SourceOptions options = input.options;
+  if (!input.frames.empty()) options.frames = io::parse_frame_range(input.frames);
+  return io::open_sequence(input.source, options, pool);
+}
+
+void refuse_two_priors(const std::string& odometry, const std::string& imu) {
+  if (!odometry.empty() && !imu.empty())
+    throw Error("--imu: found --odometry as well, expected one of the two");
+}
+
+std::string remarks_text(const io::Sequence& sequence) {
+  std::string text;
+  for (const io::SourceRemark& remark : sequence.remarks()) {
+    text += "cairn: " + sequence.name() + ": " + remark.what;
+    if (remark.count > 0) {
+      text += ": " + std::to_string(remark.count) + (remark.count == 1 ? " frame" : " frames") +
+              (remark.is_left_out ? " left out" : "") + ", the first is " + remark.first;
+    }
+    text += "\n";
+  }
+  if (!sequence.ended_early().empty()) text += "cairn: " + sequence.ended_early() + "\n";
+  return text;
+}
+
+int exit_code_of(const io::Sequence& sequence) {
+  if (!sequence.ended_early().empty()) return 3;
+  const auto& remarks = sequence.remarks();
+  return std::any_of(remarks.begin(), remarks.end(),
+                     [](const io::SourceRemark& remark) { return remark.is_unusable; })
+             ? 2
+             : 0;
+}
+
+}  // namespace cairn::cli

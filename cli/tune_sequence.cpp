@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "tune_sequence.hpp"
+
+#include <cairn/core/error.hpp>
+#include <cairn/tuning/search.hpp>
+#include <chrono>
+#include <io/atomic_file.hpp>
+#include <io/config_files.hpp>
+#include <iostream>
+#include <tracking/follower.hpp>
+
+#include "source_options.hpp"
+
+namespace cairn::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostFrames = 300;  // that are held in memory
+constexpr std::size_t kFewestFrames = 10;
+/// A smaller gain, or one below two standard errors, does not count.
+constexpr Margin kLeastGain{.least_share = 0.05, .standard_errors = 2};
+
+struct Steady {
+  std::vector<float> frames;  // of each but the first
+  [[nodiscard]] double mean(std::size_t first, std::size_t last) const {
+    double sum = 0;
+    for (std::size_t i = first; i < last; ++i) sum += double{frames[i]};
+    return last > first ? sum / static_cast<double>(last - first) : 0;
+  }
+};
+
+std::string text(double steadiness) {
+  return text_of("%.3f", steadiness);
+}
+
+}  // namespace
+
+int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()>& stop) {
+  SourceInput input;
+  input.source = options.source;
+  input.options.calib = options.calib;
+  const Exec exec = make_exec(options.exec);
+  const auto source = open_source(input, exec.pool);
+  FollowConfig start;
+  const ResolvedConfig base = resolve(options.config);  // what the calibration says is not written
+  start.segmentation = resolve(options.config, source->disparities()).config;
+  start.segmentation.ground.known = source->ground();
+  validate(start);
+
+  std::vector<io::SequenceFrame> frames;
+  while (frames.size() < kMostFrames) {
+    std::optional<io::SequenceFrame> frame = source->next();
+    if (!frame) break;
+    frames.push_back(std::move(*frame));
+  }
+  if (frames.size() < kFewestFrames)
+    throw Error(options.source + ": has " + std::to_string(frames.size()) + " frames, expected " +
+                std::to_string(kFewestFrames) + " or more to tell what is steady");
+  const double share = options.holdout.value_or(0.25);
+  const std::size_t count = frames.size() - 1;  // the first frame has none before it
+  const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
+
+  const auto began = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+  const Progress progress(frames.size());
+  int tried = 0;
+  bool is_up = false;
+  const auto run = [&](const std::vector<Setting>& settings) -> std::optional<Steady> {
+    FollowConfig config = start;
+    config.segmentation = with_settings(start.segmentation, settings);
+    Follower follower(config, source->rig(), exec);
+    Steady steady;
+    for (const io::SequenceFrame& frame : frames) {
+      if (stop() || (tried > 0 && seconds() > options.seconds)) {
+        is_up = true;
+        return std::nullopt;
+      }
+      const Step step =
+          follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
+      if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
+    }
+    ++tried;
+    return steady;
+  };
+
+  const std::vector<Tunable> options_tried =
+      tunables(options.patterns.empty() ? usual_tunables(start.segmentation, true) : options.patterns,
+               start.segmentation);
+  const std::vector<Setting> from = settings_of(start.segmentation, options_tried);
+  const std::optional<Steady> before = run(from);
+  if (!before) throw Error(options.source + ": stopped before the first run was done; nothing is written");
+  const double reference = before->mean(0, tuned_on);
+  Steady best = *before;
+  Steady latest = *before;
+  // A loss falls as steadiness rises, and is twice the start's or more where nothing is steady.
+  const auto losses = [&](const Steady& steady) {
+    std::vector<Loss> all;
+    for (std::size_t i = 0; i < tuned_on; ++i)
+      all.push_back({1 + 2 * reference - double{steady.frames[i]}, 1, 0});
+    return all;
+  };
+  SearchConfig config;
+  config.seed = options.seed;
+  config.margin = kLeastGain;
+  if (options.evaluations > 0) config.evaluations = options.evaluations;
+  config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
+    for (const OptionInfo& option : active_options(with_settings(start.segmentation, settings)))
+      if (option.name == options_tried[i].name) return true;
+    return false;
+  };
+  const SearchResult found = search(
+      options_tried, from,
+      [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
+        progress.bar(std::min(1.0, seconds() / options.seconds),
+                     std::to_string(tried) + " tried, steadiness " + text(best.mean(0, tuned_on)) + " (was " +
+                         text(reference) + ")");
+        std::optional<Steady> steady = settings == from ? before : run(settings);
+        if (!steady) return std::nullopt;
+        latest = std::move(*steady);
+        return losses(latest);
+      },
+      config, [&](const std::vector<Setting>&) { best = latest; });
+  progress.clear();
+
+  const double held_before = before->mean(tuned_on, count);
+  const double held_after = best.mean(tuned_on, count);
+  const bool is_luck = tuned_on < count && held_after < held_before;
+  const std::vector<Setting>& kept = is_luck ? found.start : found.best;
+  std::cout << frames.size() << " frames, " << options_tried.size() << " options, " << tried << " runs in "
+            << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
+  std::cout << "steadiness: " << text(reference) << " before, " << text(best.mean(0, tuned_on)) << " after";
+  if (tuned_on < count)
+    std::cout << "; of the frames held out " << text(held_before) << ", " << text(held_after);
+  std::cout << "\n";
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] == found.start[i]) continue;
+    std::cout << "  " << kept[i].option << ": " << found.start[i].value << " -> " << kept[i].value << "\n";
+  }
+  if (is_luck)
+    std::cout << "The options stay as they were: what was found is worse on the frames held out.\n";
+  else if (kept == found.start)
+    std::cout << "The options stay as they were: nothing that was tried is clearly steadier.\n";
+  io::write_file(options.output, "# Written by cairn tune --sequence: steadiness " + text(reference) +
+                                     " before, " + text(is_luck ? reference : best.mean(0, tuned_on)) +
+                                     " after.\n" +
+                                     io::changed_config_yaml(base.preset, with_settings(base.config, kept)));
+  std::cout << "wrote " << options.output << ", for --config\n";
+  return 0;
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "yaml_text.hpp"
+
+#include <yaml-cpp/eventhandler.h>
+
+#include <sstream>
+
+namespace cairn::io {
+namespace {
+
+constexpr int kMostValues = 200'000;
+
+/// Walks a text without keeping anything of it.
+class Check : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    // The parser asks for documents until the text is used up, and one that uses nothing of it begins where
+    // the one before began.
+    if (mark.pos == document_) throw YAML::ParserException(mark, "nothing can stand here");
+    document_ = mark.pos;
+    count(mark);
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override {
+    count(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void count(const YAML::Mark& mark) {
+    if (++values_ > kMostValues)
+      throw YAML::ParserException(mark, "more values than any file of this kind has");
+  }
+
+  int document_ = -1;
+  int values_ = 0;
+};
+
+}  // namespace
+
+std::vector<YAML::Node> yaml_documents(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Check check;
+  while (parser.HandleNextDocument(check)) {
+  }
+  return YAML::LoadAll(text);
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "landmarks.hpp"
+
+/// What the library's own sources share; not installed.
+namespace cairn::landmarks {
+
+using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+inline Matrix3 matrix(const Covariance3& rows) {
+  return Eigen::Map<const Matrix3>(rows.data());
+}
+inline Matrix4 matrix(const std::array<double, 16>& rows) {
+  return Eigen::Map<const Matrix4>(rows.data());
+}
+inline Eigen::Vector3d vector(Point3 p) {
+  return {p.x, p.y, p.z};
+}
+inline Point3 point(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Covariance3 rows_of(const Matrix3& m) {
+  Covariance3 rows{};
+  Eigen::Map<Matrix3>(rows.data()) = m;
+  return rows;
+}
+inline std::array<double, 16> rows_of(const Matrix4& m) {
+  std::array<double, 16> rows{};
+  Eigen::Map<Matrix4>(rows.data()) = m;
+  return rows;
+}
+
+/// A rotation about z by `yaw_rad`, then a translation.
+Pose turned(double yaw_rad, Point3 translation_m);
+
+/// A position in the map, as it is in the odometry's frame: uncertain by itself and by where that frame lies.
+struct Placed {
+  Eigen::Vector3d position_m;
+  Matrix3 covariance_m2;
+};
+Placed place(const Candidate& candidate, const Located& located);
+
+/// One landmark and where it is seen, both in the map.
+struct Pull {
+  Placed seen;
+  Placed known;
+};
+/// `located` moved and turned about the camera so that what is seen lies where it is known to be, as far as
+/// the covariances say; a rotation about z and a translation. (Gauss-Newton, Huber weights)
+Located corrected(const Located& located, const std::vector<Pull>& pulls);
+
+/// The candidate that a landmark would be.
+Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours);
+
+}  // namespace cairn::landmarks

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "map_exports.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "geometry.hpp"
+
+namespace cairn {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
+  std::array<char, 512> text{};
+  std::va_list values;
+  va_start(values, format);
+  std::vsnprintf(text.data(), text.size(), format, values);
+  va_end(values);
+  return text.data();
+}
+
+double rounded(double metres) {
+  return std::round(metres * 1e4) / 1e4;
+}
+
+std::string numbers_of(const Pose& pose) {
+  const auto q = quaternion(pose);
+  const Point3 t = pose.translation_m;
+  return line("%.6f %.6f %.6f %.9f %.9f %.9f %.9f", t.x, t.y, t.z, q[0], q[1], q[2], q[3]);
+}
+
+/// An information matrix's upper triangle.
+template <int N>
+std::string information_text(const Eigen::Matrix<double, N, N, Eigen::RowMajor>& information) {
+  std::string text;
+  for (int r = 0; r < N; ++r) {
+    for (int c = r; c < N; ++c) text += line(" %.6g", information(r, c));
+  }
+  return text;
+}
+
+landmarks::Matrix3 information_of(const Covariance3& covariance) {
+  constexpr double kLeast = 1e-8;  // 0.1 mm: an exact place would have no inverse
+  return (landmarks::matrix(covariance) + kLeast * landmarks::Matrix3::Identity()).inverse();
+}
+
+/// What the pose's covariance grew by, which is what the step adds: along the map's axes, from `first` on.
+Covariance3 growth(const Covariance6& before, const Covariance6& now, std::size_t first) {
+  constexpr double kLeast = 1e-6;  // 1 mm, 1 mrad
+  Covariance3 grown{};
+  for (std::size_t k = 0; k < 3; ++k)
+    grown[k * 4] = std::max(kLeast, now[(first + k) * 7] - before[(first + k) * 7]);
+  return grown;
+}
+
+}  // namespace
+
+std::string as_geojson(const MapFile& file) {
+  constexpr int kCorners = 12;
+  using nlohmann::json;
+  json features = json::array();
+  for (const Landmark& l : file.load().list) {
+    const double radius = (l.size.narrowest_m + l.size.widest_m) / 4;
+    json ring = json::array();
+    for (int i = 0; i <= kCorners; ++i) {
+      const double angle = 2 * std::numbers::pi * (i % kCorners) / kCorners;
+      ring.push_back({rounded(l.position_m.x + radius * std::cos(angle)),
+                      rounded(l.position_m.y + radius * std::sin(angle))});
+    }
+    json properties{{"id", number(l.id)},
+                    {"name", l.name},
+                    {"state", l.is_gone ? "gone" : "present"},
+                    {"centre", {rounded(l.position_m.x), rounded(l.position_m.y), rounded(l.position_m.z)}},
+                    {"sigma",
+                     {rounded(std::sqrt(l.covariance_m2[0])), rounded(std::sqrt(l.covariance_m2[4])),
+                      rounded(std::sqrt(l.covariance_m2[8]))}},
+                    {"width", rounded((l.size.narrowest_m + l.size.widest_m) / 2)},
+                    {"height", rounded(l.size.height_m)},
+                    {"probability", rounded(1 / (1 + std::exp(-l.log_odds)))},
+                    {"seen", l.seen},
+                    {"expected", l.expected}};
+    features.push_back({{"type", "Feature"},
+                        {"id", number(l.id)},
+                        {"geometry", {{"type", "Polygon"}, {"coordinates", json::array({ring})}}},
+                        {"properties", properties}});
+  }
+  std::map<std::int64_t, json> paths;
+  for (const MapPose& pose : file.poses()) {
+    auto [at, is_new] = paths.try_emplace(pose.run, json::array());
+    at->second.push_back(
+        {rounded(pose.map_from_camera.translation_m.x), rounded(pose.map_from_camera.translation_m.y)});
+  }
+  for (const auto& [run, path] : paths) {
+    if (path.size() < 2) continue;
+    features.push_back({{"type", "Feature"},
+                        {"geometry", {{"type", "LineString"}, {"coordinates", path}}},
+                        {"properties", {{"run", run}}}});
+  }
+  const json all{{"type", "FeatureCollection"},
+                 {"frame_id", "map"},
+                 {"units", "m"},
+                 {"note", "coordinates are metres in the frame of the map, not WGS84"},
+                 {"features", features}};
+  return all.dump(1) + "\n";
+}
+
+std::string as_g2o(const MapFile& file) {
+  constexpr std::int64_t kFirstLandmark = 1'000'000;
+  std::string text = "PARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\n";
+  const std::vector<MapPose> poses = file.poses();
+  std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> at;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    at[{poses[i].run, poses[i].stamp.ns}] = i;
+    text += line("VERTEX_SE3:QUAT %zu ", i) + numbers_of(poses[i].map_from_camera) + "\n";
+  }
+  if (!poses.empty()) text += "FIX 0\n";
+  for (const Landmark& l : file.load().list)
+    text +=
+        line("VERTEX_TRACKXYZ %lld %.6f %.6f %.6f\n", static_cast<long long>(kFirstLandmark + number(l.id)),
+             l.position_m.x, l.position_m.y, l.position_m.z);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (poses[i].run != poses[i - 1].run) continue;
+    // The edge's error lies along the axes of the camera that it leads to.
+    const Pose camera_from_map = inverse(poses[i].map_from_camera);
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> information;
+    information.setZero();
+    information.topLeftCorner<3, 3>() =
+        information_of(rotated(camera_from_map, growth(poses[i - 1].covariance, poses[i].covariance, 0)));
+    information.bottomRightCorner<3, 3>() =
+        information_of(rotated(camera_from_map, growth(poses[i - 1].covariance, poses[i].covariance, 3)));
+    text += line("EDGE_SE3:QUAT %zu %zu ", i - 1, i) +
+            numbers_of(inverse(poses[i - 1].map_from_camera) * poses[i].map_from_camera) +
+            information_text<6>(information) + "\n";
+  }
+  for (const MapObservation& one : file.observations()) {
+    const auto pose = at.find({one.run, one.stamp.ns});
+    if (pose == at.end()) continue;
+    const Pose camera_from_map = inverse(poses[pose->second].map_from_camera);
+    const Point3 p = camera_from_map(one.position_m);
+    const Covariance3 c = rotated(camera_from_map, one.covariance_m2);
+    text += line("EDGE_SE3_TRACKXYZ %zu %lld 0 %.6f %.6f %.6f", pose->second,
+                 static_cast<long long>(kFirstLandmark + number(one.landmark)), p.x, p.y, p.z) +
+            information_text<3>(information_of(c)) + "\n";
+  }
+  return text;
+}
+
+std::string as_tum(const MapFile& file, std::int64_t run) {
+  const std::vector<MapPose> poses = file.poses();
+  if (run == 0 && !poses.empty()) run = poses.back().run;
+  std::string text = "# t x y z qx qy qz qw: the camera in the map, run " + std::to_string(run) + "\n";
+  for (const MapPose& pose : poses) {
+    if (pose.run == run) text += seconds_text(pose.stamp) + " " + numbers_of(pose.map_from_camera) + "\n";
+  }
+  return text;
+}
+
+std::string as_csv(const LandmarkMap& map) {
+  std::string text =
+      "id,name,state,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m,narrowest_m,widest_m,height_m,"
+      "probability,seen,expected\n";
+  for (const Landmark& l : map.list) {
+    std::string name = l.name;
+    if (name.find_first_of(",\"\n") != std::string::npos) {
+      std::string quoted = "\"";
+      for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
+      name = quoted + "\"";
+    }
+    text += std::to_string(number(l.id)) + "," + name + "," + (l.is_gone ? "gone" : "present") +
+            line(",%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%d,%d\n", l.position_m.x, l.position_m.y,
+                 l.position_m.z, std::sqrt(l.covariance_m2[0]), std::sqrt(l.covariance_m2[4]),
+                 std::sqrt(l.covariance_m2[8]), l.size.narrowest_m, l.size.widest_m, l.size.height_m,
+                 1 / (1 + std::exp(-l.log_odds)), l.seen, l.expected);
+  }
+  return text;
+}
+
+}  // namespace cairn

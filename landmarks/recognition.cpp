@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "geometry.hpp"
+#include "landmarks.hpp"
+
+namespace cairn {
+
+using landmarks::matrix;
+using landmarks::Matrix3;
+using landmarks::Matrix4;
+using landmarks::Placed;
+using landmarks::point;
+using landmarks::Pull;
+using landmarks::vector;
+
+namespace landmarks {
+
+Pose turned(double yaw, Point3 translation) {
+  const double c = std::cos(yaw);
+  const double s = std::sin(yaw);
+  return {{c, -s, 0, s, c, 0, 0, 0, 1}, translation};
+}
+
+Placed place(const Candidate& candidate, const Located& located) {
+  const Eigen::Vector3d p = vector(located.map_from_odom(candidate.position_m));
+  const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
+  Eigen::Matrix<double, 3, 4> j = Eigen::Matrix<double, 3, 4>::Zero();
+  j.leftCols<3>().setIdentity();
+  j(0, 3) = -(p.y() - camera.y());
+  j(1, 3) = p.x() - camera.x();
+  return {p, matrix(rotated(located.map_from_odom, candidate.covariance_m2)) +
+                 j * matrix(located.covariance) * j.transpose()};
+}
+
+Located corrected(const Located& located, const std::vector<Pull>& pulls) {
+  constexpr int kIterations = 6;
+  constexpr double kHuber = 2;
+  const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
+  // An exactly known pose would have no inverse.
+  const Matrix4 prior = (matrix(located.covariance) + 1e-9 * Matrix4::Identity()).inverse();
+  Eigen::Vector4d x = Eigen::Vector4d::Zero();
+  Matrix4 normal = prior;
+  for (int i = 0; i < kIterations; ++i) {
+    normal = prior;
+    Eigen::Vector4d right = -prior * x;
+    for (const Pull& pull : pulls) {
+      const Eigen::Vector3d arm =
+          Eigen::AngleAxisd(x[3], Eigen::Vector3d::UnitZ()) * (pull.seen.position_m - camera);
+      const Eigen::Vector3d residual = pull.known.position_m - (camera + arm + x.head<3>());
+      Eigen::Matrix<double, 3, 4> j = Eigen::Matrix<double, 3, 4>::Zero();
+      j.leftCols<3>().setIdentity();
+      j(0, 3) = -arm.y();
+      j(1, 3) = arm.x();
+      const Matrix3 information = (pull.seen.covariance_m2 + pull.known.covariance_m2).inverse();
+      const double distance = std::sqrt(residual.dot(information * residual));
+      const double weight = distance > kHuber ? kHuber / distance : 1.0;
+      normal += weight * j.transpose() * information * j;
+      right += weight * j.transpose() * information * residual;
+    }
+    const Eigen::Vector4d step = normal.ldlt().solve(right);
+    x += step;
+    if (step.norm() < 1e-9) break;
+  }
+  Pose turn = turned(x[3], {});
+  turn.translation_m = point(camera + x.head<3>()) - turn.rotated(point(camera));
+  return {turn * located.map_from_odom, rows_of(Matrix4(normal.inverse())), located.camera_in_odom_m};
+}
+
+Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours) {
+  return {TrackId{number(landmark.id)}, landmark.position_m,
+          landmark.covariance_m2,       landmark.size,
+          landmark.height_over_floor_m, colours};
+}
+
+}  // namespace landmarks
+
+namespace {
+
+constexpr double kSizeRatio = 1.6;
+constexpr double kHeightTolerance_m = 0.15;
+
+double likeness_of(const ColourHistogram& a, const ColourHistogram& b) {
+  constexpr std::size_t kLightness = 8;
+  double lightness = 0;
+  double colour = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double root = std::sqrt(std::max(0.0, static_cast<double>(a[i]) * static_cast<double>(b[i])));
+    (i < kLightness ? lightness : colour) += root;
+  }
+  return std::clamp((lightness + colour) / 2, 0.0, 1.0);
+}
+
+double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covariance) {
+  return difference.dot(covariance.ldlt().solve(difference));
+}
+
+/// A pair that colours and sizes allow.
+struct Allowed {
+  std::size_t candidate = 0;
+  std::size_t landmark = 0;
+  double score = 0;
+};
+
+constexpr std::size_t kMostAllowed = 300;
+
+std::vector<Allowed> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                                   const LandmarksConfig& config) {
+  std::vector<Allowed> pairs;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    for (std::size_t l = 0; l < map.list.size(); ++l) {
+      if (map.list[l].is_gone || !may_be(candidates[c], map.list[l])) continue;
+      const double score = score_of(candidates[c], map.list[l]);
+      if (score >= static_cast<double>(config.min_score)) pairs.push_back({c, l, score});
+    }
+  }
+  if (pairs.size() > kMostAllowed) {
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Allowed& a, const Allowed& b) { return a.score > b.score; });
+    pairs.resize(kMostAllowed);
+  }
+  return pairs;
+}
+
+/// Pairs that one pose explains.
+struct Constellation {
+  std::vector<std::size_t> pairs;
+  Pose map_from_odom;
+  double squares = 0;
+  [[nodiscard]] std::size_t agreeing() const { return pairs.size() * (pairs.size() - 1) / 2; }
+};
+
+/// The rotation about z and the translation that bring the candidates onto the landmarks: least squares with
+/// one weight for each pair (Umeyama 1991, in the plane).
+Pose fit(const std::vector<std::size_t>& chosen, const std::vector<Allowed>& pairs,
+         const std::vector<Candidate>& candidates, const LandmarkMap& map) {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double weights = 0;
+  const auto weight_of = [&](const Allowed& pair) {
+    return 1.0 / (matrix(candidates[pair.candidate].covariance_m2).trace() +
+                  matrix(map.list[pair.landmark].covariance_m2).trace());
+  };
+  for (const std::size_t i : chosen) {
+    const double w = weight_of(pairs[i]);
+    from += w * vector(candidates[pairs[i].candidate].position_m);
+    to += w * vector(map.list[pairs[i].landmark].position_m);
+    weights += w;
+  }
+  from /= weights;
+  to /= weights;
+  double sine = 0;
+  double cosine = 0;
+  for (const std::size_t i : chosen) {
+    const Eigen::Vector3d a = vector(candidates[pairs[i].candidate].position_m) - from;
+    const Eigen::Vector3d b = vector(map.list[pairs[i].landmark].position_m) - to;
+    const double w = weight_of(pairs[i]);
+    cosine += w * (a.x() * b.x() + a.y() * b.y());
+    sine += w * (a.x() * b.y() - a.y() * b.x());
+  }
+  Pose pose = landmarks::turned(std::atan2(sine, cosine), {});
+  pose.translation_m = point(to) - pose.rotated(point(from));
+  return pose;
+}
+
+/// All pairs that the pose explains, each candidate and landmark once, the nearest first.
+Constellation explained(const Pose& pose, double slack, const std::vector<Allowed>& pairs,
+                        const std::vector<Candidate>& candidates, const LandmarkMap& map, double gate) {
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Candidate& candidate = candidates[pairs[i].candidate];
+    const Landmark& landmark = map.list[pairs[i].landmark];
+    const Eigen::Vector3d difference = vector(pose(candidate.position_m) - landmark.position_m);
+    if (difference.squaredNorm() > 9) continue;  // cheap: farther than any gate reaches
+    const double squared = squared_distance(
+        difference,
+        slack * Matrix3(matrix(rotated(pose, candidate.covariance_m2)) + matrix(landmark.covariance_m2)));
+    if (squared <= gate) near.emplace_back(squared, i);
+  }
+  std::sort(near.begin(), near.end());
+  Constellation found;
+  found.map_from_odom = pose;
+  for (const auto& [squared, i] : near) {
+    const bool is_taken = std::any_of(found.pairs.begin(), found.pairs.end(), [&](std::size_t other) {
+      return pairs[other].candidate == pairs[i].candidate || pairs[other].landmark == pairs[i].landmark;
+    });
+    if (is_taken) continue;
+    found.pairs.push_back(i);
+    found.squares += squared;
+  }
+  std::sort(found.pairs.begin(), found.pairs.end());
+  return found;
+}
+
+bool agree(const Allowed& a, const Allowed& b, const std::vector<Candidate>& candidates,
+           const LandmarkMap& map) {
+  constexpr double kShortest_m = 0.3;  // a shorter base tells no direction
+  constexpr double kSigmas = 3;
+  if (a.candidate == b.candidate || a.landmark == b.landmark) return false;
+  const auto& ca = candidates[a.candidate];
+  const auto& cb = candidates[b.candidate];
+  const auto& la = map.list[a.landmark];
+  const auto& lb = map.list[b.landmark];
+  const Eigen::Vector3d seen = vector(cb.position_m - ca.position_m);
+  const Eigen::Vector3d known = vector(lb.position_m - la.position_m);
+  const double seen_m = seen.head<2>().norm();
+  const double known_m = known.head<2>().norm();
+  if (seen_m < kShortest_m || known_m < kShortest_m) return false;
+  const auto along = [](const Candidate& c, const Eigen::Vector3d& d) {
+    const Eigen::Vector2d u = d.head<2>().normalized();
+    return u.dot(matrix(c.covariance_m2).topLeftCorner<2, 2>() * u);
+  };
+  const auto along_known = [](const Landmark& l, const Eigen::Vector3d& d) {
+    const Eigen::Vector2d u = d.head<2>().normalized();
+    return u.dot(matrix(l.covariance_m2).topLeftCorner<2, 2>() * u);
+  };
+  const double variance = along(ca, seen) + along(cb, seen) + along_known(la, known) + along_known(lb, known);
+  const double variance_up =
+      ca.covariance_m2[8] + cb.covariance_m2[8] + la.covariance_m2[8] + lb.covariance_m2[8];
+  return std::abs(seen_m - known_m) <= kSigmas * std::sqrt(variance) &&
+         std::abs(seen.z() - known.z()) <= kSigmas * std::sqrt(variance_up);
+}
+
+bool is_same_place(const Pose& a, const Pose& b, Point3 where) {
+  constexpr double kApart_m = 0.5;
+  constexpr double kApart_rad = 20 * std::numbers::pi / 180;
+  return length(a(where) - b(where)) < kApart_m && angle_of(inverse(a) * b) < kApart_rad;
+}
+
+}  // namespace
+
+const Landmark* find(const LandmarkMap& map, LandmarkId id) {
+  const auto at = std::lower_bound(map.list.begin(), map.list.end(), id,
+                                   [](const Landmark& l, LandmarkId wanted) { return l.id < wanted; });
+  return at != map.list.end() && at->id == id ? &*at : nullptr;
+}
+
+double score_of(const Candidate& candidate, const Landmark& landmark) {
+  double best = 0;
+  for (const LandmarkLook& look : landmark.looks)
+    best = std::max(best, likeness_of(candidate.colours, look.colours));
+  return best;
+}
+
+bool may_be(const Candidate& candidate, const Landmark& landmark) {
+  const SeenSize& a = candidate.size;
+  const SeenSize& b = landmark.size;
+  if (a.height_m > kSizeRatio * b.height_m || b.height_m > kSizeRatio * a.height_m) return false;
+  if (a.narrowest_m > kSizeRatio * b.widest_m || b.narrowest_m > kSizeRatio * a.widest_m) return false;
+  const bool heights_known = candidate.height_over_floor_m > 0 && landmark.height_over_floor_m > 0;
+  return !heights_known ||
+         std::abs(candidate.height_over_floor_m - landmark.height_over_floor_m) <= kHeightTolerance_m;
+}
+
+Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                      const Located& located, const std::vector<LandmarkId>& taken,
+                      const LandmarksConfig& config) {
+  constexpr double kReach_m = 3;   // cheap, and farther than a gate should reach
+  constexpr double kColours = 20;  // of squared distance for the whole of an unlikeness
+  Recognition result;
+  if (candidates.empty()) {
+    result.refusal = RecognitionRefusal::no_candidates;
+    return result;
+  }
+  struct Offer {
+    double cost;
+    std::size_t candidate;
+    std::size_t landmark;
+    double score;
+  };
+  std::vector<Offer> offers;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const Placed seen = landmarks::place(candidates[c], located);
+    for (std::size_t l = 0; l < map.list.size(); ++l) {
+      const Landmark& landmark = map.list[l];
+      const Eigen::Vector3d difference = seen.position_m - vector(landmark.position_m);
+      if (difference.squaredNorm() > kReach_m * kReach_m) continue;
+      if (std::find(taken.begin(), taken.end(), landmark.id) != taken.end()) continue;
+      if (!may_be(candidates[c], landmark)) continue;
+      const double squared =
+          squared_distance(difference, Matrix3(seen.covariance_m2 + matrix(landmark.covariance_m2)));
+      if (squared > static_cast<double>(config.gate)) continue;
+      const double score = score_of(candidates[c], landmark);
+      if (score >= static_cast<double>(config.min_score))
+        offers.push_back({squared + kColours * (1 - score), c, l, score});
+    }
+  }
+  const auto is_best = [&](const Offer& offer) {
+    return std::none_of(offers.begin(), offers.end(), [&](const Offer& other) {
+      if (other.candidate == offer.candidate && other.landmark == offer.landmark) return false;
+      if (other.candidate != offer.candidate && other.landmark != offer.landmark) return false;
+      return std::tie(other.cost, other.candidate, other.landmark) <
+             std::tie(offer.cost, offer.candidate, offer.landmark);
+    });
+  };
+  for (const Offer& offer : offers) {
+    if (is_best(offer))
+      result.pairs.push_back({candidates[offer.candidate].track, map.list[offer.landmark].id, offer.score});
+  }
+  if (result.pairs.empty()) result.refusal = RecognitionRefusal::too_few_pairs;
+  return result;
+}
+
+Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                     const LandmarksConfig& config) {
+  Recognition result;
+  const auto enough = static_cast<std::size_t>(config.relocation_pairs);
+  if (candidates.size() < enough) {
+    result.refusal = RecognitionRefusal::no_candidates;
+    return result;
+  }
+  const std::vector<Allowed> pairs = allowed_pairs(map, candidates, config);
+  // χ² of 3 degrees of freedom, 0.95: a pair that is missing costs little, one that was moved bends the pose.
+  constexpr double kTight = 7.81;
+  const double gate = std::min(static_cast<double>(config.gate), kTight);
+  Point3 middle;
+  for (const Candidate& candidate : candidates)
+    middle = middle + (1.0 / static_cast<double>(candidates.size())) * candidate.position_m;
+
+  // A pose from each two pairs whose distances agree; what it explains refines it.
+  constexpr double kSeedSlack = 2;    // the seeds' own errors add to those of what they explain
+  std::vector<Constellation> places;  // different ones, the best of each
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t j = i + 1; j < pairs.size(); ++j) {
+      if (!agree(pairs[i], pairs[j], candidates, map)) continue;
+      const Pose seed = fit({i, j}, pairs, candidates, map);
+      const Constellation rough = explained(seed, kSeedSlack, pairs, candidates, map, gate);
+      if (rough.pairs.size() < 2) continue;
+      const Pose pose = fit(rough.pairs, pairs, candidates, map);
+      Constellation found = explained(pose, 1, pairs, candidates, map, gate);
+      if (found.pairs.size() < 2) continue;
+      found = explained(fit(found.pairs, pairs, candidates, map), 1, pairs, candidates, map, gate);
+      if (found.pairs.size() < 2) continue;
+      const auto same = std::find_if(places.begin(), places.end(), [&](const Constellation& other) {
+        return is_same_place(other.map_from_odom, found.map_from_odom, middle);
+      });
+      if (same == places.end()) {
+        places.push_back(found);
+      } else if (std::make_tuple(same->pairs.size(), -same->squares) <
+                 std::make_tuple(found.pairs.size(), -found.squares)) {
+        *same = found;
+      }
+    }
+  }
+  std::stable_sort(places.begin(), places.end(), [](const Constellation& a, const Constellation& b) {
+    return std::make_tuple(a.pairs.size(), -a.squares) > std::make_tuple(b.pairs.size(), -b.squares);
+  });
+  if (places.empty() || places.front().pairs.size() < enough) {
+    result.refusal = RecognitionRefusal::too_few_pairs;
+    return result;
+  }
+  if (places.size() > 1 && places[0].agreeing() < 2 * places[1].agreeing()) {
+    result.refusal = RecognitionRefusal::ambiguous;
+    return result;
+  }
+  result.map_from_odom = places[0].map_from_odom;
+  for (const std::size_t i : places[0].pairs)
+    result.pairs.push_back(
+        {candidates[pairs[i].candidate].track, map.list[pairs[i].landmark].id, pairs[i].score});
+  return result;
+}
+
+namespace {
+
+std::vector<Candidate> candidates_of(const LandmarkMap& other) {
+  std::vector<Candidate> candidates;
+  for (const Landmark& landmark : other.list) {
+    if (landmark.is_gone || landmark.looks.empty()) continue;
+    const auto largest =
+        std::max_element(landmark.looks.begin(), landmark.looks.end(),
+                         [](const LandmarkLook& a, const LandmarkLook& b) { return a.pixels < b.pixels; });
+    candidates.push_back(landmarks::candidate_of(landmark, largest->colours));
+  }
+  return candidates;
+}
+
+/// Whether two copies of a map mean the same by an id: after the copying each gives its own.
+bool is_shared(const Landmark& a, const Landmark& b, const LandmarksConfig& config) {
+  if (a.id != b.id || a.first != b.first || !may_be(landmarks::candidate_of(a, {}), b)) return false;
+  if (a.looks.empty() || b.looks.empty()) return true;
+  return std::any_of(a.looks.begin(), a.looks.end(), [&](const LandmarkLook& look) {
+    return score_of(landmarks::candidate_of(a, look.colours), b) >= static_cast<double>(config.min_score);
+  });
+}
+
+Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
+  Merged merged;
+  merged.map_from_other = pose;
+  merged.pairs = found.pairs;
+  merged.map = std::move(map);
+  for (const Landmark& landmark : other.list) {
+    const auto pair = std::find_if(found.pairs.begin(), found.pairs.end(), [&](const LandmarkPair& p) {
+      return number(p.track) == number(landmark.id);
+    });
+    Landmark here = landmark;
+    here.position_m = pose(landmark.position_m);
+    here.covariance_m2 = rotated(pose, landmark.covariance_m2);
+    if (pair == found.pairs.end()) {
+      here.id = LandmarkId{merged.map.next++};
+      here.run = 0;
+      const double yaw = std::atan2(pose.rotation[3], pose.rotation[0]);
+      const int turn = static_cast<int>(std::lround(yaw / (std::numbers::pi / 4)));
+      for (LandmarkLook& look : here.looks) look.octant = (look.octant + turn + 8) % 8;
+      std::sort(here.looks.begin(), here.looks.end(),
+                [](const LandmarkLook& a, const LandmarkLook& b) { return a.octant < b.octant; });
+      merged.map.list.push_back(std::move(here));
+      continue;
+    }
+    Landmark& known = *std::find_if(merged.map.list.begin(), merged.map.list.end(),
+                                    [&](const Landmark& l) { return l.id == pair->landmark; });
+    const Matrix3 a = matrix(known.covariance_m2).inverse();
+    const Matrix3 b = matrix(here.covariance_m2).inverse();
+    const Matrix3 both = (a + b).inverse();
+    known.position_m = point(both * (a * vector(known.position_m) + b * vector(here.position_m)));
+    known.covariance_m2 = landmarks::rows_of(both);
+    known.size.narrowest_m = std::min(known.size.narrowest_m, here.size.narrowest_m);
+    known.size.widest_m = std::max(known.size.widest_m, here.size.widest_m);
+    known.seen += here.seen;
+    known.expected += here.expected;
+    known.log_odds = std::clamp(known.log_odds + here.log_odds, -5.0, 5.0);
+    known.first = std::min(known.first, here.first);
+    known.last = std::max(known.last, here.last);
+    if (known.name.empty()) known.name = here.name;
+  }
+  return merged;
+}
+
+}  // namespace
+
+Merged merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
+             const LandmarksConfig& config) {
+  const std::vector<Candidate> candidates = candidates_of(other);
+  const Recognition found = map_from_other ? recognise(map, candidates, {*map_from_other, {}, {}}, {}, config)
+                                           : relocate(map, candidates, config);
+  const std::optional<Pose> pose = map_from_other ? map_from_other : found.map_from_odom;
+  if (pose) return unite(std::move(map), other, found, *pose);
+  return {std::move(map), found.pairs, std::nullopt, found.refusal};
+}
+
+Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config) {
+  std::int64_t latest = 0;
+  for (const Landmark& ours : map.list) latest = std::max(latest, ours.run);
+  LandmarkMap fresh;
+  std::vector<LandmarkPair> pairs;
+  std::vector<LandmarkId> shared;
+  for (const Landmark& theirs : other.list) {
+    const auto ours = std::find_if(map.list.begin(), map.list.end(),
+                                   [&](const Landmark& l) { return is_shared(l, theirs, config); });
+    if (ours == map.list.end()) {
+      fresh.list.push_back(theirs);
+      continue;
+    }
+    pairs.push_back({TrackId{number(theirs.id)}, ours->id, 1});
+    shared.push_back(ours->id);
+    const std::string name = ours->name.empty() ? theirs.name : ours->name;
+    // What is gone was looked for after it was last seen.
+    if (std::tie(theirs.run, theirs.last, theirs.expected) >
+        std::tie(ours->run, ours->last, ours->expected)) {
+      *ours = theirs;
+      ours->run = std::min(theirs.run, latest);  // a later run of theirs is none of ours
+    }
+    ours->name = name;
+  }
+  const Recognition found = recognise(map, candidates_of(fresh), {Pose{}, {}, {}}, shared, config);
+  Merged merged = unite(std::move(map), fresh, found, Pose{});
+  merged.pairs.insert(merged.pairs.begin(), pairs.begin(), pairs.end());
+  return merged;
+}
+
+}  // namespace cairn

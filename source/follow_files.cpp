@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "follow_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <cmath>
+#include <cstdio>
+#include <io/atomic_file.hpp>
+#include <io/overlay.hpp>
+#include <io/rle.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// To the µm (or its like): beyond that digits say nothing.
+Json rounded(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  constexpr double kSteps = 1e6;
+  return std::round(value * kSteps) / kSteps;
+}
+
+/// To four significant digits.
+Json significant(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return std::strtod(text.data(), nullptr);
+}
+
+Json json(Point3 p) {
+  return Json::array({rounded(p.x), rounded(p.y), rounded(p.z)});
+}
+
+template <class Rows>
+Json matrix(const Rows& rows) {
+  Json all = Json::array();
+  for (const double entry : rows) all.push_back(significant(entry));
+  return all;
+}
+
+/// What a frame shows of its tracks: labelled with their ids, and where each lies.
+struct Shown {
+  Image<ObjectId> labels;
+  std::map<std::int64_t, Rect> boxes;
+};
+
+Shown shown_in(const Step& step) {
+  Shown shown{Image<ObjectId>(step.ids.size()), {}};
+  for (int y = 0; y < step.ids.height(); ++y) {
+    for (int x = 0; x < step.ids.width(); ++x)
+      shown.labels(x, y) = ObjectId{static_cast<std::int32_t>(number(step.ids(x, y)))};
+  }
+  for (const Track& track : step.tracks.list) {
+    if (track.object == ObjectId::none) continue;
+    Rect& box = shown.boxes[number(track.id)];
+    box = step.frame.objects.list[slot(number(track.object)) - 1].box_px;
+    for (const ObjectId part : track.parts)
+      box = united(box, step.frame.objects.list[slot(number(part)) - 1].box_px);
+  }
+  return shown;
+}
+
+Rle rle_of(const Shown& shown, TrackId id) {
+  return encode_rle(shown.labels, ObjectId{static_cast<std::int32_t>(number(id))},
+                    shown.boxes.at(number(id)));
+}
+
+/// Without a rig there are no metres: the camera is nowhere.
+bool has_place(const Step& step) {
+  return !step.is_lost && step.motion.refusal != MotionRefusal::no_rig;
+}
+
+Json pose_json(const Step& step) {
+  if (!has_place(step)) return nullptr;
+  Json turn = Json::array();
+  for (const double entry : quaternion(step.map_from_camera)) turn.push_back(rounded(entry));
+  return {{"position_m", json(step.map_from_camera.translation_m)},
+          {"quaternion_xyzw", turn},
+          {"covariance", matrix(step.pose_covariance)}};
+}
+
+Json motion_json(const Motion& motion) {
+  return {{"refusal", choice_name(motion.refusal, kMotionRefusals)},
+          {"new_keyframe", motion.is_new_keyframe},
+          {"followed", motion.followed},
+          {"inliers", motion.inliers},
+          {"chi2_per_dof", significant(double{motion.chi2_per_dof})}};
+}
+
+Json reliability_json(const Reliability& reliability) {
+  const auto share = [](std::optional<float> value) {
+    return value ? significant(double{*value}) : Json(nullptr);
+  };
+  Json j{{"value", share(reliability.value)},
+         {"weakest", reliability.weakest},
+         {"unreliable", reliability.is_unreliable}};
+  for (const WitnessName& witness : kWitnesses)
+    j[std::string(witness.name)] = share(reliability.witnesses.*witness.value);
+  j["steadiness"] = significant(double{reliability.steadiness});
+  return j;
+}
+
+Json track_json(const Track& track, const Shown& shown, const Landmarked& marked) {
+  Json j{{"id", number(track.id)},
+         {"state", choice_name(track.state, kTrackStates)},
+         {"moving", track.is_moving},
+         {"object", number(track.object)},
+         {"position_m", nullptr},
+         {"covariance_m2", nullptr},
+         {"velocity_m_s", nullptr},
+         {"extent_m", nullptr},
+         {"confidence", significant(double{track.confidence})},
+         {"hits", track.hits},
+         {"misses", track.misses}};
+  if (track.has_place) {
+    j["position_m"] = json(track.position_m);
+    j["covariance_m2"] = matrix(track.covariance_m2);
+    j["velocity_m_s"] = json(track.velocity_m_s);
+    j["extent_m"] = {rounded(track.extent_m.x), rounded(track.extent_m.y), rounded(track.extent_m.z)};
+  }
+  const auto of = std::ranges::find(marked.tracks, track.id, &LandmarkOfTrack::track);
+  if (of != marked.tracks.end()) {
+    if (of->landmark != LandmarkId::none) {
+      j["landmark"] = number(of->landmark);
+      j["recognised"] = of->is_recognised;
+    } else {
+      j["no_landmark"] = choice_name(of->refusal, kLandmarkRefusals);
+    }
+  }
+  if (track.object == ObjectId::none) return j;
+  const Rect box = shown.boxes.at(number(track.id));
+  const Rle rle = rle_of(shown, track.id);
+  j["bbox"] = {box.x, box.y, box.width, box.height};
+  j["rle"] = {{"size", {rle.size.height, rle.size.width}}, {"counts", rle.counts}};
+  return j;
+}
+
+}  // namespace
+
+std::string step_json(const Step& step, const std::string& name, const Landmarked& marked) {
+  const Shown shown = shown_in(step);
+  Json tracks = Json::array();
+  for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, shown, marked));
+  const Json line{{"frame", step.index},
+                  {"name", name},
+                  {"stamp_ns", step.stamp.ns},
+                  {"pose", pose_json(step)},
+                  {"motion", motion_json(step.motion)},
+                  {"reliability", reliability_json(step.reliability)},
+                  {"objects", step.frame.objects.list.size()},
+                  {"tracks", tracks}};
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string pose_tum(const Step& step) {
+  if (!has_place(step)) return {};
+  const Point3 p = step.map_from_camera.translation_m;
+  const auto q = quaternion(step.map_from_camera);
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(), " %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", p.x, p.y, p.z, q[0], q[1],
+                q[2], q[3]);
+  return seconds_text(step.stamp) + text.data();
+}
+
+std::string masks_mots(const Step& step) {
+  const Shown shown = shown_in(step);
+  std::string lines;
+  for (const Track& track : step.tracks.list) {
+    if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
+    const Rle rle = rle_of(shown, track.id);
+    lines += std::to_string(step.index) + " " + std::to_string(number(track.id)) + " 1 " +
+             std::to_string(rle.size.height) + " " + std::to_string(rle.size.width) + " " + rle.counts + "\n";
+  }
+  return lines;
+}
+
+Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Step& step) {
+  // Objects with their track's id in place of their own: the overlay draws and names them by it.
+  Shown shown = shown_in(step);
+  Objects tracked;
+  std::vector<std::int64_t> drawn;
+  for (const Track& track : step.tracks.list) {
+    if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
+    drawn.push_back(number(track.id));
+    tracked.list.push_back(step.frame.objects.list[slot(number(track.object)) - 1]);
+    tracked.list.back().id = ObjectId{static_cast<std::int32_t>(number(track.id))};
+    tracked.list.back().box_px = shown.boxes.at(number(track.id));
+  }
+  tracked.labels = std::move(shown.labels);
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x) {
+      ObjectId& label = tracked.labels(x, y);
+      if (!std::ranges::binary_search(drawn, std::int64_t{number(label)})) label = ObjectId::none;
+    }
+  }
+  return draw_objects(left, left_rgb, tracked, step.frame.floor);
+}
+
+FollowFiles::FollowFiles(fs::path folder) : folder_(std::move(folder)) {
+  make_folder(folder_);
+  for (const auto& [file, name] : {std::pair{&tracks_, "tracks.jsonl"},
+                                   {&poses_, "poses.tum"},
+                                   {&masks_, "tracks.mots.txt"},
+                                   {&events_, "events.jsonl"}}) {
+    file->open(folder_ / name, std::ios::binary | std::ios::trunc);
+    if (!*file)
+      throw Error((folder_ / name).string() +
+                  ": cannot be written: " + std::generic_category().message(errno));
+  }
+}
+
+void FollowFiles::append(std::ofstream& file, const char* name, const std::string& text) {
+  errno = 0;
+  file << text << std::flush;
+  if (!file)
+    throw Error((folder_ / name).string() + ": cannot be written: " + std::generic_category().message(errno));
+}
+
+void FollowFiles::add(const Step& step, const std::string& name, const Landmarked& marked) {
+  append(tracks_, "tracks.jsonl", step_json(step, name, marked));
+  append(poses_, "poses.tum", pose_tum(step));
+  append(masks_, "tracks.mots.txt", masks_mots(step));
+}
+
+void FollowFiles::add_event(const std::string& line) {
+  append(events_, "events.jsonl", line);
+}
+
+}  // namespace cairn::io

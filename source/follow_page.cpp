@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "follow_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <io/overlay.hpp>
+#include <nlohmann/json.hpp>
+#include <page/html_template.hpp>
+#include <page/page_parts.hpp>
+#include <utility>
+
+#include "follow_files.hpp"
+
+namespace cairn::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// To µm, as in tracks.jsonl.
+double rounded(double value) {
+  constexpr double kSteps = 1e6;
+  return std::round(value * kSteps) / kSteps;
+}
+
+Json json(Point3 p) {
+  return {rounded(p.x), rounded(p.y), rounded(p.z)};
+}
+
+/// The box around all that is seen of a track; empty where nothing is.
+Rect box_of(const Track& track, const Objects& objects) {
+  if (track.object == ObjectId::none) return {};
+  Rect box = objects.list[slot(number(track.object)) - 1].box_px;
+  for (const ObjectId part : track.parts) box = united(box, objects.list[slot(number(part)) - 1].box_px);
+  return box;
+}
+
+bool is_empty(View<const std::uint8_t> mask) {
+  for (int y = 0; y < mask.height(); ++y) {
+    if (std::any_of(mask.row(y), mask.row(y) + mask.width(), [](std::uint8_t v) { return v != 0; }))
+      return false;
+  }
+  return true;
+}
+
+/// `slot`: as in the map, the track's place in the list counted from 1.
+Json label_places(const Step& step) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < step.tracks.list.size(); ++i) {
+    const Track& track = step.tracks.list[i];
+    const Rect box = box_of(track, step.frame.objects);
+    if (box.width == 0) continue;
+    const Image<std::uint8_t> mask = mask_of(View<const TrackId>(step.ids), track.id, box);
+    // Of two tracks that are seen as one object, one has the pixels.
+    if (is_empty(mask)) continue;
+    const LabelPlace place = label_place(mask);
+    all.push_back({{"id", i + 1}, {"x", box.x + place.x}, {"y", box.y + place.y}});
+  }
+  return all;
+}
+
+/// The page needs no more of the pose's uncertainty than that of its place.
+void keep_covariance_of_place(Json& pose) {
+  if (pose.is_null()) return;
+  const Json& rows = pose.at("covariance");
+  Json place = Json::array();
+  for (const std::size_t row : {0U, 1U, 2U}) {
+    for (const std::size_t column : {0U, 1U, 2U}) place.push_back(rows.at(6 * row + column));
+  }
+  pose["covariance_m2"] = place;
+  pose.erase("covariance");
+}
+
+/// Where the odometry's frame lies in the map: a turn about z and a shift. Null where it is not known.
+Json place_of_odometry(const LandmarksState& state) {
+  if (!state.is_located) return nullptr;
+  const Pose& pose = state.located.map_from_odom;
+  return {{"yaw_rad", rounded(std::atan2(pose.rotation[3], pose.rotation[0]))},
+          {"position_m", json(pose.translation_m)}};
+}
+
+Json facts(const Step& step, const std::string& name, std::optional<double> milliseconds,
+           const Landmarked& marked) {
+  Json line = Json::parse(step_json(step, name, marked));
+  line["map_from_odom"] = place_of_odometry(marked.state);
+  keep_covariance_of_place(line.at("pose"));
+  for (Json& track : line.at("tracks")) {
+    track.erase("rle");
+    track.erase("bbox");
+  }
+  line["marks"] = label_places(step);
+  if (milliseconds) line["ms"] = std::round(*milliseconds * 100) / 100;
+  return line;
+}
+
+/// For each pixel the track's place in the list counted from 1: fewer bytes than ids, which grow.
+Json packed_tracks(const Step& step) {
+  const auto& list = step.tracks.list;  // by id, rising
+  TrackId before = TrackId::none;
+  long number_before = 0;
+  return packed(View<const TrackId>(step.ids), [&](TrackId id) {
+    if (id == before) return number_before;
+    before = id;
+    const auto at = std::lower_bound(list.begin(), list.end(), id,
+                                     [](const Track& track, TrackId wanted) { return track.id < wanted; });
+    return number_before = at != list.end() && at->id == id ? at - list.begin() + 1 : 0L;
+  });
+}
+
+Json rig_json(const std::optional<StereoRig>& rig) {
+  if (!rig) return nullptr;
+  return {{"focal_px", rig->focal_px},
+          {"cx_px", rig->cx_px},
+          {"cy_px", rig->cy_px},
+          {"baseline_m", rig->baseline_m}};
+}
+
+}  // namespace
+
+EncodedFrame encode_step(const Step& step, const std::string& name, View<const Gray> left,
+                         View<const Rgb> left_rgb, std::optional<double> milliseconds,
+                         const Landmarked& marked) {
+  const Json maps{{"left", picture_as_uri(left, left_rgb)}, {"tracks", packed_tracks(step)}};
+  return {for_script(facts(step, name, milliseconds, marked)), for_script(maps)};
+}
+
+FollowPage::FollowPage(const std::filesystem::path& file, FollowPageHead head)
+    : head_(std::move(head)), file_(file) {
+  PageShell shell = page_shell(kFollowLayout, kFollowStyle, kFollowScript, "cairn follow: " + head_.title);
+  file_.append(shell.before);
+  end_ = std::move(shell.after);
+}
+
+void FollowPage::add(const EncodedFrame& step) {
+  const std::string number = std::to_string(frames_++);
+  file_.append(script_block("facts-" + number, step.facts));
+  file_.append(script_block("maps-" + number, step.maps));
+}
+
+void FollowPage::add_event(const std::string& line) {
+  if (!events_.empty()) events_ += ",";
+  events_ += for_script(Json::parse(line));
+}
+
+void FollowPage::finish(const LandmarkMap& map) {
+  Json landmarks = Json::array();
+  for (const Landmark& landmark : map.list) {
+    landmarks.push_back({{"id", number(landmark.id)},
+                         {"name", landmark.name},
+                         {"position_m", json(landmark.position_m)},
+                         {"gone", landmark.is_gone}});
+  }
+  const Json run{{"command", "follow"},        {"title", head_.title},
+                 {"cairn", CAIRN_VERSION},     {"frames", frames_},
+                 {"width", head_.image.width}, {"height", head_.image.height},
+                 {"rig", rig_json(head_.rig)}, {"look", {{"objects", id_colours()}}},
+                 {"landmarks", landmarks}};
+  file_.append(script_block("run", for_script(run)));
+  file_.append(script_block("happened", "[" + events_ + "]"));
+  file_.append(end_);
+  file_.finish();
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,490 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "frame_list.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <cmath>
+#include <io/dataset.hpp>
+#include <map>
+#include <system_error>
+
+#include "stamps.hpp"
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUsualRateHz = 10;
+
+bool is_file(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_regular_file(path, unknown);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_directory(path, unknown);
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// 9 before 10, whether or not the numbers are padded with zeros; ties by bytes.
+bool in_natural_order(const std::string& a, const std::string& b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  const auto number_at = [](const std::string& text, std::size_t& at) {
+    while (at < text.size() && text[at] == '0') ++at;
+    const std::size_t begin = at;
+    while (at < text.size() && is_digit(text[at])) ++at;
+    return std::string_view(text).substr(begin, at - begin);
+  };
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string_view left = number_at(a, i);
+      const std::string_view right = number_at(b, j);
+      if (left.size() != right.size()) return left.size() < right.size();
+      if (left != right) return left < right;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
+std::optional<std::size_t> number_of(std::string_view text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+/// The images of a folder in their order.
+std::vector<fs::path> images_in(const fs::path& folder) {
+  constexpr std::array kEndings = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff"};
+  std::vector<fs::path> images;
+  std::error_code reason;
+  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    std::string ending = it->path().extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() && is_file(it->path()))
+      images.push_back(it->path());
+  }
+  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
+  std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
+    return in_natural_order(a.filename().string(), b.filename().string());
+  });
+  return images;
+}
+
+// ---- one side with its stamps ----
+
+struct Side {
+  std::vector<fs::path> files;
+  std::optional<std::vector<Stamp>> stamps;  // of each file
+  std::string stamps_from;
+};
+
+std::optional<fs::path> first_file(std::initializer_list<fs::path> candidates) {
+  for (const fs::path& candidate : candidates) {
+    if (is_file(candidate)) return candidate;
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_count(const fs::path& path, std::size_t stamps, std::size_t frames) {
+  throw Error(path.string() + ": has " + std::to_string(stamps) + " stamps, expected one for each of the " +
+              std::to_string(frames) + " frames");
+}
+
+/// A stamp for each name: line by line, or, of an excerpt, the line that the number in the name says.
+std::vector<Stamp> stamps_by_line(const fs::path& path, const std::vector<std::string>& names) {
+  std::vector<Stamp> all = load_stamps(path);
+  if (all.size() == names.size()) return all;
+  std::vector<Stamp> some;
+  for (const std::string& name : names) {
+    const std::optional<std::size_t> number = number_of(name);
+    if (!number || *number >= all.size()) refuse_count(path, all.size(), names.size());
+    some.push_back(all[*number]);
+  }
+  return some;
+}
+
+std::vector<Stamp> stamps_by_frame(const fs::path& path, const std::vector<FrameStamp>& rows,
+                                   const std::vector<std::string>& names) {
+  std::map<std::size_t, Stamp> by_frame;
+  for (const FrameStamp& row : rows) {
+    if (row.frame) by_frame[*row.frame] = row.stamp;
+  }
+  std::vector<Stamp> stamps;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = by_frame.find(number_of(names[i]).value_or(i));
+    if (found != by_frame.end()) stamps.push_back(found->second);
+  }
+  if (stamps.size() == names.size()) return stamps;
+  if (rows.size() != names.size()) refuse_count(path, rows.size(), names.size());
+  stamps.clear();
+  for (const FrameStamp& row : rows) stamps.push_back(row.stamp);
+  return stamps;
+}
+
+std::vector<std::string> stems_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.stem().string());
+  return names;
+}
+
+/// EuRoC names its images by their stamps.
+std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kFewestDigits = 16;
+  std::vector<Stamp> stamps;
+  for (const std::string& name : names) {
+    const std::optional<Stamp> stamp = name.size() >= kFewestDigits ? parse_stamp(name) : std::nullopt;
+    if (!stamp || !std::all_of(name.begin(), name.end(), is_digit)) return std::nullopt;
+    stamps.push_back(*stamp);
+  }
+  return stamps;
+}
+
+Side side_in(const fs::path& folder) {
+  Side side{images_in(folder), {}, {}};
+  if (side.files.empty()) throw Error(folder.string() + ": holds no images (.png .jpg .pgm .ppm .tif)");
+  const std::vector<std::string> names = stems_of(side.files);
+  if (const auto path =
+          first_file({folder / "stamps.txt", folder / "timestamps.txt", folder / "times.txt",
+                      folder.parent_path() / (folder.filename() == "data" ? "timestamps.txt" : "-")})) {
+    side.stamps = stamps_by_line(*path, names);
+    side.stamps_from = path->string();
+  } else if (auto stamps = stamps_in_names(names)) {
+    side.stamps = std::move(stamps);
+    side.stamps_from = "the names of the files";
+  }
+  return side;
+}
+
+Side euroc_side(const fs::path& camera) {
+  Side side;
+  const fs::path table = camera / "data.csv";
+  side.stamps_from = table.string();
+  side.stamps.emplace();
+  for (const NamedStamp& named : load_named_stamps(table)) {
+    side.files.push_back(camera / "data" / named.file);
+    side.stamps->push_back(named.stamp);
+  }
+  if (side.files.empty()) throw Error(table.string() + ": names no images");
+  return side;
+}
+
+// ---- pairs ----
+
+void remark_alone(FrameList& list, const std::vector<std::size_t>& alone, const Side& side,
+                  const std::string& what) {
+  if (alone.empty()) return;
+  list.remarks.push_back({what, alone.size(), side.files[alone.front()].stem().string(), true, false});
+}
+
+FrameList paired(const Side& left, const Side& right, const StampPairs& pairs, const SourceOptions& options) {
+  FrameList list;
+  const double rate = rate_of(options);
+  list.stamps_from = left.stamps ? left.stamps_from : rate_text(rate);
+  for (const auto& [l, r] : pairs.pairs) {
+    const std::size_t index = list.frames.size();
+    const Stamp stamp = left.stamps ? (*left.stamps)[l] : stamp_at(index, rate);
+    list.frames.push_back({left.files[l].stem().string(), index, left.files[l], right.files[r], {}, stamp});
+  }
+  remark_alone(list, pairs.left_alone, left, "left image without a right one");
+  remark_alone(list, pairs.right_alone, right, "right image without a left one");
+  return list;
+}
+
+FrameList paired_by_stamps(const Side& left, const Side& right, const SourceOptions& options) {
+  check_rising(*left.stamps, stems_of(left.files), left.stamps_from);
+  check_rising(*right.stamps, stems_of(right.files), right.stamps_from);
+  FrameList list =
+      paired(left, right, pair_by_stamps(*left.stamps, *right.stamps, options.max_skew_ms), options);
+  if (!list.frames.empty()) return list;
+  throw Error(left.stamps_from + ": no left and right image lie within " +
+              std::to_string(std::lround(options.max_skew_ms)) + " ms; the first stamps are " +
+              stamp_text(left.stamps->front()) + " and " + stamp_text(right.stamps->front()));
+}
+
+/// By keys that both sides have, such as names or numbers. Both rise.
+template <class Key>
+StampPairs pair_by_keys(const std::vector<Key>& left, const std::vector<Key>& right) {
+  std::map<Key, std::size_t> of_right;
+  for (std::size_t r = 0; r < right.size(); ++r) of_right.emplace(right[r], r);
+  StampPairs found;
+  for (std::size_t l = 0; l < left.size(); ++l) {
+    const auto partner = of_right.find(left[l]);
+    if (partner == of_right.end()) {
+      found.left_alone.push_back(l);
+    } else {
+      found.pairs.push_back({l, partner->second});
+      of_right.erase(partner);
+    }
+  }
+  for (const auto& [key, r] : of_right) found.right_alone.push_back(r);
+  std::sort(found.right_alone.begin(), found.right_alone.end());
+  return found;
+}
+
+/// What is common to all: the range, the order of stamps.
+FrameList finished(FrameList list, const SourceOptions& options, const std::string& source) {
+  const std::size_t all = list.frames.size();
+  std::erase_if(list.frames, [&](const ListedFrame& frame) { return !is_in(options.frames, frame.index); });
+  if (list.frames.empty()) {
+    throw Error(source + ": has " + std::to_string(all) + (all == 1 ? " frame" : " frames") +
+                ", and none of them is in --frames");
+  }
+  std::vector<Stamp> stamps;
+  std::vector<std::string> names;
+  for (const ListedFrame& frame : list.frames) {
+    stamps.push_back(frame.stamp);
+    names.push_back(frame.name);
+  }
+  check_rising(stamps, names, list.stamps_from);
+  return list;
+}
+
+// ---- kinds ----
+
+FrameList list_two_folders(const fs::path& left_folder, const fs::path& right_folder,
+                           const SourceOptions& options) {
+  const Side left = side_in(left_folder);
+  const Side right = side_in(right_folder);
+  if (left.stamps && right.stamps) return paired_by_stamps(left, right, options);
+  const StampPairs by_name = pair_by_keys(stems_of(left.files), stems_of(right.files));
+  if (!by_name.pairs.empty()) return paired(left, right, by_name, options);
+  if (left.files.size() != right.files.size()) {
+    throw Error(right_folder.string() + ": holds " + std::to_string(right.files.size()) + " images, " +
+                left_folder.string() + " " + std::to_string(left.files.size()) +
+                ", with other names and without stamps.txt: which belong together is not known");
+  }
+  StampPairs in_order;
+  for (std::size_t i = 0; i < left.files.size(); ++i) in_order.pairs.push_back({i, i});
+  return paired(left, right, in_order, options);
+}
+
+struct Pattern {
+  fs::path folder;
+  std::string before;
+  std::string after;
+  std::size_t digits = 1;  // at least, padded with zeros
+};
+
+std::optional<Pattern> pattern_of(const std::string& text) {
+  const fs::path path = text;
+  const std::string name = path.filename().string();
+  const std::size_t percent = name.find('%');
+  if (percent == std::string::npos) return std::nullopt;
+  std::size_t at = percent + 1;
+  const bool is_padded = at < name.size() && name[at] == '0';
+  std::size_t digits = 0;
+  while (at < name.size() && is_digit(name[at]) && digits < 20)
+    digits = 10 * digits + static_cast<std::size_t>(name[at++] - '0');
+  if (at >= name.size() || name[at] != 'd' || name.find('%', at) != std::string::npos) return std::nullopt;
+  return Pattern{path.parent_path().empty() ? "." : path.parent_path(), name.substr(0, percent),
+                 name.substr(at + 1), is_padded && digits > 0 ? digits : 1};
+}
+
+struct Numbered {
+  Side side;
+  std::vector<std::size_t> numbers;
+};
+
+Numbered files_of(const std::string& text) {
+  const std::optional<Pattern> pattern = pattern_of(text);
+  if (!pattern) throw Error(text + ": expected one %d, %04d or the like in the file's name");
+  if (!is_folder(pattern->folder))
+    throw Error(pattern->folder.string() + ": is not there, expected a folder");
+  Numbered found;
+  for (const fs::path& file : images_in(pattern->folder)) {
+    const std::string name = file.filename().string();
+    const std::size_t around = pattern->before.size() + pattern->after.size();
+    if (name.size() < around + pattern->digits || !name.starts_with(pattern->before) ||
+        !name.ends_with(pattern->after))
+      continue;
+    const std::string digits = name.substr(pattern->before.size(), name.size() - around);
+    const bool is_padded = digits.size() == pattern->digits || digits.front() != '0';
+    const std::optional<std::size_t> number = is_padded ? number_of(digits) : std::nullopt;
+    if (!number) continue;
+    found.side.files.push_back(file);
+    found.numbers.push_back(*number);
+  }
+  if (found.numbers.empty()) throw Error(text + ": no file has such a name");
+  return found;
+}
+
+FrameList list_patterns(const std::string& left_text, const std::string& right_text,
+                        const SourceOptions& options) {
+  Numbered left = files_of(left_text);
+  const Numbered right = files_of(right_text);
+  if (const auto path = first_file({left.side.files.front().parent_path() / "stamps.txt"})) {
+    left.side.stamps = stamps_by_line(*path, stems_of(left.side.files));
+    left.side.stamps_from = path->string();
+  }
+  const StampPairs pairs = pair_by_keys(left.numbers, right.numbers);
+  if (pairs.pairs.empty()) throw Error(right_text + ": no number is that of a file of " + left_text);
+  return paired(left.side, right.side, pairs, options);
+}
+
+/// mav0/cam0, or cam0 where the folder is mav0 itself.
+std::optional<fs::path> euroc_camera_in(const fs::path& folder) {
+  for (const char* camera : {"mav0/cam0", "cam0"}) {
+    if (is_folder(folder / camera / "data")) return folder / camera;
+  }
+  return std::nullopt;
+}
+
+FrameList list_euroc(const fs::path& camera, const SourceOptions& options) {
+  const fs::path other = camera.parent_path() / "cam1";
+  if (!is_folder(other)) throw Error(other.string() + ": is not there, expected the right camera's folder");
+  FrameList list = paired_by_stamps(euroc_side(camera), euroc_side(other), options);
+  list.calib = camera / "sensor.yaml";
+  list.is_raw = true;
+  return list;
+}
+
+/// KITTI's raw recordings stamp each camera; its odometry benchmark has times.txt for both.
+FrameList list_two_subfolders(const fs::path& source, const std::vector<FrameFiles>& frames,
+                              const SourceOptions& options) {
+  const fs::path left_folder = frames.front().left.parent_path();
+  const fs::path right_folder = frames.front().expected_right.parent_path();
+  Side left = side_in(left_folder);
+  const Side right = is_folder(right_folder) ? Side{images_in(right_folder), {}, {}} : Side{};
+  if (const auto path = first_file({source / "stamps.txt", source / "times.txt"})) {
+    left.stamps = stamps_by_line(*path, stems_of(left.files));
+    left.stamps_from = path->string();
+  }
+  const StampPairs pairs = pair_by_keys(stems_of(left.files), stems_of(right.files));
+  if (pairs.pairs.empty()) {
+    throw Error(left_folder.string() + ": no image has a right one, expected " +
+                frames.front().expected_right.string());
+  }
+  if (const auto path = first_file({right_folder.parent_path() / "timestamps.txt"});
+      path && left.stamps && right_folder.filename() == "data") {
+    Side stamped = right;
+    stamped.stamps = stamps_by_line(*path, stems_of(right.files));
+    stamped.stamps_from = path->string();
+    return paired_by_stamps(left, stamped, options);
+  }
+  return paired(left, right, pairs, options);
+}
+
+/// Stamps of frames in folders of their own.
+void give_stamps(const fs::path& source, const std::vector<std::string>& names, const SourceOptions& options,
+                 FrameList& list, std::vector<Stamp>& stamps) {
+  if (const auto path = first_file({source / "stamps.txt", source / "times.txt"})) {
+    list.stamps_from = path->string();
+    stamps = stamps_by_line(*path, names);
+    return;
+  }
+  for (const char* name : {"trajectory.csv", "odometry.csv"}) {
+    if (!is_file(source / name)) continue;
+    const auto rows = load_frame_stamps(source / name);
+    if (!rows) continue;
+    list.stamps_from = (source / name).string();
+    stamps = stamps_by_frame(source / name, *rows, names);
+    return;
+  }
+  const double rate = rate_of(options);
+  list.stamps_from = rate_text(rate);
+  for (std::size_t i = 0; i < names.size(); ++i) stamps.push_back(stamp_at(i, rate));
+}
+
+FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& frames,
+                      const SourceOptions& options) {
+  if (std::none_of(frames.begin(), frames.end(), [](const FrameFiles& files) { return files.right; })) {
+    throw Error(frames.front().left.string() + ": there is no right image" +
+                (frames.front().expected_right.empty()
+                     ? ""
+                     : ", expected " + frames.front().expected_right.string()));
+  }
+  FrameList list;
+  std::vector<std::string> names;
+  for (const FrameFiles& files : frames) names.push_back(files.name);
+  std::vector<Stamp> stamps;
+  give_stamps(source, names, options, list, stamps);
+  list.calib = calibration_in(source);
+  list.grey_cameras = frames.front().grey_cameras;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!frames[i].right) {
+      if (is_in(options.frames, i))
+        remark(list.remarks, {"left image without a right one", 1, frames[i].name, true, false});
+      continue;
+    }
+    list.frames.push_back({frames[i].name, i, frames[i].left, *frames[i].right, frames[i].calib, stamps[i]});
+  }
+  return list;
+}
+
+}  // namespace
+
+FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
+  if (const std::optional<fs::path> camera = euroc_camera_in(folder))
+    return finished(list_euroc(*camera, options), options, folder.string());
+  std::vector<FrameFiles> frames = find_frames(folder);
+  std::sort(frames.begin(), frames.end(),
+            [](const FrameFiles& a, const FrameFiles& b) { return in_natural_order(a.name, b.name); });
+  const FrameFiles& first = frames.front();
+  const bool in_two_folders = first.left.parent_path() != first.folder;
+  FrameList list =
+      in_two_folders ? list_two_subfolders(folder, frames, options) : list_frames(folder, frames, options);
+  if (in_two_folders) {
+    list.calib = first.calib;
+    list.grey_cameras = first.grey_cameras;
+  }
+  return finished(std::move(list), options, folder.string());
+}
+
+FrameList list_two(const std::string& left, const std::string& right, const SourceOptions& options) {
+  const bool are_folders = is_folder(left) && is_folder(right);
+  FrameList list = are_folders ? list_two_folders(left, right, options) : list_patterns(left, right, options);
+  const fs::path folder = list.frames.front().left.parent_path();
+  list.calib = calibration_in(folder);
+  if (!list.calib) list.calib = calibration_in(fs::absolute(folder).lexically_normal().parent_path());
+  return finished(std::move(list), options, left + "," + right);
+}
+
+bool is_pattern(const std::string& name) {
+  return fs::path(name).filename().string().find('%') != std::string::npos;
+}
+
+void remark(std::vector<SourceRemark>& remarks, const SourceRemark& of_one) {
+  const auto known = std::find_if(remarks.begin(), remarks.end(),
+                                  [&](const SourceRemark& other) { return other.what == of_one.what; });
+  if (known == remarks.end()) {
+    remarks.push_back(of_one);
+  } else {
+    known->count += of_one.count;
+  }
+}
+
+bool is_in(const FrameRange& range, std::size_t index) {
+  return index >= range.first && (!range.last_excluded || index < *range.last_excluded) &&
+         (index - range.first) % range.step == 0;
+}
+
+double rate_of(const SourceOptions& options) {
+  return options.rate_hz > 0 ? options.rate_hz : kUsualRateHz;
+}
+
+std::string rate_text(double rate_hz) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), rate_hz).ptr;
+  return "a rate of " + std::string(text.data(), end) + " Hz";
+}
+
+Stamp stamp_at(std::size_t index, double rate_hz) {
+  return Stamp{std::llround(static_cast<double>(index) * 1e9 / rate_hz)};
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "frame_watch.hpp"
+
+#include <cairn/core/error.hpp>
+#include <io/raw_calibration.hpp>
+#include <string_view>
+
+#include "frame_list.hpp"
+#include "stamps.hpp"
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t hash_of(View<const Gray> image) {
+  constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15U;
+  std::uint64_t hash = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    const std::string_view row(reinterpret_cast<const char*>(image.row(y)),
+                               static_cast<std::size_t>(image.width()));
+    hash = (hash ^ std::hash<std::string_view>{}(row)) * kFactor;
+  }
+  return hash;
+}
+
+}  // namespace
+
+PicturePair SourceCalibration::rectified(PicturePair pair, const Pool& pool) const {
+  if (!rectifier) return pair;
+  try {
+    return (*rectifier)(pair, pool);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+}
+
+SourceCalibration open_calibration(const SourceOptions& options, const std::optional<fs::path>& found,
+                                   bool grey_cameras, bool is_raw) {
+  SourceCalibration calibration;
+  if (!options.calib.empty()) {
+    calibration.path = options.calib;
+  } else if (found) {
+    calibration.path = *found;
+  }
+  if (is_raw || options.rectify) {
+    if (calibration.path.empty())
+      throw Error("--rectify: no calibration is known, expected that of the raw cameras as --calib FILE");
+    calibration.rectifier = std::make_shared<Rectifier>(load_raw_calibration(calibration.path));
+    calibration.says.rig = calibration.rectifier->rig();
+  } else if (!calibration.path.empty()) {
+    calibration.says = load_calibration(calibration.path, grey_cameras);
+  }
+  return calibration;
+}
+
+void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {
+  const Size size = frame.left.gray.size();
+  Seen now{frame.stamp, frame.name, hash_of(frame.left.gray.view()), hash_of(frame.right.view())};
+  if (!before_) {
+    size_ = size;
+  } else {
+    if (size != size_)
+      throw Error(file + ": is " + text(size) + ", expected " + text(size_) + " as the frames before");
+    if (now.stamp <= before_->stamp) {
+      throw Error(file + ": frame " + now.name + " has the stamp " + stamp_text(now.stamp) +
+                  ", expected one later than the " + stamp_text(before_->stamp) + " of frame " +
+                  before_->name);
+    }
+    frame.after_gap = seconds_between(before_->stamp, now.stamp) > max_gap_s_;
+    const bool left_stands = now.left == before_->left;
+    const bool right_stands = now.right == before_->right;
+    if (left_stands != right_stands) {
+      remark(remarks, {left_stands ? "left image as in the frame before, the right one new"
+                                   : "right image as in the frame before, the left one new",
+                       1, frame.name, false, false});
+    }
+  }
+  before_ = std::move(now);
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "sequence.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <filesystem>
+#include <io/read_file.hpp>
+#include <system_error>
+
+#include "frame_list.hpp"
+#include "frame_watch.hpp"
+#include "open_video.hpp"
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether both images can be read, each for itself.
+bool are_readable(const ListedFrame& files) {
+  try {
+    (void)load_picture(files.left);
+    (void)load_picture(files.right);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool is_same(const std::optional<StereoRig>& a, const std::optional<StereoRig>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->focal_px == b->focal_px && a->cx_px == b->cx_px && a->cy_px == b->cy_px &&
+         a->baseline_m == b->baseline_m && a->doffs_px == b->doffs_px;
+}
+
+/// A sequence of image files.
+class FileSequence : public Sequence {
+ public:
+  FileSequence(std::string name, FrameList list, const SourceOptions& options, Pool pool)
+      : name_(std::move(name)), list_(std::move(list)), pool_(std::move(pool)), watch_(options.max_gap_s) {
+    const ListedFrame& first = list_.frames.front();
+    const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
+    each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
+    calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw);
+    if (each_has_own_) calib_bytes_ = read_file(calibration_.path, kMostTextBytes);
+    first_ = load(first);
+    const Size size = first_->left.gray.size();
+    if (calibration_.rectifier) {
+      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
+    } else if (!calibration_.path.empty()) {
+      check_size(calibration_.says, size, calibration_.path);
+      check_search_range(calibration_.says, calibration_.path);
+      if (calibration_.says.of_raw_cameras) {
+        list_.remarks.push_back({calibration_.path.string() +
+                                     ": describes raw cameras and their distortion; the images are taken for "
+                                     "rectified ones (--rectify: they are raw)",
+                                 0, first.name, false, false});
+      }
+    }
+  }
+
+  std::optional<SequenceFrame> next() override {
+    if (first_) {
+      SequenceFrame frame = std::move(*first_);
+      first_.reset();
+      at_ = 1;
+      return frame;
+    }
+    while (at_ < list_.frames.size()) {
+      const ListedFrame& files = list_.frames[at_++];
+      try {
+        return load(files);
+      } catch (const Error& error) {
+        // Only what cannot be decoded is left out: what is read and does not fit says that this is no
+        // sequence.
+        if (are_readable(files)) throw;
+        remark(list_.remarks,
+               {"frame that cannot be read", 1, files.name + " (" + error.what() + ")", true, true});
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> size() const override { return list_.frames.size(); }
+  [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
+  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
+  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
+  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] std::string stamps_from() const override { return list_.stamps_from; }
+  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return list_.remarks; }
+  [[nodiscard]] const std::string& ended_early() const override { return none_; }
+
+ private:
+  SequenceFrame load(const ListedFrame& files) {
+    if (each_has_own_) check_calibration(files);
+    PicturePair pair = load_pair(files.left, files.right, pool_, bits_);
+    // Of raw images, too: their own size counts.
+    if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
+      throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
+                  text(raw_size_) + " as the frames before");
+    }
+    raw_size_ = pair.left.gray.size();
+    bits_ = pair.bits;
+    pair = calibration_.rectified(std::move(pair), pool_);
+    SequenceFrame frame{
+        files.name, files.index, files.stamp, std::move(pair.left), std::move(pair.right.gray), false};
+    watch_.see(frame, files.left.string(), list_.remarks);
+    return frame;
+  }
+
+  void check_calibration(const ListedFrame& files) {
+    if (!files.calib || *files.calib == calibration_.path ||
+        read_file(*files.calib, kMostTextBytes) == calib_bytes_)
+      return;
+    if (!is_same(load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
+      throw Error(files.calib->string() + ": is another calibration than " + calibration_.path.string() +
+                  ", expected one rig for the whole sequence");
+    }
+  }
+
+  std::string name_;
+  FrameList list_;
+  Pool pool_;
+  FrameWatch watch_;
+  SourceCalibration calibration_;
+  bool each_has_own_ = false;
+  std::string calib_bytes_;
+  Size raw_size_;
+  int bits_ = 8;
+  std::optional<SequenceFrame> first_;
+  std::size_t at_ = 0;
+  std::string none_;
+};
+
+std::optional<std::size_t> count_in(std::string_view text) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return count;
+}
+
+bool exists(const fs::path& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_directory(path, unknown);
+}
+
+std::string name_of(const fs::path& path) {
+  return fs::absolute(path).lexically_normal().filename().string();
+}
+
+void check(const SourceOptions& options) {
+  const auto refuse = [](const std::string& option, double value, const std::string& expected) {
+    throw Error(option + ": found " + std::to_string(value) + ", expected " + expected);
+  };
+  if (!(options.rate_hz >= 0 && options.rate_hz <= 1e6)) refuse("--rate", options.rate_hz, "Hz, 0 ... 1e6");
+  if (!(options.max_gap_s > 0)) refuse("--max-gap", options.max_gap_s, "a positive number of s");
+  if (!(options.max_skew_ms >= 0)) refuse("--max-skew", options.max_skew_ms, "ms, not negative");
+  if (!options.layout.empty() && options.layout != "side_by_side" && options.layout != "top_bottom")
+    throw Error("--layout: found " + options.layout + ", expected side_by_side or top_bottom");
+}
+
+void check_no_layout(const SourceOptions& options, const std::string& source) {
+  if (!options.layout.empty())
+    throw Error("--layout " + options.layout + ": is for one video with both images, " + source + " is none");
+}
+
+std::unique_ptr<Sequence> open_pair(const std::string& left, const std::string& right,
+                                    const SourceOptions& options, const Pool& pool) {
+  check_no_layout(options, left + "," + right);
+  if (left.empty() || right.empty())
+    throw Error(left + "," + right +
+                ": expected a left and a right part, one before and one behind the comma");
+  if (!is_pattern(left) && !is_pattern(right)) {
+    for (const std::string& side : {left, right}) {
+      if (!exists(side)) throw Error(side + ": is not there, expected a folder, a video or a pattern");
+    }
+    if (is_folder(left) != is_folder(right))
+      throw Error(left + "," + right + ": is one folder and one file, expected two of a kind");
+    if (!is_folder(left)) return open_videos(left, right, options, pool);
+  } else if (is_pattern(left) != is_pattern(right)) {
+    throw Error(left + "," + right + ": has one pattern, expected two");
+  }
+  return std::make_unique<FileSequence>(name_of(left), list_two(left, right, options), options, pool);
+}
+
+}  // namespace
+
+FrameRange parse_frame_range(std::string_view text) {
+  const auto refuse = [&] {
+    throw Error("--frames " + std::string(text) +
+                ": expected FIRST:END or FIRST:END:STEP with FIRST < END and STEP > 0 (10:60, ::2), or the "
+                "number of first ones");
+  };
+  FrameRange range;
+  const std::size_t first_colon = text.find(':');
+  if (first_colon == std::string_view::npos) {
+    range.last_excluded = count_in(text);
+    if (!range.last_excluded || *range.last_excluded == 0) refuse();
+    return range;
+  }
+  const std::size_t second_colon = std::min(text.find(':', first_colon + 1), text.size());
+  const std::string_view first = text.substr(0, first_colon);
+  const std::string_view last = text.substr(first_colon + 1, second_colon - first_colon - 1);
+  if (!first.empty()) {
+    if (!count_in(first)) refuse();
+    range.first = *count_in(first);
+  }
+  if (!last.empty()) {
+    range.last_excluded = count_in(last);
+    if (!range.last_excluded || *range.last_excluded <= range.first) refuse();
+  }
+  if (second_colon < text.size()) {
+    const auto step = count_in(text.substr(second_colon + 1));
+    if (!step || *step == 0) refuse();
+    range.step = *step;
+  }
+  return range;
+}
+
+std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceOptions& options,
+                                        const Pool& pool) {
+  check(options);
+  if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
+  for (const char* live : {"v4l2:", "gst:", "y8i:", "rtsp:", "http:", "https:"}) {
+    if (source.starts_with(live) && !exists(source))
+      throw Error(source + ": live sources are not built in, expected a folder or a video");
+  }
+  if (!exists(source)) {
+    if (const std::size_t comma = source.find(','); comma != std::string::npos)
+      return open_pair(source.substr(0, comma), source.substr(comma + 1), options, pool);
+    if (is_pattern(source))
+      throw Error(source + ": is one pattern, expected two: left_%04d.png,right_%04d.png");
+    throw Error(source + ": is not there, expected a folder of frames, a video, or LEFT,RIGHT");
+  }
+  if (!is_folder(source)) {
+    if (options.layout.empty()) {
+      throw Error(source +
+                  ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "
+                  "or LEFT,RIGHT");
+    }
+    return open_video(source, options, pool);
+  }
+  check_no_layout(options, source);
+  const fs::path folder = (fs::path(source) / "").parent_path();  // without a slash at its end
+  return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "sequence_run.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cstdlib>
+#include <iterator>
+#include <tracking/first_pose.hpp>
+#include <utility>
+
+#include "trajectory_files.hpp"
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<TimedPose> known_poses(const fs::path& path) {
+  Trajectory known = load_trajectory(path);
+  if (!known.has_stamps)
+    throw Error(path.string() +
+                ": its poses have no stamps, expected TUM's or EuRoC's form, or a times.txt beside it");
+  return std::move(known.poses);
+}
+
+/// The nearest in time; none where none are known at all.
+std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, Stamp stamp, const std::string& file) {
+  if (poses.empty()) return std::nullopt;
+  constexpr std::int64_t kFarthest = 5'000'000;  // ns
+  auto best = std::ranges::lower_bound(poses, stamp, {}, &TimedPose::stamp);
+  if (best == poses.end() ||
+      (best != poses.begin() && stamp.ns - std::prev(best)->stamp.ns < best->stamp.ns - stamp.ns))
+    --best;
+  if (std::abs(best->stamp.ns - stamp.ns) > kFarthest)
+    throw Error(file + ": has no pose within 5 ms of the stamp " + std::to_string(stamp.ns) + " ns");
+  return best->map_from_camera;
+}
+
+}  // namespace
+
+std::unique_ptr<MotionPriors> open_priors(const std::optional<fs::path>& odometry,
+                                          const std::optional<fs::path>& imu, const std::string& source_name,
+                                          const Sequence& source) {
+  if (odometry) return load_odometry(*odometry, source_name);
+  if (imu) return load_imu(*imu, mounting_of_imu(*imu, source.rectifier()).value_or(Pose{}));
+  return nullptr;
+}
+
+SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const CompanionFiles& files,
+                         FollowConfig config, Exec exec)
+    : source_(source),
+      source_name_(std::move(source_name)),
+      follower_(std::move(config), source.rig(), std::move(exec)),
+      priors_(open_priors(files.odometry, files.imu, source_name_, source)),
+      is_map_read_only_(files.is_map_read_only),
+      start_(files.start) {
+  if (files.poses) {
+    poses_name_ = files.poses->string();
+    poses_ = known_poses(*files.poses);
+  }
+  if (files.scan) scans_ = load_scans(*files.scan);
+  if (files.map)
+    map_.emplace(
+        MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));
+}
+
+Step SequenceRun::next(const SequenceFrame& frame) {
+  std::optional<MotionPrior> prior;
+  if (priors_ && has_begun_) prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
+  if (frame.after_gap) follower_.forget();
+  Step step = follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp,
+                             prior, pose_at(poses_, frame.stamp, poses_name_), scan_at(scans_, frame.stamp));
+  if (source_.rig()) mark(step, frame);
+  has_begun_ = true;
+  before_ = step.stamp;
+  pose_before_ = step.map_from_camera;
+  return step;
+}
+
+void SequenceRun::mark(const Step& step, const SequenceFrame& frame) {
+  const bool writes = map_ && !is_map_read_only_;
+  if (!has_begun_) {
+    const std::int64_t run = writes ? map_->begin_run(source_name_, step.stamp) : 0;
+    marked_.state = begin_landmarks(map_ ? map_->load() : LandmarkMap{}, run, start_);
+  }
+  const LandmarkFrame seen = landmark_frame(step, *source_.rig(), frame.left.gray, frame.left.rgb);
+  marked_ = advance_landmarks(std::move(marked_.state), seen, config().landmarks);
+  if (writes) map_->write(seen, marked_);
+}
+
+void SequenceRun::close(RunState state) {
+  if (map_ && !is_map_read_only_ && has_begun_) map_->end_run(state, marked_.state.map);
+  map_.reset();
+}
+
+}  // namespace cairn::io

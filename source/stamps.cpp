@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "stamps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <io/read_file.hpp>
+#include <limits>
+
+#include "text_lines.hpp"
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+/// A century either side of 1970 and then some; sums and differences of two fit 64 bits.
+constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;
+
+template <class Number>
+std::optional<Number> whole(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+bool is_digits(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::optional<Stamp> stamp_of(std::int64_t seconds, std::int64_t ns) {
+  if (std::llabs(seconds) > kFarthestNs / kNsPerSecond) return std::nullopt;
+  return Stamp{seconds * kNsPerSecond + ns};
+}
+
+/// The first nine digits behind the point, in ns.
+std::int64_t fraction_ns(std::string_view digits) {
+  constexpr std::size_t kDigits = 9;
+  std::string nine(digits.substr(0, kDigits));
+  nine.resize(kDigits, '0');
+  return whole<std::int64_t>(nine).value_or(0);
+}
+
+/// Digits with a point, without rounding through a double: those have 100 ns at the stamps of today.
+std::optional<Stamp> decimal(std::string_view text) {
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view seconds = text.substr(0, point);
+  const std::string_view fraction = text.substr(std::min(point + 1, text.size()));
+  if (!is_digits(seconds) && !is_digits(fraction)) return std::nullopt;
+  if (!(seconds.empty() || is_digits(seconds)) || !(fraction.empty() || is_digits(fraction)))
+    return std::nullopt;
+  const auto count = seconds.empty() ? std::optional<std::int64_t>(0) : whole<std::int64_t>(seconds);
+  if (!count) return std::nullopt;
+  const std::optional<Stamp> stamp = stamp_of(*count, fraction_ns(fraction));
+  return stamp && negative ? Stamp{-stamp->ns} : stamp;
+}
+
+/// "2011-09-26 13:02:25.964389445", UTC.
+std::optional<Stamp> date(std::string_view text) {
+  constexpr std::string_view kForm = "0000-00-00 00:00:00";
+  if (text.size() < kForm.size()) return std::nullopt;
+  for (std::size_t i = 0; i < kForm.size(); ++i) {
+    const bool is_digit = text[i] >= '0' && text[i] <= '9';
+    const bool fits = kForm[i] == '0' ? is_digit : text[i] == kForm[i] || (kForm[i] == ' ' && text[i] == 'T');
+    if (!fits) return std::nullopt;
+  }
+  const std::string_view fraction = text.substr(kForm.size());
+  if (!fraction.empty() && (fraction.front() != '.' || !is_digits(fraction.substr(1)))) return std::nullopt;
+  const auto number = [&](std::size_t at, std::size_t length) {
+    return whole<unsigned>(text.substr(at, length)).value_or(0);
+  };
+  const std::chrono::year_month_day day{std::chrono::year(static_cast<int>(number(0, 4))),
+                                        std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2))};
+  if (!day.ok() || number(11, 2) > 23 || number(14, 2) > 59 || number(17, 2) > 60) return std::nullopt;
+  const std::int64_t days = std::chrono::sys_days(day).time_since_epoch().count();
+  const std::int64_t seconds = ((days * 24 + number(11, 2)) * 60 + number(14, 2)) * 60 + number(17, 2);
+  return stamp_of(seconds, fraction.empty() ? 0 : fraction_ns(fraction.substr(1)));
+}
+
+[[noreturn]] void refuse(const fs::path& path, const TextLine& line, std::string_view found) {
+  throw Error(place(path, line.number) + ": found " + quoted(found) +
+              ", expected a stamp: a whole number of ns, or s with a decimal point");
+}
+
+}  // namespace
+
+std::optional<Stamp> parse_seconds(std::string_view text) {
+  if (const std::optional<Stamp> stamp = decimal(text)) return stamp;
+  const std::optional<double> seconds = whole<double>(text);
+  if (!seconds ||
+      !(std::abs(*seconds) * static_cast<double>(kNsPerSecond) < static_cast<double>(kFarthestNs)))
+    return std::nullopt;
+  return Stamp{std::llround(*seconds * static_cast<double>(kNsPerSecond))};
+}
+
+std::optional<Stamp> parse_stamp(std::string_view text) {
+  if (const std::optional<std::int64_t> ns = whole<std::int64_t>(text)) {
+    if (*ns > kFarthestNs || *ns < -kFarthestNs) return std::nullopt;
+    return Stamp{*ns};
+  }
+  if (is_digits(text)) return std::nullopt;
+  if (const std::optional<Stamp> stamp = parse_seconds(text)) return stamp;
+  return date(text);
+}
+
+std::string stamp_text(Stamp stamp) {
+  std::string text = seconds_text(stamp);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " s";
+}
+
+std::vector<Stamp> load_stamps(const fs::path& path) {
+  const std::string text = read_file(path, kMostLogBytes);
+  std::vector<Stamp> stamps;
+  // One line with a point says that all are s: "5" before "5.1" is no 5 ns.
+  const std::vector<TextLine> lines = lines_of(text);
+  const bool in_seconds =
+      std::ranges::all_of(lines, [](const TextLine& line) { return decimal(line.text).has_value(); }) &&
+      std::ranges::any_of(lines,
+                          [](const TextLine& line) { return line.text.find('.') != std::string_view::npos; });
+  for (const TextLine& line : lines) {
+    const std::optional<Stamp> stamp = in_seconds ? parse_seconds(line.text) : parse_stamp(line.text);
+    if (!stamp) refuse(path, line, line.text);
+    stamps.push_back(*stamp);
+  }
+  return stamps;
+}
+
+std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
+  const std::string text = read_file(path, kMostLogBytes);
+  std::vector<NamedStamp> stamps;
+  for (const TextLine& line : lines_of(text)) {
+    const std::vector<std::string_view> fields = fields_of(line.text);
+    const std::optional<std::int64_t> ns = whole<std::int64_t>(fields.front());
+    if (!ns) {
+      const bool is_seconds = parse_seconds(fields.front()).has_value();
+      throw Error(place(path, line.number) + ": found " + quoted(fields.front()) +
+                  ", expected a stamp in whole ns" + (is_seconds ? "; these are s" : ""));
+    }
+    std::string file(fields.size() > 1 ? fields[1] : "");
+    if (file.empty()) file = std::string(fields.front()) + ".png";
+    stamps.push_back({Stamp{std::clamp(*ns, -kFarthestNs, kFarthestNs)}, std::move(file)});
+  }
+  return stamps;
+}
+
+std::optional<std::vector<FrameStamp>> load_frame_stamps(const fs::path& path) {
+  const std::string text = read_file(path, kMostLogBytes);
+  const std::vector<TextLine> lines = lines_of(text);
+  if (lines.empty()) return std::nullopt;
+  const std::vector<std::string_view> header = fields_of(lines.front().text);
+  const auto time = static_cast<std::size_t>(std::find(header.begin(), header.end(), "t_s") - header.begin());
+  const auto frame =
+      static_cast<std::size_t>(std::find(header.begin(), header.end(), "frame") - header.begin());
+  if (time == header.size()) return std::nullopt;
+  std::vector<FrameStamp> stamps;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::vector<std::string_view> fields = fields_of(lines[i].text);
+    const std::string_view field = time < fields.size() ? fields[time] : std::string_view{};
+    const std::optional<Stamp> stamp = parse_seconds(field);
+    if (!stamp)
+      throw Error(place(path, lines[i].number) + ": found " + quoted(field) + " as t_s, expected s");
+    stamps.push_back({{}, *stamp});
+    if (frame < fields.size()) stamps.back().frame = whole<std::size_t>(fields[frame]);
+  }
+  return stamps;
+}
+
+void check_rising(std::span<const Stamp> stamps, std::span<const std::string> names,
+                  const std::string& where) {
+  constexpr std::int64_t kShortestStepNs = 1000;
+  std::int64_t longest = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    longest = std::max<std::int64_t>(longest, std::llabs(stamps[i].ns - stamps[i - 1].ns));
+  if (longest > 0 && longest < kShortestStepNs) {
+    throw Error(where + ": all stamps lie less than 1 us apart (" + std::to_string(stamps[0].ns) + " ns, " +
+                std::to_string(stamps[1].ns) + " ns), expected ns; write s with a decimal point");
+  }
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] > stamps[i - 1]) continue;
+    throw Error(where + ": frame " + names[i] + " has the stamp " + stamp_text(stamps[i]) +
+                ", expected one later than the " + stamp_text(stamps[i - 1]) + " of frame " + names[i - 1]);
+  }
+}
+
+StampPairs pair_by_stamps(std::span<const Stamp> left, std::span<const Stamp> right, double max_skew_ms) {
+  const auto apart = [&](std::size_t l, std::size_t r) { return std::llabs(left[l].ns - right[r].ns); };
+  const double most_ns = max_skew_ms * 1e6;
+  StampPairs found;
+  std::size_t l = 0;
+  std::size_t r = 0;
+  while (l < left.size() && r < right.size()) {
+    if (r + 1 < right.size() && apart(l, r + 1) < apart(l, r)) {
+      found.right_alone.push_back(r++);
+    } else if (l + 1 < left.size() && apart(l + 1, r) < apart(l, r)) {
+      found.left_alone.push_back(l++);
+    } else if (static_cast<double>(apart(l, r)) <= most_ns) {
+      found.pairs.push_back({l++, r++});
+    } else if (left[l] < right[r]) {
+      found.left_alone.push_back(l++);
+    } else {
+      found.right_alone.push_back(r++);
+    }
+  }
+  while (l < left.size()) found.left_alone.push_back(l++);
+  while (r < right.size()) found.right_alone.push_back(r++);
+  return found;
+}
+
+}  // namespace cairn::io

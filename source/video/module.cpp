@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "module.hpp"
+
+#include "opencv_video.hpp"
+
+extern "C" {
+
+__attribute__((visibility("default"))) const char* cairn_video_version() {
+  return CAIRN_VERSION;
+}
+
+__attribute__((visibility("default"))) cairn::io::Sequence* cairn_open_video(
+    const cairn::io::VideoRequest& request) {
+  return (request.right
+              ? cairn::io::opencv_videos(request.left, *request.right, request.options, request.pool)
+              : cairn::io::opencv_video(request.left, request.options, request.pool))
+      .release();
+}
+
+}  // extern "C"

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "../sequence.hpp"
+
+/// What the library and its module for videos say to each other. Both are made by one build.
+namespace cairn::io {
+
+struct VideoRequest {
+  std::filesystem::path left;
+  std::optional<std::filesystem::path> right;
+  SourceOptions options;
+  Pool pool;
+};
+inline constexpr const char* kVideoEntry = "cairn_open_video";
+/// The function of that name: the caller owns what it returns. Throws Error.
+using VideoEntry = Sequence* (*)(const VideoRequest&);
+/// And one that gives the version, so that none of another build is taken.
+inline constexpr const char* kVideoVersion = "cairn_video_version";
+using VideoVersion = const char* (*)();
+
+}  // namespace cairn::io

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "opencv_video.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <io/dataset.hpp>
+#include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
+#include <source/frame_list.hpp>
+#include <source/frame_watch.hpp>
+#include <source/stamps.hpp>
+#include <system_error>
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One video file, frame by frame.
+class VideoFile {
+ public:
+  VideoFile(fs::path path, double rate_hz) : path_(std::move(path)), rate_hz_(rate_hz) {
+    std::error_code unknown;
+    if (!fs::is_regular_file(path_, unknown)) throw Error(path_.string() + ": is no file, expected a video");
+    if (!cv::videoio_registry::hasBackend(cv::CAP_FFMPEG)) {
+      throw Error(
+          path_.string() +
+          ": cannot be read: this OpenCV was built without FFmpeg (Debian's libopencv-videoio has it)");
+    }
+    try {
+      capture_.open(path_.string(), cv::CAP_FFMPEG);
+    } catch (const cv::Exception& exception) {
+      throw Error(path_.string() + ": cannot be opened as a video: OpenCV says: " + exception.err);
+    }
+    if (!capture_.isOpened())
+      throw Error(path_.string() +
+                  ": cannot be opened as a video: no known format, cut off, or no codec for it");
+    const double fps = capture_.get(cv::CAP_PROP_FPS);
+    if (fps > 0 && std::isfinite(fps)) fps_ = fps;
+    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    if (count >= 1 && count < 1e12) count_ = static_cast<std::size_t>(count);
+  }
+
+  /// Moves to the next frame; false after the last.
+  bool advance() {
+    if (!capture_.grab()) return false;
+    const double ms = capture_.get(cv::CAP_PROP_POS_MSEC);
+    const Stamp stamp = rate_hz_ > 0 ? stamp_at(grabbed_, rate_hz_) : Stamp{std::llround(ms * 1e6)};
+    if (grabbed_ > 0) longest_step_s_ = std::max(longest_step_s_, seconds_between(stamp_, stamp));
+    stamp_ = stamp;
+    last_ms_ = ms;
+    ++grabbed_;
+    return true;
+  }
+  /// Of the frame that it moved to.
+  [[nodiscard]] Stamp stamp() const { return stamp_; }
+  [[nodiscard]] std::size_t index() const { return grabbed_ - 1; }
+  /// Its image; nothing where it cannot be decoded.
+  std::optional<cv::Mat> image() {
+    cv::Mat image;
+    if (!capture_.retrieve(image) || image.empty() || image.depth() != CV_8U ||
+        (image.channels() != 1 && image.channels() != 3))
+      return std::nullopt;
+    return image;
+  }
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  [[nodiscard]] const std::optional<std::size_t>& count() const { return count_; }
+  [[nodiscard]] bool is_grey() {
+    constexpr std::array kGreyFormats = {"Y800", "GREY", "Y8  "};
+    std::array<char, 4> code{};
+    const auto number = static_cast<std::uint32_t>(capture_.get(cv::CAP_PROP_CODEC_PIXEL_FORMAT));
+    std::memcpy(code.data(), &number, code.size());
+    return std::any_of(kGreyFormats.begin(), kGreyFormats.end(), [&](const char* known) {
+      return std::string_view(code.data(), code.size()) == known;
+    });
+  }
+
+  /// Words where the file ends before the end that its header states; "" else.
+  [[nodiscard]] std::string cut_off() const {
+    if (!count_) return {};
+    const double length_s = static_cast<double>(*count_) / fps_;
+    const double step_s = std::max(1 / fps_, rate_hz_ > 0 ? 0 : longest_step_s_);
+    const double end_s = last_ms_ * 1e-3 + step_s;
+    if (end_s > length_s - std::max(1.5 * step_s, 0.005 * length_s)) return {};
+    std::array<char, 160> words{};
+    std::snprintf(words.data(), words.size(),
+                  ": is cut off: ends after %zu frames, %.2f s; its header says %.2f s", grabbed_, end_s,
+                  length_s);
+    return path_.string() + words.data();
+  }
+
+ private:
+  static constexpr double kUsualFps = 10;
+  fs::path path_;
+  double rate_hz_;
+  cv::VideoCapture capture_;
+  double fps_ = kUsualFps;
+  std::optional<std::size_t> count_;
+  std::size_t grabbed_ = 0;
+  Stamp stamp_;
+  double last_ms_ = 0;
+  double longest_step_s_ = 0;
+};
+
+Picture picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
+  const Size size{image.cols, image.rows};
+  Picture picture;
+  if (is_grey || image.channels() == 1) {
+    picture.gray = Image<Gray>(size, pool);
+    const int step = image.channels();
+    for (int y = 0; y < size.height; ++y) {
+      const std::uint8_t* from = image.ptr(y);
+      Gray* to = picture.gray.row(y);
+      for (int x = 0; x < size.width; ++x) to[x] = from[x * step];
+    }
+    return picture;
+  }
+  picture.rgb = Image<Rgb>(size, pool);
+  for (int y = 0; y < size.height; ++y) {
+    const std::uint8_t* from = image.ptr(y);
+    Rgb* to = picture.rgb.row(y);
+    for (int x = 0; x < size.width; ++x) to[x] = {from[3 * x + 2], from[3 * x + 1], from[3 * x]};
+  }
+  picture.gray = grey_of(picture.rgb.view(), pool);
+  return picture;
+}
+
+std::string number_text(std::size_t index) {
+  constexpr std::size_t kDigits = 6;
+  std::string text = std::to_string(index);
+  if (text.size() < kDigits) text.insert(0, kDigits - text.size(), '0');
+  return text;
+}
+
+/// What sequences of one and of two videos share.
+class VideoSequence : public Sequence {
+ public:
+  VideoSequence(std::string name, const fs::path& beside, const SourceOptions& options, Pool pool)
+      : name_(std::move(name)), options_(options), pool_(std::move(pool)), watch_(options.max_gap_s) {
+    const std::optional<fs::path> found =
+        calibration_in(beside.parent_path().empty() ? "." : beside.parent_path());
+    calibration_ = open_calibration(options, found, false, false);
+  }
+
+  std::optional<SequenceFrame> next() override {
+    if (first_) {
+      SequenceFrame frame = std::move(*first_);
+      first_.reset();
+      return frame;
+    }
+    return advance();
+  }
+  [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
+  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
+  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
+  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] std::string stamps_from() const override {
+    return options_.rate_hz > 0 ? rate_text(options_.rate_hz) : "the video";
+  }
+  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
+
+ protected:
+  /// Both images of the next frame that is asked for.
+  struct Both {
+    std::size_t index = 0;
+    Stamp stamp;
+    std::optional<PicturePair> pair;  // none: cannot be decoded
+  };
+  virtual std::optional<Both> next_pair() = 0;
+
+  /// To be called once by those who derive.
+  void begin(const fs::path& file) {
+    file_ = file;
+    first_ = advance();
+    if (!first_) {
+      const bool is_ranged = options_.frames.first > 0;
+      throw Error(file_.string() + (is_ranged ? ": has no frame that is in --frames" : ": holds no frames"));
+    }
+    const Size size = watch_.image_size();
+    if (calibration_.rectifier) {
+      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
+    } else if (!calibration_.path.empty()) {
+      check_size(calibration_.says, size, calibration_.path);
+      check_search_range(calibration_.says, calibration_.path);
+    }
+  }
+  [[nodiscard]] const SourceOptions& options() const { return options_; }
+  [[nodiscard]] const Pool& pool() const { return pool_; }
+  [[nodiscard]] bool is_past_range(std::size_t index) const {
+    return options_.frames.last_excluded && index >= *options_.frames.last_excluded;
+  }
+  [[nodiscard]] std::optional<std::size_t> delivered_of(std::optional<std::size_t> count) const {
+    const FrameRange& range = options_.frames;
+    if (!count) return std::nullopt;
+    const std::size_t end = std::min(*count, range.last_excluded.value_or(*count));
+    return end <= range.first ? 0 : (end - range.first + range.step - 1) / range.step;
+  }
+  void remark_on(const SourceRemark& of_one) { remark(remarks_, of_one); }
+  void end_early(std::string why) { ended_early_ = std::move(why); }
+
+ private:
+  std::optional<SequenceFrame> advance() {
+    while (std::optional<Both> both = next_pair()) {
+      const std::string name = number_text(both->index);
+      if (!both->pair) {
+        remark_on({"frame that cannot be read", 1, name, true, true});
+        continue;
+      }
+      PicturePair pair = calibration_.rectified(std::move(*both->pair), pool_);
+      SequenceFrame frame{name, both->index, both->stamp, std::move(pair.left), std::move(pair.right.gray),
+                          false};
+      watch_.see(frame, file_.string(), remarks_);
+      return frame;
+    }
+    return std::nullopt;
+  }
+
+  std::string name_;
+  SourceOptions options_;
+  Pool pool_;
+  FrameWatch watch_;
+  SourceCalibration calibration_;
+  std::vector<SourceRemark> remarks_;
+  std::string ended_early_;
+  fs::path file_;
+  std::optional<SequenceFrame> first_;
+};
+
+class OneVideo : public VideoSequence {
+ public:
+  OneVideo(const fs::path& file, const SourceOptions& options, const Pool& pool)
+      : VideoSequence(file.filename().string(), file, options, pool), video_(file, options.rate_hz) {
+    begin(file);
+  }
+  [[nodiscard]] std::optional<std::size_t> size() const override { return delivered_of(video_.count()); }
+
+ private:
+  std::optional<Both> next_pair() override {
+    while (video_.advance()) {
+      if (is_past_range(video_.index())) return std::nullopt;
+      if (!is_in(options().frames, video_.index())) continue;
+      Both both{video_.index(), video_.stamp(), {}};
+      if (const std::optional<cv::Mat> image = video_.image()) both.pair = halves(*image);
+      return both;
+    }
+    end_early(video_.cut_off());
+    return std::nullopt;
+  }
+
+  [[nodiscard]] PicturePair halves(const cv::Mat& image) {
+    const bool side_by_side = options().layout == "side_by_side";
+    const int length = side_by_side ? image.cols : image.rows;
+    if (length % 2 != 0) {
+      throw Error(video_.path().string() + ": is " + text(Size{image.cols, image.rows}) +
+                  ", expected an even " + (side_by_side ? "width" : "height") + " with --layout " +
+                  options().layout);
+    }
+    const int half = length / 2;
+    const auto part = [&](int begin, int end) {
+      return side_by_side ? image.colRange(begin, end) : image.rowRange(begin, end);
+    };
+    const bool is_grey = video_.is_grey();
+    return {picture_of(part(0, half), is_grey, pool()), picture_of(part(half, length), is_grey, pool()), 8};
+  }
+
+  VideoFile video_;
+};
+
+class TwoVideos : public VideoSequence {
+ public:
+  TwoVideos(const fs::path& left, const fs::path& right, const SourceOptions& options, const Pool& pool)
+      : VideoSequence(left.filename().string(), left, options, pool),
+        left_(left, options),
+        right_(right, options) {
+    begin(left);
+  }
+  [[nodiscard]] std::optional<std::size_t> size() const override {
+    if (!left_.video.count() || !right_.video.count()) return std::nullopt;
+    return delivered_of(std::min(*left_.video.count(), *right_.video.count()));
+  }
+
+ private:
+  /// A video with the frames that are still to be paired, at most two.
+  struct Side {
+    struct Taken {
+      std::size_t index = 0;
+      Stamp stamp;
+      std::optional<cv::Mat> image;
+    };
+    Side(const fs::path& path, const SourceOptions& options)
+        : video(path, options.rate_hz), first(options.frames.first) {}
+    bool has(std::size_t count) {
+      while (waiting.size() < count && video.advance()) {
+        // A pair's number is never above that of its frames, so earlier ones are not asked for.
+        waiting.push_back(
+            {video.index(), video.stamp(), video.index() < first ? std::nullopt : video.image()});
+      }
+      return waiting.size() >= count;
+    }
+    VideoFile video;
+    std::size_t first;
+    std::deque<Taken> waiting;
+  };
+
+  /// As pair_by_stamps() does it.
+  std::optional<Both> next_pair() override {
+    const auto apart = [&](std::size_t l, std::size_t r) {
+      return std::abs(left_.waiting[l].stamp.ns - right_.waiting[r].stamp.ns);
+    };
+    const double most_ns = options().max_skew_ms * 1e6;
+    while (left_.has(1) && right_.has(1)) {
+      if (right_.has(2) && apart(0, 1) < apart(0, 0)) {
+        leave(right_);
+      } else if (left_.has(2) && apart(1, 0) < apart(0, 0)) {
+        leave(left_);
+      } else if (static_cast<double>(apart(0, 0)) > most_ns) {
+        leave(left_.waiting[0].stamp < right_.waiting[0].stamp ? left_ : right_);
+      } else {
+        const Side::Taken left = std::move(left_.waiting.front());
+        const Side::Taken right = std::move(right_.waiting.front());
+        left_.waiting.pop_front();
+        right_.waiting.pop_front();
+        const std::size_t index = pairs_++;
+        if (is_past_range(index)) return std::nullopt;
+        if (is_in(options().frames, index)) return Both{index, left.stamp, pair_of(left.image, right.image)};
+      }
+    }
+    // What is left over of the longer one has no partner.
+    for (Side* side : {&left_, &right_}) {
+      while (side->has(1)) leave(*side);
+    }
+    const std::string left_words = left_.video.cut_off();
+    end_early(left_words.empty() ? right_.video.cut_off() : left_words);
+    return std::nullopt;
+  }
+
+  void leave(Side& side) {
+    remark_on({&side == &left_ ? "left image without a right one" : "right image without a left one", 1,
+               number_text(side.waiting.front().index), true, false});
+    side.waiting.pop_front();
+  }
+
+  std::optional<PicturePair> pair_of(const std::optional<cv::Mat>& left,
+                                     const std::optional<cv::Mat>& right) {
+    if (!left || !right) return std::nullopt;
+    if (left->size() != right->size()) {
+      throw Error(right_.video.path().string() + ": is " + text(Size{right->cols, right->rows}) +
+                  ", expected " + text(Size{left->cols, left->rows}) + " as " + left_.video.path().string() +
+                  " is");
+    }
+    return PicturePair{picture_of(*left, left_.video.is_grey(), pool()),
+                       picture_of(*right, right_.video.is_grey(), pool()), 8};
+  }
+
+  Side left_;
+  Side right_;
+  std::size_t pairs_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Sequence> opencv_video(const fs::path& file, const SourceOptions& options, const Pool& pool) {
+  return std::make_unique<OneVideo>(file, options, pool);
+}
+
+std::unique_ptr<Sequence> opencv_videos(const fs::path& left, const fs::path& right,
+                                        const SourceOptions& options, const Pool& pool) {
+  return std::make_unique<TwoVideos>(left, right, options, pool);
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "command.hpp"
+
+/// cairn follow: what it writes, what it refuses, and how it ends.
+namespace cairn::command {
+namespace {
+
+using Json = nlohmann::json;
+
+class Follow : public CommandTest {
+ protected:
+  /// A camera that stands still before the things of a sample.
+  void standing(int frames, const std::string& folder = "in") const {
+    for (int i = 0; i < frames; ++i) {
+      const fs::path frame = at(folder + "/" + std::to_string(i));
+      fs::create_directories(frame);
+      for (const char* file : {"left.png", "right.png", "calib.txt"})
+        fs::copy_file(fs::path(CAIRN_SOURCE_DIR) / "samples/four_in_a_row" / file, frame / file);
+    }
+  }
+  static std::vector<Json> lines_of(const fs::path& path) {
+    std::vector<Json> lines;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) lines.push_back(Json::parse(line));
+    return lines;
+  }
+};
+
+TEST_F(Follow, KeepsTheIdsOfThingsThatStand) {
+  standing(4);
+  write(at("in/stamps.txt"), "0\n0.1\n0.2\n0.35\n");
+  const Outcome outcome = run({"follow", path("in"), "-o", path("out"), "--frames-out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<Json> lines = lines_of(at("out/tracks.jsonl"));
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[3]["stamp_ns"], 350'000'000);
+  EXPECT_EQ(lines[3]["name"], "3");
+  std::set<int> first;
+  std::set<int> last;
+  for (const Json& track : lines.front()["tracks"]) first.insert(track["id"].get<int>());
+  for (const Json& track : lines.back()["tracks"]) {
+    last.insert(track["id"].get<int>());
+    EXPECT_EQ(track["state"], "confirmed");
+    EXPECT_EQ(track["moving"], false);
+    EXPECT_TRUE(track.contains("rle"));
+  }
+  EXPECT_GE(first.size(), 2U);
+  EXPECT_EQ(first, last);
+  EXPECT_NEAR(lines.back()["pose"]["position_m"][0].get<double>(), 0, 0.01);
+  const Json summary = Json::parse(content(at("out/summary.json")));
+  EXPECT_EQ(summary["frames"], 4);
+  EXPECT_EQ(summary["state"], "done");
+  EXPECT_EQ(summary["tracks"], first.size());
+  const std::string poses = content(at("out/poses.tum"));
+  EXPECT_EQ(std::count(poses.begin(), poses.end(), '\n'), 4);
+  EXPECT_TRUE(poses.starts_with("0.000000000 "));
+  const std::string masks = content(at("out/tracks.mots.txt"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(masks.begin(), masks.end(), '\n')), 4 * first.size());
+  EXPECT_TRUE(fs::exists(at("out/3/tracks.png")));
+}
+
+TEST_F(Follow, PrintsTheLinesThatItWrites) {
+  standing(2);
+  const Outcome outcome = run({"follow", path("in"), "-o", path("out"), "--json-lines"});
+  EXPECT_EQ(outcome.out, content(at("out/tracks.jsonl")));
+}
+
+TEST_F(Follow, GivesTheSameForAnyNumberOfThreadsAndInstructionSet) {
+  standing(3);
+  const std::string one = run({"follow", path("in"), "--json-lines", "--threads", "1"}).out;
+  EXPECT_FALSE(one.empty());
+  EXPECT_EQ(run({"follow", path("in"), "--json-lines", "--threads", "3"}).out, one);
+  EXPECT_EQ(run({"follow", path("in"), "--json-lines", "--target", "scalar"}).out, one);
+}
+
+TEST_F(Follow, WithoutACalibrationThereAreIdsAndNoMetres) {
+  standing(3);
+  for (int i = 0; i < 3; ++i) fs::remove(at("in/" + std::to_string(i) + "/calib.txt"));
+  const Outcome outcome = run({"follow", path("in"), "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no calibration"), std::string::npos) << outcome.err;
+  const std::vector<Json> lines = lines_of(at("out/tracks.jsonl"));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[2]["motion"]["refusal"], "no_rig");
+  EXPECT_FALSE(lines[2]["tracks"].empty());
+  EXPECT_TRUE(lines[2]["pose"].is_null());
+  EXPECT_TRUE(lines[2]["tracks"][0]["position_m"].is_null());
+  EXPECT_EQ(content(at("out/poses.tum")), "");
+}
+
+TEST_F(Follow, BlackFramesRefuseTheMotionAndEndNothing) {
+  standing(5);
+  const Image<Gray> black({320, 240}, Gray{0}, {});
+  for (const char* file : {"in/2/left.png", "in/2/right.png"}) io::save_png(at(file), black.view());
+  const Outcome outcome = run({"follow", path("in"), "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<Json> lines = lines_of(at("out/tracks.jsonl"));
+  ASSERT_EQ(lines.size(), 5U);
+  EXPECT_NE(lines[2]["motion"]["refusal"], "none");
+  EXPECT_EQ(lines[3]["motion"]["refusal"], "none");
+  std::set<int> before;
+  std::set<int> after;
+  for (const Json& track : lines[1]["tracks"]) before.insert(track["id"].get<int>());
+  for (const Json& track : lines[4]["tracks"]) after.insert(track["id"].get<int>());
+  EXPECT_EQ(before, after);
+}
+
+TEST_F(Follow, OneFrameIsASequence) {
+  standing(1);
+  EXPECT_EQ(run({"follow", path("in"), "-o", path("out")}).code, 0);
+  EXPECT_EQ(lines_of(at("out/tracks.jsonl")).size(), 1U);
+}
+
+TEST_F(Follow, ReadsOptionsOfFrameAndSequenceFromOneFile) {
+  standing(2);
+  write(at("mine.yaml"), "preset: default\nobjects:\n  min_confidence: 0.9\ntracking.min_hits: 2\n");
+  const Outcome outcome = run({"follow", path("in"), "--config", path("mine.yaml"), "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json options = Json::parse(content(at("out/summary.json")))["options"];
+  EXPECT_EQ(options["tracking.min_hits"], "2");
+  EXPECT_EQ(options["objects.min_confidence"], "0.9");
+}
+
+TEST_F(Follow, FollowsByThePapersMethodToo) {
+  standing(3);
+  const Outcome outcome = run({"follow", path("in"), "--preset", "paper", "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(lines_of(at("out/tracks.jsonl")).size(), 3U);
+}
+
+TEST_F(Follow, RefusesWhatCannotBeFollowed) {
+  standing(3);
+  refuses({"follow", path("nothing")}, {"nothing"});
+  refuses({"follow", path("in"), "--set", "tracking.min_hit=2"}, {"did you mean 'tracking.min_hits'?"});
+  refuses({"follow", path("in"), "--set", "tracking.gate=0"}, {"tracking.gate", "1 … 100"});
+  refuses({"follow", path("in"), "--set", "tracking.low_confidence=0.8"},
+          {"tracking.low_confidence", "tracking.high_confidence"});
+  refuses({"follow", path("in"), "--set", "landmarks.min_frames=2"},
+          {"landmarks.min_frames", "tracking.min_hits"});
+  refuses({"follow", path("in"), "--set", "odometry.method=off", "--set", "odometry.min_inliers=20"},
+          {"odometry.min_inliers has no effect"});
+  refuses({"follow", path("in"), "--preset", "paper", "--set", "repair.method=off"},
+          {"repair.method has no effect"});
+  refuses({"follow", path("in"), "--frames-out"}, {"--frames-out", "-o DIR"});
+  refuses({"follow", path("in"), "--read-only"}, {"--map"});
+  refuses({"follow", path("in"), "--start", "0,0,0"}, {"--map"});
+  refuses({"follow", path("in"), "--map", path("m.db"), "--start", "0,0"}, {"X,Y,DEGREES"});
+  refuses({"follow", path("in"), "--odometry", path("none.csv")}, {"none.csv"});
+  write(at("o.csv"), "frame,t_s,v_m_per_s,omega_rad_per_s\n0,0,0,0\n1,0.1,0,0\n");
+  refuses({"follow", path("in"), "--odometry", path("o.csv"), "--poses", path("o.csv")}, {"--poses"});
+  refuses({"follow", path("in"), "--map", path("in/0/left.png")}, {"left.png"});
+  fs::remove(at("in/0/calib.txt"));
+  refuses({"follow", path("in"), "--map", path("room.db")}, {"in"});
+}
+
+TEST_F(Follow, StampsThatFallEndTheRunWithOneLine) {
+  standing(3);
+  write(at("in/stamps.txt"), "0\n0.2\n0.1\n");
+  const Outcome outcome = run({"follow", path("in"), "-o", path("out")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("stamp"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Follow, KnownPosesAreTakenAsTheyAre) {
+  standing(2);
+  write(at("p.tum"), "0.0 1 2 3 0 0 0 1\n0.1 1.5 2 3 0 0 0 1\n");
+  const Outcome outcome =
+      run({"follow", path("in"), "--poses", path("p.tum"), "--rate", "10", "--json-lines"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string second = outcome.out.substr(outcome.out.find('\n') + 1);
+  EXPECT_EQ(Json::parse(second)["pose"]["position_m"], Json({1.5, 2.0, 3.0}));
+  write(at("p.tum"), "0 1 0 0 0 0 0 1\n0.096 2 0 0 0 0 0 1\n0.101 3 0 0 0 0 0 1\n");  // the nearest counts
+  const std::string near =
+      run({"follow", path("in"), "--poses", path("p.tum"), "--rate", "10", "--json-lines"}).out;
+  EXPECT_EQ(Json::parse(near.substr(near.find('\n') + 1))["pose"]["position_m"], Json({3.0, 0.0, 0.0}));
+  write(at("p.tum"), "7 1 2 3 0 0 0 1\n8 1.5 2 3 0 0 0 1\n");
+  refuses({"follow", path("in"), "--poses", path("p.tum")}, {"p.tum", "stamp"});
+}
+
+TEST_F(Follow, AMapKeepsWhatWasSeen) {
+  standing(10);
+  write(at("in/stamps.txt"), "5\n5.1\n5.2\n5.3\n5.4\n5.5\n5.6\n5.7\n5.8\n5.9\n");
+  const std::vector<std::string> arguments{"follow",        path("in"), "--map",
+                                           path("room.db"), "--set",    "landmarks.min_baseline=0"};
+  ASSERT_EQ(run(arguments).code, 0);
+  const std::string first = run({"map", "show", path("room.db")}).out;
+  EXPECT_EQ(first.find(": 0 landmarks"), std::string::npos) << first;
+  EXPECT_NE(first.find("done      10    5.00  5.90"), std::string::npos) << first;
+  // The second run knows where it begins, and finds nothing new.
+  std::vector<std::string> again = arguments;
+  again.insert(again.end(), {"--start", "0,0,0", "-o", path("out")});
+  ASSERT_EQ(run(again).code, 0);
+  const std::string second = run({"map", "show", path("room.db")}).out;
+  EXPECT_EQ(second.substr(0, second.find('\n')), first.substr(0, first.find('\n')));
+  for (const Json& track : lines_of(at("out/tracks.jsonl")).back()["tracks"])
+    EXPECT_TRUE(track.contains("landmark")) << track;
+}
+
+TEST_F(Follow, AnErrorOnTheWayKeepsWhatWasDone) {
+  standing(5);
+  const Image<Gray> small({160, 120}, Gray{9}, {});
+  for (const char* file : {"in/3/left.png", "in/3/right.png"}) io::save_png(at(file), small.view());
+  const Outcome outcome =
+      run({"follow", path("in"), "-o", path("out"), "--html", "--map", path("room.db"), "--json-lines"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("160x120"), std::string::npos) << outcome.err;
+  EXPECT_EQ(lines_of(at("out/tracks.jsonl")).size(), 3U);
+  EXPECT_EQ(Json::parse(content(at("out/summary.json")))["state"], "failed");
+  EXPECT_TRUE(fs::exists(at("out/follow.html")));
+  EXPECT_NE(run({"map", "show", path("room.db")}).out.find("aborted"), std::string::npos);
+}
+
+TEST_F(Follow, ResultsDoNotLieAmongTheFrames) {
+  standing(2);
+  refuses({"follow", path("in"), "-o", path("in")}, {"-o", "in the source"});
+  refuses({"follow", path("in"), "-o", path("in/results")}, {"-o", "in the source"});
+}
+
+TEST_F(Follow, AReaderThatStopsEndsTheRun) {
+  standing(30);
+  const std::string line = std::string(CAIRN_COMMAND) + " follow " + path("in") + " --json-lines -o " +
+                           path("out") + " 2>/dev/null | head -n 1 > /dev/null; exit ${PIPESTATUS[0]}";
+  const int status = std::system(("bash -c '" + line + "'").c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);  // the pipe cannot be written to
+  EXPECT_EQ(Json::parse(content(at("out/summary.json")))["state"], "interrupted");
+}
+
+TEST_F(Follow, AnInterruptEndsBehindAWholeLine) {
+  standing(40);
+  const std::string out = path("out");
+  std::string source = path("in");
+  const pid_t child = fork();
+  if (child == 0) {
+    const int null = open("/dev/null", O_WRONLY);
+    dup2(null, STDOUT_FILENO);
+    dup2(null, STDERR_FILENO);
+    execl(CAIRN_COMMAND, CAIRN_COMMAND, "follow", source.c_str(), "-o", out.c_str(), nullptr);
+    _exit(127);
+  }
+  const fs::path tracks = at("out/tracks.jsonl");
+  for (int tries = 0; tries < 600 && (!fs::exists(tracks) || fs::file_size(tracks) == 0); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const std::string text = content(tracks);
+  EXPECT_TRUE(text.ends_with("\n"));
+  const std::vector<Json> lines = lines_of(tracks);
+  EXPECT_LT(lines.size(), 40U);
+  EXPECT_EQ(Json::parse(content(at("out/summary.json")))["state"], "interrupted");
+}
+
+}  // namespace
+}  // namespace cairn::command

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "support/samples.hpp"
+#include "tracking/controller.hpp"
+
+namespace cairn {
+namespace {
+
+constexpr Size kSize{320, 240};
+
+ArmScore score(std::vector<float> of_arm, std::vector<float> of_present, const std::string& value = "1") {
+  return {{"superpixels.count", value}, std::move(of_arm), std::move(of_present)};
+}
+
+TEST(Arms, AreReadByTheirConfigurationAndChangeIt) {
+  const Config config;
+  const std::vector<Arm> arms = arms_of(config, kSize);
+  ASSERT_GE(arms.size(), 8U);
+  for (const Arm& arm : arms) {
+    Config changed = config;
+    set(changed, arm.option, arm.value);
+    EXPECT_NO_THROW(validate(changed, kSize, true)) << arm.option;
+    EXPECT_NO_THROW(require_active(config, arm.option));
+    const auto now = options(config);
+    EXPECT_NE(std::ranges::find(now, arm.option, &OptionInfo::name)->value, arm.value) << arm.option;
+  }
+  EXPECT_EQ(arms, arms_of(config, kSize));
+}
+
+TEST(Arms, LeaveOutWhatHasNoEffectOrIsOutOfRange) {
+  Config config;
+  config.match.method = MatchMethod::window;
+  config.objects.min_area = 80;
+  const auto has = [&](const std::string& option, const std::string& value) {
+    const std::vector<Arm> arms = arms_of(config, kSize);
+    return std::ranges::find(arms, Arm{option, value}) != arms.end();
+  };
+  EXPECT_FALSE(has("semi_global.penalty_large", "1.1"));
+  EXPECT_FALSE(has("objects.min_area", "160"));
+  EXPECT_TRUE(has("objects.min_area", "40"));
+  EXPECT_TRUE(has("match.method", "semi_global"));
+  EXPECT_FALSE(has("match.method", "window"));
+}
+
+TEST(LeadOfAnArm, IsTheMeanOfPairedDifferencesOverThePresentsMean) {
+  const Lead lead = lead_of(score({1.2F, 2.2F, 3.2F}, {1, 2, 3}));
+  EXPECT_NEAR(lead.mean, 0.1, 1e-6);
+  EXPECT_NEAR(lead.low, 0.1, 1e-6);  // it always leads by the same
+  const Lead unsure = lead_of(score({2, 2, 2.6F}, {1, 2, 3}));
+  EXPECT_NEAR(unsure.mean, 0.1, 1e-6);
+  EXPECT_LT(unsure.low, 0);
+  EXPECT_EQ(lead_of(score({5}, {1})).mean, -1);  // one frame says nothing
+}
+
+TEST(LeadOfAnArm, CountsWherePresentSettingsFindNothing) {
+  EXPECT_GT(lead_of(score({1, 1}, {0, 0})).mean, 100);
+}
+
+TEST(Halving, KeepsTheHalfThatLeadsMostAndNoneThatHardlyLeads) {
+  const std::vector<ArmScore> round{score({1.3F, 1.3F}, {1, 1}, "1"), score({1.5F, 1.5F}, {1, 1}, "2"),
+                                    score({0.9F, 0.9F}, {1, 1}, "3"), score({1.3F, 1.3F}, {1, 1}, "4"),
+                                    score({1.1F, 1.1F}, {1, 1}, "5")};
+  const std::vector<ArmScore> left = halved(round, 10);
+  ASSERT_EQ(left.size(), 3U);
+  EXPECT_EQ(left[0].arm.value, "2");
+  EXPECT_EQ(left[1].arm.value, "1");  // a tie: the earlier one
+  EXPECT_EQ(left[2].arm.value, "4");
+  EXPECT_TRUE(halved({score({1.04F, 1.04F}, {1, 1})}, 10).empty());
+  EXPECT_EQ(halved({score({1.06F, 1.06F}, {1, 1})}, 10).size(), 1U);
+}
+
+TEST(ABetterArm, LeadsByEnoughOnEnoughFramesForSure) {
+  ControlConfig config;
+  config.window = 4;
+  EXPECT_TRUE(is_better(score({1.2F, 1.1F, 1.2F, 1.1F}, {1, 1, 1, 1}), config));
+  EXPECT_FALSE(is_better(score({1.2F, 1.1F, 1.2F}, {1, 1, 1}), config));             // too few
+  EXPECT_FALSE(is_better(score({1.05F, 1.1F, 1.05F, 1.1F}, {1, 1, 1, 1}), config));  // too little
+  EXPECT_FALSE(is_better(score({3, 0.2F, 0.2F, 2}, {1, 1, 1, 1}), config));          // by chance
+}
+
+struct Seen {
+  std::vector<ControlEvent> events;
+  Image<TrackId> ids;
+};
+
+Seen play(const samples::Sample& sample, const FollowConfig& config, int frames) {
+  Follower follower(config, sample.calibration.rig);
+  Controller controller(config, sample.calibration.rig);
+  Seen seen;
+  for (int k = 0; k < frames; ++k) {
+    Step step = follower.next(sample.pair(), {k * std::int64_t{100'000'000}});
+    if (auto event = controller.next(sample.pair(), step)) seen.events.push_back(*event);
+    seen.ids = std::move(step.ids);
+  }
+  return seen;
+}
+
+FollowConfig too_large(const samples::Sample& sample, ControlMethod method) {
+  FollowConfig config;
+  config.segmentation = sample.suited();
+  config.segmentation.objects.min_area = 60;  // % of the image: there are no objects
+  config.control.method = method;
+  config.control.budget = 1;
+  config.control.window = 3;
+  config.control.hold = 1;
+  return config;
+}
+
+TEST(Controller, OffItDoesNothing) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  EXPECT_TRUE(play(sample, too_large(sample, ControlMethod::off), 12).events.empty());
+}
+
+/// One of the scene's objects is found only when the least area is halved.
+FollowConfig slightly_too_large(const samples::Sample& sample, ControlMethod method) {
+  FollowConfig config = too_large(sample, method);
+  FollowConfig usual = config;
+  usual.control.method = ControlMethod::off;
+  usual.segmentation.objects.min_area = Config{}.objects.min_area;
+  const Seen seen = play(sample, usual, 3);
+  std::map<TrackId, int> areas;
+  for (int y = 0; y < seen.ids.height(); ++y)
+    for (int x = 0; x < seen.ids.width(); ++x) ++areas[seen.ids(x, y)];
+  areas.erase(TrackId::none);
+  int smallest = seen.ids.width() * seen.ids.height();
+  for (const auto& [id, area] : areas) smallest = std::min(smallest, area);
+  config.segmentation.objects.min_area =
+      1.5F * 100.0F * static_cast<float>(smallest) / static_cast<float>(sample.pair().size().area());
+  return config;
+}
+
+TEST(Controller, NamesTheOptionThatBringsObjectsBackAndTheSameOneAgain) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
+  const Seen seen = play(sample, config, 30);
+  ASSERT_FALSE(seen.events.empty());
+  EXPECT_EQ(seen.events[0].arm.option, "objects.min_area");
+  EXPECT_GT(seen.events[0].lead, 0.1);
+  const Seen again = play(sample, config, 30);
+  ASSERT_EQ(again.events.size(), seen.events.size());
+  for (std::size_t i = 0; i < seen.events.size(); ++i) EXPECT_EQ(again.events[i].arm, seen.events[i].arm);
+}
+
+TEST(Controller, OnlyWatchingItChangesNothing) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
+  const Seen seen = play(sample, config, 30);
+  ASSERT_FALSE(seen.events.empty());
+  FollowConfig off = config;
+  off.control.method = ControlMethod::off;
+  const Seen without = play(sample, off, 30);
+  for (int y = 0; y < seen.ids.height(); ++y)
+    for (int x = 0; x < seen.ids.width(); ++x) ASSERT_EQ(seen.ids(x, y), without.ids(x, y));
+}
+
+}  // namespace
+}  // namespace cairn

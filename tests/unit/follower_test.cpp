@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+
+#include "support/samples.hpp"
+#include "tracking/follower.hpp"
+
+namespace cairn {
+namespace {
+
+Stamp frame_stamp(int frame) {
+  return {frame * std::int64_t{100'000'000}};
+}
+
+FollowConfig config_for(const samples::Sample& sample) {
+  FollowConfig config;
+  config.segmentation = sample.suited();
+  return config;
+}
+
+std::string refused(Follower& follower, const StereoPair& pair, Stamp stamp) {
+  try {
+    follower.next(pair, stamp);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Follower, AStandingCameraSeesStandingThingsWithSteadyIds) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  const Step first = follower.next(sample.pair(), frame_stamp(1));
+  ASSERT_GE(first.tracks.list.size(), 2U);
+  EXPECT_EQ(first.index, 0);
+  EXPECT_GT(first.map_from_camera.translation_m.z, 0.1);  // over the floor
+  Step last;
+  for (int k = 2; k <= 6; ++k) last = follower.next(sample.pair(), frame_stamp(k));
+  EXPECT_EQ(last.index, 5);
+  ASSERT_EQ(last.tracks.list.size(), first.tracks.list.size());
+  for (std::size_t i = 0; i < last.tracks.list.size(); ++i) {
+    const Track& track = last.tracks.list[i];
+    EXPECT_EQ(track.id, first.tracks.list[i].id);
+    EXPECT_EQ(track.object, first.tracks.list[i].object);
+    EXPECT_EQ(track.state, TrackState::confirmed);
+    EXPECT_FALSE(track.is_moving);
+  }
+  // The picture of ids says the same as the list.
+  for (int y = 0; y < last.ids.height(); ++y) {
+    for (int x = 0; x < last.ids.width(); ++x) {
+      const ObjectId object = last.frame.objects.labels(x, y);
+      const auto track = std::ranges::find_if(
+          last.tracks.list, [&](const Track& t) { return object != ObjectId::none && t.object == object; });
+      ASSERT_EQ(last.ids(x, y), track == last.tracks.list.end() ? TrackId::none : track->id);
+    }
+  }
+}
+
+TEST(Follower, TakesAGivenPoseAsItIs) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  Pose pose;
+  pose.translation_m = {1, 2, 3};
+  follower.next(sample.pair(), frame_stamp(1), std::nullopt, pose);
+  Pose next = pose;
+  next.translation_m.z = 3.5;
+  const Step step = follower.next(sample.pair(), frame_stamp(2), std::nullopt, next);
+  EXPECT_EQ(step.map_from_camera.translation_m, next.translation_m);
+  EXPECT_NEAR(step.motion.now_from_before.translation_m.z, -0.5, 1e-12);
+  EXPECT_FALSE(step.is_lost);
+}
+
+TEST(Follower, GoesOnByItselfFromTheLastGivenPose) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  Pose pose;
+  pose.translation_m = {1, 2, 3};
+  follower.next(sample.pair(), frame_stamp(1), std::nullopt, pose);
+  Step step;
+  for (int k = 2; k < 4; ++k) step = follower.next(sample.pair(), frame_stamp(k));
+  EXPECT_NEAR(length(step.map_from_camera.translation_m - pose.translation_m), 0, 0.01);
+}
+
+TEST(Follower, FindsItsTracksAgainAfterAPause) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  Step before;
+  for (int k = 1; k <= 3; ++k) before = follower.next(sample.pair(), frame_stamp(k));
+  ASSERT_FALSE(before.tracks.list.empty());
+  follower.forget();
+  const Step after = follower.next(sample.pair(), frame_stamp(60));
+  EXPECT_EQ(after.motion.refusal, MotionRefusal::none);
+  EXPECT_LT(after.pose_covariance[0], 0.01);
+  ASSERT_EQ(after.tracks.list.size(), before.tracks.list.size());
+  for (std::size_t i = 0; i < after.tracks.list.size(); ++i)
+    EXPECT_EQ(after.tracks.list[i].id, before.tracks.list[i].id);
+}
+
+TEST(Follower, DoesNotKnowItsPlaceAfterAPauseThatEndsInTheDark) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const Image<Gray> black(sample.pair().size(), Gray{0}, {});
+  for (const bool has_gap : {false, true}) {
+    Follower follower(config_for(sample), sample.calibration.rig);
+    for (int k = 1; k <= 3; ++k) follower.next(sample.pair(), frame_stamp(k));
+    if (has_gap) follower.forget();
+    const Step dark = follower.next(StereoPair::from(black, black), frame_stamp(4));
+    EXPECT_NE(dark.motion.refusal, MotionRefusal::none);
+    EXPECT_EQ(dark.pose_covariance[0] >= 1, has_gap);
+  }
+}
+
+TEST(Follower, RefusesStampsThatDoNotRise) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  follower.next(sample.pair(), frame_stamp(2));
+  EXPECT_NE(refused(follower, sample.pair(), frame_stamp(2)).find("is not later"), std::string::npos);
+  EXPECT_NE(refused(follower, sample.pair(), frame_stamp(1)).find("frame 1: its stamp 100000000 ns"),
+            std::string::npos);
+  EXPECT_EQ(follower.next(sample.pair(), frame_stamp(3)).index, 1);  // and goes on
+}
+
+TEST(Follower, RefusesAPictureOfAnotherSize) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  follower.next(sample.pair(), frame_stamp(1));
+  const Image<Gray> smaller({200, 100}, Gray{7}, {});
+  EXPECT_NE(refused(follower, StereoPair::from(smaller, smaller), frame_stamp(2)).find("is 200x100"),
+            std::string::npos);
+}
+
+TEST(Follower, RefusesARigThatCannotBe) {
+  EXPECT_THROW(Follower({}, StereoRig{}), Error);
+  FollowConfig config;
+  config.tracking.low_confidence = 0.9F;
+  EXPECT_THROW(Follower{config}, Error);
+}
+
+TEST(Follower, FollowsACameraThatSeesNoObjects) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config = config_for(sample);
+  config.segmentation.objects.min_area = 100;  // % of the image
+  Follower follower(config, sample.calibration.rig);
+  for (int k = 1; k < 4; ++k) {
+    const Step step = follower.next(sample.pair(), frame_stamp(k));
+    EXPECT_TRUE(step.frame.objects.list.empty());
+    EXPECT_TRUE(step.tracks.list.empty());
+    EXPECT_EQ(step.ids(0, 0), TrackId::none);
+  }
+}
+
+TEST(Follower, WithoutARigThereAreIdsButNoPlaces) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample));
+  std::vector<TrackId> first;
+  for (int k = 1; k <= 4; ++k) {
+    const Step step = follower.next(sample.pair(), frame_stamp(k));
+    EXPECT_EQ(step.motion.refusal, MotionRefusal::no_rig);
+    std::vector<TrackId> ids;
+    for (const Track& track : step.tracks.list) {
+      ids.push_back(track.id);
+      EXPECT_FALSE(track.has_place);
+      EXPECT_FALSE(track.is_moving);
+      if (k >= 3) {
+        EXPECT_EQ(track.state, TrackState::confirmed);
+      }
+    }
+    if (k == 1) first = ids;
+    ASSERT_FALSE(ids.empty());
+    EXPECT_EQ(ids, first);
+  }
+}
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <landmarks/landmarks.hpp>
+#include <set>
+#include <support/drawn_room.hpp>
+
+namespace cairn {
+namespace {
+
+using support::camera_at;
+using support::Cylinder;
+using support::DrawnRoom;
+using support::DrawnView;
+using support::TrueTracks;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// A run through a drawn room. Odometry begins at its own origin where the test says so.
+class Excursion {
+ public:
+  LandmarksState state;
+  std::vector<LandmarkEvent> events;
+  std::map<LandmarkId, std::set<int>> things_of;  // all that were taken for it
+  std::map<LandmarkRefusal, int> refusals;
+  int recognised = 0;
+  Pose odom_from_map;
+  double drift_rad = 0;  // of each step, about the vertical
+  bool holes = false;
+  bool dark = false;  // matching then invents far disparities, and there are no objects
+  MotionRefusal motion = MotionRefusal::none;
+  bool suspect = false;
+  LandmarksConfig config;
+
+  explicit Excursion(LandmarkMap map = {}, std::int64_t run = 1,
+                     const std::optional<Pose>& start = std::nullopt)
+      : state(begin_landmarks(std::move(map), run, start)) {}
+
+  void frame(const DrawnRoom& room, const Pose& map_from_camera) {
+    const DrawnView view = support::draw(room, map_from_camera, random_);
+    if (!before_) {
+      odom_ = odom_from_map * map_from_camera;
+    } else {
+      Pose step = inverse(*before_) * map_from_camera;
+      way_ += length(step.translation_m);
+      const Pose turn = rotation_about({0, 0, drift_rad});
+      const Point3 here = odom_.translation_m;
+      odom_ = odom_ * step;
+      const Point3 there = odom_.translation_m;
+      odom_.rotation = (turn * odom_).rotation;
+      odom_.translation_m = here + turn.rotated(there - here);
+    }
+    before_ = map_from_camera;
+    const Stamp now{std::int64_t{index} * 200'000'000};
+    auto seen = support::things_in(view, room, map_from_camera);
+    if (dark) seen.clear();
+    tracks_.next(seen, odom_, DrawnRoom::kRig, now);
+    Image<TrackId> ids(DrawnRoom::kSize);
+    std::map<int, TrackId> track_of;
+    for (const Track& track : tracks_.tracks.list) {
+      if (track.object != ObjectId::none) track_of[tracks_.thing_of.at(track.id)] = track.id;
+    }
+    Image<float> disparity(DrawnRoom::kSize);
+    for (int y = 0; y < ids.height(); ++y) {
+      for (int x = 0; x < ids.width(); ++x) {
+        const auto at = track_of.find(view.things(x, y));
+        ids(x, y) = at == track_of.end() ? TrackId::none : at->second;
+        if (dark) {
+          disparity(x, y) = 1;
+          continue;
+        }
+        disparity(x, y) = holes ? std::numeric_limits<float>::quiet_NaN() : view.disparity(x, y);
+      }
+    }
+    LandmarkFrame frame;
+    frame.index = index;
+    frame.stamp = now;
+    frame.odom_from_camera = odom_;
+    const double sigma = 0.001 + 0.01 * way_;
+    for (const std::size_t k : {0U, 7U, 14U}) frame.pose_covariance[k] = sigma * sigma;
+    frame.pose_covariance[35] = std::pow(0.0005 + 0.002 * way_, 2);
+    frame.motion_refusal = motion;
+    frame.odometry_suspect = suspect;
+    frame.tracks = &tracks_.tracks;
+    frame.cut = tracks_.cut;
+    frame.ids = std::as_const(ids).view();
+    frame.disparity_px = std::as_const(disparity).view();
+    frame.rig = DrawnRoom::kRig;
+    Landmarked step = advance_landmarks(std::move(state), frame, config);
+    state = std::move(step.state);
+    for (LandmarkEvent& event : step.events) events.push_back(std::move(event));
+    for (const LandmarkOfTrack& t : step.tracks) {
+      if (t.landmark != LandmarkId::none) things_of[t.landmark].insert(tracks_.thing_of.at(t.track));
+      ++refusals[t.refusal];
+      if (t.is_recognised && recognised_.insert(t.track).second) ++recognised;
+    }
+    ++index;
+  }
+
+  static constexpr int kLap = 110;
+  static Pose on_lap(double angle) {
+    return camera_at(1.5 * std::cos(angle), 1.5 * std::sin(angle), angle + 0.3);
+  }
+  /// Once round the middle at 1.5 m, looking outwards; 22 s.
+  void lap(const DrawnRoom& room, double first_angle = 0) {
+    for (int i = 0; i < kLap; ++i) frame(room, on_lap(first_angle + kTurn * i / kLap));
+  }
+
+  [[nodiscard]] double pose_error_m() const {
+    return length((state.located.map_from_odom * odom_).translation_m - before_->translation_m);
+  }
+  [[nodiscard]] std::vector<LandmarkEvent> of_kind(LandmarkEventKind kind) const {
+    std::vector<LandmarkEvent> some;
+    for (const LandmarkEvent& event : events) {
+      if (event.kind == kind) some.push_back(event);
+    }
+    return some;
+  }
+  [[nodiscard]] LandmarkId of_thing(int thing) const {
+    for (const auto& [id, things] : things_of) {
+      if (things.contains(thing)) return id;
+    }
+    return LandmarkId::none;
+  }
+  int index = 0;
+
+ private:
+  TrueTracks tracks_;
+  std::set<TrackId> recognised_;
+  std::optional<Pose> before_;
+  Pose odom_;
+  double way_ = 0;
+  std::mt19937 random_{11};
+};
+
+TEST(Landmarks, AreTheStaticThingsOfARoomAndTheSameOnesWhenSeenAgain) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const DrawnRoom room = DrawnRoom::random(seed, 10);
+    Excursion run;
+    run.lap(room);
+    run.lap(room);
+    run.lap(room, 0.05);
+    EXPECT_EQ(run.state.map.list.size(), run.things_of.size());
+    EXPECT_GE(run.state.map.list.size(), 9U) << "room " << seed;
+    for (const auto& [id, things] : run.things_of) EXPECT_EQ(things.size(), 1U) << "landmark " << number(id);
+    EXPECT_GE(run.recognised, 14) << "room " << seed;
+    EXPECT_TRUE(changes_of(run.events).empty()) << "room " << seed;
+    for (const Landmark& landmark : run.state.map.list) {
+      const Cylinder& thing = room.things[static_cast<std::size_t>(*run.things_of[landmark.id].begin()) - 1];
+      EXPECT_LT(std::hypot(landmark.position_m.x - thing.x, landmark.position_m.y - thing.y), 0.2);
+    }
+  }
+}
+
+TEST(Landmarks, AreNotMadeOfWhatWasSeenTooLittleOrFromOnePlace) {
+  const DrawnRoom room = DrawnRoom::random(3, 10);
+  Excursion run;
+  run.config.min_frames = 8;
+  const Cylinder& thing = room.things.front();
+  for (int i = 0; i < 20; ++i) run.frame(room, camera_at(0, 0, std::atan2(thing.y, thing.x)));
+  EXPECT_TRUE(run.state.map.list.empty());
+  EXPECT_GT(run.refusals[LandmarkRefusal::tentative], 0);
+  EXPECT_GT(run.refusals[LandmarkRefusal::too_few_frames], 0);
+  EXPECT_GT(run.refusals[LandmarkRefusal::one_viewpoint], 0);
+  Excursion sure;
+  sure.config.max_sigma = 0.005F;
+  sure.lap(room);
+  EXPECT_TRUE(sure.state.map.list.empty());
+  EXPECT_GT(sure.refusals[LandmarkRefusal::uncertain], 0);
+}
+
+TEST(Landmarks, AreReportedMovedFromWhereToWhere) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const DrawnRoom before = DrawnRoom::random(seed, 8);
+    Excursion run;
+    run.lap(before);
+    // The first thing that became a landmark goes to where there is room on the same circle.
+    const int thing = *run.things_of.begin()->second.begin();
+    DrawnRoom after = before;
+    Cylinder& moved = after.things[static_cast<std::size_t>(thing) - 1];
+    for (double angle = 0; angle < kTurn; angle += 0.1) {
+      const double x = 3.6 * std::cos(angle);
+      const double y = 3.6 * std::sin(angle);
+      double nearest = 100;
+      for (const Cylinder& c : before.things) nearest = std::min(nearest, std::hypot(c.x - x, c.y - y));
+      if (nearest < 1) continue;
+      moved.x = x;
+      moved.y = y;
+      break;
+    }
+    run.lap(after);
+    run.lap(after);
+    const auto changes = changes_of(run.events);
+    ASSERT_EQ(changes.size(), 1U) << "room " << seed;
+    EXPECT_EQ(changes[0].kind, LandmarkEventKind::moved);
+    EXPECT_EQ(changes[0].landmark, run.things_of.begin()->first);
+    const Cylinder& was = before.things[static_cast<std::size_t>(thing) - 1];
+    EXPECT_NEAR(changes[0].moved_by_m.x, moved.x - was.x, 0.15);
+    EXPECT_NEAR(changes[0].moved_by_m.y, moved.y - was.y, 0.15);
+    EXPECT_GE(changes[0].frames.size(), 5U);
+    EXPECT_GT(changes[0].probability, 0.5);
+  }
+}
+
+TEST(Landmarks, AreReportedGoneWhenTheirPlaceIsSeenThroughAndBackWhenTheyAre) {
+  const DrawnRoom before = DrawnRoom::random(2, 8);
+  Excursion run;
+  run.lap(before);
+  const LandmarkId id = run.things_of.begin()->first;
+  const int thing = *run.things_of.begin()->second.begin();
+  DrawnRoom after = before;
+  std::erase_if(after.things, [&](const Cylinder& c) { return c.thing == thing; });
+  run.lap(after);
+  auto changes = changes_of(run.events);
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0].kind, LandmarkEventKind::gone);
+  EXPECT_EQ(changes[0].landmark, id);
+  EXPECT_GE(changes[0].frames.size(), 5U);
+  EXPECT_TRUE(find(run.state.map, id)->is_gone);
+  run.lap(before);
+  EXPECT_EQ(run.of_kind(LandmarkEventKind::back).size(), 1U);
+  EXPECT_FALSE(find(run.state.map, id)->is_gone);
+  EXPECT_TRUE(changes_of(run.events).empty());
+}
+
+TEST(Landmarks, AreNeverGoneForNotBeingLookedAtNorInHoles) {
+  const DrawnRoom before = DrawnRoom::random(2, 8);
+  DrawnRoom empty;
+  Excursion away;
+  away.lap(before);
+  for (int i = 0; i < 100; ++i) away.frame(empty, camera_at(4.5, 4.5, 0.785));  // into a corner
+  EXPECT_TRUE(away.of_kind(LandmarkEventKind::gone).empty());
+  Excursion blind;
+  blind.lap(before);
+  blind.holes = true;
+  blind.lap(empty);
+  EXPECT_TRUE(blind.of_kind(LandmarkEventKind::gone).empty());
+  // And with sight, all of them are.
+  Excursion sees;
+  sees.lap(before);
+  sees.lap(empty);
+  EXPECT_GE(sees.of_kind(LandmarkEventKind::gone).size(), before.things.size() - 1);
+}
+
+TEST(Landmarks, AreNeverGoneNorNewInFramesWhosePoseIsAGuess) {
+  const DrawnRoom before = DrawnRoom::random(2, 8);
+  const auto after_darkness = [&](MotionRefusal refusal, bool suspect) {
+    Excursion run;
+    run.lap(before);
+    const auto floor = run.state.map.floor;
+    const std::size_t known = run.state.map.list.size();
+    run.dark = true;
+    run.motion = refusal;
+    run.suspect = suspect;
+    run.lap(before);
+    EXPECT_EQ(run.state.map.list.size(), known);
+    const std::size_t gone = run.of_kind(LandmarkEventKind::gone).size();
+    if (gone == 0) {
+      EXPECT_EQ(run.state.map.floor, floor);
+    }
+    // With the light come the landmarks as they were.
+    run.dark = false;
+    run.motion = MotionRefusal::none;
+    run.suspect = false;
+    if (gone == 0) {
+      run.lap(before);
+      EXPECT_EQ(run.state.map.list.size(), known);
+      EXPECT_TRUE(changes_of(run.events).empty());
+    }
+    return gone;
+  };
+  EXPECT_EQ(after_darkness(MotionRefusal::few_points, false), 0U);
+  EXPECT_EQ(after_darkness(MotionRefusal::disagrees_with_prior, false), 0U);
+  EXPECT_EQ(after_darkness(MotionRefusal::none, true), 0U);
+  // Were they taken for seeing, all would be gone.
+  EXPECT_GE(after_darkness(MotionRefusal::none, false), before.things.size() - 1);
+}
+
+TEST(Landmarks, AreNewWhereFloorHadBeenSeen) {
+  DrawnRoom room = DrawnRoom::random(4, 5);
+  Excursion run;
+  run.lap(room);
+  run.lap(room);
+  Cylinder fresh;
+  fresh.thing = 99;
+  fresh.radius = 0.2;
+  fresh.height = 0.6;
+  std::mt19937 random(77);
+  fresh.look = support::random_look(random);
+  for (double angle = 0; angle < kTurn; angle += 0.1) {
+    fresh.x = 3.5 * std::cos(angle);
+    fresh.y = 3.5 * std::sin(angle);
+    double nearest = 100;
+    for (const Cylinder& c : room.things)
+      nearest = std::min(nearest, std::hypot(c.x - fresh.x, c.y - fresh.y));
+    if (nearest > 1.2) break;
+  }
+  room.things.push_back(fresh);
+  run.lap(room);
+  run.lap(room);
+  const auto changes = changes_of(run.events);
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0].kind, LandmarkEventKind::found);
+  EXPECT_LT(std::hypot(changes[0].position_m.x - fresh.x, changes[0].position_m.y - fresh.y), 0.15);
+}
+
+TEST(Landmarks, HaveTheUncertaintyOfAPoseAlongTheMapsAxes) {
+  const Pose quarter = rotation_about({0, 0, std::numbers::pi / 2});
+  Tracks tracks;
+  LandmarkFrame frame;
+  frame.tracks = &tracks;
+  frame.pose_covariance[0] = 0.04;  // along odometry's x, which is the map's y
+  frame.pose_covariance[7] = 0.01;
+  frame.pose_covariance[14] = 0.0025;
+  frame.pose_covariance[21] = 0.0004;  // roll
+  frame.pose_covariance[28] = 0.0001;  // pitch
+  frame.pose_covariance[35] = 0.0009;
+  const LandmarksState state = advance_landmarks(begin_landmarks({}, 1, quarter), frame, {}).state;
+  EXPECT_NEAR(state.located.covariance[0], 0.01, 1e-12);
+  EXPECT_NEAR(state.located.covariance[5], 0.04, 1e-12);
+  EXPECT_NEAR(state.located.covariance[10], 0.0025, 1e-12);
+  EXPECT_NEAR(state.located.covariance[15], 0.0009, 1e-12);
+  // A relocation's own uncertainty comes in; roll and pitch are odometry's.
+  Located located = state.located;
+  located.covariance[0] += 1;
+  located.covariance[3] = located.covariance[12] = 0.002;
+  const Covariance6 camera = camera_covariance(located, frame.pose_covariance);
+  EXPECT_NEAR(camera[0], 1.01, 1e-12);
+  EXPECT_NEAR(camera[7], 0.04, 1e-12);
+  EXPECT_NEAR(camera[5], 0.002, 1e-12);
+  EXPECT_NEAR(camera[21], 0.0001, 1e-12);
+  EXPECT_NEAR(camera[28], 0.0004, 1e-12);
+  EXPECT_NEAR(camera[35], 0.0009, 1e-12);
+}
+
+TEST(Landmarks, CorrectAPathThatDrifts) {
+  double with = 0;
+  double without = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const DrawnRoom room = DrawnRoom::random(seed, 10);
+    for (const double drift : {-1e-4, 1e-4}) {  // 0.6 degrees a lap
+      Excursion run;
+      run.drift_rad = drift;
+      run.lap(room);
+      run.lap(room);
+      with += run.pose_error_m();
+      Excursion alone;
+      alone.drift_rad = drift;
+      alone.config.min_pairs = 20;
+      alone.lap(room);
+      alone.lap(room);
+      without += alone.pose_error_m();
+      EXPECT_TRUE(changes_of(run.events).empty()) << "room " << seed;
+    }
+  }
+  EXPECT_LT(with, 0.7 * without);
+}
+
+TEST(Landmarks, TellWhereARunBeginsThatDoesNotKnow) {
+  int right = 0;
+  int wrong = 0;
+  int unknown = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const DrawnRoom room = DrawnRoom::random(seed, 14);
+    Excursion first;
+    first.lap(room);
+    first.lap(room);
+    for (int start = 0; start < 6; ++start) {
+      Excursion second(first.state.map, 2);
+      second.odom_from_map = camera_at(0, 0, 0) * inverse(camera_at(1, -3, 0.4 + start));
+      EXPECT_FALSE(second.state.is_located);
+      const double from = kTurn * start / 6;
+      for (int i = 0; i < Excursion::kLap && !second.state.is_located; ++i)
+        second.frame(room, Excursion::on_lap(from + kTurn * i / Excursion::kLap));
+      if (!second.state.is_located) {
+        ++unknown;
+      } else {
+        ++(second.pose_error_m() < 0.3 ? right : wrong);
+        EXPECT_EQ(second.of_kind(LandmarkEventKind::relocated).size(), 1U);
+      }
+    }
+  }
+  EXPECT_GE(right, 20) << right << " right, " << wrong << " wrong, " << unknown << " not known where";
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(Landmarks, SayNotKnownWhereInAnotherRoom) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Excursion first;
+    first.lap(DrawnRoom::random(seed, 14));
+    const std::size_t known = first.state.map.list.size();
+    Excursion second(first.state.map, 2);
+    second.lap(DrawnRoom::random(100 + seed, 14));
+    EXPECT_FALSE(second.state.is_located) << "room " << seed;
+    EXPECT_EQ(second.state.map.list.size(), known);
+    EXPECT_GT(second.refusals[LandmarkRefusal::not_located], 0);
+  }
+}
+
+TEST(Maps, OfOneRoomAreMergedWhereverTheyBegan) {
+  const DrawnRoom room = DrawnRoom::random(5, 12);
+  Excursion first;
+  first.lap(room);
+  first.lap(room);
+  Excursion second;
+  second.odom_from_map = camera_at(0, 0, 0) * inverse(camera_at(1, -3, 2));
+  second.lap(room);
+  second.lap(room, 1);
+  const Merged merged = merge(first.state.map, second.state.map, std::nullopt, {});
+  ASSERT_TRUE(merged.map_from_other.has_value());
+  EXPECT_GE(merged.pairs.size(), 8U);
+  EXPECT_EQ(merged.map.list.size(),
+            first.state.map.list.size() + second.state.map.list.size() - merged.pairs.size());
+  for (const LandmarkPair& pair : merged.pairs) {
+    EXPECT_EQ(*second.things_of[LandmarkId{number(pair.track)}].begin(),
+              *first.things_of[pair.landmark].begin());
+  }
+  Excursion other;
+  other.lap(DrawnRoom::random(105, 12));
+  EXPECT_FALSE(merge(first.state.map, other.state.map, std::nullopt, {}).map_from_other.has_value());
+}
+
+}  // namespace
+}  // namespace cairn

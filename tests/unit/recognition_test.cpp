@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <landmarks/landmarks.hpp>
+#include <numbers>
+
+namespace cairn {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+Landmark known(std::int64_t id, Point3 at, std::size_t bin) {
+  Landmark l;
+  l.id = LandmarkId{id};
+  l.position_m = at;
+  l.covariance_m2 = {0.0025, 0, 0, 0, 0.0025, 0, 0, 0, 0.0025};
+  l.size = {0.4, 0.4, 0.5};
+  l.height_over_floor_m = 0.25;
+  LandmarkLook look;
+  look.colours[bin % 8] = 1;
+  look.colours[8 + bin] = 1;
+  l.looks.push_back(look);
+  return l;
+}
+
+Candidate seen(std::int64_t id, Point3 at, std::size_t bin) {
+  const Landmark l = known(id, at, bin);
+  return {TrackId{id}, at, l.covariance_m2, l.size, l.height_over_floor_m, l.looks[0].colours};
+}
+
+TEST(Recognition, IsVetoedByPlaceSizeAndHeightAndDecidedByColours) {
+  LandmarkMap map;
+  map.list = {known(1, {1, 0, 0.25}, 5)};
+  const LandmarksConfig config;
+  const Located here{};
+  const auto is_known = [&](const Candidate& candidate) {
+    return recognise(map, {candidate}, here, {}, config).pairs.size() == 1;
+  };
+  const Candidate same = seen(7, {1.1, 0, 0.25}, 5);
+  EXPECT_TRUE(is_known(same));
+  EXPECT_FALSE(is_known(seen(7, {1.5, 0, 0.25}, 5)));
+  EXPECT_FALSE(is_known(seen(7, {1.1, 0, 0.25}, 6)));
+  Candidate tall = same;
+  tall.size.height_m = 0.9;
+  EXPECT_FALSE(is_known(tall));
+  Candidate wide = same;
+  wide.size = {0.7, 0.8, 0.5};
+  EXPECT_FALSE(is_known(wide));
+  Candidate high = same;
+  high.height_over_floor_m = 0.5;
+  EXPECT_FALSE(is_known(high));
+  EXPECT_TRUE(recognise(map, {same}, here, {LandmarkId{1}}, config).pairs.empty());
+  // Where the pose is not sure, a thing farther off may be the same.
+  Located unsure = here;
+  for (const std::size_t i : {0U, 5U, 10U}) unsure.covariance[i] = 0.04;
+  EXPECT_EQ(recognise(map, {seen(7, {1.5, 0, 0.25}, 5)}, unsure, {}, config).pairs.size(), 1U);
+}
+
+TEST(Recognition, PairsEachThingOnce) {
+  LandmarkMap map;
+  map.list = {known(1, {1, 0, 0.25}, 5), known(2, {1.2, 0, 0.25}, 5)};
+  const auto found = recognise(map, {seen(7, {0.98, 0, 0.25}, 5), seen(8, {1.22, 0, 0.25}, 5)}, {}, {}, {});
+  ASSERT_EQ(found.pairs.size(), 2U);
+  EXPECT_EQ(found.pairs[0].landmark, LandmarkId{1});
+  EXPECT_EQ(found.pairs[1].landmark, LandmarkId{2});
+}
+
+TEST(Relocation, FindsThePoseOfAConstellation) {
+  LandmarkMap map;
+  map.list = {known(1, {0, 0, 0.25}, 1), known(2, {2, 0, 0.25}, 2), known(3, {0, 3, 0.25}, 3),
+              known(4, {4, 4, 0.25}, 4)};
+  Pose map_from_odom = rotation_about({0, 0, 1.2});
+  map_from_odom.translation_m = {3, -2, 0.1};
+  std::vector<Candidate> candidates;
+  for (std::int64_t i = 0; i < 3; ++i)
+    candidates.push_back(seen(10 + i,
+                              inverse(map_from_odom)(map.list[static_cast<std::size_t>(i)].position_m),
+                              static_cast<std::size_t>(i) + 1));
+  const Recognition found = relocate(map, candidates, {});
+  ASSERT_TRUE(found.map_from_odom.has_value());
+  EXPECT_EQ(found.pairs.size(), 3U);
+  EXPECT_LT(angle_of(inverse(*found.map_from_odom) * map_from_odom), 1e-6);
+  EXPECT_LT(length(found.map_from_odom->translation_m - map_from_odom.translation_m), 1e-6);
+  // Two are too few, and a mirrored room is another one.
+  candidates.pop_back();
+  EXPECT_EQ(relocate(map, candidates, {}).refusal, RecognitionRefusal::no_candidates);
+  candidates.push_back(seen(12, inverse(map_from_odom)({0, -3, 0.25}), 3));
+  EXPECT_EQ(relocate(map, candidates, {}).refusal, RecognitionRefusal::too_few_pairs);
+}
+
+TEST(Relocation, SaysAmbiguousInARoomThatRepeatsItself) {
+  LandmarkMap map;
+  std::vector<Candidate> candidates;
+  for (std::int64_t i = 0; i < 4; ++i) {
+    const double angle = kTurn * static_cast<double>(i) / 4;
+    map.list.push_back(known(i + 1, {2 * std::cos(angle), 2 * std::sin(angle), 0.25}, 9));
+    candidates.push_back(seen(i + 11, {2 * std::cos(angle), 2 * std::sin(angle), 0.25}, 9));
+  }
+  const Recognition found = relocate(map, candidates, {});
+  EXPECT_FALSE(found.map_from_odom.has_value());
+  EXPECT_EQ(found.refusal, RecognitionRefusal::ambiguous);
+}
+
+TEST(Maps, ThatAreCopiesAreMergedWithoutCountingWhatTheyShareTwice) {
+  LandmarkMap room;
+  const std::array places{Point3{0, 0, 0.25}, Point3{2, 0, 0.25}, Point3{0, 3, 0.25}, Point3{3, 3, 0.25}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Landmark l = known(room.next++, places[i], 5 * i);
+    l.run = 1;
+    l.seen = l.expected = 20;
+    l.log_odds = 2;
+    room.list.push_back(l);
+  }
+  LandmarkMap copy = room;
+  room.list[0].last = {9'000'000'000};
+  room.list[0].seen = 30;
+  copy.list[1].run = 2;
+  copy.list[1].position_m.x += 1;
+  copy.list[1].seen = 25;
+  copy.list[1].name = "box";
+  copy.list[2].is_gone = true;  // looked for, and not seen
+  copy.list[2].expected = 40;
+  // By the same id each has found a thing of its own since.
+  room.list.push_back(known(room.next++, {6, -3, 0.25}, 30));
+  copy.list.push_back(known(copy.next++, {-6, -3, 0.25}, 40));
+  const auto check = [](const Merged& merged) {
+    const std::vector<Landmark>& list = merged.map.list;
+    ASSERT_EQ(list.size(), 6U);
+    EXPECT_EQ(merged.pairs.size(), 4U);
+    EXPECT_EQ(list[0].seen, 30);
+    EXPECT_EQ(list[1].seen, 25);
+    EXPECT_EQ(list[1].name, "box");
+    EXPECT_EQ(list[1].position_m, (Point3{3, 0, 0.25}));
+    EXPECT_TRUE(list[2].is_gone);
+    EXPECT_EQ(list[3].seen, 20);
+    EXPECT_EQ(list[3].log_odds, 2);
+    EXPECT_EQ(list[3].covariance_m2[0], 0.0025);
+    EXPECT_NE(list[4].id, list[5].id);
+  };
+  check(merge_copies(room, copy, {}));
+  check(merge_copies(copy, room, {}));
+  const Merged same = merge_copies(room, room, {});
+  EXPECT_EQ(same.map.list.size(), room.list.size());
+  EXPECT_EQ(same.map.list[3].seen, 20);
+}
+
+TEST(Changes, AreTheLastWordAboutEachLandmark) {
+  const auto event = [](LandmarkEventKind kind, std::int64_t id, double by = 0) {
+    LandmarkEvent e;
+    e.kind = kind;
+    e.landmark = LandmarkId{id};
+    e.moved_by_m.x = by;
+    return e;
+  };
+  using enum LandmarkEventKind;
+  const auto changes = changes_of({event(relocated, 0), event(gone, 1), event(gone, 2), event(moved, 2, 1),
+                                   event(back, 1), event(found, 3), event(gone, 4), event(moved, 2, 0.5)});
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_EQ(changes[0].landmark, LandmarkId{2});
+  EXPECT_EQ(changes[0].kind, moved);
+  EXPECT_EQ(changes[0].moved_by_m.x, 1.5);
+  EXPECT_EQ(changes[1].kind, found);
+  EXPECT_EQ(changes[2].landmark, LandmarkId{4});
+}
+
+}  // namespace
+}  // namespace cairn

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "control.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/option_walk.hpp>
+#include <cmath>
+
+namespace cairn {
+
+std::vector<Arm> arms_of(const Config& config, Size image, float step) {
+  const std::vector<OptionInfo> known = active_options(config);
+  std::vector<Arm> arms;
+  const auto add = [&](const std::string& option, const std::string& value) {
+    const auto now = std::ranges::find(known, option, &OptionInfo::name);
+    if (now == known.end() || now->value == value) return;
+    try {
+      Config changed = config;
+      set(changed, option, value);
+      validate(changed, image, true);
+      arms.push_back({option, value});
+    } catch (const Error&) {  // out of its range: no arm
+    }
+  };
+  const auto scale = [&](const std::string& option, float value, float by) {
+    if (value > 0) add(option, option_walk::write(value * by));
+  };
+  const auto scale_whole = [&](const std::string& option, int value, float by) {
+    if (value > 0)
+      add(option, option_walk::write(static_cast<int>(std::lround(static_cast<float>(value) * by))));
+  };
+  if (2 * config.match.num_disparities <= image.width / 2)
+    scale_whole("match.num_disparities", config.match.num_disparities, 2);
+  add("ground.source", "automatic");
+  for (const float by : {step, 1 / step}) {
+    scale_whole("superpixels.count", config.superpixels.count, by);
+    scale("objects.min_area", config.objects.min_area, 1 / by);
+    scale("ground.margin", config.ground.margin, 1 / by);
+    scale("evidence.gradient_min", config.evidence.gradient_min, 1 / by);
+    scale_whole("speckle.size", config.speckle.size, 1 / by);
+    scale("left_right.max_diff", config.left_right.max_diff, by);
+    scale("semi_global.penalty_large", config.semi_global.penalty_large, by);
+  }
+  add("background.max_walls", config.background.max_walls > 0 ? "0" : "3");
+  add("match.method", config.match.method == MatchMethod::window ? "semi_global" : "window");
+  return arms;
+}
+
+Lead lead_of(const ArmScore& score) {
+  constexpr double kOneSided95 = 1.645;
+  constexpr double kLeast = 1e-3;  // a present that finds nothing is led by whatever finds something
+  const std::size_t count = std::min(score.of_arm.size(), score.of_present.size());
+  if (count < 2) return {};
+  const auto n = static_cast<double>(count);
+  double sum = 0;
+  double squares = 0;
+  double present = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double more = double{score.of_arm[i]} - double{score.of_present[i]};
+    sum += more;
+    squares += more * more;
+    present += double{score.of_present[i]};
+  }
+  const double mean = sum / n;
+  const double variance = std::max(0.0, squares / n - mean * mean) / (n - 1);
+  const double base = std::max(kLeast, present / n);
+  return {mean / base, (mean - kOneSided95 * std::sqrt(variance)) / base};
+}
+
+std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent) {
+  const std::size_t most = (round.size() + 1) / 2;
+  std::ranges::stable_sort(round, std::ranges::greater{}, [](const ArmScore& s) { return lead_of(s).mean; });
+  if (round.size() > 1) round.resize(most);
+  std::erase_if(round, [&](const ArmScore& s) { return lead_of(s).mean < double{lead_percent} / 200; });
+  return round;
+}
+
+bool is_better(const ArmScore& score, const ControlConfig& config) {
+  const Lead lead = lead_of(score);
+  return static_cast<int>(score.of_arm.size()) >= config.window && lead.mean >= double{config.lead} / 100 &&
+         lead.low > 0;
+}
+
+}  // namespace cairn

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/scene/ground_plane.hpp>
+#include <optional>
+
+#include "pose.hpp"
+
+namespace cairn {
+
+/// Where the first frame's camera is in the map's frame, which lies on the floor below it: x forward, y left,
+/// z up (ROS REP 103). Without a floor its origin is the camera, whose view is then taken for level.
+Pose first_pose(const Ground& ground, const std::optional<StereoRig>& rig);
+
+/// The rotation from a camera that looks level in the same direction (x right, y down, z forward) to this
+/// one. `map_from_camera`: z of the map is up.
+Pose camera_from_level(const Pose& map_from_camera);
+
+}  // namespace cairn

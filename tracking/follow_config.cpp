@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/option_walk.hpp>
+
+#include "follow_config.hpp"
+
+namespace cairn {
+
+std::vector<OptionInfo> options(const FollowConfig& config) {
+  return option_walk::options_of(config);
+}
+
+bool is_of_following(std::string_view option) {
+  bool found = false;
+  FollowConfig config;
+  const std::string_view section = option.substr(0, option.find('.'));
+  std::size_t of_segmentation = 0;
+  for_each_section(config.segmentation, [&](std::string_view, auto&) { ++of_segmentation; });
+  for_each_section(config, [&](std::string_view name, auto&) {
+    if (of_segmentation > 0) {
+      --of_segmentation;
+    } else if (name == section) {
+      found = true;
+    }
+  });
+  return found;
+}
+
+void set(FollowConfig& config, std::string_view name, std::string_view value) {
+  if (option_walk::set_known(config, name, value)) return;
+  if (!is_of_following(name)) set(config.segmentation, name, value);  // says where it went
+  option_walk::refuse_unknown(name, options(config));
+}
+
+void require_active(const FollowConfig& config, std::string_view name) {
+  option_walk::require_active_of(config, name, {});
+}
+
+void validate(const FollowConfig& config) {
+  validate(config.segmentation);
+  option_walk::check_ranges(config);
+  const TrackingConfig& t = config.tracking;
+  if (t.low_confidence > t.high_confidence)
+    throw Error("option tracking.low_confidence: " + option_walk::write(t.low_confidence) +
+                " is more than tracking.high_confidence, " + option_walk::write(t.high_confidence));
+  const LandmarksConfig& l = config.landmarks;
+  if (l.min_frames < t.min_hits)
+    throw Error("option landmarks.min_frames: " + option_walk::write(l.min_frames) +
+                " is less than tracking.min_hits, " + option_walk::write(t.min_hits));
+  if (l.relocation_pairs < l.min_pairs)
+    throw Error("option landmarks.relocation_pairs: " + option_walk::write(l.relocation_pairs) +
+                " is less than landmarks.min_pairs, " + option_walk::write(l.min_pairs));
+}
+
+}  // namespace cairn

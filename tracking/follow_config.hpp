@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/pipeline/config.hpp>
+
+#include "control.hpp"
+#include "landmarks_config.hpp"
+#include "odometry.hpp"
+#include "repair.hpp"
+#include "tracks.hpp"
+
+namespace cairn {
+
+/// What is computed of a sequence: one section per stage, and all that segment() has.
+struct FollowConfig {
+  Config segmentation;
+  OdometryConfig odometry;
+  TrackingConfig tracking;
+  RepairConfig repair;
+  LandmarksConfig landmarks;
+  ControlConfig control;
+};
+
+/// Calls visit("match", c.segmentation.match), …, visit("odometry", c.odometry), …
+template <class C, class F>
+requires requires(C& c) {
+  c.odometry;
+}
+void for_each_section(C& c, F&& visit) {
+  for_each_section(c.segmentation, visit);
+  visit("odometry", c.odometry);
+  visit("tracking", c.tracking);
+  visit("repair", c.repair);
+  visit("landmarks", c.landmarks);
+  visit("control", c.control);
+}
+
+/// As of Config, see <cairn/pipeline/config.hpp>.
+std::vector<OptionInfo> options(const FollowConfig& config);
+void set(FollowConfig& config, std::string_view name, std::string_view value);
+void require_active(const FollowConfig& config, std::string_view name);
+/// Whether the option is one of a sequence, and not of segment().
+bool is_of_following(std::string_view option);
+/// Throws Error where validate(config.segmentation) does, where a value lies outside its range, or where two
+/// do not go together.
+void validate(const FollowConfig& config);
+
+}  // namespace cairn

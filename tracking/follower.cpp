@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "follower.hpp"
+
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/methods.hpp>
+#include <utility>
+
+#include "first_pose.hpp"
+
+namespace cairn {
+namespace {
+
+/// Without a rig, masks are remembered in the picture: any rig does that leads there and back, as long as the
+/// camera is taken to stand.
+StereoRig picture_rig(Size size) {
+  return {.focal_px = static_cast<float>(size.width),
+          .cx_px = static_cast<float>(size.width) / 2,
+          .cy_px = static_cast<float>(size.height) / 2,
+          .baseline_m = 1,
+          .doffs_px = 0};
+}
+
+Image<TrackId> ids_of(const Tracks& tracks, const Objects& objects, const Exec& exec) {
+  std::vector<TrackId> track_of(objects.list.size() + 1, TrackId::none);
+  for (const Track& track : tracks.list) {
+    if (track.object == ObjectId::none) continue;
+    track_of[slot(number(track.object))] = track.id;
+    for (const ObjectId part : track.parts) track_of[slot(number(part))] = track.id;
+  }
+  Image<TrackId> ids(objects.labels.size(), exec.pool);
+  for (int y = 0; y < ids.height(); ++y) {
+    for (int x = 0; x < ids.width(); ++x) ids(x, y) = track_of[slot(number(objects.labels(x, y)))];
+  }
+  return ids;
+}
+
+/// 255 where things that move are expected to show, none where none moves. `map_from_camera`: as expected.
+Image<std::uint8_t> expected_movers(const Remembered& remembered, const Tracks& tracks,
+                                    const Pose& map_from_camera, Stamp now, const StereoRig& rig, Size size,
+                                    const Exec& exec) {
+  Tracks moving;
+  for (const Track& track : tracks.list)
+    if (track.is_moving && track.state == TrackState::confirmed) moving.list.push_back(track);
+  if (moving.list.empty()) return {};
+  const Warped warped = warp(remembered, moving, map_from_camera, now, rig, size, exec);
+  Image<std::uint8_t> mask(size, exec.pool);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x)
+      mask(x, y) = warped.ids(x, y) == TrackId::none ? std::uint8_t{0} : std::uint8_t{255};
+  }
+  return mask;
+}
+
+}  // namespace
+
+Follower::Follower(FollowConfig config, std::optional<StereoRig> rig, Exec exec)
+    : config_(std::move(config)), rig_(rig), exec_(std::move(exec)) {
+  validate(config_);
+  if (rig_) rig_->validate();
+  exec_.pool = Pool::make();
+}
+
+void Follower::forget() {
+  odometry_ = after_gap(std::move(odometry_));
+  std::erase_if(tracks_.list, [](const Track& track) { return track.state == TrackState::tentative; });
+  for (Track& track : tracks_.list) track.state = TrackState::lost;
+  reliability_.floor.reset();
+}
+
+Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+                    const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+  if (size_ && *size_ != pair.size())
+    throw Error("frame " + std::to_string(frames_) + ": is " + text(pair.size()) + ", the first one is " +
+                text(*size_));
+  if (frames_ > 0 && stamp <= before_)
+    throw Error("frame " + std::to_string(frames_) + ": its stamp " + std::to_string(stamp.ns) +
+                " ns is not later than the one before, " + std::to_string(before_.ns) + " ns");
+
+  Step step;
+  step.index = frames_;
+  step.stamp = stamp;
+  const Config& config = config_.segmentation;
+  validate(config, pair.size(), rig_.has_value());
+  Observed stage(exec_);
+
+  // What the frame shows; by hierarchy as far as to the regions that may be objects …
+  Given given{pair.left(), pair.left_rgb(), pair.right(), {}};
+  const bool has_tree = config.fusion.method == FusionMethod::hierarchy;
+  GrownScene grown;
+  if (has_tree) {
+    grown = grow_scene(given, rig_, config, exec_, stage);
+  } else {
+    step.frame = segment(pair, rig_, config, exec_);
+  }
+  const DisparityMap& disparity = has_tree ? grown.cut.scene.found.disparity : step.frame.disparity;
+  const Ground& ground = has_tree ? grown.cut.scene.found.ground : step.frame.ground;
+  const Image<float>& confidence = has_tree ? grown.confidence : step.frame.confidence;
+
+  // … how the camera moved …
+  if (frames_ == 0) odometry_ = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
+  if (map_from_camera) {
+    step.motion.refusal = MotionRefusal::off;
+    step.motion.now_from_before = inverse(*map_from_camera) * odometry_.map_from_camera;
+    odometry_ = begin_odometry(*map_from_camera);  // should a later frame have no pose, it goes on from here
+  } else if (rig_) {
+    const bool has_wheels = prior && prior->kind == PriorKind::wheels;
+    const Pose expected_step = has_wheels ? prior->now_from_before : odometry_.last_step;
+    const Image<std::uint8_t> moving =
+        expected_movers(remembered_, tracks_, odometry_.map_from_camera * inverse(expected_step), stamp,
+                        *rig_, pair.size(), exec_);
+    OdometryStep moved = advance_odometry(odometry_, pair.left(), disparity, confidence, moving, *rig_, prior,
+                                          config_.odometry);
+    odometry_ = std::move(moved.state);
+    step.motion = moved.motion;
+  } else {
+    step.motion.refusal = MotionRefusal::no_rig;
+  }
+  const Pose& pose = step.map_from_camera = odometry_.map_from_camera;
+  step.pose_covariance = odometry_.covariance;
+  step.is_lost = odometry_.lost;
+
+  // … where the tracks should show, which helps to choose objects …
+  const Image<std::int16_t> best_right = std::move(grown.cut.scene.matches.best_right);
+  const StereoRig rig = rig_.value_or(picture_rig(pair.size()));
+  const Warped warped = warp(remembered_, tracks_, pose, stamp, rig, pair.size(), exec_);
+  if (has_tree) {
+    const ChoiceLimits limits = limits_of(config.objects, pair.size());
+    std::vector<float> scores = score_nodes(grown.tree, kWholeObject, limits);
+    if (!step.is_lost)
+      scores = repaired_scores(grown.tree, std::move(scores), grown.cut.superpixels, warped, tracks_,
+                               config_.repair);
+    const ChosenObjects chosen = stage(
+        "choose_objects", choose_candidates(grown.tree, scores, limits, config_.tracking.low_confidence));
+    step.frame = frame_of(std::move(grown), chosen, given, rig_, config, exec_, stage);
+  }
+  const Frame& frame = step.frame;
+  size_ = pair.size();
+  before_ = stamp;
+  ++frames_;
+
+  // … and which of them are which track.
+  const Overlaps overlaps = overlaps_of(warped, tracks_, frame.objects, frame.disparity);
+  const auto sightings = sight(frame, pair.left(), pair.left_rgb(), rig_, config_.tracking);
+  const auto matches = step.is_lost ? std::vector<Match>{}
+                                    : associate(tracks_, sightings, overlaps, pose, step.pose_covariance,
+                                                stamp, config_.tracking);
+  tracks_ = advance_tracks(std::move(tracks_), sightings, matches, overlaps, pose, step.pose_covariance,
+                           step.is_lost, stamp, config_.tracking);
+  remembered_ = remember(std::move(remembered_), tracks_, frame.objects, frame.disparity, pose, stamp, rig);
+  step.tracks = tracks_;
+  step.ids = ids_of(tracks_, frame.objects, exec_);
+
+  // How far all this is to be trusted.
+  const bool looks_for_floor = config.ground.source == GroundSource::automatic;
+  reliability_ = judge(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, reliability_);
+  step.reliability = reliability_;
+  return step;
+}
+
+}  // namespace cairn

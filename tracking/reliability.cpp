@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "reliability.hpp"
+
+#include <algorithm>
+#include <cairn/evaluation/consistency.hpp>
+#include <cairn/scene/floor_frame.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "first_pose.hpp"
+#include "follower.hpp"
+
+namespace cairn {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr int kEveryRow = 4;  // of the rows, so many are enough for a share
+
+template <class T>
+View<const T> some_rows(View<const T> all) {
+  return {all.data(), {all.width(), (all.height() + kEveryRow - 1) / kEveryRow}, kEveryRow * all.stride()};
+}
+
+std::optional<float> known(double share) {
+  if (!std::isfinite(share)) return std::nullopt;
+  return static_cast<float>(std::clamp(share, 0.0, 1.0));
+}
+
+// ---- stereo, photometric ----
+
+void judge_pair(const Frame& frame, const Evidence& evidence, Witnesses& seen) {
+  if (evidence.pair.right().empty() || evidence.best_right.empty()) return;
+  const View<const Gray> left = evidence.pair.left();
+  Image<Gray> moved;
+  View<const Gray> right = evidence.pair.right();
+  if (frame.epipolar.outcome == EpipolarOutcome::corrected) {
+    moved = shift_rows(right, frame.epipolar, Exec{});
+    right = moved;
+  }
+  const View<const float> disparity = frame.disparity.disparity_px;
+  const Consistency both =
+      consistency(some_rows<Gray>(left), some_rows<Gray>(right), some_rows<float>(disparity),
+                  some_rows<std::int16_t>(evidence.best_right));
+  std::int64_t denied = 0;
+  const View<const Reject> reject = some_rows<Reject>(frame.disparity.reject);
+  for (int y = 0; y < reject.height(); ++y) {
+    for (int x = 0; x < reject.width(); ++x) denied += reject(x, y) == Reject::left_right ? 1 : 0;
+  }
+  if (both.matched + denied == 0) {
+    seen.stereo = 0.0F;
+    return;
+  }
+  seen.stereo = known(static_cast<double>(both.confirmed) / static_cast<double>(both.matched + denied));
+  seen.photometric = known(1 - both.photometric());
+}
+
+// ---- temporal ----
+
+/// Tracks that the frame before showed and that should be in view, against the objects that are tracked, over
+/// the pixels that have a disparity.
+std::optional<float> temporal_of(const Step& step, const Warped& warped) {
+  constexpr float kInView = 0.5F;
+  constexpr int kFewestPixels = 16;
+  if (step.index == 0 || step.is_lost) return std::nullopt;
+  const Objects& objects = step.frame.objects;
+  std::vector<TrackId> rows;
+  std::vector<double> sure_before;
+  for (const Warped::Mask& mask : warped.masks) {
+    const auto track = std::ranges::find(step.tracks.list, mask.track, &Track::id);
+    const bool was_seen = track != step.tracks.list.end() && (track->recent >> 1U & 1U) != 0;
+    if (!was_seen || mask.in_view < kInView || mask.area < kFewestPixels) continue;
+    rows.push_back(mask.track);
+    sure_before.push_back(double{track->confidence});
+  }
+  // Objects that are too unsure to found a track are never expected, so they are no surprise either.
+  const std::size_t columns = objects.list.size();
+  std::vector<bool> counts(columns, false);
+  for (const Track& track : step.tracks.list) {
+    if (track.object != ObjectId::none) counts[slot(number(track.object)) - 1] = true;
+    for (const ObjectId part : track.parts) counts[slot(number(part)) - 1] = true;
+  }
+  std::vector<int> common(rows.size() * columns, 0);
+  std::vector<int> expected(rows.size(), 0);
+  std::vector<int> found(columns, 0);
+  for (int y = 0; y < objects.labels.height(); ++y) {
+    const ObjectId* const labels = objects.labels.row(y);
+    const TrackId* const ids = warped.ids.row(y);
+    const float* const d = step.frame.disparity.disparity_px.row(y);
+    for (int x = 0; x < objects.labels.width(); ++x) {
+      if (std::isnan(d[x]) || (labels[x] == ObjectId::none && ids[x] == TrackId::none)) continue;
+      const auto row = std::ranges::lower_bound(rows, ids[x]);
+      const bool has_row = ids[x] != TrackId::none && row != rows.end() && *row == ids[x];
+      const auto at = static_cast<std::size_t>(row - rows.begin());
+      if (has_row) ++expected[at];
+      if (labels[x] == ObjectId::none) continue;
+      const std::size_t column = slot(number(labels[x])) - 1;
+      ++found[column];
+      if (has_row) ++common[at * columns + column];
+    }
+  }
+  struct Pair {
+    double iou;
+    std::size_t row, column;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      const int both = common[i * columns + j];
+      if (both > 0 && counts[j])
+        pairs.push_back({static_cast<double>(both) / (expected[i] + found[j] - both), i, j});
+    }
+  }
+  // The best pair first; ties by track, then by object.
+  std::ranges::stable_sort(pairs, std::ranges::greater{}, &Pair::iou);
+  std::vector<bool> row_taken(rows.size(), false);
+  std::vector<bool> column_taken(columns, false);
+  double agreed = 0;
+  for (const Pair& pair : pairs) {
+    if (row_taken[pair.row] || column_taken[pair.column]) continue;
+    row_taken[pair.row] = column_taken[pair.column] = true;
+    agreed += pair.iou * std::min(sure_before[pair.row], double{objects.list[pair.column].confidence});
+  }
+  double before = 0;
+  for (const double sure : sure_before) before += sure;
+  double now = 0;
+  for (std::size_t j = 0; j < columns; ++j) now += counts[j] ? double{objects.list[j].confidence} : 0.0;
+  return known(agreed / std::max(before, now));
+}
+
+// ---- floor ----
+
+std::optional<FloorInCamera> floor_of_frame(const Step& step, const std::optional<StereoRig>& rig) {
+  const auto floor = floor_frame(step.frame.ground, rig);
+  if (!floor) return std::nullopt;
+  return FloorInCamera{{double{floor->up.x}, double{floor->up.y}, double{floor->up.z}},
+                       double{floor->camera_height_m}};
+}
+
+FloorInCamera moved(const FloorInCamera& floor, const Pose& now_from_before) {
+  const Point3 place = inverse(now_from_before).translation_m;  // of the camera now, seen from before
+  return {now_from_before.rotated(floor.up), floor.height_m + dot(floor.up, place)};
+}
+
+/// Not known before a floor was seen for the first time: there may be none.
+std::optional<float> floor_agreement(const std::optional<FloorInCamera>& expected,
+                                     const std::optional<FloorInCamera>& seen, const Ground& ground) {
+  constexpr double kEnough = 0.2;  // of what lies under the horizon, this share on the floor is all one asks
+  constexpr double kAngle = 3 * kDegree;
+  constexpr double kHeightM = 0.05;
+  if (!expected && !seen) return std::nullopt;
+  if (!seen) return 0.0F;
+  double agreement = std::min(1.0, double{ground.support} / kEnough);
+  if (expected) {
+    const double angle = std::acos(std::clamp(dot(expected->up, seen->up), -1.0, 1.0)) / kAngle;
+    const double height = (seen->height_m - expected->height_m) / kHeightM;
+    agreement *= std::exp(-(angle * angle + height * height) / 2);
+  }
+  return known(agreement);
+}
+
+// ---- odometry ----
+
+std::optional<float> odometry_of(const Step& step) {
+  const MotionRefusal refusal = step.motion.refusal;
+  if (step.index == 0 || refusal == MotionRefusal::off || refusal == MotionRefusal::no_rig)
+    return std::nullopt;
+  if (refusal != MotionRefusal::none) return 0.0F;
+  return known(double{step.motion.inlier_share});
+}
+
+// ---- scan ----
+
+std::optional<float> scan_of(const Step& step, const LaserScan& scan, const StereoRig& rig) {
+  constexpr int kFewestBeams = 10;
+  constexpr float kAgreePx = 2;
+  const Pose from_level = camera_from_level(step.map_from_camera);
+  const View<const float> disparity = step.frame.disparity.disparity_px;
+  int looked_at = 0;
+  int agreeing = 0;
+  for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
+    const auto range = double{scan.ranges_m[i]};
+    if (!(range > 0) || !std::isfinite(range)) continue;
+    const double angle = scan.first_rad + static_cast<double>(i) * scan.step_rad;
+    const Point3 hit =
+        from_level(scan.in_level_camera_m + Point3{-range * std::sin(angle), 0, range * std::cos(angle)});
+    if (!(hit.z > 0)) continue;
+    const double u = std::floor(double{rig.focal_px} * hit.x / hit.z + double{rig.cx_px} + 0.5);
+    const double v = std::floor(double{rig.focal_px} * hit.y / hit.z + double{rig.cy_px} + 0.5);
+    if (!(u >= 1 && v >= 1 && u < disparity.width() - 1 && v < disparity.height() - 1)) continue;
+    const auto expected =
+        static_cast<float>(double{rig.focal_px} * double{rig.baseline_m} / hit.z - double{rig.doffs_px});
+    bool is_known = false;
+    bool agrees = false;
+    for (int y = static_cast<int>(v) - 1; y <= static_cast<int>(v) + 1; ++y) {
+      for (int x = static_cast<int>(u) - 1; x <= static_cast<int>(u) + 1; ++x) {
+        is_known = is_known || !std::isnan(disparity(x, y));
+        agrees = agrees || std::abs(disparity(x, y) - expected) <= kAgreePx;
+      }
+    }
+    looked_at += is_known ? 1 : 0;
+    agreeing += agrees ? 1 : 0;
+  }
+  if (looked_at < kFewestBeams) return std::nullopt;
+  return known(static_cast<double>(agreeing) / looked_at);
+}
+
+// ---- walls ----
+
+constexpr int kEveryPixel = 2;
+constexpr float kFlatPx = 1.05F;  // three standard deviations of a disparity
+
+/// The plane of least squares through an object's disparities, none where they do not span one.
+std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sd = 0, sxd = 0, syd = 0;
+  const Rect box = object.box_px;
+  const double mx = box.x + box.width / 2.0;
+  const double my = box.y + box.height / 2.0;
+  for (int y = box.y; y < box.y + box.height; y += kEveryPixel) {
+    for (int x = box.x; x < box.x + box.width; x += kEveryPixel) {
+      const float d = frame.disparity.disparity_px(x, y);
+      if (frame.objects.labels(x, y) != object.id || std::isnan(d)) continue;
+      const double u = x - mx;
+      const double v = y - my;
+      n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v, syy += v * v;
+      sd += double{d}, sxd += u * double{d}, syd += v * double{d};
+    }
+  }
+  if (n < 16) return std::nullopt;
+  const double cxx = sxx - sx * sx / n, cxy = sxy - sx * sy / n, cyy = syy - sy * sy / n;
+  const double cxd = sxd - sx * sd / n, cyd = syd - sy * sd / n;
+  const double determinant = cxx * cyy - cxy * cxy;
+  if (!(determinant > 1e-6 * cxx * cyy)) return std::nullopt;
+  const double a = (cxd * cyy - cyd * cxy) / determinant;
+  const double b = (cyd * cxx - cxd * cxy) / determinant;
+  const double c = (sd - a * sx - b * sy) / n - a * mx - b * my;
+  return GroundPlane{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
+}
+
+bool is_wall(const Frame& frame, const Object& object) {
+  constexpr double kWallShare = 0.05;
+  constexpr double kFlatShare = 0.9;
+  if (object.pixel_count <= kWallShare * static_cast<double>(frame.objects.labels.size().area()))
+    return false;
+  const auto plane = plane_of(frame, object);
+  if (!plane) return false;
+  int known = 0;
+  int flat = 0;
+  const Rect box = object.box_px;
+  for (int y = box.y; y < box.y + box.height; y += kEveryPixel) {
+    for (int x = box.x; x < box.x + box.width; x += kEveryPixel) {
+      const float d = frame.disparity.disparity_px(x, y);
+      if (frame.objects.labels(x, y) != object.id || std::isnan(d)) continue;
+      ++known;
+      const float expected = plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
+      flat += std::abs(d - expected) <= kFlatPx ? 1 : 0;
+    }
+  }
+  return flat >= kFlatShare * known;
+}
+
+}  // namespace
+
+float steadiness(const Step& step, float temporal) {
+  float sure = 0;
+  for (const Track& track : step.tracks.list) {
+    if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
+    const Object& object = step.frame.objects.list[slot(number(track.object)) - 1];
+    if (!is_wall(step.frame, object)) sure += object.confidence;
+  }
+  return temporal * sure;
+}
+
+Reliability judge(const Step& step, const Warped& warped, const Evidence& evidence,
+                  const Reliability& before) {
+  Reliability judged;
+  Witnesses& seen = judged.witnesses;
+  judge_pair(step.frame, evidence, seen);
+  seen.temporal = temporal_of(step, warped);
+  if (evidence.looks_for_floor) {
+    std::optional<FloorInCamera> expected;
+    if (before.floor && !step.is_lost) expected = moved(*before.floor, step.motion.now_from_before);
+    const auto floor = floor_of_frame(step, evidence.rig);
+    seen.floor = floor_agreement(expected, floor, step.frame.ground);
+    judged.floor = floor ? floor : expected;
+  }
+  seen.odometry = odometry_of(step);
+  if (evidence.scan != nullptr && evidence.rig && !step.is_lost)
+    seen.scan = scan_of(step, *evidence.scan, *evidence.rig);
+
+  int count = 0;
+  double logarithms = 0;
+  float least = 2;
+  for (const WitnessName& witness : kWitnesses) {
+    const std::optional<float> value = seen.*witness.value;
+    if (!value) continue;
+    ++count;
+    logarithms += std::log(double{std::max(*value, kLeastWitness)});
+    if (*value < least) {
+      least = *value;
+      judged.weakest = std::string(witness.name);
+    }
+  }
+  if (count > 0) judged.value = static_cast<float>(std::exp(logarithms / count));
+  judged.weak_frames = judged.value && *judged.value < kUnreliable ? before.weak_frames + 1 : 0;
+  judged.is_unreliable = judged.weak_frames >= kUnreliableFrames;
+  judged.steadiness = steadiness(step, seen.temporal.value_or(0));
+  return judged;
+}
+
+}  // namespace cairn
