@@ -14,7 +14,7 @@ using Work = std::function<int()>;
 /// Each declares its options on `app` and returns the work that uses them.
 Work declare_segment(CLI::App& app);
 Work declare_follow(CLI::App& app);
-Work declare_odometry(CLI::App& app);
+Work declare_live(CLI::App& app);
 Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
 Work declare_bench(CLI::App& app);
@@ -46,6 +46,10 @@ inline constexpr std::array kCommands{
             "cairn follow sequence/ --html -o result\n"
             "cairn follow sequence/ --map room.db --set tracking.min_hits=2\n",
             declare_follow},
+    Command{"live", "find and follow objects in what a camera sees, or in a recording as it was",
+            "cairn live sequence/ --pace 0 --json-lines\n"
+            "cairn live sequence/ --every-frame --no-tracks --set objects.min_confidence=0.6\n",
+            declare_live},
     Command{"disparity", "match a stereo pair and check every match",
             "cairn disparity left.png right.png -o disparity.pfm --view disparity.png\n"
             "cairn disparity left.png right.png --calib calib.txt --ply cloud.ply\n",

@@ -33,6 +33,9 @@ std::vector<OptionInfo> sequence_options(const ConfigOptions&) {
 Work declare_follow(CLI::App& app) {
   return not_built_in(app);
 }
+Work declare_live(CLI::App& app) {
+  return not_built_in(app);
+}
 Work declare_map(CLI::App& app) {
   return not_built_in(app);
 }

@@ -4,7 +4,9 @@
 
 #include <cairn/core/pool.hpp>
 #include <cairn/core/stereo_pair.hpp>
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +28,19 @@ struct SequenceFrame {
   Picture left;
   Image<Gray> right;
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
+  // Of cameras: when the frame was there, by this computer's steady clock; none of files.
+  std::optional<std::chrono::steady_clock::time_point> arrived = {};
+};
+
+/// How a camera does; of files all is 0 and connected.
+struct SourceStatus {
+  bool is_live = false;  // a camera: frames come whether they are taken or not
+  bool is_connected = true;
+  std::uint64_t dropped = 0;   // frames that the device says it gave and that never came
+  std::uint64_t unpaired = 0;  // left or right ones without the other within source.max_skew
+  std::uint64_t reconnects = 0;
+  std::string trouble;  // why it is not connected, in one line
+  std::string clock;    // what stamps count from: "system", "monotonic", "source"
 };
 
 /// The frames first, first + step, … below last_excluded.
@@ -90,6 +105,11 @@ class Sequence {
   [[nodiscard]] virtual const std::vector<SourceRemark>& remarks() const = 0;
   /// Why the sequence ended before its end, in one line (a video that is cut off); empty where it did not.
   [[nodiscard]] virtual const std::string& ended_early() const = 0;
+
+  /// Of a camera: next() returns none within 0.2 s, now or whenever it is called again. From any thread.
+  virtual void stop() {}
+  /// From any thread.
+  [[nodiscard]] virtual SourceStatus status() const { return {}; }
 };
 
 /// Opens a source, recognised by what is there:

@@ -51,6 +51,8 @@ class SequenceRun {
   /// What the landmarks make of the last frame; empty without a rig.
   [[nodiscard]] const Landmarked& marked() const { return marked_; }
   [[nodiscard]] const FollowConfig& config() const { return follower_.config(); }
+  /// As of Follower.
+  void set_config(FollowConfig config) { follower_.set_config(std::move(config)); }
   /// Ends the run in the map. Nothing where there is no map, none is written, or no frame came.
   void close(RunState state);
 

@@ -61,6 +61,11 @@ Follower::Follower(FollowConfig config, std::optional<StereoRig> rig, Exec exec)
   exec_.pool = Pool::make();
 }
 
+void Follower::set_config(FollowConfig config) {
+  validate(config);
+  config_ = std::move(config);
+}
+
 void Follower::forget() {
   odometry_ = after_gap(std::move(odometry_));
   std::erase_if(tracks_.list, [](const Track& track) { return track.state == TrackState::tentative; });

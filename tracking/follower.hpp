@@ -48,6 +48,9 @@ class Follower {
   void forget();
 
   [[nodiscard]] const FollowConfig& config() const { return config_; }
+  /// From the next frame on; what is known stays known. Throws Error where validate(config) does, and changes
+  /// nothing then.
+  void set_config(FollowConfig config);
 
  private:
   FollowConfig config_;

@@ -8,10 +8,10 @@ cd "$1"
 
 # From the lowest to the highest; `cairn` is what lies in that folder itself.
 ranks='cairn/core cairn/image cairn/matching cairn/disparity cairn/regions cairn/scene cairn/grouping cairn/objects
-  cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn tracking io page landmarks source timing cli python
+  cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn tracking io page landmarks ros source live timing cli python
   examples benchmarks tests'
 
-find cairn tracking io page landmarks source timing cli python examples benchmarks tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
+find cairn tracking io page landmarks ros source live timing cli python examples benchmarks tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
   xargs awk -v ranks="$ranks" '
     BEGIN {
       count = split(ranks, listed)
@@ -27,7 +27,7 @@ find cairn tracking io page landmarks source timing cli python examples benchmar
       from = folder_of(FILENAME)
       sub("^(\\.\\./)+", "", quoted[2])  # beside the folder, as it is installed
       to = folder_of(quoted[2])
-      if (to ~ "^cairn/(io|page|tracking|source|landmarks)$") sub("cairn/", "", to)  # as they are installed
+      if (to ~ "^cairn/(io|page|tracking|source|landmarks|ros|live)$") sub("cairn/", "", to)  # as they are installed
       if (to !~ "^cairn" && !(to in rank)) next  # not ours, or beside the file
       if (!(from in rank) || !(to in rank)) {
         printf "%s:%d: a folder without a rank: %s includes %s\n", FILENAME, FNR, from, to

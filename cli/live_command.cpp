@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <charconv>
+#include <csignal>
+#include <iostream>
+#include <live/runner.hpp>
+#include <nlohmann/json.hpp>
+#include <source/follow_files.hpp>
+
+#include "commands.hpp"
+#include "common.hpp"
+#include "follow_options.hpp"
+#include "source_options.hpp"
+
+namespace cairn::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct LiveCommandOptions {
+  SourceInput source;
+  std::string map;
+  bool map_read_only = false;
+  ConfigOptions config;
+  ExecOptions exec;
+  bool every_frame = false;
+  bool no_tracks = false;
+  double max_age_ms = 200;
+  double pace = 1;
+  double duration_s = 0;
+  bool json_lines = false;
+};
+
+/// What Ctrl-C ends.
+std::atomic<live::Runner*> running = nullptr;
+extern "C" void on_end(int) {
+  if (live::Runner* runner = running) runner->stop();
+}
+
+/// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json.
+class JsonLines : public live::Sink {
+ public:
+  JsonLines(std::string preset, std::optional<StereoRig> rig, bool tracks)
+      : preset_(std::move(preset)), rig_(rig), tracks_(tracks) {}
+
+  void offer(const live::LiveFramePtr& frame) override {
+    if (tracks_) {
+      Landmarked marked;
+      marked.tracks = frame->landmarks;
+      marked.events = frame->events;
+      std::cout << io::step_json(frame->step, frame->pair->name, marked) << std::flush;
+      return;
+    }
+    Json line{{"name", frame->pair->name}, {"stamp_ns", frame->step.stamp.ns}};
+    line.update(Json::parse(
+        io::objects_json(frame->step.frame, {preset_, frame->config->segmentation, rig_, {}, false})));
+    std::cout << line.dump() << "\n" << std::flush;
+  }
+
+ private:
+  std::string preset_;
+  std::optional<StereoRig> rig_;
+  bool tracks_;
+};
+
+/// A line a second on stderr where somebody looks.
+class StatusLine : public live::Sink {
+ public:
+  void offer(const live::LiveFramePtr& frame) override {
+    if (frame->done - shown_ < std::chrono::seconds(1)) return;
+    shown_ = frame->done;
+    const double age = std::chrono::duration<double, std::milli>(frame->done - frame->arrived).count();
+    const std::string words =
+        frame->pair->name + ": " + std::to_string(frame->step.frame.objects.list.size()) + " objects, " +
+        text_of("%.1f Hz, ", frame->rate_hz) + text_of("%.0f ms from picture to objects", age) +
+        (frame->source.is_connected ? "" : ", NOT CONNECTED: " + frame->source.trouble);
+    progress_.bar(0, words);
+  }
+  void finish() override { progress_.clear(); }
+
+ private:
+  Progress progress_{0};
+  live::Clock::time_point shown_;
+};
+
+void check(const LiveCommandOptions& options) {
+  const auto refuse = [](const std::string& option, double found, const std::string& expected) {
+    throw Error(option + ": found " + text_of("%g", found) + ", expected " + expected);
+  };
+  if (!(options.max_age_ms >= 0 && options.max_age_ms <= 1e6))
+    refuse("--max-age", options.max_age_ms, "ms, 0 ... 1e6 (0: pairs of any age)");
+  if (!(options.pace >= 0 && options.pace <= 1000))
+    refuse("--pace", options.pace, "0 ... 1000 times as fast (0: as fast as it goes)");
+  if (!(options.duration_s >= 0 && options.duration_s <= 1e9))
+    refuse("--duration", options.duration_s, "s, 0 ... 1e9 (0: until the source ends)");
+  if (options.no_tracks && !options.map.empty())
+    throw Error("--map: found --no-tracks as well, and without tracks there are no landmarks");
+  if (options.map_read_only && options.map.empty()) throw Error("--read-only: is of --map FILE.db");
+}
+
+std::string summary_text(const live::LiveSummary& summary) {
+  std::string text = std::to_string(summary.frames) + " frames in " + text_of("%.1f s", summary.seconds);
+  if (summary.frames > 0) {
+    text += ", " + text_of("%.1f Hz", static_cast<double>(summary.frames) / summary.seconds) +
+            "; from picture to objects " + text_of("%.1f ms", summary.p50_ms) + " (p99 " +
+            text_of("%.1f", summary.p99_ms) + ", at most " + text_of("%.1f", summary.max_ms) + ")";
+  }
+  text += "\n";
+  const auto& [at_source, replaced, too_old] = summary.drops;
+  if (at_source + replaced + too_old > 0) {
+    text += "not worked on: " + std::to_string(replaced) + " because a newer pair was there, " +
+            std::to_string(too_old) + " too old, " + std::to_string(at_source) + " lost at the source\n";
+  }
+  return text;
+}
+
+int live_command(const LiveCommandOptions& options) {
+  check(options);
+  const Exec exec = make_exec(options.exec);
+  const auto source = open_source(options.source, exec.pool);
+  const FollowConfig config = resolve_follow(options.config, source->disparities(), source->ground());
+  io::CompanionFiles files;
+  if (!options.map.empty()) files.map = options.map;
+  files.is_map_read_only = options.map_read_only;
+  live::LiveOptions how;
+  how.every_frame = options.every_frame;
+  if (options.max_age_ms > 0) {
+    how.max_age = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double, std::milli>(options.max_age_ms));
+  }
+  how.tracks = !options.no_tracks;
+  how.pace = options.pace;
+  if (options.duration_s > 0) {
+    how.duration = std::chrono::duration_cast<std::chrono::nanoseconds>(
+        std::chrono::duration<double>(options.duration_s));
+  }
+  live::Runner runner(*source, options.source.source, files, config, how, exec);
+
+  std::vector<std::unique_ptr<live::Sink>> sinks;
+  sinks.push_back(std::make_unique<StatusLine>());
+  if (options.json_lines) {
+    sinks.push_back(
+        std::make_unique<JsonLines>(resolve(options.config).preset, source->rig(), !options.no_tracks));
+  }
+  for (const auto& sink : sinks) runner.add(*sink);
+
+  running = &runner;
+  std::signal(SIGINT, on_end);
+  std::signal(SIGTERM, on_end);
+  std::signal(SIGPIPE, SIG_IGN);
+  const live::LiveSummary summary = runner.run();
+  running = nullptr;
+  std::cerr << remarks_text(*source) << summary_text(summary);
+  for (const auto& sink : sinks) {
+    if (const std::string line = sink->summary(); !line.empty()) std::cerr << line << "\n";
+  }
+  return exit_code_of(*source);
+}
+
+}  // namespace
+
+Work declare_live(CLI::App& app) {
+  auto options = std::make_shared<LiveCommandOptions>();
+  add_source_options(app, options->source);
+  app.add_option("--map", options->map, "map of landmarks to recognise and to add to")->type_name("FILE.db");
+  app.add_flag("--read-only", options->map_read_only, "the map stays as it is");
+  app.add_flag("--no-tracks", options->no_tracks, "each frame by itself, as cairn segment has it");
+  app.add_flag("--every-frame", options->every_frame,
+               "drop none, however long it takes; else a newer pair replaces the one that waits");
+  app.add_option("--max-age", options->max_age_ms,
+                 "drop pairs of a camera that are older when their turn comes; 0: never")
+      ->type_name("MS")
+      ->capture_default_str();
+  app.add_option("--pace", options->pace, "files are played so many times as fast; 0: as fast as it goes")
+      ->type_name("TIMES")
+      ->capture_default_str();
+  app.add_option("--duration", options->duration_s, "end after so long; 0: with the source")
+      ->type_name("S")
+      ->capture_default_str();
+  add_config_options(app, options->config);
+  add_exec_options(app, options->exec);
+  app.add_flag("--json-lines", options->json_lines, "print each frame as a line of JSON");
+  return [options] { return live_command(*options); };
+}
+
+}  // namespace cairn::cli

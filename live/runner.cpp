@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "runner.hpp"
+
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <exception>
+#include <thread>
+
+namespace cairn::live {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How soon a wait notices that it is in vain.
+constexpr auto kNotice = 50ms;
+
+Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
+  exec.observe = [&stages](std::string_view stage, const Artifact&, double ms) {
+    stages.push_back({std::string(stage), ms});
+  };
+  if (exec.pool.bytes() == 0) exec.pool = Pool::make();
+  return exec;
+}
+
+}  // namespace
+
+Runner::Runner(io::Sequence& source, const std::string& source_name, const io::CompanionFiles& files,
+               FollowConfig config, LiveOptions options, const Exec& exec)
+    : source_(source),
+      options_(options),
+      exec_(noting_stages(exec, stages_)),
+      follow_(source, source_name, files, config, exec_),
+      first_config_(std::make_shared<const FollowConfig>(std::move(config))),
+      used_config_(first_config_),
+      config_(first_config_) {
+  validate(first_config_->segmentation, source.image_size(), source.rig().has_value());
+}
+
+bool Runner::is_over() const {
+  return is_stopped_ || (deadline_ && Clock::now() >= *deadline_);
+}
+
+LiveSummary Runner::run() {
+  const Clock::time_point began = Clock::now();
+  if (options_.duration) deadline_ = began + *options_.duration;
+  const bool drops = !options_.every_frame;
+  NewestSlot<PairPtr> slot;
+  std::exception_ptr trouble;
+  std::thread reader;
+  if (drops) {
+    reader = std::thread([&] {
+      try {
+        read_source(slot);
+      } catch (...) {
+        trouble = std::current_exception();
+      }
+      slot.close();
+    });
+  }
+  const auto end = [&](RunState state) {
+    is_stopped_ = true;
+    source_.stop();
+    if (reader.joinable()) reader.join();
+    follow_.close(state);
+    for (Sink* sink : sinks_) sink->finish();
+  };
+  try {
+    while (!is_over()) {
+      PairPtr pair;
+      if (drops) {
+        pair = slot.take(kNotice).value_or(nullptr);
+        if (!pair && slot.is_closed()) break;
+        drops_.replaced = slot.replaced();
+      } else {
+        auto next = source_.next();
+        if (!next) break;
+        wait_for_its_time(*next);
+        pair = std::make_shared<const io::SequenceFrame>(std::move(*next));
+      }
+      if (!pair) continue;
+      if (drops && options_.max_age && pair->arrived && Clock::now() - *pair->arrived > *options_.max_age) {
+        ++drops_.too_old;
+        continue;
+      }
+      const LiveFramePtr frame = work(std::move(pair));
+      for (Sink* sink : sinks_) sink->offer(frame);
+    }
+  } catch (...) {
+    end(RunState::aborted);
+    throw;
+  }
+  end(RunState::done);
+  if (trouble) std::rethrow_exception(trouble);
+  const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  return {latencies_.count(), drops_, seconds, latencies_.percentile(0.5), latencies_.percentile(0.99),
+          latencies_.max_ms()};
+}
+
+/// On a thread of its own, so that the source is never kept waiting.
+void Runner::read_source(NewestSlot<PairPtr>& slot) {
+  while (!is_over()) {
+    auto pair = source_.next();
+    if (!pair) return;
+    wait_for_its_time(*pair);
+    if (!pair->arrived) pair->arrived = Clock::now();
+    slot.put(std::make_shared<const io::SequenceFrame>(std::move(*pair)));
+  }
+}
+
+/// Files are played at the pace of their stamps; a camera sets its own.
+void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
+  if (source_.status().is_live) return;
+  bool was_paused = false;
+  while (is_paused_ && !is_over()) {
+    was_paused = true;
+    std::uint64_t left = steps_;
+    if (left > 0 && steps_.compare_exchange_strong(left, left - 1)) break;
+    std::this_thread::sleep_for(10ms);
+  }
+  const Clock::time_point now = Clock::now();
+  Clock::time_point due = now;
+  if (played_ && !was_paused && options_.pace > 0) {
+    const double seconds = seconds_between(played_->first, pair.stamp) / options_.pace;
+    due =
+        played_->second + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    // Late is late: no frames are hurried to make up for it.
+    if (due < now) due = now;
+  }
+  while (Clock::now() < due && !is_over())
+    std::this_thread::sleep_until(std::min(due, Clock::now() + kNotice));
+  played_ = {pair.stamp, due};
+}
+
+LiveFramePtr Runner::work(PairPtr pair) {
+  take_config();
+  auto frame = std::make_shared<LiveFrame>();
+  frame->started = Clock::now();
+  stages_.clear();
+  if (options_.tracks) {
+    frame->step = follow_.next(*pair);
+    frame->landmarks = follow_.marked().tracks;
+    frame->events = follow_.marked().events;
+  } else {
+    frame->step.index = frames_;
+    frame->step.stamp = pair->stamp;
+    frame->step.is_lost = true;
+    frame->step.frame = segment(StereoPair::from(pair->left.gray, pair->right, pair->left.rgb), source_.rig(),
+                                used_config_->segmentation, exec_);
+  }
+  ++frames_;
+  frame->arrived = pair->arrived.value_or(frame->started);
+  frame->pair = std::move(pair);
+  frame->done = Clock::now();
+  frame->stages = stages_;
+  frame->source = source_.status();
+  drops_.at_source = frame->source.dropped + frame->source.unpaired;
+  frame->drops = drops_;
+  frame->config = used_config_;
+  frame->revision = used_revision_;
+  recent_.push_back(frame->done);
+  while (recent_.size() > 2 && frame->done - recent_.front() > 2s) recent_.pop_front();
+  if (recent_.size() > 1) {
+    frame->rate_hz = static_cast<double>(recent_.size() - 1) /
+                     std::chrono::duration<double>(recent_.back() - recent_.front()).count();
+  }
+  latencies_.add(std::chrono::duration<double, std::milli>(frame->done - frame->arrived).count());
+  return frame;
+}
+
+void Runner::take_config() {
+  const std::lock_guard lock(mutex_);
+  if (revision_ == used_revision_) return;
+  follow_.set_config(*config_);
+  used_config_ = config_;
+  used_revision_ = revision_;
+}
+
+void Runner::set(const std::vector<std::pair<std::string, std::string>>& options) {
+  const std::lock_guard lock(mutex_);
+  FollowConfig changed = *config_;
+  for (const auto& [name, value] : options) cairn::set(changed, name, value);
+  validate(changed);
+  validate(changed.segmentation, source_.image_size(), source_.rig().has_value());
+  config_ = std::make_shared<const FollowConfig>(std::move(changed));
+  ++revision_;
+}
+
+void Runner::reset() {
+  const std::lock_guard lock(mutex_);
+  config_ = first_config_;
+  ++revision_;
+}
+
+std::shared_ptr<const FollowConfig> Runner::config() const {
+  const std::lock_guard lock(mutex_);
+  return config_;
+}
+
+}  // namespace cairn::live
