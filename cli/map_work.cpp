@@ -25,10 +25,6 @@ std::string seconds(Stamp stamp) {
   return text_of("%.2f", static_cast<double>(stamp.ns) * 1e-9);
 }
 
-double probability_of(double log_odds) {
-  return 1 / (1 + std::exp(-log_odds));
-}
-
 int show(const MapOptions& options) {
   const MapFile file = MapFile::open(options.file, MapMode::read_only);
   const LandmarkMap map = file.load();

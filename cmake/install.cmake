@@ -36,7 +36,7 @@ set(private_headers
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
-  tracking/assign tracking/kalman tracking/motion_fit landmarks/geometry
+  tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
   source/frame_list source/frame_watch source/json_line source/open_video source/text_lines
   io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts)
 list(JOIN private_headers "|" private_headers)

@@ -53,10 +53,6 @@ double horizontal(Point3 a, Point3 b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-double probability_of(double log_odds) {
-  return 1 / (1 + std::exp(-log_odds));
-}
-
 double largest_sigma(const Covariance3& covariance) {
   return std::sqrt(
       Eigen::SelfAdjointEigenSolver<Matrix3>(matrix(covariance), Eigen::EigenvaluesOnly).eigenvalues()[2]);
@@ -510,6 +506,10 @@ Covariance6 camera_covariance(const Located& located, const Covariance6& pose_co
     for (std::size_t c = 0; c < 4; ++c) all[kOfPose[r] * 6 + kOfPose[c]] = located.covariance[r * 4 + c];
   }
   return all;
+}
+
+double probability_of(double log_odds) {
+  return 1 / (1 + std::exp(-log_odds));
 }
 
 bool is_guessed(const LandmarkFrame& frame) {

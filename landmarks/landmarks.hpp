@@ -80,6 +80,9 @@ struct Landmark {
   std::int64_t run = 0;  // in which it was seen last: stamps are compared within a run only
 };
 
+/// What Landmark::log_odds says, 0 … 1.
+double probability_of(double log_odds);
+
 /// A square of the floor, kFloorCell wide, on which nothing stood.
 struct FloorCell {
   int x = 0;  // floor(x_m / kFloorCell)

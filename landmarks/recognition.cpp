@@ -84,17 +84,6 @@ namespace {
 constexpr double kSizeRatio = 1.6;
 constexpr double kHeightTolerance_m = 0.15;
 
-double likeness_of(const ColourHistogram& a, const ColourHistogram& b) {
-  constexpr std::size_t kLightness = 8;
-  double lightness = 0;
-  double colour = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double root = std::sqrt(std::max(0.0, static_cast<double>(a[i]) * static_cast<double>(b[i])));
-    (i < kLightness ? lightness : colour) += root;
-  }
-  return std::clamp((lightness + colour) / 2, 0.0, 1.0);
-}
-
 double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covariance) {
   return difference.dot(covariance.ldlt().solve(difference));
 }
@@ -242,7 +231,7 @@ const Landmark* find(const LandmarkMap& map, LandmarkId id) {
 double score_of(const Candidate& candidate, const Landmark& landmark) {
   double best = 0;
   for (const LandmarkLook& look : landmark.looks)
-    best = std::max(best, likeness_of(candidate.colours, look.colours));
+    best = std::max(best, double{likeness(candidate.colours, look.colours)});
   return best;
 }
 

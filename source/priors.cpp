@@ -63,12 +63,6 @@ Covariance6 covariance_of(const Vector3& sigma_m, const Vector3& sigma_rad, cons
   return covariance;
 }
 
-std::string text_of(const char* format, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
 /// "100 rows at 5 Hz"
 std::string rows_text(const std::vector<Stamp>& stamps) {
   const double length_s = seconds_between(stamps.front(), stamps.back());

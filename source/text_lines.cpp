@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "text_lines.hpp"
 
+#include <array>
 #include <cairn/core/error.hpp>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace cairn::io {
@@ -66,6 +68,12 @@ std::string quoted(std::string_view text) {
   std::string shown = "'";
   for (const char c : text.substr(0, kMost)) shown += c >= 0x20 && c < 0x7f ? c : '?';
   return shown + (text.size() > kMost ? "...'" : "'");
+}
+
+std::string text_of(const char* format, double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
 }
 
 }  // namespace cairn::io

@@ -31,6 +31,9 @@ double number_in(std::string_view field, const std::filesystem::path& path, std:
 /// "FILE:LINE".
 std::string place(const std::filesystem::path& path, std::size_t line);
 
+/// printf's format for one number.
+std::string text_of(const char* format, double value);
+
 /// At most 40 characters of it, quoted.
 std::string quoted(std::string_view text);
 

@@ -144,12 +144,6 @@ Trajectory load_folder(const fs::path& folder) {
   return all;
 }
 
-std::string text_of(const char* format, double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
 }  // namespace
 
 Pose load_pose(const fs::path& path) {

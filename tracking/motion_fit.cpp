@@ -9,12 +9,13 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
+#include "twist.hpp"
+
 namespace cairn {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -108,12 +109,6 @@ Pose best_hypothesis(const std::vector<FollowedCorner>& corners, const StereoRig
   return best;
 }
 
-Matrix3 skew(const Vector3& v) {
-  Matrix3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 /// exp(ξ) · pose, its rotation made orthonormal again.
 Pose moved_by(const Vector6& xi, const Pose& pose) {
   Pose step = rotation_about({xi(3), xi(4), xi(5)});
@@ -170,14 +165,6 @@ Linear linearise(const FollowedCorner& corner, const Pose& pose, const StereoRig
   out.mahalanobis = std::sqrt(std::max(0.0, out.residual.dot(out.information * out.residual)));
   out.usable = std::isfinite(out.mahalanobis);
   return out;
-}
-
-Vector6 difference(const Pose& to, const Pose& from) {
-  const Pose off = to * inverse(from);
-  const Point3 turn = rotation_vector(off);
-  Vector6 xi;
-  xi << off.translation_m.x, off.translation_m.y, off.translation_m.z, turn.x, turn.y, turn.z;
-  return xi;
 }
 
 struct Normal {

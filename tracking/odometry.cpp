@@ -11,6 +11,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "motion_fit.hpp"
+#include "twist.hpp"
 
 namespace cairn {
 
@@ -28,7 +29,6 @@ struct Keyframe {
 
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
@@ -50,14 +50,12 @@ Covariance6 rows_of(const Matrix6& matrix) {
   return rows;
 }
 
-Eigen::Matrix3d rotation_of(const Pose& pose) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data());
+Eigen::Vector3d vector(Point3 p) {
+  return {p.x, p.y, p.z};
 }
 
-Eigen::Matrix3d skew(Point3 v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z, v.y, v.z, 0, -v.x, -v.y, v.x, 0;
-  return m;
+Eigen::Matrix3d rotation_of(const Pose& pose) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data());
 }
 
 /// Of ξ with true = exp(ξ) · pose, in the frame that `pose` leads on to.
@@ -65,17 +63,9 @@ Matrix6 adjoint(const Pose& pose) {
   const Eigen::Matrix3d r = rotation_of(pose);
   Matrix6 a = Matrix6::Zero();
   a.topLeftCorner<3, 3>() = r;
-  a.topRightCorner<3, 3>() = skew(pose.translation_m) * r;
+  a.topRightCorner<3, 3>() = skew(vector(pose.translation_m)) * r;
   a.bottomRightCorner<3, 3>() = r;
   return a;
-}
-
-Vector6 difference(const Pose& to, const Pose& from) {
-  const Pose off = to * inverse(from);
-  const Point3 turn = rotation_vector(off);
-  Vector6 xi;
-  xi << off.translation_m.x, off.translation_m.y, off.translation_m.z, turn.x, turn.y, turn.z;
-  return xi;
 }
 
 /// Of a pose in the map that was reached from another by a motion with the covariance `moved`, which is in
@@ -83,7 +73,7 @@ Vector6 difference(const Pose& to, const Pose& from) {
 Covariance6 carried_on(const Covariance6& before, const Pose& map_from_before, const Covariance6& moved,
                        const Pose& map_from_now) {
   Matrix6 lever = Matrix6::Identity();
-  lever.topRightCorner<3, 3>() = -skew(map_from_now.translation_m - map_from_before.translation_m);
+  lever.topRightCorner<3, 3>() = -skew(vector(map_from_now.translation_m - map_from_before.translation_m));
   Matrix6 turned = Matrix6::Zero();
   turned.topLeftCorner<3, 3>() = rotation_of(map_from_now);
   turned.bottomRightCorner<3, 3>() = rotation_of(map_from_now);

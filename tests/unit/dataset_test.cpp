@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <io/calibration_files.hpp>
 #include <io/dataset.hpp>
 
+#include "support/collection.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace cairn {
@@ -226,20 +226,12 @@ TEST(Dataset, HiddenPixelsAreReadInTheFormOfEachDataSet) {
   hidden("disp_noc_0/000000_10.png", std::uint16_t{2560}, std::uint16_t{0});
 }
 
-/// The shared collection of pairs, where this machine has it.
-std::optional<fs::path> collection() {
-  const char* named = std::getenv("CAIRN_DATA");
-  const fs::path path = named != nullptr ? fs::path(named) : fs::path(CAIRN_SOURCE_DIR) / "../shared/data";
-  if (!fs::is_directory(path)) return std::nullopt;
-  return path;
-}
-
 TEST(Dataset, EveryFrameOfTheCollectionIsFoundWithItsCalibration) {
-  const std::optional<fs::path> data = collection();
-  if (!data) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
-  const auto stress = io::find_frames(*data / "rendered/stress/base0");
+  const fs::path data = collection();
+  if (!fs::is_directory(data)) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
+  const auto stress = io::find_frames(data / "rendered/stress/base0");
   EXPECT_EQ(stress.size(), 21U);
-  for (const auto& entry : fs::recursive_directory_iterator(*data)) {
+  for (const auto& entry : fs::recursive_directory_iterator(data)) {
     if (entry.path().filename() != "left.png") continue;
     const auto frames = io::find_frames(entry.path().parent_path());
     ASSERT_TRUE(frames.at(0).right && frames[0].calib) << entry.path();

@@ -5,21 +5,18 @@
 #include <io/calibration_files.hpp>
 #include <io/image_files.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <support/collection.hpp>
 
 /// The floor of the rendered frames, by the whole first half of the preset `paper`.
 namespace cairn {
 namespace {
 
 std::filesystem::path rendered() {
-  const char* given = std::getenv("CAIRN_DATA");
-  const std::filesystem::path data =
-      given != nullptr ? given : std::filesystem::path(CAIRN_SOURCE_DIR) / ".." / "shared" / "data";
-  return data / "rendered" / "dev";
+  return collection() / "rendered" / "dev";
 }
 
 /// a, b, c: the numbers of the file's last line.

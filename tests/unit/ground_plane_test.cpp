@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "support/collection.hpp"
 #include "support/grids.hpp"
 
 namespace cairn {
@@ -340,10 +341,7 @@ TEST(GroundFromPose, NeedsAHeight) {
 
 /// A rendered frame's truth, where the data is there.
 std::filesystem::path rendered(const std::string& frame) {
-  const char* given = std::getenv("CAIRN_DATA");
-  const std::filesystem::path data =
-      given != nullptr ? given : std::filesystem::path(CAIRN_SOURCE_DIR) / ".." / "shared" / "data";
-  return data / "rendered" / "dev" / frame;
+  return collection() / "rendered" / "dev" / frame;
 }
 
 std::vector<std::vector<double>> numbers_in(const std::filesystem::path& file) {

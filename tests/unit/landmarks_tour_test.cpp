@@ -4,13 +4,13 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <io/calibration_files.hpp>
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
 #include <landmarks/landmarks.hpp>
+#include <support/collection.hpp>
 #include <support/true_tracks.hpp>
 
 /// Recognition by itself: true masks and disparities of a rendered tour, a path that drifts as odometry does.
@@ -20,9 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path tour() {
-  const char* set = std::getenv("CAIRN_DATA");
-  const fs::path data = set != nullptr ? set : CAIRN_SOURCE_DIR "/../shared/data";
-  return data / "rendered/tour_train";
+  return collection() / "rendered/tour_train";
 }
 
 Pose pose_in(const fs::path& file) {

@@ -8,13 +8,13 @@
 #include <cairn/pipeline/segment.hpp>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <numbers>
 #include <source/priors.hpp>
 #include <source/sequence.hpp>
 #include <source/trajectory_files.hpp>
+#include <support/collection.hpp>
 #include <tracking/first_pose.hpp>
 #include <tracking/odometry.hpp>
 #include <tracking/trajectory_error.hpp>
@@ -25,11 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-fs::path collection() {
-  const char* named = std::getenv("CAIRN_DATA");
-  return named != nullptr ? fs::path(named) : fs::path(CAIRN_SOURCE_DIR) / "../shared/data";
-}
 
 struct Asked {
   std::string folder;

@@ -4,13 +4,13 @@
 
 #include <cairn/core/image.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
+#include <support/collection.hpp>
 #include <tracking/track_error.hpp>
 
 namespace cairn {
@@ -201,10 +201,7 @@ TEST(SquaredMahalanobis, IsTheErrorInSigmas) {
 using Json = nlohmann::json;
 
 std::filesystem::path golden() {
-  const char* named = std::getenv("CAIRN_DATA");
-  const std::filesystem::path data =
-      named != nullptr ? named : std::filesystem::path(CAIRN_SOURCE_DIR) / "../shared/data";
-  return data / "real/sequences/anchors/hota/trackeval_golden.json";
+  return collection() / "real/sequences/anchors/hota/trackeval_golden.json";
 }
 
 std::vector<ScoredFrame> frames_of(const Json& list) {

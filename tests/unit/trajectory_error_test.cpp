@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <source/trajectory_files.hpp>
+#include <support/collection.hpp>
 #include <tracking/trajectory_error.hpp>
 
 namespace cairn {
@@ -118,11 +118,6 @@ TEST(NormalisedError, CountsStandardDeviations) {
   EXPECT_NEAR(normalised_error(off, covariance, {}), 4, 1e-9);
   EXPECT_NEAR(normalised_error(rotation_about({0, 0.06, 0}), covariance, {}), 9, 1e-9);
   EXPECT_TRUE(std::isnan(normalised_error(off, {}, {}))) << "no covariance at all";
-}
-
-fs::path collection() {
-  const char* named = std::getenv("CAIRN_DATA");
-  return named != nullptr ? fs::path(named) : fs::path(CAIRN_SOURCE_DIR) / "../shared/data";
 }
 
 TEST(TrajectoryError, IsKittisOfTwoKnownSystems) {
