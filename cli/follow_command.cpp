@@ -4,7 +4,6 @@
 #include <cairn/core/error.hpp>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <io/atomic_file.hpp>
 #include <iostream>
@@ -22,6 +21,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "follow_options.hpp"
+#include "interrupt.hpp"
 #include "source_options.hpp"
 
 namespace cairn::cli {
@@ -47,12 +47,6 @@ struct FollowOptions {
   bool json_lines = false;
   bool html = false;
 };
-
-/// Ctrl-C ends the run behind the frame at hand, so that all lines are whole.
-volatile std::sig_atomic_t interrupted = 0;
-extern "C" void on_interrupt(int) {
-  interrupted = 1;
-}
 
 /// What a run has come to, for its last line and summary.json.
 struct Run {
@@ -329,7 +323,7 @@ void go_through(io::Sequence& source, io::SequenceRun& follower, Controller& con
                 const FollowOptions& options, Outputs& outputs, Run& run) {
   const Progress progress(source.size().value_or(0));
   const auto began = Clock::now();
-  while (interrupted == 0 && std::cout) {
+  while (!is_interrupted() && std::cout) {
     const std::optional<io::SequenceFrame> frame = source.next();
     if (!frame) return;
     const std::size_t done = run.milliseconds.size();
@@ -380,9 +374,7 @@ int follow(const FollowOptions& options) {
         << "cairn: " << source->name()
         << ": no calibration with a baseline, so there are ids in the picture, but no metres and no motion\n";
   }
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  std::signal(SIGPIPE, SIG_IGN);
+  catch_interrupts();
   Run run;
   try {
     go_through(*source, follower, controller, options, outputs, run);
@@ -391,7 +383,7 @@ int follow(const FollowOptions& options) {
     throw;
   }
   std::cerr << remarks_text(*source);
-  close(interrupted != 0 || !std::cout  ? "interrupted"
+  close(is_interrupted() || !std::cout  ? "interrupted"
         : source->ended_early().empty() ? "done"
                                         : "ended early",
         *source, follower, options, outputs, run);
@@ -400,8 +392,7 @@ int follow(const FollowOptions& options) {
             << " a frame (p99 " << text_of("%.1f", run.percentile(0.99)) << ")\n";
   for (const LandmarkEvent& change : changes_of(run.events))
     std::cerr << event_line(event_json(change, {}, 0)) << "\n";
-  constexpr int kInterrupted = 130;
-  return interrupted != 0 ? kInterrupted : exit_code_of(*source);
+  return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 #include <charconv>
-#include <csignal>
 #include <iostream>
+#include <live/looped.hpp>
 #include <live/runner.hpp>
 #include <nlohmann/json.hpp>
 #include <source/follow_files.hpp>
@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "follow_options.hpp"
+#include "interrupt.hpp"
 #include "source_options.hpp"
 
 namespace cairn::cli {
@@ -29,14 +30,9 @@ struct LiveCommandOptions {
   double max_age_ms = 200;
   double pace = 1;
   double duration_s = 0;
+  bool loop = false;
   bool json_lines = false;
 };
-
-/// What Ctrl-C ends.
-std::atomic<live::Runner*> running = nullptr;
-extern "C" void on_end(int) {
-  if (live::Runner* runner = running) runner->stop();
-}
 
 /// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json.
 class JsonLines : public live::Sink {
@@ -118,7 +114,10 @@ std::string summary_text(const live::LiveSummary& summary) {
 int live_command(const LiveCommandOptions& options) {
   check(options);
   const Exec exec = make_exec(options.exec);
-  const auto source = open_source(options.source, exec.pool);
+  const auto open = [&] { return open_source(options.source, exec.pool); };
+  const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
+  if (options.loop && source->status().is_live)
+    throw Error("--loop: " + options.source.source + " is a camera, which has no end");
   const FollowConfig config = resolve_follow(options.config, source->disparities(), source->ground());
   io::CompanionFiles files;
   if (!options.map.empty()) files.map = options.map;
@@ -129,6 +128,7 @@ int live_command(const LiveCommandOptions& options) {
     how.max_age = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double, std::milli>(options.max_age_ms));
   }
+  how.is_ended = [] { return is_interrupted() || !std::cout; };
   how.tracks = !options.no_tracks;
   how.pace = options.pace;
   if (options.duration_s > 0) {
@@ -145,12 +145,8 @@ int live_command(const LiveCommandOptions& options) {
   }
   for (const auto& sink : sinks) runner.add(*sink);
 
-  running = &runner;
-  std::signal(SIGINT, on_end);
-  std::signal(SIGTERM, on_end);
-  std::signal(SIGPIPE, SIG_IGN);
+  catch_interrupts();
   const live::LiveSummary summary = runner.run();
-  running = nullptr;
   std::cerr << remarks_text(*source) << summary_text(summary);
   for (const auto& sink : sinks) {
     if (const std::string line = sink->summary(); !line.empty()) std::cerr << line << "\n";
@@ -175,6 +171,7 @@ Work declare_live(CLI::App& app) {
   app.add_option("--pace", options->pace, "files are played so many times as fast; 0: as fast as it goes")
       ->type_name("TIMES")
       ->capture_default_str();
+  app.add_flag("--loop", options->loop, "files begin again at their end");
   app.add_option("--duration", options->duration_s, "end after so long; 0: with the source")
       ->type_name("S")
       ->capture_default_str();

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "follow_options.hpp"
+#include "interrupt.hpp"
 #include "source_options.hpp"
 
 namespace cairn::cli {
@@ -49,7 +50,7 @@ std::unique_ptr<io::MotionPriors> load_priors(const OdometryOptions& options, co
 
 /// What the frames have come to, for the last line.
 struct Run {
-  std::vector<TimedPose> poses;  // known ones; all of them where the form has a line for each frame
+  std::vector<TimedPose> poses;  // known ones, or all where the form has a line for each; to be written yet
   std::vector<double> milliseconds;
   std::map<std::string, int> refusals;
   std::size_t frames = 0;
@@ -59,14 +60,17 @@ struct Run {
   double path_m = 0;
 };
 
-void add(Run& run, const OdometryStep& step, Stamp stamp, bool keep_lost) {
+/// Whether the frame has a line.
+bool add(Run& run, const OdometryStep& step, Stamp stamp, bool keep_lost) {
   if (step.motion.is_new_keyframe) ++run.keyframes;
   if (step.motion.refusal != MotionRefusal::none)
     ++run.refusals[choice_name(step.motion.refusal, kMotionRefusals)];
   if (step.state.lost) ++run.lost;
   if (!step.state.lost && run.frames > 0) run.path_m += length(step.motion.now_from_before.translation_m);
-  if (!step.state.lost || keep_lost) run.poses.push_back({stamp, step.state.map_from_camera});
   ++run.frames;
+  if (step.state.lost && !keep_lost) return false;
+  run.poses.push_back({stamp, step.state.map_from_camera});
+  return true;
 }
 
 std::string summary(const Run& run, const io::MotionPriors* priors) {
@@ -108,7 +112,10 @@ int estimate(const OdometryOptions& options) {
   Pose from_level;
   std::optional<Stamp> before;
   const Progress progress(source->size().value_or(2));
-  while (const std::optional<io::SequenceFrame> frame = source->next()) {
+  catch_interrupts();
+  while (!is_interrupted() && std::cout) {
+    const std::optional<io::SequenceFrame> frame = source->next();
+    if (!frame) break;
     progress.at(run.frames, frame->name);
     const SceneDisparity scene = estimate_disparity(
         StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), rig, config.segmentation, exec);
@@ -125,19 +132,18 @@ int estimate(const OdometryOptions& options) {
     const OdometryStep step = advance_odometry(state, frame->left.gray, scene.disparity, scene.confidence, {},
                                                rig, prior, config.odometry);
     run.milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    add(run, step, frame->stamp, form == io::TrajectoryForm::kitti);
+    if (add(run, step, frame->stamp, form == io::TrajectoryForm::kitti) && options.output.empty()) {
+      progress.clear();
+      std::cout << io::trajectory_text({run.poses.back()}, form) << std::flush;
+      run.poses.clear();
+    }
     state = step.state;
     before = frame->stamp;
   }
   progress.clear();
-  const std::string text = io::trajectory_text(run.poses, form);
-  if (options.output.empty()) {
-    std::cout << text;
-  } else {
-    io::write_file(options.output, text);
-  }
+  if (!options.output.empty()) io::write_file(options.output, io::trajectory_text(run.poses, form));
   std::cerr << remarks_text(*source) << summary(run, priors.get());
-  return exit_code_of(*source);
+  return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }
 
 }  // namespace

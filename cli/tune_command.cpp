@@ -7,7 +7,6 @@
 #include <cairn/tuning/tune.hpp>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <io/atomic_file.hpp>
 #include <io/config_files.hpp>
@@ -18,6 +17,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "interrupt.hpp"
 #include "tune_sequence.hpp"
 #include "tuning_frames.hpp"
 
@@ -66,31 +66,6 @@ Seconds parse_budget(const std::string& text) {
     throw Error("--budget: found '" + text.substr(0, 80) + "', expected a time such as 60s, 5m or 1.5h");
   return Seconds(value * seconds);
 }
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// While it lives, the first Ctrl-C (or SIGTERM) only asks for an end; the second one ends the program.
-class Interruptible {
- public:
-  Interruptible() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, &old_interrupt_);
-    sigaction(SIGTERM, &action, &old_terminate_);
-  }
-  ~Interruptible() {
-    sigaction(SIGINT, &old_interrupt_, nullptr);
-    sigaction(SIGTERM, &old_terminate_, nullptr);
-  }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-
- private:
-  struct sigaction old_interrupt_ {};
-  struct sigaction old_terminate_ {};
-};
 
 // ---- what is tuned, on what ----
 
@@ -167,11 +142,11 @@ Tuning tune_task(const Task& task, const TuneOptions& options, Seconds budget) {
   const TuneConfig config{options.patterns, budget.count(), options.evaluations,
                           options.holdout.value_or(usual), options.seed};
   const Progress progress(task.frames.size());
-  const Interruptible interruptible;
-  Tuning tuned =
-      tune(task.frames, config, make_exec(options.exec),
-           {[] { return interrupted != 0; },
-            [&](const TuneProgress& now) { progress.bar(now.share, words(now, options.budget)); }});
+  catch_interrupts();
+  Tuning tuned = tune(task.frames, config, make_exec(options.exec),
+                      {is_interrupted, [&](const TuneProgress& now) {
+                         progress.bar(now.share, words(now, options.budget));
+                       }});
   if (tuned.before.empty())
     throw std::runtime_error("stopped before the first evaluation was done; nothing is written");
   return tuned;
@@ -396,11 +371,11 @@ int tune_over_time(const TuneOptions& options, Seconds budget) {
   if (!options.json.empty()) throw Error("--json: is not written with --sequence");
   if (options.folders.size() != 1)
     throw Error("--sequence: found " + std::to_string(options.folders.size()) + " sources, expected one");
-  const Interruptible interruptible;
+  catch_interrupts();
   return tune_sequence(
       {options.folders.front(), options.input.calib, options.input.config, options.exec, options.patterns,
        options.evaluations, budget.count(), options.holdout, options.seed, options.output},
-      [] { return interrupted != 0; });
+      is_interrupted);
 }
 
 int tune_folder(const TuneOptions& options) {

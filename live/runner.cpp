@@ -28,17 +28,20 @@ Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
 Runner::Runner(io::Sequence& source, const std::string& source_name, const io::CompanionFiles& files,
                FollowConfig config, LiveOptions options, const Exec& exec)
     : source_(source),
-      options_(options),
+      image_size_(source.image_size()),
+      has_rig_(source.rig().has_value()),
+      options_(std::move(options)),
       exec_(noting_stages(exec, stages_)),
       follow_(source, source_name, files, config, exec_),
       first_config_(std::make_shared<const FollowConfig>(std::move(config))),
       used_config_(first_config_),
       config_(first_config_) {
-  validate(first_config_->segmentation, source.image_size(), source.rig().has_value());
+  validate(first_config_->segmentation, image_size_, has_rig_);
 }
 
 bool Runner::is_over() const {
-  return is_stopped_ || (deadline_ && Clock::now() >= *deadline_);
+  return is_stopped_ || (options_.is_ended && options_.is_ended()) ||
+         (deadline_ && Clock::now() >= *deadline_);
 }
 
 LiveSummary Runner::run() {
@@ -181,7 +184,7 @@ void Runner::set(const std::vector<std::pair<std::string, std::string>>& options
   FollowConfig changed = *config_;
   for (const auto& [name, value] : options) cairn::set(changed, name, value);
   validate(changed);
-  validate(changed.segmentation, source_.image_size(), source_.rig().has_value());
+  validate(changed.segmentation, image_size_, has_rig_);
   config_ = std::make_shared<const FollowConfig>(std::move(changed));
   ++revision_;
 }

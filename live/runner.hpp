@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,6 +25,8 @@ struct LiveOptions {
   // Files are played at the pace of their stamps times this; 0 = as fast as they are worked on.
   double pace = 1;
   std::optional<std::chrono::nanoseconds> duration;
+  // Asked before each frame, and often while waiting for one: the run ends where it says so.
+  std::function<bool()> is_ended;
 };
 
 /// What a run came to.
@@ -49,7 +52,7 @@ class Runner {
 
   // From any thread:
 
-  /// run() returns behind the frame at hand. May be called in a signal handler.
+  /// run() returns behind the frame at hand.
   void stop() noexcept { is_stopped_ = true; }
   /// Options by name and value, from the next frame on; all or, where one is refused, none (throws Error).
   /// Refused are also those that fit no further frame of this size.
@@ -73,6 +76,8 @@ class Runner {
   void adopt(FollowConfig config);
 
   io::Sequence& source_;
+  Size image_size_;
+  bool has_rig_;
   LiveOptions options_;
   std::vector<Sink*> sinks_;
   std::vector<io::StageTime> stages_;

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "looped.hpp"
+
+#include <utility>
+
+namespace cairn::live {
+namespace {
+
+using io::Sequence;
+using io::SequenceFrame;
+
+class Looped : public Sequence {
+ public:
+  explicit Looped(std::function<std::unique_ptr<Sequence>()> open)
+      : open_(std::move(open)), inner_(open_()), rig_(inner_->rig()), size_(inner_->image_size()) {}
+
+  std::optional<SequenceFrame> next() override {
+    std::optional<SequenceFrame> frame = inner_->next();
+    const bool begins_again = !frame && count_ > 0;
+    if (begins_again) {
+      inner_ = open_();
+      frame = inner_->next();
+      if (frame) {
+        shift_ns_ = last_.ns + kPause_ns - frame->stamp.ns;
+        frame->after_gap = true;
+      }
+    }
+    if (!frame) return std::nullopt;
+    frame->stamp.ns += shift_ns_;
+    frame->index = count_++;
+    last_ = frame->stamp;
+    return frame;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> size() const override { return std::nullopt; }
+  [[nodiscard]] std::string name() const override { return inner_->name(); }
+  [[nodiscard]] Size image_size() const override { return size_; }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return rig_; }
+  [[nodiscard]] std::optional<int> disparities() const override { return inner_->disparities(); }
+  [[nodiscard]] const KnownGround& ground() const override { return inner_->ground(); }
+  [[nodiscard]] const io::Rectifier* rectifier() const override { return inner_->rectifier(); }
+  [[nodiscard]] std::string stamps_from() const override { return inner_->stamps_from(); }
+  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return inner_->remarks(); }
+  [[nodiscard]] const std::string& ended_early() const override { return inner_->ended_early(); }
+
+ private:
+  static constexpr std::int64_t kPause_ns = 2'000'000'000;  // more than a gap
+
+  std::function<std::unique_ptr<Sequence>()> open_;
+  std::unique_ptr<Sequence> inner_;
+  // Of its first round: others may ask while a round begins.
+  std::optional<StereoRig> rig_;
+  Size size_;
+  std::size_t count_ = 0;
+  std::int64_t shift_ns_ = 0;
+  Stamp last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sequence> looped(std::function<std::unique_ptr<Sequence>()> open) {
+  return std::make_unique<Looped>(std::move(open));
+}
+
+}  // namespace cairn::live
