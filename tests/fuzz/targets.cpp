@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "targets.hpp"
+
+#include <unistd.h>
+
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/config.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <io/calibration_files.hpp>
+#include <io/config_files.hpp>
+#include <io/dataset.hpp>
+#include <io/disparity_files.hpp>
+#include <io/image_files.hpp>
+#include <io/raster.hpp>
+#include <io/raw_calibration.hpp>
+#include <io/results.hpp>
+#include <io/rle.hpp>
+#include <landmarks/map_file.hpp>
+#include <source/json_line.hpp>
+#include <source/laser_scans.hpp>
+#include <source/priors.hpp>
+#include <source/sequence.hpp>
+#include <source/stamps.hpp>
+#include <source/track_files.hpp>
+#include <source/trajectory_files.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <tracking/follower.hpp>
+
+namespace cairn::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this process alone, in memory where the system has such a place; gone with the process.
+class Place {
+ public:
+  Place() {
+    std::error_code unknown;
+    const fs::path base =
+        fs::is_directory("/dev/shm", unknown) ? fs::path("/dev/shm") : fs::temp_directory_path();
+    std::string pattern = (base / "cairn-foreign-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr)
+      throw std::runtime_error("no folder can be made in " + base.string());
+    path_ = pattern;
+  }
+  ~Place() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Place(const Place&) = delete;
+  Place& operator=(const Place&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+fs::path written(const char* name, std::string_view bytes) {
+  static const Place place;
+  const fs::path file = place.path() / name;
+  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return file;
+}
+
+/// An Error says in one line what is wrong.
+template <class Work>
+bool is_taken(Work&& work) {
+  try {
+    work();
+    return true;
+  } catch (const Error& error) {
+    const std::string_view says = error.what();
+    if (says.empty() || says.find('\n') != std::string_view::npos)
+      throw std::logic_error("an Error is not one line: " + std::string(says));
+    return false;
+  }
+}
+
+template <auto read>
+bool read_file_of(const char* name, std::string_view bytes) {
+  const fs::path file = written(name, bytes);
+  return is_taken([&] { (void)read(file); });
+}
+
+// ---- pictures ----
+
+constexpr int kSeedSide = 9;
+
+std::vector<std::uint8_t> ramp(std::size_t count) {
+  std::vector<std::uint8_t> bytes(count);
+  for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<std::uint8_t>(i * 37);
+  return bytes;
+}
+
+std::string encoded(int channels, int bytes_each, std::string (*encode)(const io::PixelRows&)) {
+  const auto row = static_cast<std::size_t>(kSeedSide * channels * bytes_each);
+  const std::vector<std::uint8_t> pixels = ramp(row * kSeedSide);
+  return encode(
+      {{kSeedSide, kSeedSide}, channels, bytes_each, pixels.data(), static_cast<std::ptrdiff_t>(row)});
+}
+
+std::vector<std::string> pictures() {
+  return {encoded(1, 1, io::encode_png),
+          encoded(3, 1, io::encode_png),
+          encoded(1, 2, io::encode_png),
+          encoded(1, 1, io::encode_jpeg),
+          encoded(3, 1, io::encode_jpeg),
+          "P2\n# grey\n3 2\n255\n0 10 20\n30 40 255\n",
+          "P3\n2 1\n255\n1 2 3 4 5 6\n",
+          std::string("P5\n2 2\n65535\n\0\1\2\3\4\5\6\7", 20),
+          std::string("P6\n1 2\n255\n\1\2\3\4\5\6", 17)};
+}
+
+bool picture(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_picture(file); }>("picture.png", bytes);
+}
+bool labels(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_labels(file); }>("labels.png", bytes);
+}
+
+std::vector<std::string> disparities() {
+  const float values[] = {1.5F, 2.5F, 64.0F, 0.25F};
+  std::string pfm = "Pf\n2 2\n-1.0\n";
+  pfm.append(reinterpret_cast<const char*>(values), sizeof values);
+  return {encoded(1, 2, io::encode_png), encoded(1, 1, io::encode_png), pfm};
+}
+
+bool disparity(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_disparity(file); }>("disparity", bytes);
+}
+
+// ---- calibrations and configurations ----
+
+std::vector<std::string> calibrations() {
+  return {
+      "cam0=[500 0 160; 0 500 120; 0 0 1]\ncam1=[500 0 160; 0 500 120; 0 0 1]\ndoffs=0\nbaseline=100\n"
+      "width=320\nheight=240\nndisp=64\n",
+      "P2: 7.2e+02 0 6.1e+02 4.5e+01 0 7.2e+02 1.7e+02 2.2e-01 0 0 1 2.7e-03\n"
+      "P3: 7.2e+02 0 6.1e+02 -3.4e+02 0 7.2e+02 1.7e+02 2.2e+00 0 0 1 2.7e-03\n",
+      "focal_px: 500\ncx_px: 160\ncy_px: 120\nbaseline_m: 0.1\ndoffs_px: 0\ncamera_height: 0.5\n"
+      "ground_points: [[1, 2, 0, 2], [9, 2, 5, 2], [1, 9, 0, 9], [9, 9, 3, 9]]\n",
+      "%YAML:1.0\n---\nQ: !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: d\n"
+      "   data: [1, 0, 0, -160, 0, 1, 0, -120, 0, 0, 0, 500, 0, 0, 10, 0]\n",
+      "<?xml version=\"1.0\"?>\n<opencv_storage>\n<Q type_id=\"opencv-matrix\">\n<rows>4</rows><cols>4</cols>"
+      "<dt>d</dt>\n<data>1 0 0 -160 0 1 0 -120 0 0 0 500 0 0 10 0</data></Q>\n</opencv_storage>\n",
+      "{\"Q\": {\"type_id\": \"opencv-matrix\", \"rows\": 4, \"cols\": 4, \"dt\": \"d\", \"data\": [1, 0, 0, "
+      "-160, 0, "
+      "1, 0, -120, 0, 0, 0, 500, 0, 0, 10, 0]}}\n",
+      "image_width: 640\nimage_height: 480\ncamera_name: right\ndistortion_model: plumb_bob\n"
+      "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [500, 0, 320, -50, 0, 500, 240, 0, 0, 0, 1, 0]\n",
+      ","};
+}
+
+bool calibration(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_calibration(file); }>("calib.txt", bytes);
+}
+bool raw_calibration(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_raw_calibration(file); }>("calib.yaml",
+                                                                                           bytes);
+}
+std::vector<std::string> raw_calibrations() {
+  std::vector<std::string> all = calibrations();
+  all.emplace_back(
+      "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n"
+      "K1: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
+      "D1: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [0.1, 0, 0, 0, 0]\n"
+      "K2: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
+      "D2: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [0.1, 0, 0, 0, 0]\n"
+      "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+      "T: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n   data: [-0.1, 0, 0]\n");
+  return all;
+}
+
+bool configuration(std::string_view bytes) {
+  const fs::path file = written("config.yaml", bytes);
+  return is_taken([&] {
+    Config config;
+    io::load_config(file, config);
+    validate(config);
+  });
+}
+std::vector<std::string> configurations() {
+  return {io::config_yaml(Config{}), "preset: paper\nmatch:\n  window_size: 9\nleft_right.max_diff: -1\n",
+          "match: {window_size: 9, method: window}\n", "preset: default\n? [a, b]\n: &x {y: *x}\n"};
+}
+
+// ---- results ----
+
+bool objects(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_confidences(file); }>("objects.json", bytes);
+}
+std::vector<std::string> objects_files() {
+  return {R"({"schema": "1.1", "objects": [{"id": 1, "confidence": 0.5}, {"id": 2, "confidence": 1}]})",
+          R"({"objects": [{"id": 2e128, "confidence": 0.5}]})", R"([[[[[[[[[[[[]]]]]]]]]]]])"};
+}
+
+bool run_lengths(std::string_view bytes) {
+  if (bytes.size() < 2) return false;
+  io::Rle rle;
+  rle.size = {static_cast<unsigned char>(bytes[0]) % 64 + 1, static_cast<unsigned char>(bytes[1]) % 64 + 1};
+  rle.counts = bytes.substr(2);
+  return is_taken([&] {
+    const Image<std::uint8_t> mask = io::decode_rle(rle);
+    if (mask.size() != rle.size) throw std::logic_error("a mask of another size");
+  });
+}
+std::vector<std::string> run_length_texts() {
+  const std::string size{3, 3};
+  return {size + io::counts_to_text({16}), size + io::counts_to_text({3, 5, 8}),
+          size + io::counts_to_text({0, 16})};
+}
+
+// ---- sequences ----
+
+bool stamps(std::string_view bytes) {
+  const fs::path file = written("stamps.txt", bytes);
+  bool taken = is_taken([&] { (void)io::load_stamps(file); });
+  taken |= is_taken([&] { (void)io::load_named_stamps(file); });
+  taken |= is_taken([&] { (void)io::load_frame_stamps(file); });
+  return taken;
+}
+std::vector<std::string> stamp_files() {
+  return {"0.0\n0.1\n0.2\n", "1403715274312143104\n1403715274362142976\n",
+          "2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.064389445\n",
+          "#timestamp [ns],filename\n1403715274312143104,a.png\n", "frame,t_s\n0,0.0\n1,0.1\n"};
+}
+
+bool trajectory(std::string_view bytes) {
+  const fs::path file = written("poses.txt", bytes);
+  bool taken = is_taken([&] { (void)io::load_trajectory(file); });
+  taken |= is_taken([&] { (void)io::load_pose(file); });
+  return taken;
+}
+std::vector<std::string> trajectories() {
+  return {"0.0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n",
+          "#timestamp,x,y,z,qw,qx,qy,qz\n100,0,0,0,1,0,0,0\n200,1,0,0,1,0,0,0\n",
+          "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"};
+}
+
+bool priors(std::string_view bytes) {
+  const fs::path file = written("odometry.csv", bytes);
+  bool taken = is_taken([&] {
+    const auto all = io::load_odometry(file);
+    (void)all->between(all->first(), all->last());
+  });
+  taken |= is_taken([&] {
+    const auto all = io::load_imu(file);
+    (void)all->between(all->first(), all->last());
+  });
+  return taken;
+}
+std::vector<std::string> prior_files() {
+  return {"t_s,v_m_per_s,omega_rad_per_s\n0,0.5,0\n0.1,0.5,0.1\n0.2,0.5,0.1\n",
+          "# base_link\n0.0 0 0 0 0 0 0 1\n0.1 0.1 0 0 0 0 0 1\n",
+          "#timestamp,wx,wy,wz,ax,ay,az\n1000000,0,0,0.1,0,0,9.8\n2000000,0,0,0.1,0,0,9.8\n"};
+}
+
+bool scans(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return io::load_scans(file); }>("scans.csv", bytes);
+}
+std::vector<std::string> scan_files() {
+  return {"t_s,angle_min,angle_increment,r0,r1,r2\n0.0,-0.1,0.1,1.0,2.0,nan\n0.1,-0.1,0.1,1.0,2.0,3.0\n"};
+}
+
+bool tracks(std::string_view bytes) {
+  const fs::path file = written("tracks.jsonl", bytes);
+  bool taken = is_taken([&] { (void)io::load_tracks(file); });
+  taken |= is_taken([&] { (void)io::load_mots(file); });
+  taken |= is_taken([&] { (void)io::load_changes(file); });
+  return taken;
+}
+std::vector<std::string> track_lines() {
+  return {
+      R"({"frame": 0, "stamp_ns": 0, "size": [4, 4], "tracks": [{"id": 1, "mask": {"size": [4, 4], "counts": "052"}}]})"
+      "\n",
+      "0 1 2 4 4 052\n1 1 2 4 4 052\n",
+      R"({"frame": 3, "stamp_ns": 5, "kind": "moved", "landmark": 1, "to_m": [0, 0, 0], "from_m": [1, 0, 0]})"
+      "\n"};
+}
+
+bool json(std::string_view bytes) {
+  return is_taken([&] { (void)io::parsed_json(std::string(bytes)); });
+}
+
+bool frame_range(std::string_view bytes) {
+  return is_taken([&] { (void)io::parse_frame_range(bytes); });
+}
+
+bool map_file(std::string_view bytes) {
+  return read_file_of<[](const fs::path& file) { return MapFile::open(file, MapMode::read_only).load(); }>(
+      "map.db", bytes);
+}
+std::vector<std::string> map_files() {
+  const Place place;
+  const fs::path path = place.path() / "made.db";
+  {
+    MapFile map = MapFile::open(path, MapMode::update);
+    (void)map.begin_run("a source", Stamp{1});
+    LandmarkMap none;
+    map.end_run(RunState::done, none);
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return {bytes.str()};
+}
+
+// ---- the method ----
+
+/// Reads numbers from bytes; zeros when they are used up.
+class Numbers {
+ public:
+  explicit Numbers(std::string_view bytes) : bytes_(bytes) {}
+  unsigned next() {
+    if (bytes_.empty()) return 0;
+    const auto value = static_cast<unsigned char>(bytes_.front());
+    bytes_.remove_prefix(1);
+    return value;
+  }
+  [[nodiscard]] std::string_view rest() const { return bytes_; }
+
+ private:
+  std::string_view bytes_;
+};
+
+/// A value for an option: of a choice one of those that there are, else a number in or out of its range.
+std::string value_for(const OptionInfo& option, unsigned a, unsigned b) {
+  if (option.type == "bool") return a % 2 == 0 ? "true" : "false";
+  if (option.type == "choice") {
+    std::vector<std::string> choices;
+    std::istringstream domain(option.domain);
+    for (std::string choice; std::getline(domain, choice, '|');) choices.push_back(choice);
+    return choices.empty() ? option.value : choices[a % choices.size()];
+  }
+  const double scale[] = {1, 0.1, 0.01, 10, -1, 1e6, 1e30, 0.001};
+  std::ostringstream text;
+  if (option.type == "int") {
+    text << static_cast<int>(a) - static_cast<int>(b % 4);
+  } else {
+    text << a * scale[b % 8];
+  }
+  return text.str();
+}
+
+/// Options as the bytes have them; what is refused stays as it was.
+FollowConfig config_of(Numbers& numbers) {
+  FollowConfig config;
+  if (numbers.next() % 2 == 1) config.segmentation = Config::paper();
+  config.segmentation.match.num_disparities = 16;
+  for (unsigned left = numbers.next() % 8; left > 0; --left) {
+    const std::vector<OptionInfo> all = options(config);
+    const OptionInfo& option = all[(numbers.next() * 256 + numbers.next()) % all.size()];
+    const unsigned a = numbers.next();
+    const unsigned b = numbers.next();
+    FollowConfig changed = config;
+    if (is_taken([&] {
+          set(changed, option.name, value_for(option, a, b));
+          validate(changed);
+        }))
+      config = changed;
+  }
+  return config;
+}
+
+struct Pictures {
+  Image<Gray> left;
+  Image<Gray> right;
+  Image<Rgb> colours;
+};
+
+Pictures pictures_of(Numbers& numbers, Size size) {
+  Pictures all{Image<Gray>(size), Image<Gray>(size), Image<Rgb>(size)};
+  const unsigned shift = numbers.next() % 8;
+  const std::string_view rest = numbers.rest();
+  const auto at = [&](std::size_t i) {
+    return rest.empty() ? Gray{128} : static_cast<Gray>(static_cast<unsigned char>(rest[i % rest.size()]));
+  };
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const auto i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x);
+      all.left(x, y) = at(i);
+      all.right(x, y) = at(i + shift);
+      all.colours(x, y) = {at(i), at(i + 1), at(i + 2)};
+    }
+  }
+  return all;
+}
+
+std::optional<StereoRig> rig_of(unsigned number) {
+  if (number % 3 == 0) return std::nullopt;
+  return StereoRig{static_cast<float>(number), 10, 8, 0.1F, number % 2 == 0 ? 0.0F : 3.0F};
+}
+
+bool method(std::string_view bytes) {
+  Numbers numbers(bytes);
+  const FollowConfig config = config_of(numbers);
+  const Size size{static_cast<int>(numbers.next() % 48) + 1, static_cast<int>(numbers.next() % 48) + 1};
+  const std::optional<StereoRig> rig = rig_of(numbers.next());
+  const bool in_colour = numbers.next() % 2 == 0;
+  const Pictures pictures = pictures_of(numbers, size);
+  return is_taken([&] {
+    const StereoPair pair = in_colour ? StereoPair::from(pictures.left, pictures.right, pictures.colours)
+                                      : StereoPair::from(pictures.left, pictures.right);
+    const Frame frame = segment(pair, rig, config.segmentation, {});
+    if (frame.objects.labels.size() != size) throw std::logic_error("labels of another size");
+    Follower follower(config, rig);
+    for (int k = 0; k < 3; ++k) (void)follower.next(pair, Stamp{k * 100'000'000});
+  });
+}
+std::vector<std::string> method_inputs() {
+  std::vector<std::string> all;
+  for (const char preset : {0, 1}) {
+    std::string input{preset, 1, 0, 7, 9, 0, 40, 30, 100, 0, 3};
+    for (int i = 0; i < 600; ++i) input += static_cast<char>((i * i * 31 + i * 7) % 251);
+    all.push_back(input);
+  }
+  return all;
+}
+
+std::vector<std::string> ranges() {
+  return {"10:60:2", "::2", "7", "1:"};
+}
+std::vector<std::string> json_texts() {
+  return {R"({"a": [1, 2.5e3, "\u00e4", null, true]})", "[[[[]]]]"};
+}
+
+}  // namespace
+
+const std::vector<Target>& targets() {
+  static const std::vector<Target> all{
+      {"picture", picture, pictures},
+      {"labels", labels, pictures},
+      {"disparity", disparity, disparities},
+      {"calibration", calibration, calibrations},
+      {"raw_calibration", raw_calibration, raw_calibrations},
+      {"config", configuration, configurations},
+      {"objects", objects, objects_files},
+      {"rle", run_lengths, run_length_texts},
+      {"json", json, json_texts},
+      {"frames", frame_range, ranges},
+      {"stamps", stamps, stamp_files},
+      {"trajectory", trajectory, trajectories},
+      {"priors", priors, prior_files},
+      {"scans", scans, scan_files},
+      {"tracks", tracks, track_lines},
+      {"map", map_file, map_files},
+      {"method", method, method_inputs},
+  };
+  return all;
+}
+
+}  // namespace cairn::fuzz

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <fuzz/targets.hpp>
+#include <random>
+#include <sstream>
+
+/// Whatever stands in a file ends in a result or in an Error of one line: the seeds of every fuzzer, what
+/// fuzzing found once, and changes of both that nobody chose.
+namespace cairn::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ForeignBytes : public testing::TestWithParam<Target> {};
+
+std::vector<std::string> found_once(const char* target) {
+  std::vector<std::string> all;
+  const fs::path folder = fs::path(CAIRN_SOURCE_DIR) / "tests/fuzz/found" / target;
+  if (!fs::is_directory(folder)) return all;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    all.push_back(bytes.str());
+  }
+  return all;
+}
+
+TEST_P(ForeignBytes, SeedsAreTakenAndWhatWasFoundOnceIsHarmless) {
+  int taken = 0;
+  for (const std::string& seed : GetParam().seeds()) taken += GetParam().run(seed) ? 1 : 0;
+  EXPECT_GT(taken, 0);
+  for (const std::string& bytes : found_once(GetParam().name)) EXPECT_NO_THROW((void)GetParam().run(bytes));
+}
+
+/// One change: a byte flipped, set, cut out, doubled, or the end cut off; or a piece of another input.
+std::string changed(std::string bytes, const std::vector<std::string>& others, std::mt19937& random) {
+  const auto below = [&](std::size_t end) { return std::size_t{random()} % std::max<std::size_t>(1, end); };
+  if (bytes.empty()) return others[below(others.size())];
+  const std::size_t at = below(bytes.size());
+  constexpr std::string_view kTelling = "\0\xff\x7f\x80-.,:[]{}eE+9#&*!<>\"\n";
+  switch (random() % 7) {
+    case 0:
+      bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random() % 8)));
+      break;
+    case 1:
+      bytes[at] = kTelling[below(kTelling.size())];
+      break;
+    case 2:
+      bytes.erase(at, 1 + below(8));
+      break;
+    case 3:
+      bytes.insert(at, bytes.substr(below(bytes.size()), 1 + below(16)));
+      break;
+    case 4:
+      bytes.resize(at);
+      break;
+    case 5: {
+      const std::string& other = others[below(others.size())];
+      bytes = bytes.substr(0, at) + other.substr(below(other.size()));
+      break;
+    }
+    default:
+      bytes.insert(at, std::string(1 + below(64), kTelling[below(kTelling.size())]));
+      break;
+  }
+  return bytes;
+}
+
+/// The same numbers in every run, so that a fault is found again; CAIRN_FUZZ_SECONDS makes it longer.
+TEST_P(ForeignBytes, AnyChangeOfThemEndsInAResultOrInOneLine) {
+  std::vector<std::string> inputs = GetParam().seeds();
+  for (std::string& bytes : found_once(GetParam().name)) inputs.push_back(std::move(bytes));
+  const char* const asked = std::getenv("CAIRN_FUZZ_SECONDS");
+  const double seconds = asked != nullptr ? std::atof(asked) : 0.6;
+  std::mt19937 random(20261123);
+  const auto began = std::chrono::steady_clock::now();
+  int tried = 0;
+  while (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() < seconds) {
+    std::string bytes = inputs[random() % inputs.size()];
+    for (unsigned changes = 1 + random() % 4; changes > 0; --changes) bytes = changed(bytes, inputs, random);
+    ASSERT_NO_THROW((void)GetParam().run(bytes))
+        << "input " << tried << ": " << testing::PrintToString(bytes.substr(0, 400));
+    ++tried;
+  }
+  RecordProperty("inputs", tried);
+  EXPECT_GT(tried, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Everything, ForeignBytes, testing::ValuesIn(targets()),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace cairn::fuzz

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cairn/core/error.hpp>
+#include <functional>
+#include <live/looped.hpp>
+#include <live/runner.hpp>
+#include <thread>
+
+namespace cairn::live {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Size kSize{64, 48};
+
+/// A camera that gives `frames` pairs, one each `period`, whether they are taken or not; or a file.
+class Camera : public io::Sequence {
+ public:
+  Camera(int frames, std::chrono::milliseconds period, bool is_live)
+      : frames_(frames), period_(period), is_live_(is_live) {}
+
+  std::optional<io::SequenceFrame> next() override {
+    if (at_ == frames_ || is_stopped_) return std::nullopt;
+    std::this_thread::sleep_for(period_);
+    io::SequenceFrame frame;
+    frame.name = std::to_string(at_);
+    frame.index = static_cast<std::size_t>(at_);
+    frame.stamp = {at_ * std::int64_t{10'000'000}};
+    frame.left.gray = Image<Gray>(kSize);
+    frame.right = Image<Gray>(kSize);
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        frame.left.gray(x, y) = static_cast<Gray>((x * 37 + y * 101 + x * y) % 251);
+        frame.right(x, y) = static_cast<Gray>(((x + 3) * 37 + y * 101 + (x + 3) * y) % 251);
+      }
+    }
+    if (is_live_) frame.arrived = Clock::now() - delay;
+    ++at_;
+    return frame;
+  }
+  [[nodiscard]] std::optional<std::size_t> size() const override { return std::nullopt; }
+  [[nodiscard]] std::string name() const override { return "camera"; }
+  [[nodiscard]] Size image_size() const override { return kSize; }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return rig_; }
+  [[nodiscard]] std::optional<int> disparities() const override { return 16; }
+  [[nodiscard]] const KnownGround& ground() const override { return ground_; }
+  [[nodiscard]] const io::Rectifier* rectifier() const override { return nullptr; }
+  [[nodiscard]] std::string stamps_from() const override { return "the test"; }
+  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::string& ended_early() const override { return none_; }
+  void stop() override { is_stopped_ = true; }
+  [[nodiscard]] io::SourceStatus status() const override {
+    io::SourceStatus status;
+    status.is_live = is_live_;
+    status.dropped = 7;
+    return status;
+  }
+
+  std::chrono::milliseconds delay{0};  // how old a pair is when it comes
+
+ private:
+  int frames_;
+  std::chrono::milliseconds period_;
+  bool is_live_;
+  int at_ = 0;
+  std::atomic<bool> is_stopped_ = false;
+  std::optional<StereoRig> rig_ = StereoRig{60, 32, 24, 0.1F, 0};
+  KnownGround ground_;
+  std::vector<io::SourceRemark> remarks_;
+  std::string none_;
+};
+
+/// Keeps what it is offered, and does `then` with each.
+class Notebook : public Sink {
+ public:
+  void offer(const LiveFramePtr& frame) override {
+    frames.push_back(frame);
+    if (then) then(*frame);
+  }
+  void finish() override { is_finished = true; }
+  std::vector<LiveFramePtr> frames;
+  std::function<void(const LiveFrame&)> then;
+  bool is_finished = false;
+};
+
+FollowConfig config() {
+  FollowConfig all;
+  all.segmentation.match.num_disparities = 16;
+  return all;
+}
+
+LiveSummary run(Camera& camera, const LiveOptions& options, Notebook& notebook) {
+  Runner runner(camera, "camera", {}, config(), options, {});
+  runner.add(notebook);
+  return runner.run();
+}
+
+TEST(NewestSlot, GivesWhatIsLatestAndCountsWhatWasReplaced) {
+  NewestSlot<int> slot;
+  EXPECT_EQ(slot.take(0ms), std::nullopt);
+  slot.put(1);
+  slot.put(2);
+  slot.put(3);
+  EXPECT_EQ(slot.replaced(), 2U);
+  EXPECT_EQ(slot.take(0ms), 3);
+  slot.put(4);
+  slot.close();
+  slot.put(5);
+  EXPECT_FALSE(slot.is_closed()) << "there is one left";
+  EXPECT_EQ(slot.take(1s), 4);
+  EXPECT_EQ(slot.take(1s), std::nullopt);
+  EXPECT_TRUE(slot.is_closed());
+}
+
+TEST(Latencies, ArePercentilesOfWhatWasAdded) {
+  Latencies all;
+  EXPECT_EQ(all.percentile(0.5), 0);
+  for (int ms = 1; ms <= 100; ++ms) all.add(ms);
+  EXPECT_NEAR(all.percentile(0.5), 51, 0.2);
+  EXPECT_NEAR(all.percentile(0.99), 100, 0.2);
+  EXPECT_EQ(all.max_ms(), 100);
+  all.add(1e9);
+  EXPECT_EQ(all.max_ms(), 1e9) << "beyond the last step, but not lost";
+}
+
+TEST(Runner, EveryFrameIsWorkedOnWhereNoneMayBeDropped) {
+  Camera camera(12, 0ms, false);
+  Notebook notebook;
+  LiveOptions options;
+  options.every_frame = true;
+  options.pace = 0;
+  const LiveSummary summary = run(camera, options, notebook);
+  EXPECT_EQ(summary.frames, 12U);
+  ASSERT_EQ(notebook.frames.size(), 12U);
+  for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(notebook.frames[k]->pair->index, k);
+  EXPECT_EQ(summary.drops.replaced, 0U);
+  EXPECT_TRUE(notebook.is_finished);
+  EXPECT_FALSE(notebook.frames.back()->stages.empty());
+  EXPECT_EQ(notebook.frames.back()->drops.at_source, 7U);
+}
+
+TEST(Runner, ANewerPairReplacesTheOneThatWaits) {
+  Camera camera(60, 1ms, true);
+  Notebook notebook;
+  notebook.then = [](const LiveFrame&) { std::this_thread::sleep_for(20ms); };  // a slow robot
+  const LiveSummary summary = run(camera, {}, notebook);
+  EXPECT_LT(summary.frames, 30U);
+  EXPECT_EQ(summary.frames + summary.drops.replaced, 60U);
+  for (std::size_t k = 1; k < notebook.frames.size(); ++k)
+    EXPECT_GT(notebook.frames[k]->pair->index, notebook.frames[k - 1]->pair->index);
+}
+
+TEST(Runner, PairsThatAreTooOldAreDroppedAndCounted) {
+  Camera camera(5, 1ms, true);
+  camera.delay = 500ms;
+  Notebook notebook;
+  LiveOptions options;
+  options.max_age = 200ms;
+  const LiveSummary summary = run(camera, options, notebook);
+  EXPECT_EQ(summary.frames, 0U);
+  EXPECT_GT(summary.drops.too_old, 0U);
+}
+
+TEST(Runner, FilesArePlayedAtThePaceOfTheirStamps) {
+  Camera camera(11, 0ms, false);  // 10 ms apart
+  Notebook notebook;
+  LiveOptions options;
+  options.every_frame = true;
+  options.pace = 0.5;
+  const LiveSummary summary = run(camera, options, notebook);
+  EXPECT_GE(summary.seconds, 0.2);
+}
+
+TEST(Runner, ItEndsWithItsTimeAndWhenItIsTold) {
+  Camera endless(1'000'000, 1ms, true);
+  Notebook notebook;
+  LiveOptions options;
+  options.duration = 150ms;
+  EXPECT_LT(run(endless, options, notebook).seconds, 5);
+  Camera other(1'000'000, 1ms, true);
+  LiveOptions told;
+  told.is_ended = [&] { return notebook.frames.size() > 5; };
+  EXPECT_LT(run(other, told, notebook).seconds, 5);
+}
+
+TEST(Runner, OptionsHoldFromTheNextFrameOnAndAreRefusedWhole) {
+  Camera camera(9, 0ms, false);
+  Notebook notebook;
+  LiveOptions options;
+  options.every_frame = true;
+  options.pace = 0;
+  Runner runner(camera, "camera", {}, config(), options, {});
+  runner.add(notebook);
+  notebook.then = [&](const LiveFrame& frame) {
+    if (frame.pair->index == 2) runner.set({{"objects.min_area", "1"}, {"tracking.min_hits", "2"}});
+    if (frame.pair->index == 4) {
+      EXPECT_THROW(runner.set({{"objects.min_area", "2"}, {"tracking.min_hits", "-5"}}), Error);
+      EXPECT_THROW(runner.set({{"no.such", "2"}}), Error);
+      EXPECT_THROW(runner.set({{"match.num_disparities", "640"}}), Error) << "more than the image is wide";
+    }
+    if (frame.pair->index == 6) runner.reset();
+  };
+  runner.run();
+  const auto hits = [&](std::size_t k) { return notebook.frames[k]->config->tracking.min_hits; };
+  const int first = config().tracking.min_hits;
+  ASSERT_NE(first, 2);
+  EXPECT_EQ(hits(2), first);
+  EXPECT_EQ(hits(3), 2);
+  EXPECT_EQ(hits(5), 2);
+  EXPECT_EQ(hits(8), first);
+  EXPECT_EQ(notebook.frames[8]->revision, 2U);
+}
+
+TEST(Runner, AFaultOfTheSourceIsThrownAfterAllSinksAreDone) {
+  struct Broken : Camera {
+    using Camera::Camera;
+    std::optional<io::SequenceFrame> next() override {
+      if (++calls > 3) throw Error("frame 3: is of another size");
+      return Camera::next();
+    }
+    int calls = 0;
+  };
+  for (const bool every_frame : {true, false}) {
+    Broken camera(10, 1ms, false);
+    Notebook notebook;
+    LiveOptions options;
+    options.every_frame = every_frame;
+    Runner runner(camera, "camera", {}, config(), options, {});
+    runner.add(notebook);
+    EXPECT_THROW(runner.run(), Error);
+    EXPECT_TRUE(notebook.is_finished);
+  }
+}
+
+TEST(Looped, GoesOnWithRisingStampsAndAGapBetweenTheRounds) {
+  const auto source = looped([] { return std::make_unique<Camera>(3, 0ms, false); });
+  Stamp before{-1};
+  for (std::size_t k = 0; k < 10; ++k) {
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->index, k);
+    EXPECT_GT(frame->stamp, before);
+    EXPECT_EQ(frame->after_gap, k > 0 && k % 3 == 0);
+    before = frame->stamp;
+  }
+  EXPECT_EQ(source->size(), std::nullopt);
+  const auto empty = looped([] { return std::make_unique<Camera>(0, 0ms, false); });
+  EXPECT_FALSE(empty->next());
+}
+
+}  // namespace
+}  // namespace cairn::live
