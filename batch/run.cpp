@@ -117,7 +117,8 @@ Run open_run(const fs::path& folder) {
     throw Error(file.string() + ": is no JSON object, expected a file that cairn batch plan wrote");
   const std::string version = text_at(json, "cairn", file);
   if (version != CAIRN_VERSION) {
-    throw Error(file.string() + ": was planned by cairn " + version + ", and this is " CAIRN_VERSION
+    throw Error(file.string() + ": was planned by cairn " + version +
+                ", and this is " CAIRN_VERSION
                 ", which may find other objects; expected that version or a new plan");
   }
   Run run{folder, text_at(json, "run", file), 0, text_at(json, "manifest_sha256", file),

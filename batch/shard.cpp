@@ -115,8 +115,8 @@ std::optional<WorkerNote> note_in(const fs::path& file) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) return std::nullopt;
   try {
-    WorkerNote note{json.at("host").get<std::string>(), json.at("pid").get<long>(),
-                    json.at("started_s").get<double>(), json.at("updated_s").get<double>(),
+    WorkerNote note{json.at("host").get<std::string>(),    json.at("pid").get<long>(),
+                    json.at("started_s").get<double>(),    json.at("updated_s").get<double>(),
                     json.at("resumed").get<std::size_t>(), json.at("rows").get<std::size_t>(),
                     json.at("errors").get<std::size_t>()};
     return note;

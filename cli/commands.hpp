@@ -15,6 +15,7 @@ using Work = std::function<int()>;
 Work declare_segment(CLI::App& app);
 Work declare_follow(CLI::App& app);
 Work declare_live(CLI::App& app);
+Work declare_batch(CLI::App& app);
 Work declare_disparity(CLI::App& app);
 Work declare_evaluate(CLI::App& app);
 Work declare_bench(CLI::App& app);
@@ -50,6 +51,13 @@ inline constexpr std::array kCommands{
             "cairn live sequence/ --pace 0 --json-lines\n"
             "cairn live sequence/ --every-frame --no-tracks --set objects.min_confidence=0.6\n",
             declare_live},
+    Command{"batch", "work on an archive in shards, on one machine or on many",
+            "cairn batch plan frames/ -o run\n"
+            "cairn batch work run --shard 1/2\n"
+            "cairn batch work run --shard 2/2\n"
+            "cairn batch status run\n"
+            "cairn batch merge run -o result.jsonl\n",
+            declare_batch},
     Command{"disparity", "match a stereo pair and check every match",
             "cairn disparity left.png right.png -o disparity.pfm --view disparity.png\n"
             "cairn disparity left.png right.png --calib calib.txt --ply cloud.ply\n",

@@ -8,6 +8,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/pipeline/segment.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -252,6 +253,15 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   frame.config.ground.known = std::move(calibration.ground);
   frame.preset = std::move(resolved.preset);
   return frame;
+}
+
+Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
+  if (loaded.given) {
+    return segment(loaded.left.gray, loaded.left.rgb, std::move(*loaded.given), loaded.rig, loaded.config,
+                   exec);
+  }
+  return segment(StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config,
+                 exec);
 }
 
 std::string remark_on_calibration(const LoadedFrame& loaded) {

@@ -81,6 +81,8 @@ struct LoadedFrame {
 };
 /// Reads and checks everything before any work is done. Throws Error.
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec);
+/// Takes the given disparity out of `loaded`, where there is one.
+Frame segment_frame(LoadedFrame& loaded, const Exec& exec);
 
 /// A line for stderr where the calibration is right only of pictures that were rectified with it; else "".
 std::string remark_on_calibration(const LoadedFrame& loaded);

@@ -4,6 +4,7 @@
 // In place of the commands for sequences, where what they need was not installed.
 #include <cairn/core/error.hpp>
 
+#include "batch_frames.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "evaluate_sequence.hpp"
@@ -44,6 +45,20 @@ Work declare_odometry(CLI::App& app) {
 }
 Work declare_record(CLI::App& app) {
   return not_built_in(app);
+}
+
+io::FrameRange range_of(const std::string& /*text*/) {
+  refuse();
+}
+std::vector<std::size_t> sequence_frames(const BatchSequence& /*sequence*/, const io::FrameRange& /*range*/,
+                                         const Pool& /*pool*/) {
+  refuse();
+}
+struct SequenceReader::State {};
+SequenceReader::SequenceReader(ConfigOptions /*config*/, Pool /*pool*/) {}
+SequenceReader::~SequenceReader() = default;
+BatchFrame SequenceReader::read(const BatchSequence& /*sequence*/, std::size_t /*index*/) {
+  refuse();
 }
 
 int evaluate_sequence(const EvaluateSequenceOptions& /*options*/) {

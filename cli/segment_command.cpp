@@ -35,15 +35,6 @@ struct SegmentOptions {
   bool html = false;
 };
 
-Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
-  if (loaded.given) {
-    return segment(loaded.left.gray, loaded.left.rgb, std::move(*loaded.given), loaded.rig, loaded.config,
-                   exec);
-  }
-  return segment(StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config,
-                 exec);
-}
-
 double valid_share(const DisparityMap& map) {
   std::int64_t valid = 0;
   for (int y = 0; y < map.reject.height(); ++y) {

@@ -170,6 +170,23 @@ Json json(const Object& object, View<const ObjectId> labels) {
   return j;
 }
 
+Json size_json(const Frame& frame) {
+  const Size size = frame.disparity.disparity_px.size();
+  return {{"width", size.width}, {"height", size.height}};
+}
+
+/// What was found, to the end of the document.
+void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
+  j["epipolar"] = json(frame.epipolar);
+  j["ground"] = json(frame.ground);
+  j["floor_frame"] = floor_json(frame, provenance);
+  j["objects"] = Json::array();
+  for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));
+  j["left_out"] = Json::array();
+  for (const LeftOut& left : frame.left_out) j["left_out"].push_back(json(left));
+  j["obstacle_scan"] = frame.space.empty() ? Json(nullptr) : scan_json(frame, provenance);
+}
+
 // ---- the folder ----
 
 /// A folder that is gone with all that it holds unless it is kept.
@@ -426,11 +443,10 @@ std::string config_json(const Config& config) {
 }
 
 std::string objects_json(const Frame& frame, const Provenance& provenance) {
-  const Size size = frame.disparity.disparity_px.size();
   Json j;
   j["cairn"] = CAIRN_VERSION;
   j["schema"] = kObjectsSchema;
-  j["image"] = {{"width", size.width}, {"height", size.height}};
+  j["image"] = size_json(frame);
   j["rig"] = json(provenance.rig);
   j["preset"] = provenance.preset;
   j["config"] = json(provenance.config);
@@ -439,15 +455,19 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   for (const StageTime& time : provenance.timings) {
     j["timings_ms"][time.stage] = std::round(time.milliseconds * 1000) / 1000;
   }
-  j["epipolar"] = json(frame.epipolar);
-  j["ground"] = json(frame.ground);
-  j["floor_frame"] = floor_json(frame, provenance);
-  j["objects"] = Json::array();
-  for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));
-  j["left_out"] = Json::array();
-  for (const LeftOut& left : frame.left_out) j["left_out"].push_back(json(left));
-  j["obstacle_scan"] = frame.space.empty() ? Json(nullptr) : scan_json(frame, provenance);
+  add_findings(j, frame, provenance);
   return j.dump(1) + "\n";
+}
+
+std::string frame_row(const std::string& name, std::optional<std::int64_t> stamp_ns, const Frame& frame,
+                      const Provenance& provenance) {
+  Json j;
+  j["frame"] = name;
+  if (stamp_ns) j["stamp_ns"] = *stamp_ns;
+  j["image"] = size_json(frame);
+  j["rig"] = json(provenance.rig);
+  add_findings(j, frame, provenance);
+  return j.dump();
 }
 
 std::string disparity_file_name(const Frame& frame, const Provenance& provenance) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/pipeline/segment.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,6 +34,12 @@ inline constexpr const char* kObjectsSchema = "1.1";
 
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);
+
+/// A frame as one line among those of a run (docs/batch.md), without a newline: its name, its stamp where it
+/// has one, and of objects.json all but what is one for the whole run (version, preset, options) and the
+/// times, so that the line depends on nothing but images, calibration and options.
+std::string frame_row(const std::string& name, std::optional<std::int64_t> stamp_ns, const Frame& frame,
+                      const Provenance& provenance);
 
 /// A result's disparity file: "disparity.png", or "disparity.pfm" where 16 bits cannot hold the search range
 /// (of a given disparity: its values).

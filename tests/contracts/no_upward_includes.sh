@@ -8,10 +8,10 @@ cd "$1"
 
 # From the lowest to the highest; `cairn` is what lies in that folder itself.
 ranks='cairn/core cairn/image cairn/matching cairn/disparity cairn/regions cairn/scene cairn/grouping cairn/objects
-  cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn tracking io page landmarks ros source live timing cli python
+  cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn tracking io page landmarks ros source live timing batch cli python
   examples benchmarks tests'
 
-find cairn tracking io page landmarks ros source live timing cli python examples benchmarks tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
+find cairn tracking io page landmarks ros source live timing batch cli python examples benchmarks tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
   xargs awk -v ranks="$ranks" '
     BEGIN {
       count = split(ranks, listed)

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <batch/shard.hpp>
+#include <batch/summary.hpp>
+#include <cairn/core/error.hpp>
+#include <cmath>
+#include <io/atomic_file.hpp>
+#include <io/config_files.hpp>
+#include <iostream>
+#include <string_view>
+
+#include "batch_frames.hpp"
+#include "commands.hpp"
+#include "common.hpp"
+
+namespace cairn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BatchOptions {
+  std::string action;
+  std::vector<std::string> paths;  // inputs of plan, else the run
+  BatchInputs inputs;
+  ConfigOptions config;
+  std::string output;
+  std::string shard;
+  bool keep = false;
+  bool partial = false;
+  ExecOptions exec;
+};
+
+const std::string& run_folder(const BatchOptions& options) {
+  if (options.paths.size() == 1) return options.paths.front();
+  throw Error(options.action + ": found " + std::to_string(options.paths.size()) +
+              " folders, expected one, which cairn batch plan -o wrote");
+}
+
+std::string count_of(std::size_t count, const char* thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 120) return text_of("%.0f s", seconds);
+  if (seconds < 7200) return text_of("%.0f min", seconds / 60);
+  return text_of("%.1f h", seconds / 3600);
+}
+
+int plan(const BatchOptions& options) {
+  if (options.output.empty()) throw Error("-o: is missing, expected the folder for the run");
+  BatchInputs inputs = options.inputs;
+  inputs.paths = options.paths;
+  const Pool pool = Pool::make();
+  const std::string config = config_of_run(options.config);
+  const batch::Planned planned = batch::plan(options.output, planned_frames(inputs, pool), config);
+  std::cout << (planned.was_there ? "already planned: " : "planned: ")
+            << count_of(planned.run.frames, "frame") << " of " << count_of(inputs.paths.size(), "input")
+            << ", run " << planned.run.id.substr(0, 12) << " in " << options.output << "\n";
+  return 0;
+}
+
+batch::Shard shard_of(const BatchOptions& options) {
+  if (!options.shard.empty()) return batch::parse_shard(options.shard);
+  return batch::shard_of_slurm().value_or(batch::Shard{});
+}
+
+/// Makes rows of planned frames.
+class RowMaker {
+ public:
+  RowMaker(const batch::Run& run, const BatchOptions& options)
+      : exec_(make_exec(options.exec)),
+        reader_({"default", run.config().string(), {}}, exec_),
+        kept_(options.keep ? run.folder / "frames" : fs::path()) {}
+
+  std::string operator()(const batch::PlannedFrame& planned) {
+    reader_.check(planned);
+    BatchFrame read;
+    Frame frame;
+    try {
+      read = reader_.read(planned);
+      frame = segment_frame(read.loaded, exec_);
+    } catch (const Error& error) {
+      return batch::error_row(planned.name, error.what());
+    }
+    const LoadedFrame& loaded = read.loaded;
+    const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, {}, false};
+    if (!kept_.empty())
+      io::write_result(kept_ / planned.name, loaded.left.gray, loaded.left.rgb, frame, provenance);
+    return io::frame_row(planned.name, read.stamp_ns, frame, provenance);
+  }
+
+ private:
+  Exec exec_;
+  BatchReader reader_;
+  fs::path kept_;
+};
+
+int work(const BatchOptions& options) {
+  const batch::Run run = batch::open_run(run_folder(options));
+  const batch::Shard shard = shard_of(options);
+  batch::check_unchanged(run);
+  RowMaker make_row(run, options);
+  const batch::FrameSpan span = batch::span_of(shard, run.frames);
+  const Progress progress(span.end - span.begin);
+  const batch::Worked worked = batch::work_on(
+      run, shard, [&](const batch::PlannedFrame& frame) { return make_row(frame); },
+      [&](std::size_t place, std::size_t, const std::string& name) { progress.at(place, name); },
+      [&](const std::string& whom) {
+        std::cerr << "cairn: shard " << batch::text(shard) << ": waits for " << whom
+                  << ", which works on it\n";
+      });
+  progress.clear();
+  std::cout << "shard " << batch::text(shard) << ": " << count_of(worked.frames, "frame");
+  if (worked.was_done) std::cout << ", done before";
+  if (worked.resumed > 0) std::cout << ", " << worked.resumed << " of them by a worker before";
+  if (worked.errors > 0) std::cout << ", " << worked.errors << " with an error instead of objects";
+  std::cout << "\n";
+  return 0;
+}
+
+std::string worker_text(const batch::ShardStatus& status) {
+  const auto& worker = status.worker;
+  if (!worker) return {};
+  const double age = std::max(0.0, static_cast<double>(std::time(nullptr)) - worker->note.updated_s);
+  std::string text = worker->note.host + ", process " + std::to_string(worker->note.pid);
+  if (!status.is_done) text += ", " + duration_text(age) + " ago";
+  return text;
+}
+
+int status(const BatchOptions& options) {
+  const batch::Run run = batch::open_run(run_folder(options));
+  const batch::Status all = batch::status_of(run);
+  std::cout << "run " << run.id.substr(0, 12) << ": " << all.frames_done << " of "
+            << count_of(run.frames, "frame") << " done ("
+            << percent(static_cast<double>(all.frames_done) / static_cast<double>(run.frames)) << "), "
+            << count_of(all.errors, "error");
+  if (all.seconds_left && all.frames_done < run.frames)
+    std::cout << ", about " << duration_text(std::ceil(*all.seconds_left)) << " left";
+  std::cout << "\n";
+  Table table({"shard", "state", "frames", "errors", "worker"});
+  std::size_t done = 0;
+  for (const batch::ShardStatus& status : all.shards) {
+    done += status.is_done ? 1 : 0;
+    const bool is_running = !status.is_done && status.worker && status.worker->is_held;
+    const std::size_t frames = status.span.end - status.span.begin;
+    const std::size_t rows = status.is_done ? frames : status.worker ? status.worker->note.rows : 0;
+    if (status.is_done) continue;  // there may be thousands
+    table.add({batch::text(status.shard), is_running ? "running" : "interrupted",
+               std::to_string(rows) + "/" + std::to_string(frames),
+               std::to_string(status.worker ? status.worker->note.errors : 0), worker_text(status)});
+  }
+  std::cout << count_of(done, "shard") << " done";
+  if (const std::size_t begun = all.shards.size() - done; begun > 0)
+    std::cout << ", " << begun << " begun\n" << table.text();
+  else
+    std::cout << "\n";
+  return 0;
+}
+
+/// Where merged rows go: a file as it is, or packed.
+int merge(const BatchOptions& options) {
+  if (options.output.empty()) throw Error("-o: is missing, expected the file for the rows");
+  const batch::Run run = batch::open_run(run_folder(options));
+  batch::check_unchanged(run);
+  const std::vector<batch::MissingFrames> missing = batch::missing_frames(run);
+  std::size_t missing_count = 0;
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    const batch::FrameSpan& span = missing[i].span;
+    const std::size_t count = span.end - span.begin;
+    missing_count += count;
+    constexpr std::size_t kMostNamed = 20;
+    if (i == kMostNamed) std::cerr << "cairn: and others\n";
+    if (i >= kMostNamed) continue;
+    std::cerr << "cairn: missing: " << missing[i].first;
+    if (count > 1) std::cerr << " … " << missing[i].last;
+    std::cerr << " (" << count_of(count, "frame") << ")\n";
+  }
+  constexpr int kIncomplete = 3;
+  if (missing_count > 0 && !options.partial) {
+    std::cerr << "cairn: " << missing_count << " of " << count_of(run.frames, "frame")
+              << " are missing, nothing is written (--partial: the others are)\n";
+    return kIncomplete;
+  }
+  io::GrowingFile file(options.output);
+  const batch::Merged merged = batch::merge(run, [&](std::string_view row) { file.append(row); });
+  file.finish();
+  std::cout << merged.sha256 << "  " << options.output << "\n";
+  std::cerr << "cairn: " << count_of(merged.rows, "row") << ", " << count_of(merged.errors, "error") << "\n";
+  return missing_count > 0 ? kIncomplete : 0;
+}
+
+int act(const BatchOptions& options) {
+  if (options.action == "plan") return plan(options);
+  if (options.action == "work") return work(options);
+  return options.action == "status" ? status(options) : merge(options);
+}
+
+}  // namespace
+
+Work declare_batch(CLI::App& app) {
+  auto options = std::make_shared<BatchOptions>();
+  app.add_option("ACTION", options->action,
+                 "plan: list the frames of all inputs; work: find the objects of one shard's frames; status: "
+                 "how far the run is; merge: the rows of all shards as one file")
+      ->required()
+      ->check(CLI::IsMember({"plan", "work", "status", "merge"}).name(""))
+      ->type_name("");
+  app.add_option("PATH", options->paths,
+                 "of plan: inputs, each a folder of frames, a sequence, a video or LEFT,RIGHT; else the run")
+      ->required()
+      ->type_name("");
+  app.add_option("-o,--output", options->output,
+                 "of plan: new folder for the run; of merge: file for the rows")
+      ->type_name("PATH");
+  app.add_option("--calib", options->inputs.calib, "of plan: calibration; default: that beside the images")
+      ->type_name("FILE");
+  app.add_flag("--rectify", options->inputs.rectify,
+               "of plan: the images are raw, --calib says how to rectify them");
+  app.add_option("--layout", options->inputs.layout, "of plan: of videos: side_by_side or top_bottom")
+      ->type_name("NAME");
+  app.add_option("--frames", options->inputs.frames,
+                 "of plan: only these of each input: FIRST:END or FIRST:END:STEP, or a number of first ones")
+      ->type_name("A:B:STEP");
+  add_config_options(app, options->config);
+  app.add_option("--shard", options->shard,
+                 "of work: the K-th of N parts of the run, K from 1; default: the task of a Slurm array, "
+                 "else 1/1")
+      ->type_name("K/N");
+  app.add_flag("--keep", options->keep,
+               "of work: also write each frame's result as cairn segment -o does, into RUN/frames");
+  app.add_flag("--partial", options->partial, "of merge: write what is there though frames are missing");
+  add_exec_options(app, options->exec);
+  app.footer(
+      "A frame that cannot be used has a row with `error`; that is no failure of the work.\n"
+      "work may be killed and called again at any moment, any number of times: the rows are the same.\n"
+      "Exit codes: as of all commands, and 3 of merge where frames are missing.");
+  return [options, &app] {
+    const auto of = [&](std::string_view action, const std::vector<const char*>& names) {
+      for (const char* name : names) {
+        if (options->action != action && app.count(name) > 0)
+          throw Error(std::string(name) + ": is of cairn batch " + std::string(action) + ", found " +
+                      options->action);
+      }
+    };
+    of("plan", {"--calib", "--rectify", "--layout", "--frames", "--preset", "--config", "--set"});
+    of("work", {"--shard", "--keep", "--threads", "--target"});
+    of("merge", {"--partial"});
+    if (!options->output.empty() && (options->action == "work" || options->action == "status"))
+      throw Error("-o: is of cairn batch plan and merge, found " + options->action);
+    return act(*options);
+  };
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
+#include <cstdlib>
+#include <source/sequence.hpp>
+
+#include "batch_frames.hpp"
+#include "source_options.hpp"
+
+namespace cairn::cli {
+namespace {
+
+std::unique_ptr<io::Sequence> open(const BatchSequence& sequence, const io::FrameRange& range,
+                                   const Pool& pool) {
+  // FFmpeg would complain in lines of its own; "-8" is its quiet.
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+  io::SourceOptions options;
+  options.calib = sequence.calib;
+  options.layout = sequence.layout;
+  options.rectify = sequence.rectify;
+  options.frames = range;
+  return io::open_sequence(sequence.source, options, pool);
+}
+
+}  // namespace
+
+std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io::FrameRange& range,
+                                         const Pool& pool) {
+  const auto opened = open(sequence, range, pool);
+  if (opened->status().is_live)
+    throw Error(sequence.source + ": is a camera, which has no end; cairn record makes a folder of it");
+  std::vector<std::size_t> frames;
+  const auto add_until = [&](std::size_t end) {
+    const std::size_t next = frames.empty() ? range.first : frames.back() + range.step;
+    for (std::size_t i = next; i < end; i += range.step) frames.push_back(i);
+  };
+  std::error_code unknown;
+  const bool is_of_images =
+      !std::filesystem::is_regular_file(sequence.source.substr(0, sequence.source.find(',')), unknown);
+  if (is_of_images) {  // each of them is listed: none needs to be decoded
+    add_until(range.first + opened->size().value_or(0) * range.step);
+    return frames;
+  }
+  // Frames that cannot be decoded are planned, too: their rows say so.
+  while (const auto frame = opened->next()) add_until(frame->index + 1);
+  return frames;
+}
+
+io::FrameRange range_of(const std::string& text) {
+  return io::parse_frame_range(text);
+}
+
+struct SequenceReader::State {
+  ConfigOptions config;
+  Pool pool;
+  BatchSequence of;
+  std::unique_ptr<io::Sequence> opened;         // one that is read on
+  std::optional<io::SequenceFrame> read_ahead;  // of it, where frames before were left out
+  std::size_t next = 0;                         // what it has not gone past
+
+  [[nodiscard]] BatchFrame loaded(io::SequenceFrame frame, const io::Sequence& from) const {
+    BatchFrame made;
+    made.stamp_ns = frame.stamp.ns;
+    made.loaded.left = std::move(frame.left);
+    made.loaded.right = std::move(frame.right);
+    made.loaded.rig = from.rig();
+    ResolvedConfig resolved = resolve(config, from.disparities());
+    made.loaded.config = std::move(resolved.config);
+    made.loaded.config.ground.known = from.ground();
+    made.loaded.preset = std::move(resolved.preset);
+    return made;
+  }
+
+  /// A frame for which nothing before it speaks: its own error, whichever were read before.
+  [[nodiscard]] BatchFrame alone(std::size_t index) const {
+    const auto only = open(of, {index, index + 1, 1}, pool);
+    auto frame = only->next();
+    if (!frame) throw Error(of.source + ": frame " + std::to_string(index) + " cannot be read");
+    return loaded(std::move(*frame), *only);
+  }
+
+  /// The frame where reading on gives it.
+  std::optional<io::SequenceFrame> read_on(std::size_t index) {
+    try {
+      if (!opened || index < next) {
+        read_ahead.reset();
+        opened = open(of, {index, {}, of.step}, pool);
+      }
+      next = index + 1;
+      while (!read_ahead || read_ahead->index < index) {
+        read_ahead = opened->next();
+        if (!read_ahead) return std::nullopt;
+      }
+    } catch (const Error&) {  // of this frame, or of this one and those before it: alone() tells
+      opened.reset();
+      read_ahead.reset();
+      return std::nullopt;
+    }
+    if (read_ahead->index != index) return std::nullopt;
+    return std::exchange(read_ahead, std::nullopt);
+  }
+};
+
+SequenceReader::SequenceReader(ConfigOptions config, Pool pool)
+    : state_(std::make_unique<State>(State{std::move(config), std::move(pool), {}, {}, {}, 0})) {}
+SequenceReader::~SequenceReader() = default;
+
+BatchFrame SequenceReader::read(const BatchSequence& sequence, std::size_t index) {
+  State& state = *state_;
+  if (sequence != state.of) {
+    state.of = sequence;
+    state.opened.reset();
+    state.read_ahead.reset();
+  }
+  if (auto frame = state.read_on(index)) return state.loaded(std::move(*frame), *state.opened);
+  return state.alone(index);
+}
+
+}  // namespace cairn::cli

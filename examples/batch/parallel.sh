@@ -1,0 +1,11 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+#
+# parallel.sh RUN [SHARDS [OPTIONS...]]: a batch run with GNU parallel, a shard for each processor at a time. Further
+# options are parallel's: --sshlogin host1,host2 for machines that share the folders.
+set -euo pipefail
+run=$1 shards=${2:-$(nproc)}
+shift $(($# < 2 ? $# : 2))
+seq "$shards" | parallel --joblog "$run/joblog" --halt now,fail=1 "$@" \
+  "${CAIRN:-cairn}" batch work "$run" --shard "{}/$shards" --threads 1
