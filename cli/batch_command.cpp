@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <batch/shard.hpp>
 #include <batch/summary.hpp>
+#include <batch/zstd_packer.hpp>
 #include <cairn/core/error.hpp>
 #include <cmath>
 #include <io/atomic_file.hpp>
@@ -158,7 +159,6 @@ int status(const BatchOptions& options) {
   return 0;
 }
 
-/// Where merged rows go: a file as it is, or packed.
 int merge(const BatchOptions& options) {
   if (options.output.empty()) throw Error("-o: is missing, expected the file for the rows");
   const batch::Run run = batch::open_run(run_folder(options));
@@ -182,8 +182,12 @@ int merge(const BatchOptions& options) {
               << " are missing, nothing is written (--partial: the others are)\n";
     return kIncomplete;
   }
+  std::optional<batch::ZstdPacker> packer;
+  if (options.output.ends_with(".zst")) packer.emplace();
   io::GrowingFile file(options.output);
-  const batch::Merged merged = batch::merge(run, [&](std::string_view row) { file.append(row); });
+  const batch::Merged merged =
+      batch::merge(run, [&](std::string_view row) { file.append(packer ? packer->pack(row) : row); });
+  if (packer) file.append(packer->end());
   file.finish();
   std::cout << merged.sha256 << "  " << options.output << "\n";
   std::cerr << "cairn: " << count_of(merged.rows, "row") << ", " << count_of(merged.errors, "error") << "\n";
@@ -211,7 +215,7 @@ Work declare_batch(CLI::App& app) {
       ->required()
       ->type_name("");
   app.add_option("-o,--output", options->output,
-                 "of plan: new folder for the run; of merge: file for the rows")
+                 "of plan: new folder for the run; of merge: file for the rows, packed where it ends in .zst")
       ->type_name("PATH");
   app.add_option("--calib", options->inputs.calib, "of plan: calibration; default: that beside the images")
       ->type_name("FILE");

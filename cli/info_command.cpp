@@ -40,7 +40,8 @@ int show(const ExecOptions& options) {
             << built_in("sequences: follow, odometry, map, record", CAIRN_WITH_SEQUENCES != 0,
                         "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "
                         "libsqlitecpp-dev")
-            << built_in("videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev");
+            << built_in("videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev")
+            << built_in("packed results of batch runs (zstd)", CAIRN_WITH_ZSTD != 0, "libzstd-dev");
   return 0;
 }
 

@@ -247,6 +247,7 @@ TEST_F(Batch, ReadsPairsSequencesAndSeveralInputs) {
     fs::copy_file(at("in/00/right.png"), at("r/" + number + ".png"));
   }
   write(at("l/1.png"), "no image");
+  write(at("calib.txt"), "fx=60\nfy=60\ncx=24\ncy=18\nbaseline=0.1\nndisp=16\n");
   const Outcome planned =
       run({"batch", "plan", "in", "in/00/left.png,in/00/right.png", "l,r", "-o", "run", "--frames", "0:3:2"});
   ASSERT_EQ(planned.code, 0) << planned.err;
@@ -350,6 +351,21 @@ TEST_F(Batch, LosesNothingOnAFullDisk) {
     work("1/1");
     EXPECT_EQ(merged(), expected);
   }
+}
+
+TEST_F(Batch, PacksTheRowsOnRequest) {
+  frames(3);
+  const std::string expected = undisturbed();
+  const Outcome outcome = run({"batch", "merge", path("alone"), "-o", path("rows.jsonl.zst")});
+  if (outcome.code == 2 && outcome.err.find("libzstd-dev") != std::string::npos)
+    GTEST_SKIP() << "built without zstd (libzstd-dev)";
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.starts_with(io::sha256(expected)));
+  EXPECT_LT(fs::file_size(at("rows.jsonl.zst")), expected.size() / 2);
+  if (std::system("command -v zstd > /dev/null") != 0) GTEST_SKIP() << "no zstd to unpack with";
+  const std::string unpack = "zstd -q -d " + path("rows.jsonl.zst") + " -o " + path("unpacked");
+  ASSERT_EQ(std::system(unpack.c_str()), 0);
+  EXPECT_EQ(content(at("unpacked")), expected);
 }
 
 TEST_F(Batch, TellsHowFarARunIs) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace cairn::batch {
+
+/// Packs bytes as one frame of zstd, with a checksum. Throws Error where zstd is not built in.
+class ZstdPacker {
+ public:
+  ZstdPacker();
+  ZstdPacker(const ZstdPacker&) = delete;
+  ZstdPacker& operator=(const ZstdPacker&) = delete;
+  ~ZstdPacker();
+
+  /// What can be written of all bytes so far; may be empty.
+  std::string pack(std::string_view bytes);
+  /// The rest.
+  std::string end();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cairn::batch
