@@ -6,7 +6,7 @@
 
 extern "C" {
 
-__attribute__((visibility("default"))) const char* cairn_video_version() {
+__attribute__((visibility("default"))) const char* cairn_module_version() {
   return CAIRN_VERSION;
 }
 

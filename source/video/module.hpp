@@ -19,8 +19,5 @@ struct VideoRequest {
 inline constexpr const char* kVideoEntry = "cairn_open_video";
 /// The function of that name: the caller owns what it returns. Throws Error.
 using VideoEntry = Sequence* (*)(const VideoRequest&);
-/// And one that gives the version, so that none of another build is taken.
-inline constexpr const char* kVideoVersion = "cairn_video_version";
-using VideoVersion = const char* (*)();
 
 }  // namespace cairn::io

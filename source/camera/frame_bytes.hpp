@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/geometry.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "../../io/image_files.hpp"
+
+/// Images as cameras have them in memory, and as the rest of cairn wants them. Internal to source.
+namespace cairn::io {
+
+/// One channel: the sample of pixel (x, y) is at data[(y >> shift_y) * row + (x >> shift_x) * step].
+struct Samples {
+  const std::uint8_t* data = nullptr;
+  std::ptrdiff_t row = 0;
+  std::ptrdiff_t step = 1;
+  int shift_x = 0;  // 1: two neighbours share a sample
+  int shift_y = 0;
+};
+
+/// How luminance and colour differences make a colour.
+enum class YuvCoding : std::uint8_t { bt601, bt601_full, bt709, bt709_full };
+
+/// An image that somebody else holds: grey, luminance with colour differences, or red, green and blue.
+struct FrameBytes {
+  Size size;
+  enum class Kind : std::uint8_t { grey, yuv, rgb } kind = Kind::grey;
+  Samples first;   // grey, luminance or red
+  Samples second;  // U or green
+  Samples third;   // V or blue
+  YuvCoding coding = YuvCoding::bt601;
+};
+
+// The forms that cameras have; `stride`: bytes from row to row.
+FrameBytes grey_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride);
+FrameBytes yuyv_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, YuvCoding coding);
+/// `step`: bytes from pixel to pixel; red, green and blue lie at these offsets.
+FrameBytes rgb_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, int step, int red, int green,
+                     int blue);
+
+/// Where the two images of a frame lie.
+enum class Layout : std::uint8_t {
+  one,           // there is only one
+  side_by_side,  // left and right half
+  top_bottom,
+};
+/// Throws Error for other names. Empty: side_by_side.
+Layout layout_of(std::string_view name);
+
+struct TwoFrames {
+  FrameBytes left;
+  FrameBytes right;
+};
+/// Both halves. Throws Error (in words without a source's name) where a side is odd.
+TwoFrames halves_of(const FrameBytes& bytes, Layout layout);
+
+/// Grey: the very samples of grey and luminance, of colours as grey_of() has it. Colours where `with_colour`
+/// and the frame has any.
+Picture picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool);
+
+}  // namespace cairn::io
