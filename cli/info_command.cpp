@@ -41,7 +41,9 @@ int show(const ExecOptions& options) {
                         "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "
                         "libsqlitecpp-dev")
             << built_in("videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev")
-            << built_in("packed results of batch runs (zstd)", CAIRN_WITH_ZSTD != 0, "libzstd-dev");
+            << built_in("packed results of batch runs (zstd)", CAIRN_WITH_ZSTD != 0, "libzstd-dev")
+            << built_in("cameras by GStreamer: gst:, rtsp://", CAIRN_WITH_GSTREAMER != 0,
+                        "libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev");
   return 0;
 }
 

@@ -11,8 +11,9 @@ namespace cairn::cli {
 void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option(
          "SOURCE", input.source,
-         "folder of frames, of KITTI's or EuRoC's; a video; or LEFT,RIGHT: two folders, two videos, or "
-         "two patterns such as left_%04d.png,right_%04d.png")
+         "folder of frames, of KITTI's or EuRoC's; a video; LEFT,RIGHT: two folders, two videos, or "
+         "two patterns such as left_%04d.png,right_%04d.png; or a camera: v4l2:/dev/video0[,/dev/video2]"
+         "[,w=2560,h=720,fps=30,format=YUYV,layout=side_by_side], gst:'PIPELINE[ !! PIPELINE]', rtsp://...")
       ->required()
       ->type_name("");
   app.add_option("--calib", input.options.calib,
@@ -20,7 +21,7 @@ void add_source_options(CLI::App& app, SourceInput& input) {
       ->type_name("FILE");
   app.add_flag("--rectify", input.options.rectify,
                "the images are raw: rectify them by --calib FILE of the raw cameras (always so of EuRoC's)");
-  app.add_option("--layout", input.options.layout, "of one video: side_by_side or top_bottom")
+  app.add_option("--layout", input.options.layout, "of one video or camera: side_by_side or top_bottom")
       ->type_name("NAME");
   app.add_option(
          "--rate", input.options.rate_hz,
@@ -36,6 +37,9 @@ void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option("--max-skew", input.options.max_skew_ms,
                  "between left and right of one pair, where each camera has stamps of its own")
       ->type_name("MS")
+      ->capture_default_str();
+  app.add_option("--open-timeout", input.options.open_timeout_s, "of cameras: until the first pair comes")
+      ->type_name("S")
       ->capture_default_str();
 }
 

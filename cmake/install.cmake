@@ -1,4 +1,4 @@
-# What `cmake --install` puts in place, in the components library, sequences, video, dev and tools; docs/install.md says how
+# What `cmake --install` puts in place, in the components library, sequences, video, gstreamer, dev and tools; docs/install.md says how
 # it is used.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
@@ -19,6 +19,7 @@ function(cairn_install_headers)
     install(DIRECTORY ${folder}/ DESTINATION ${include_dir}/${folder} COMPONENT dev FILES_MATCHING
       PATTERN "*.hpp"
       PATTERN video EXCLUDE
+      PATTERN camera EXCLUDE
       REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
   endforeach()
 endfunction()
@@ -37,7 +38,7 @@ set(private_headers
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
-  source/frame_list source/frame_watch source/json_line source/open_video source/text_lines
+  source/frame_list source/frame_watch source/json_line source/load_module source/open_video source/text_lines
   io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts)
 list(JOIN private_headers "|" private_headers)
 
@@ -73,13 +74,17 @@ set(CAIRN_VIDEO_PACKAGE)
 if(CAIRN_HAS_VIDEO AND NOT TARGET cairn_video)  # linked, and no module of its own
   set(CAIRN_VIDEO_PACKAGE OpenCVVideoio)
 endif()
+set(CAIRN_GSTREAMER_PACKAGE)
+if(CAIRN_HAS_GSTREAMER AND NOT TARGET cairn_gstreamer)
+  set(CAIRN_GSTREAMER_PACKAGE GStreamerApp)
+endif()
 configure_package_config_file(cmake/cairnConfig.cmake.in cairnConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(cairnConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cairnConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/cairnConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT dev)
 if(CAIRN_IO AND static_library)
   install(FILES cmake/FindOpenCVImgproc.cmake cmake/FindOpenCVCalib3d.cmake cmake/FindOpenCVVideo.cmake
-    cmake/FindOpenCVVideoio.cmake DESTINATION ${package_dir} COMPONENT dev)
+    cmake/FindOpenCVVideoio.cmake cmake/FindGStreamerApp.cmake DESTINATION ${package_dir} COMPONENT dev)
 endif()
 
 # ---- for pkg-config ----
@@ -128,6 +133,9 @@ if(CAIRN_IO)
   install(TARGETS cairn_cli RUNTIME COMPONENT tools)
   if(TARGET cairn_video)
     install(TARGETS cairn_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT video)
+  endif()
+  if(TARGET cairn_gstreamer)
+    install(TARGETS cairn_gstreamer LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT gstreamer)
   endif()
   set(manual ${PROJECT_BINARY_DIR}/manual)
   foreach(section 1 7)

@@ -15,6 +15,11 @@ set(package_of_video cairn-video)
 set(section_of_video science)
 set(description_of_video "objects from a rectified stereo pair: videos as sequences")
 
+# GStreamer, for those whose cameras it reads.
+set(package_of_gstreamer cairn-gstreamer)
+set(section_of_gstreamer science)
+set(description_of_gstreamer "objects from a rectified stereo pair: cameras by GStreamer")
+
 set(package_of_dev libcairn-dev)
 set(section_of_dev libdevel)
 set(description_of_dev "objects from a rectified stereo pair: headers for C++20")
@@ -39,7 +44,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/py
 
 set(CPACK_COMPONENTS_ALL)
 get_cmake_property(components COMPONENTS)
-foreach(component library sequences video dev tools python)
+foreach(component library sequences video gstreamer dev tools python)
   if(NOT component IN_LIST components)
     continue()
   endif()

@@ -9,6 +9,7 @@
 #include <io/read_file.hpp>
 #include <system_error>
 
+#include "camera/open_camera.hpp"
 #include "frame_list.hpp"
 #include "frame_watch.hpp"
 #include "open_video.hpp"
@@ -164,6 +165,8 @@ void check(const SourceOptions& options) {
   if (!(options.rate_hz >= 0 && options.rate_hz <= 1e6)) refuse("--rate", options.rate_hz, "Hz, 0 ... 1e6");
   if (!(options.max_gap_s > 0)) refuse("--max-gap", options.max_gap_s, "a positive number of s");
   if (!(options.max_skew_ms >= 0)) refuse("--max-skew", options.max_skew_ms, "ms, not negative");
+  if (!(options.open_timeout_s > 0 && options.open_timeout_s <= 1e6))
+    refuse("--open-timeout", options.open_timeout_s, "s, above 0 ... 1e6");
   if (!options.layout.empty() && options.layout != "side_by_side" && options.layout != "top_bottom")
     throw Error("--layout: found " + options.layout + ", expected side_by_side or top_bottom");
 }
@@ -230,9 +233,12 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
                                         const Pool& pool) {
   check(options);
   if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
-  for (const char* live : {"v4l2:", "gst:", "y8i:", "rtsp:", "http:", "https:"}) {
-    if (source.starts_with(live) && !exists(source))
-      throw Error(source + ": live sources are not built in, expected a folder or a video");
+  if (is_camera(source)) return open_camera(source, options, pool);
+  for (const char* web : {"http://", "https://"}) {
+    if (source.starts_with(web)) {
+      throw Error(source + ": expected gst:'souphttpsrc location=" + source +
+                  " is-live=true ! decodebin' for a camera that is read by HTTP");
+    }
   }
   if (!exists(source)) {
     if (const std::size_t comma = source.find(','); comma != std::string::npos)

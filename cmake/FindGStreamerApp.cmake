@@ -1,0 +1,13 @@
+# GStreamer's pipelines with images taken out of them: target GStreamerApp::app. By pkg-config, which its headers depend on.
+find_package(PkgConfig QUIET)
+if(PkgConfig_FOUND)
+  pkg_check_modules(GStreamerApp QUIET IMPORTED_TARGET gstreamer-1.0 gstreamer-app-1.0 gstreamer-video-1.0)
+endif()
+if(GStreamerApp_FOUND)
+  if(NOT TARGET GStreamerApp::app)
+    add_library(GStreamerApp::app INTERFACE IMPORTED)
+    target_link_libraries(GStreamerApp::app INTERFACE PkgConfig::GStreamerApp)
+  endif()
+elseif(GStreamerApp_FIND_REQUIRED)
+  message(FATAL_ERROR "GStreamer is not found: libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev pkg-config")
+endif()

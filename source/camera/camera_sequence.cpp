@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "camera_sequence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cairn/core/error.hpp>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <utility>
+
+#include "../frame_list.hpp"
+#include "../frame_watch.hpp"
+#include "stamp_pairer.hpp"
+
+namespace cairn::io {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// How soon next() notices that it is stopped: nobody is waked up for that, so that stop() may be called in a
+/// signal handler.
+constexpr auto kNotice = 50ms;
+
+template <class... Values>
+std::string formatted(const char* form, Values... values) {
+  std::array<char, 200> words{};
+  std::snprintf(words.data(), words.size(), form, values...);
+  return words.data();
+}
+
+std::string number_text(std::size_t index) {
+  return formatted("%06zu", index);
+}
+
+class CameraSequence : public Sequence {
+ public:
+  CameraSequence(CameraNames names, std::vector<CameraMaker> makers, const SourceOptions& options, Pool pool,
+                 CameraTimes times)
+      : names_(std::move(names)),
+        options_(options),
+        pool_(std::move(pool)),
+        watch_(options.max_gap_s),
+        calibration_(open_calibration(options, std::nullopt, false, false)),
+        pairer_(options.max_skew_ms) {
+    const bool has_two = makers.size() > 1;
+    for (std::size_t side = 0; side < makers.size(); ++side) {
+      cameras_.push_back(std::make_unique<KeptCamera>(
+          std::move(makers[side]), times, [this, has_two, side](CameraImage&& image) {
+            if (has_two) {
+              pair_up(static_cast<int>(side), std::move(image));
+            } else {
+              offer(std::move(image));
+            }
+          }));
+    }
+    first_ = opened();
+  }
+  ~CameraSequence() override {
+    CameraSequence::stop();
+    cameras_.clear();  // before what their threads use
+  }
+
+  std::optional<SequenceFrame> next() override {
+    std::optional<SequenceFrame> frame;
+    if (first_) {
+      frame = std::exchange(first_, std::nullopt);
+    } else {
+      while (!is_stopped_ && !frame && !is_past_range()) {
+        if (std::optional<CameraImage> image = taken()) {
+          frame = frame_of(std::move(*image));
+        } else if (has_ended()) {
+          break;
+        }
+      }
+    }
+    note_losses(frame ? frame->name : number_text(count_));
+    if (is_stopped_) return std::nullopt;
+    return frame;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> size() const override {
+    if (!options_.frames.last_excluded) return std::nullopt;
+    const FrameRange& range = options_.frames;
+    return (*range.last_excluded - range.first + range.step - 1) / range.step;
+  }
+  [[nodiscard]] std::string name() const override { return names_.name; }
+  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
+  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
+  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
+  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] std::string stamps_from() const override { return names_.stamps_from; }
+  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::string& ended_early() const override { return none_; }
+
+  void stop() override {
+    is_stopped_ = true;
+    for (const auto& camera : cameras_) camera->stop();
+  }
+
+  [[nodiscard]] SourceStatus status() const override {
+    SourceStatus status;
+    status.is_live = true;
+    status.clock = "monotonic";
+    for (const auto& camera : cameras_) {
+      const KeptCamera::State state = camera->state();
+      status.is_connected = status.is_connected && state.is_connected;
+      status.dropped += state.dropped;
+      status.reconnects += state.reconnects;
+      if (status.trouble.empty()) status.trouble = trouble_of(*camera, state);
+    }
+    const std::lock_guard lock(mutex_);
+    status.dropped += replaced_;
+    status.unpaired = pairer_.unpaired(0) + pairer_.unpaired(1);
+    return status;
+  }
+
+ private:
+  // ---- on the cameras' threads ----
+
+  void offer(CameraImage&& image) {
+    {
+      const std::lock_guard lock(mutex_);
+      put(std::move(image));
+    }
+    changed_.notify_one();
+  }
+
+  void pair_up(int side, CameraImage&& image) {
+    {
+      const std::lock_guard lock(mutex_);
+      std::optional<StampPairer::Pair> pair = pairer_.push(side, std::move(image));
+      if (!pair) return;
+      CameraImage both = std::move(pair->left);
+      both.right = std::move(pair->right.left.gray);
+      both.arrived = std::max(both.arrived, pair->right.arrived);
+      both.is_after_gap = both.is_after_gap || pair->right.is_after_gap;
+      put(std::move(both));
+    }
+    changed_.notify_one();
+  }
+
+  void put(CameraImage&& image) {
+    if (newest_) {
+      ++replaced_;
+      image.is_after_gap = image.is_after_gap || newest_->is_after_gap;
+    }
+    newest_ = std::move(image);
+  }
+
+  // ---- on the thread of whoever takes the frames ----
+
+  std::optional<CameraImage> taken() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kNotice, [&] { return newest_.has_value(); });
+    return std::exchange(newest_, std::nullopt);
+  }
+
+  [[nodiscard]] std::string trouble_of(const KeptCamera& camera, const KeptCamera::State& state) const {
+    if (cameras_.size() < 2 || state.trouble.empty()) return state.trouble;
+    return (&camera == cameras_.front().get() ? "the left camera " : "the right camera ") + state.trouble;
+  }
+
+  [[nodiscard]] bool is_past_range() const {
+    return options_.frames.last_excluded && count_ >= *options_.frames.last_excluded;
+  }
+
+  /// One camera without images is no pair.
+  bool has_ended() {
+    for (const auto& camera : cameras_) {
+      if (!camera->state().has_ended) continue;
+      const std::lock_guard lock(mutex_);
+      if (newest_) return false;
+      has_ended_ = true;
+      return true;
+    }
+    return false;
+  }
+
+  /// The first frame. Throws Error.
+  std::optional<SequenceFrame> opened() {
+    const Clock::time_point deadline =
+        Clock::now() +
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.open_timeout_s));
+    while (true) {
+      if (std::optional<CameraImage> image = taken()) {
+        if (std::optional<SequenceFrame> frame = frame_of(std::move(*image))) {
+          check_calibration();
+          note_openings();
+          return frame;
+        }
+      }
+      for (const auto& camera : cameras_) {
+        const KeptCamera::State state = camera->state();
+        if (state.has_failed) throw Error(names_.source + ": " + trouble_of(*camera, state));
+      }
+      if (has_ended()) throw Error(names_.source + ": ended before its first frame");
+      if (count_ == 0 && Clock::now() > deadline) throw Error(names_.source + ": " + why_none());
+    }
+  }
+
+  [[nodiscard]] std::string why_none() const {
+    const std::string within = formatted(" within %g s (--open-timeout)", options_.open_timeout_s);
+    for (const auto& camera : cameras_) {
+      const KeptCamera::State state = camera->state();
+      if (!state.trouble.empty()) return "no frame" + within + ": " + trouble_of(*camera, state);
+    }
+    const std::lock_guard lock(mutex_);
+    if (const std::optional<double> nearest = pairer_.nearest_unpaired_ms()) {
+      return "no pair" + within +
+             formatted(": left and right images are %.1f ms apart at least, expected at most %g ms "
+                       "(--max-skew)",
+                       *nearest, options_.max_skew_ms);
+    }
+    if (cameras_.size() > 1) {
+      for (std::size_t side = 0; side < cameras_.size(); ++side) {
+        if (!cameras_[side]->state().is_connected)
+          return std::string("no frame of the ") + (side == 0 ? "left" : "right") + " camera" + within;
+      }
+    }
+    return "no frame" + within;
+  }
+
+  void check_calibration() {
+    const Size size = watch_.image_size();
+    if (calibration_.rectifier) {
+      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
+    } else if (!calibration_.path.empty()) {
+      check_size(calibration_.says, size, calibration_.path);
+      check_search_range(calibration_.says, calibration_.path);
+      if (calibration_.says.of_raw_cameras) {
+        remarks_.push_back({calibration_.path.string() +
+                                ": describes raw cameras and their distortion; the images are taken for "
+                                "rectified ones (--rectify: they are raw)",
+                            0, "", false, false});
+      }
+    }
+  }
+
+  void note_openings() {
+    for (const auto& camera : cameras_) {
+      for (const std::string& note : camera->state().notes) remarks_.push_back({note, 0, "", false, false});
+    }
+  }
+
+  /// None where it is not one of the range, or not later than the one before.
+  std::optional<SequenceFrame> frame_of(CameraImage&& image) {
+    if (image.right.size() != image.left.gray.size()) {
+      throw Error(names_.source + ": the right camera gives " + text(image.right.size()) + ", expected " +
+                  text(image.left.gray.size()) + " as the left one");
+    }
+    is_after_gap_ = is_after_gap_ || image.is_after_gap;
+    if (last_stamp_ && image.stamp <= *last_stamp_) {
+      remark(remarks_, {"frame whose stamp is not later than the one before", 1, number_text(count_), true,
+                        false});
+      return std::nullopt;
+    }
+    const std::size_t index = count_++;
+    if (!is_in(options_.frames, index)) return std::nullopt;
+    last_stamp_ = image.stamp;
+    PicturePair pair =
+        calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
+    SequenceFrame frame{number_text(index),     index, image.stamp, std::move(pair.left),
+                        std::move(pair.right.gray), false, image.arrived};
+    watch_.see(frame, names_.source, remarks_);
+    frame.after_gap = frame.after_gap || std::exchange(is_after_gap_, false);
+    return frame;
+  }
+
+  void note_losses(const std::string& before) {
+    const SourceStatus now = status();
+    note(kDropped, now.dropped, "before " + before);
+    std::array<std::uint64_t, 2> unpaired{};
+    StampPairer::Skew skew;
+    std::uint64_t pairs = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      unpaired = {pairer_.unpaired(0), pairer_.unpaired(1)};
+      skew = pairer_.skew();
+      pairs = pairer_.pairs();
+    }
+    note("left image without a right one", unpaired[0], "before " + before);
+    note("right image without a left one", unpaired[1], "before " + before);
+    if (now.reconnects > 0) note_once("was lost and came back", text_of_times(now.reconnects));
+    if (pairs > 0) note_once("the two cameras run freely", text_of(skew));
+    if (has_ended_) note_once("the pipeline ended", "after " + std::to_string(count_) + " frames");
+  }
+
+  /// A remark with a count that grows.
+  void note(const char* what, std::uint64_t count, const std::string& first) {
+    if (count == 0) return;
+    const auto known = std::find_if(remarks_.begin(), remarks_.end(),
+                                    [&](const SourceRemark& other) { return other.what == what; });
+    if (known == remarks_.end()) {
+      remarks_.push_back({what, count, first, true, false});
+    } else {
+      known->count = count;
+    }
+  }
+
+  /// A remark in words that change.
+  void note_once(const std::string& head, const std::string& words) {
+    const std::string what = head + ": " + words;
+    const auto known =
+        std::find_if(remarks_.begin(), remarks_.end(),
+                     [&](const SourceRemark& other) { return other.what.starts_with(head + ": "); });
+    if (known == remarks_.end()) {
+      remarks_.push_back({what, 0, "", false, false});
+    } else {
+      known->what = what;
+    }
+  }
+
+  static std::string text_of_times(std::uint64_t times) {
+    return times == 1 ? "once" : std::to_string(times) + " times";
+  }
+
+  static std::string text_of(const StampPairer::Skew& skew) {
+    std::string words =
+        formatted("right images are %.1f to %.1f ms later than left ones", skew.least_ms, skew.most_ms);
+    if (skew.drift_over_s >= kLeastDriftSeconds) words += formatted(", drift %.0f ppm", skew.drift_ppm);
+    return words + "; whatever moves meanwhile has a wrong disparity (a common trigger helps)";
+  }
+
+  static constexpr const char* kDropped = "frame that came and was not taken, or that the camera lost";
+  static constexpr double kLeastDriftSeconds = 10;
+
+  CameraNames names_;
+  SourceOptions options_;
+  Pool pool_;
+  FrameWatch watch_;
+  SourceCalibration calibration_;
+  std::vector<SourceRemark> remarks_;
+  std::string none_;
+  std::optional<Stamp> last_stamp_;
+  std::size_t count_ = 0;
+  bool is_after_gap_ = false;
+  bool has_ended_ = false;
+  std::atomic<bool> is_stopped_ = false;
+
+  mutable std::mutex mutex_;  // of the next four
+  std::condition_variable changed_;
+  std::optional<CameraImage> newest_;
+  std::uint64_t replaced_ = 0;
+  StampPairer pairer_;
+
+  std::vector<std::unique_ptr<KeptCamera>> cameras_;
+  std::optional<SequenceFrame> first_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sequence> camera_sequence(CameraNames names, std::vector<CameraMaker> cameras,
+                                          const SourceOptions& options, const Pool& pool, CameraTimes times) {
+  return std::make_unique<CameraSequence>(std::move(names), std::move(cameras), options, pool, times);
+}
+
+}  // namespace cairn::io

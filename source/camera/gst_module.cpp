@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "../load_module.hpp"
+#include "gst_camera.hpp"
+
+extern "C" {
+
+__attribute__((visibility("default"))) const char* cairn_module_version() {
+  return CAIRN_VERSION;
+}
+
+__attribute__((visibility("default"))) cairn::io::Camera* cairn_open_gst(
+    const cairn::io::GstRequest& request) {
+  return cairn::io::make_gst_camera(request).release();
+}
+
+}  // extern "C"

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "gst_camera.hpp"
+
+/// Without a module: sanitizers want one program.
+namespace cairn::io {
+
+std::unique_ptr<Camera> open_gst(const GstRequest& request) {
+  return make_gst_camera(request);
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "../load_module.hpp"
+#include "gst_camera.hpp"
+
+/// GStreamer is loaded with the first pipeline, so that no other command pays for it.
+namespace cairn::io {
+
+std::unique_ptr<Camera> open_gst(const GstRequest& request) {
+  const auto entry = reinterpret_cast<GstEntry>(module_entry(
+      {"cairn-gstreamer.so", kGstEntry, "they need", "GStreamer (libgstreamer-plugins-base1.0-0)",
+       "package cairn-gstreamer; it is built where libgstreamer-plugins-base1.0-dev is"},
+      "pipelines"));
+  return std::unique_ptr<Camera>(entry(request));
+}
+
+}  // namespace cairn::io

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "camera.hpp"
+
+namespace cairn::io {
+
+/// Pairs the images of two cameras as they come, each with the other's nearest. Not for more than one thread
+/// at a time.
+class StampPairer {
+ public:
+  explicit StampPairer(double max_skew_ms) : max_skew_ns_(max_skew_ms * 1e6) {}
+
+  struct Pair {
+    CameraImage left;
+    CameraImage right;
+  };
+  /// `side`: 0 is left. A pair where this image completes one.
+  std::optional<Pair> push(int side, CameraImage&& image);
+
+  /// Images that got no partner.
+  [[nodiscard]] std::uint64_t unpaired(int side) const { return unpaired_[index(side)]; }
+  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
+
+  /// Right stamp less left one, over the pairs.
+  struct Skew {
+    double least_ms = 0;
+    double most_ms = 0;
+    double drift_ppm = 0;     // how much slower the right camera's pace is; over the pairs since the last jump
+    double drift_over_s = 0;  // that long; the drift is worth little before some 10 s
+  };
+  [[nodiscard]] Skew skew() const;
+  /// The smallest distance of two images that were not paired, in ms; none where there was no such.
+  [[nodiscard]] std::optional<double> nearest_unpaired_ms() const { return nearest_unpaired_ms_; }
+
+ private:
+  static std::size_t index(int side) { return static_cast<std::size_t>(side); }
+  [[nodiscard]] std::int64_t apart(std::size_t left, std::size_t right) const;
+  void leave(int side);
+  void note_skew(Stamp left, Stamp right);
+
+  double max_skew_ns_;
+  std::array<std::deque<CameraImage>, 2> waiting_;
+  std::array<std::uint64_t, 2> unpaired_{};
+  std::uint64_t pairs_ = 0;
+  std::optional<double> nearest_unpaired_ms_;
+  Skew extent_;
+  // Sums for the line through the skews, times from the first pair of it.
+  struct Line {
+    Stamp begin;
+    double count = 0, time = 0, time2 = 0, skew = 0, time_skew = 0, last_time = 0, last_skew = 0;
+  } line_;
+};
+
+}  // namespace cairn::io
