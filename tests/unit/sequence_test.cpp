@@ -321,7 +321,7 @@ TEST(Sources, ThatAreNoneAreRefused) {
   EXPECT_TRUE(has(refused(at + "/l_%d.png," + at), {"one pattern, expected two"}));
   EXPECT_TRUE(has(refused(at + "/a," + at + "/b"), {"/a: is not there"}));
   EXPECT_TRUE(has(refused(at + ","), {"left and a right part"}));
-  EXPECT_TRUE(has(refused("v4l2:/dev/video0"), {"live sources"}));
+  EXPECT_TRUE(has(refused("v4l2:/dev/video99"), {"v4l2:/dev/video99", "is not there"}));
   save(folder, "000/left.png", 1);
   EXPECT_TRUE(has(refused(at), {"000/left.png", "no right image", "right.png"}));
   SourceOptions options;
