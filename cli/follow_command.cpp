@@ -374,6 +374,7 @@ int follow(const FollowOptions& options) {
         << "cairn: " << source->name()
         << ": no calibration with a baseline, so there are ids in the picture, but no metres and no motion\n";
   }
+  const EndsBySignal ends(*source);
   catch_interrupts();
   Run run;
   try {

@@ -11,5 +11,7 @@ inline constexpr int kInterrupted = 130;
 /// second one ends the program at once. A closed stdout shows in the stream, not as a signal.
 void catch_interrupts();
 [[nodiscard]] bool is_interrupted();
+/// What the signal does besides, in its handler; none: nothing.
+void on_interrupt_also(void (*also)());
 
 }  // namespace cairn::cli

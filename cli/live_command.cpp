@@ -145,6 +145,7 @@ int live_command(const LiveCommandOptions& options) {
   }
   for (const auto& sink : sinks) runner.add(*sink);
 
+  const EndsBySignal ends(*source);
   catch_interrupts();
   const live::LiveSummary summary = runner.run();
   std::cerr << remarks_text(*source) << summary_text(summary);

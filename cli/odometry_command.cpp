@@ -101,6 +101,7 @@ int estimate(const OdometryOptions& options) {
   const io::TrajectoryForm form = form_named(options.form);
   const Exec exec = make_exec(options.exec);
   const std::unique_ptr<io::Sequence> source = open_source(options.input, exec.pool);
+  const EndsBySignal ends(*source);
   const FollowConfig config = resolve_odometry(options, *source);
   if (!source->rig())
     throw Error(options.input.source + ": has no calibration, and so no metres; give one with --calib");

@@ -3,10 +3,34 @@
 #include "source_options.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cairn/core/error.hpp>
 #include <cstdlib>
 
+#include "interrupt.hpp"
+
 namespace cairn::cli {
+namespace {
+
+std::atomic<io::Sequence*> open_camera = nullptr;
+
+void stop_camera() {
+  if (io::Sequence* camera = open_camera) camera->stop();
+}
+
+}  // namespace
+
+EndsBySignal::EndsBySignal(io::Sequence& sequence) {
+  if (!sequence.status().is_live) return;
+  open_camera = &sequence;
+  on_interrupt_also(stop_camera);
+  catch_interrupts();
+}
+
+EndsBySignal::~EndsBySignal() {
+  on_interrupt_also(nullptr);
+  open_camera = nullptr;
+}
 
 void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option(

@@ -18,6 +18,16 @@ void add_source_options(CLI::App& app, SourceInput& input);
 /// Throws Error.
 std::unique_ptr<io::Sequence> open_source(const SourceInput& input, const Pool& pool);
 
+/// A camera never ends by itself, and one that hangs gives no frame at hand: while this lives, Ctrl-C ends it
+/// as a file's end would. Of files nothing changes. One at a time.
+class EndsBySignal {
+ public:
+  explicit EndsBySignal(io::Sequence& sequence);
+  ~EndsBySignal();
+  EndsBySignal(const EndsBySignal&) = delete;
+  EndsBySignal& operator=(const EndsBySignal&) = delete;
+};
+
 /// Of the two only one would be asked: throws Error where both are given.
 void refuse_two_priors(const std::string& odometry, const std::string& imu);
 

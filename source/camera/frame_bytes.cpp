@@ -58,29 +58,40 @@ std::uint8_t clamped(int value) {
   return static_cast<std::uint8_t>(std::clamp(value >> 8, 0, 255));
 }
 
-Image<Rgb> colours_of_yuv(const FrameBytes& bytes, const Pool& pool) {
-  const Weights weights = weights_of(bytes.coding);
-  Image<Rgb> rgb(bytes.size, pool);
-  for (int y = 0; y < bytes.size.height; ++y) {
-    const std::uint8_t* luminance = row_of(bytes.first, y);
-    const std::uint8_t* u_row = row_of(bytes.second, y);
-    const std::uint8_t* v_row = row_of(bytes.third, y);
-    Rgb* to = rgb.row(y);
-    // Colour differences are worked out once for the pixels that share them.
-    const int shared = 1 << bytes.second.shift_x;
-    for (int x = 0; x < bytes.size.width; x += shared) {
-      const int u = u_row[(x >> bytes.second.shift_x) * bytes.second.step] - 128;
-      const int v = v_row[(x >> bytes.third.shift_x) * bytes.third.step] - 128;
-      const int red = weights.red_of_v * v + 128;
-      const int green = -weights.green_of_u * u - weights.green_of_v * v + 128;
-      const int blue = weights.blue_of_u * u + 128;
-      const int end = std::min(x + shared, bytes.size.width);
-      for (int i = x; i < end; ++i) {
-        const int light = weights.luminance * (luminance[i * bytes.first.step] - weights.black);
-        to[i] = {clamped(light + red), clamped(light + green), clamped(light + blue)};
-      }
+/// One row; colour differences are worked out once for the 1 << kShift pixels that share them.
+template <int kStep, int kShift>
+void colour_row(const FrameBytes& bytes, int y, const Weights& weights, Rgb* to) {
+  constexpr int kShared = 1 << kShift;
+  const std::uint8_t* luminance = row_of(bytes.first, y);
+  const std::uint8_t* u_at = row_of(bytes.second, y);
+  const std::uint8_t* v_at = row_of(bytes.third, y);
+  const std::ptrdiff_t u_step = bytes.second.step;
+  const std::ptrdiff_t v_step = bytes.third.step;
+  const std::ptrdiff_t step = kStep > 0 ? kStep : bytes.first.step;
+  const int width = bytes.size.width;
+  for (int x = 0; x < width; x += kShared, u_at += u_step, v_at += v_step) {
+    const int u = *u_at - 128;
+    const int v = *v_at - 128;
+    const int red = weights.red_of_v * v + 128;
+    const int green = -weights.green_of_u * u - weights.green_of_v * v + 128;
+    const int blue = weights.blue_of_u * u + 128;
+    for (int i = x; i < std::min(x + kShared, width); ++i) {
+      const int light = weights.luminance * (luminance[i * step] - weights.black);
+      to[i] = {clamped(light + red), clamped(light + green), clamped(light + blue)};
     }
   }
+}
+
+Image<Rgb> colours_of_yuv(const FrameBytes& bytes, const Pool& pool) {
+  const Weights weights = weights_of(bytes.coding);
+  const auto row = [&] {
+    if (bytes.second.shift_x == 0) return colour_row<0, 0>;
+    if (bytes.first.step == 1) return colour_row<1, 1>;
+    if (bytes.first.step == 2) return colour_row<2, 1>;
+    return colour_row<0, 1>;
+  }();
+  Image<Rgb> rgb(bytes.size, pool);
+  for (int y = 0; y < bytes.size.height; ++y) row(bytes, y, weights, rgb.row(y));
   return rgb;
 }
 
