@@ -51,8 +51,8 @@ if(CAIRN_IO)
   cairn_install_library(cairn_io cairnIoTargets library)
   cairn_install_headers(io page)
   if(CAIRN_HAS_TRACKING)
-    cairn_install_library("cairn_tracking;cairn_landmarks;cairn_source;cairn_live;cairn_sequences" cairnSequencesTargets sequences)
-    cairn_install_headers(tracking landmarks source live)
+    cairn_install_library("cairn_tracking;cairn_landmarks;cairn_ros;cairn_source;cairn_live;cairn_sequences" cairnSequencesTargets sequences)
+    cairn_install_headers(tracking landmarks ros source live)
   endif()
   install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help names these pages.
@@ -122,7 +122,7 @@ if(CAIRN_IO)
     "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "${opencv_libs}")
   if(CAIRN_HAS_TRACKING)
     cairn_install_pkgconfig(cairn-sequences "Sequences with cairn: odometry, tracks, landmarks, sources of frames"
-      "-lcairn-source -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3"
+      "-lcairn-source -lcairn-ros -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3"
       "-lSQLiteCpp -lopencv_video -lopencv_calib3d -ldl")
   endif()
 endif()
