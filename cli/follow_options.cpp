@@ -23,6 +23,12 @@ FollowConfig resolve_follow(const ConfigOptions& options, std::optional<int> cal
   return config;
 }
 
+std::string preset_of(const ConfigOptions& options) {
+  return resolve(options, std::nullopt,
+                 [](std::string_view name, std::string_view /*value*/) { return is_of_following(name); })
+      .preset;
+}
+
 std::vector<OptionInfo> sequence_options(const ConfigOptions& config) {
   std::vector<OptionInfo> own;
   for (const OptionInfo& option : options(resolve_follow(config))) {

@@ -13,5 +13,7 @@ namespace cairn::cli {
 FollowConfig resolve_follow(const ConfigOptions& options,
                             std::optional<int> calibrated_disparities = std::nullopt,
                             KnownGround ground = {});
+/// The preset that it starts from.
+std::string preset_of(const ConfigOptions& options);
 
 }  // namespace cairn::cli

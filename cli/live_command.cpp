@@ -12,6 +12,7 @@
 #include "common.hpp"
 #include "follow_options.hpp"
 #include "interrupt.hpp"
+#include "live_record.hpp"
 #include "source_options.hpp"
 
 namespace cairn::cli {
@@ -24,6 +25,8 @@ struct LiveCommandOptions {
   std::string map;
   bool map_read_only = false;
   ConfigOptions config;
+  bool is_config_told = false;  // --preset or --config
+  LiveRecordOptions record;
   ExecOptions exec;
   bool every_frame = false;
   bool no_tracks = false;
@@ -111,8 +114,9 @@ std::string summary_text(const live::LiveSummary& summary) {
   return text;
 }
 
-int live_command(const LiveCommandOptions& options) {
+int live_command(LiveCommandOptions options) {
   check(options);
+  const RecordedConfig recorded(options.source.source, options.config, options.is_config_told);
   const Exec exec = make_exec(options.exec);
   const auto open = [&] { return open_source(options.source, exec.pool); };
   const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
@@ -141,8 +145,12 @@ int live_command(const LiveCommandOptions& options) {
   sinks.push_back(std::make_unique<StatusLine>());
   if (options.json_lines) {
     sinks.push_back(
-        std::make_unique<JsonLines>(resolve(options.config).preset, source->rig(), !options.no_tracks));
+        std::make_unique<JsonLines>(preset_of(options.config), source->rig(), !options.no_tracks));
   }
+  sinks.push_back(open_recorder(
+      options.record,
+      live::recorded_run(*source, options.source.source, preset_of(options.config), !options.no_tracks),
+      options.every_frame));
   for (const auto& sink : sinks) runner.add(*sink);
 
   const EndsBySignal ends(*source);
@@ -179,7 +187,11 @@ Work declare_live(CLI::App& app) {
   add_config_options(app, options->config);
   add_exec_options(app, options->exec);
   app.add_flag("--json-lines", options->json_lines, "print each frame as a line of JSON");
-  return [options] { return live_command(*options); };
+  add_record_options(app, options->record);
+  return [options, &app] {
+    options->is_config_told = app.count("--preset") + app.count("--config") > 0;
+    return live_command(*options);
+  };
 }
 
 }  // namespace cairn::cli

@@ -35,9 +35,10 @@ EndsBySignal::~EndsBySignal() {
 void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option(
          "SOURCE", input.source,
-         "folder of frames, of KITTI's or EuRoC's; a video; LEFT,RIGHT: two folders, two videos, or "
-         "two patterns such as left_%04d.png,right_%04d.png; or a camera: v4l2:/dev/video0[,/dev/video2]"
-         "[,w=2560,h=720,fps=30,format=YUYV,layout=side_by_side], gst:'PIPELINE[ !! PIPELINE]', rtsp://...")
+         "folder of frames, of KITTI's or EuRoC's; a video; a recording (MCAP); LEFT,RIGHT: two folders, two "
+         "videos, or two patterns such as left_%04d.png,right_%04d.png; or a camera: "
+         "v4l2:/dev/video0[,/dev/video2][,w=2560,h=720,fps=30,format=YUYV,layout=side_by_side], "
+         "gst:'PIPELINE[ !! PIPELINE]', rtsp://...")
       ->required()
       ->type_name("");
   app.add_option("--calib", input.options.calib,
@@ -47,6 +48,9 @@ void add_source_options(CLI::App& app, SourceInput& input) {
                "the images are raw: rectify them by --calib FILE of the raw cameras (always so of EuRoC's)");
   app.add_option("--layout", input.options.layout, "of one video or camera: side_by_side or top_bottom")
       ->type_name("NAME");
+  app.add_option("--topics", input.options.topics,
+                 "of a recording (MCAP) with several stereo pairs: its topics of images")
+      ->type_name("LEFT,RIGHT");
   app.add_option(
          "--rate", input.options.rate_hz,
          "frames per second where there are no stamps, and instead of a video's (default: the source's "

@@ -367,7 +367,10 @@ Statement read_kitti(std::string_view text, bool grey_cameras) {
 Calibration load_calibration(const fs::path& path, bool grey_cameras) {
   std::error_code unknown;
   const fs::path file = fs::is_directory(path, unknown) ? file_in(path) : path;
-  const std::string text = read_file(file, kMostTextBytes);
+  return parse_calibration(read_file(file, kMostTextBytes), file, grey_cameras);
+}
+
+Calibration parse_calibration(std::string_view text, const fs::path& file, bool grey_cameras) {
   try {
     Calibration calibration = judged(read_statement(text, file, grey_cameras));
     // Numbers that are fine as double may be none as float.
@@ -382,6 +385,11 @@ Calibration load_calibration(const fs::path& path, bool grey_cameras) {
 
 void save_calibration(const fs::path& path, const StereoRig& rig, Size image,
                       std::optional<int> num_disparities, const KnownGround& ground) {
+  write_file(path, calibration_text(rig, image, num_disparities, ground));
+}
+
+std::string calibration_text(const StereoRig& rig, Size image, std::optional<int> num_disparities,
+                             const KnownGround& ground) {
   std::string file;
   const auto digits_of = [](float value) {
     std::array<char, 32> digits{};
@@ -409,7 +417,7 @@ void save_calibration(const fs::path& path, const StereoRig& rig, Size image,
   if (ground.camera_height_m) add("camera_height", *ground.camera_height_m);
   if (ground.camera_pitch_deg != 0) add("camera_pitch", ground.camera_pitch_deg);
   if (ground.camera_roll_deg != 0) add("camera_roll", ground.camera_roll_deg);
-  write_file(path, file);
+  return file;
 }
 
 void check_ground(const KnownGround& known) {

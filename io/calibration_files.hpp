@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace cairn::io {
 
@@ -40,11 +41,17 @@ class ImpossibleCalibration : public Error {
 /// none or out of range, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
 /// Of KITTI's four cameras the colour pair counts, unless `grey_cameras`.
 Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
+/// The same of a file's content, which `name` stands for in messages.
+Calibration parse_calibration(std::string_view text, const std::filesystem::path& name,
+                              bool grey_cameras = false);
 
 /// Writes a rectified pair's calibration as key=value lines, whole or not at all; `num_disparities` as ndisp,
 /// and how the rig is mounted. Throws Error.
 void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image,
                       std::optional<int> num_disparities = std::nullopt, const KnownGround& ground = {});
+/// What that file holds.
+std::string calibration_text(const StereoRig& rig, Size image, std::optional<int> num_disparities,
+                             const KnownGround& ground);
 
 /// The number of disparities that reaches down to `nearest_m` (0: five baselines, a fifth of the focal length
 /// in disparities): a multiple of 16, but no more than the pictures' width.

@@ -110,9 +110,19 @@ PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& p
     throw Error(right.string() + ": has " + std::to_string(8 * second.bytes_each) + " bits, expected " +
                 std::to_string(8 * first.bytes_each) + " as " + left.string() + " has: a pair has one scale");
   }
-  int depth = std::max(depth_of(first), depth_of(second));
-  if (first.bytes_each > 1) depth = std::max(depth, least_bits);
-  return {picture_of(first, depth, pool), picture_of(second, depth, pool), depth};
+  return pair_of(first, second, pool, least_bits);
+}
+
+PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits) {
+  if (left.size != right.size)
+    throw Error("the left image is " + text(left.size) + ", the right one " + text(right.size));
+  if (left.bytes_each != right.bytes_each) {
+    throw Error("the left image has " + std::to_string(8 * left.bytes_each) + " bits, the right one " +
+                std::to_string(8 * right.bytes_each));
+  }
+  int depth = std::max(depth_of(left), depth_of(right));
+  if (left.bytes_each > 1) depth = std::max(depth, least_bits);
+  return {picture_of(left, depth, pool), picture_of(right, depth, pool), depth};
 }
 
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool) {

@@ -13,7 +13,9 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t kMostPictureBytes = std::size_t{1} << 31;
 
-Raster decode(std::string_view file, Palette palette) {
+}  // namespace
+
+Raster decode_raster(std::string_view file, Palette palette) {
   if (file.empty()) throw Error("is empty, expected a picture (PNG, JPEG, PGM, PPM, TIFF)");
   if (file.starts_with("\x89PNG\r\n\x1a\n"sv)) return decode_png(file, palette);
   if (file.starts_with("\xff\xd8\xff"sv)) return decode_jpeg(file);
@@ -21,8 +23,6 @@ Raster decode(std::string_view file, Palette palette) {
   if (file.size() > 1 && file[0] == 'P' && file[1] >= '1' && file[1] <= '7') return decode_pnm(file);
   throw Error("is no picture that can be read here, expected PNG, JPEG, PGM, PPM or TIFF");
 }
-
-}  // namespace
 
 void check_sides(std::int64_t width, std::int64_t height) {
   const auto fits = [](std::int64_t side) { return side >= 1 && side <= kMostPixelsPerSide; };
@@ -34,7 +34,7 @@ void check_sides(std::int64_t width, std::int64_t height) {
 Raster read_raster(const std::filesystem::path& path, Palette palette) {
   const std::string file = read_file(path, kMostPictureBytes);
   try {
-    return decode(file, palette);
+    return decode_raster(file, palette);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   } catch (const std::bad_alloc&) {

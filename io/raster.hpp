@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "image_files.hpp"
+
 /// Decoded pictures as they stand in the file; internal to io. What becomes of them is decided by image_files
 /// and disparity_files.
 namespace cairn::io {
@@ -45,6 +47,12 @@ enum class Palette : std::uint8_t { colours, indices };
 
 /// Reads and decodes a file by its content. Throws Error that names `path`; never prints, never half-decodes.
 Raster read_raster(const std::filesystem::path& path, Palette palette);
+/// The same of a file's bytes; throws Error without a file's name.
+Raster decode_raster(std::string_view file, Palette palette);
+
+/// Both reduced to 8 bits as load_pair() does it. Throws Error, without files' names, where sizes or depths
+/// differ.
+PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits = 8);
 
 // One per form; they throw Error without a file's name.
 Raster decode_png(std::string_view file, Palette palette);

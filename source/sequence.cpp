@@ -9,9 +9,11 @@
 #include <io/read_file.hpp>
 #include <system_error>
 
+#include "../ros/mcap.hpp"
 #include "camera/open_camera.hpp"
 #include "frame_list.hpp"
 #include "frame_watch.hpp"
+#include "mcap_sequence.hpp"
 #include "open_video.hpp"
 
 namespace cairn::io {
@@ -248,6 +250,10 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
     throw Error(source + ": is not there, expected a folder of frames, a video, or LEFT,RIGHT");
   }
   if (!is_folder(source)) {
+    if (ros::is_mcap(source)) {
+      check_no_layout(options, source);
+      return open_mcap(source, options, pool);
+    }
     if (options.layout.empty()) {
       throw Error(source +
                   ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "

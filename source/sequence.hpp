@@ -61,6 +61,7 @@ struct SourceOptions {
   FrameRange frames;
   double max_gap_s = 1.0;
   double max_skew_ms = 5;  // between the stamps of left and right, where each side has its own
+  std::string topics;      // of a recording, "LEFT,RIGHT"; empty: found by type and name
   bool rectify = false;    // the images are raw, the calibration says how they are rectified; always so of
                            // EuRoC's
   double open_timeout_s = 10;  // of cameras: until the first pair
@@ -116,7 +117,7 @@ class Sequence {
 /// Opens a source, recognised by what is there:
 /// a folder of frames (docs/formats.md), of KITTI's odometry or raw recordings, of EuRoC's or TUM-VI's;
 /// "DIR_L,DIR_R" two folders of images, paired in order or by stamps; "left_%04d.png,right_%04d.png" two
-/// patterns; a video with options.layout, or "l.mp4,r.mp4"; cameras (docs/cameras.md):
+/// patterns; a video with options.layout, or "l.mp4,r.mp4"; a recording (MCAP); cameras (docs/cameras.md):
 /// "v4l2:/dev/video0[,/dev/video2][,w=2560,h=720,fps=30,format=YUYV,layout=side_by_side]",
 /// "gst:PIPELINE[ !! PIPELINE]", "rtsp://...".
 /// Throws Error (one line: what was found, what was expected, which file or option).

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "live_record.hpp"
+
+#include <unistd.h>
+
+#include <cairn/core/error.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <ros/mcap.hpp>
+#include <system_error>
+
+namespace cairn::cli {
+
+namespace fs = std::filesystem;
+
+void add_record_options(CLI::App& app, LiveRecordOptions& options) {
+  app.add_option("--record", options.file, "new recording (MCAP) of images and objects; SOURCE may be one")
+      ->type_name("FILE.mcap");
+  app.add_option("--record-what", options.what,
+                 "list of input, objects, disparity, masks, clouds, grid, or all")
+      ->type_name("LIST")
+      ->capture_default_str();
+}
+
+std::unique_ptr<live::Recorder> open_recorder(const LiveRecordOptions& options, live::RecordedRun run,
+                                              bool waits) {
+  live::RecorderOptions how;
+  how.what = live::parse_record_what(options.what);
+  how.waits = waits;
+  how.on_trouble = [](const std::string& line) { std::cerr << "cairn: " + line + "\n" << std::flush; };
+  // A file that may grow no further is refused as a full disk is, and does not end the run.
+  std::signal(SIGXFSZ, SIG_IGN);
+  auto recorder = std::make_unique<live::Recorder>(std::move(run), std::move(how));
+  if (!options.file.empty()) recorder->start(options.file);
+  return recorder;
+}
+
+RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options, bool is_told) {
+  if (is_told || !ros::has_mcap() || !ros::is_mcap(source)) return;
+  const auto text = ros::attachment_of(ros::McapReader(source), "config.yaml");
+  if (!text) return;
+  std::string pattern = (fs::temp_directory_path() / "recorded-config-XXXXXX").string();
+  const int file = ::mkstemp(pattern.data());
+  if (file < 0) throw Error(pattern + ": cannot be written, expected a temporary folder with room");
+  ::close(file);
+  file_ = pattern;
+  std::ofstream(file_, std::ios::binary) << *text;
+  options.file = file_;
+  std::cerr << "cairn: " << source << ": the options that it was recorded with are used (--preset default: "
+            << "others)\n";
+}
+
+RecordedConfig::~RecordedConfig() {
+  std::error_code ignored;
+  if (!file_.empty()) fs::remove(file_, ignored);
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "mcap_topics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cairn/core/error.hpp>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace cairn::io {
+namespace {
+
+using ros::McapChannel;
+using Channels = std::map<std::uint16_t, McapChannel>;
+
+bool is_image(const McapChannel& channel) {
+  return channel.encoding == "cdr" &&
+         (channel.type == ros::Image::kType || channel.type == ros::CompressedImage::kType);
+}
+bool is_compressed(const McapChannel& channel) {
+  return channel.type == ros::CompressedImage::kType;
+}
+
+const McapChannel* find(const Channels& channels, const std::string& topic) {
+  const auto found =
+      std::ranges::find_if(channels, [&](const auto& entry) { return entry.second.topic == topic; });
+  return found == channels.end() ? nullptr : &found->second;
+}
+
+/// The topic with every `from` replaced; empty where it has none.
+std::string replaced(std::string topic, const std::string& from, const std::string& to) {
+  std::size_t at = topic.find(from);
+  if (at == std::string::npos) return {};
+  for (; at != std::string::npos; at = topic.find(from, at + to.size())) topic.replace(at, from.size(), to);
+  return topic;
+}
+
+/// The right camera's topic; nullptr where it is not there.
+const McapChannel* partner(const Channels& channels, const McapChannel& left) {
+  constexpr std::array<std::pair<const char*, const char*>, 3> kSides{
+      {{"left", "right"}, {"infra1", "infra2"}, {"cam0", "cam1"}}};
+  for (const auto& [from, to] : kSides) {
+    const std::string topic = replaced(left.topic, from, to);
+    if (topic.empty()) continue;
+    if (const McapChannel* right = find(channels, topic); right != nullptr && is_image(*right)) return right;
+  }
+  return nullptr;
+}
+
+/// "image_rect" of "/stereo/left/image_rect/compressed".
+std::pair<std::string, std::string> split(const McapChannel& channel) {
+  std::string topic = channel.topic;
+  if (is_compressed(channel) && topic.ends_with("/compressed")) topic.resize(topic.size() - 11);
+  const std::size_t slash = topic.rfind('/');
+  if (slash == std::string::npos) return {"", topic};
+  return {topic.substr(0, slash), topic.substr(slash + 1)};
+}
+
+bool is_raw(const McapChannel& channel) {
+  return split(channel).second.find("raw") != std::string::npos;
+}
+/// The lower, the better.
+std::tuple<bool, bool, bool, bool> rank(const McapChannel& channel) {
+  const std::string name = split(channel).second;
+  return {is_raw(channel), is_compressed(channel), name.find("rect") == std::string::npos,
+          name.find("color") == std::string::npos};
+}
+
+std::string image_topics(const Channels& channels) {
+  std::string all;
+  for (const auto& [id, channel] : channels) {
+    if (is_image(channel)) all += (all.empty() ? "" : ", ") + channel.topic;
+  }
+  return all;
+}
+
+std::optional<std::uint16_t> info_of(const Channels& channels, const McapChannel& image) {
+  const McapChannel* info = find(channels, split(image).first + "/camera_info");
+  if (info == nullptr || info->type != ros::CameraInfo::kType || info->encoding != "cdr") return std::nullopt;
+  return info->id;
+}
+
+StereoTopics with_companions(const Channels& channels, const McapChannel& left, const McapChannel& right) {
+  StereoTopics topics;
+  topics.left = left;
+  topics.right = right;
+  topics.is_raw = is_raw(left);
+  topics.left_info = info_of(channels, left);
+  topics.right_info = info_of(channels, right);
+  if (const McapChannel* grey = find(channels, split(left).first + "/image_grey");
+      grey != nullptr && grey->type == ros::Image::kType && split(left).second != "image_grey")
+    topics.left_grey = grey->id;
+  return topics;
+}
+
+}  // namespace
+
+StereoTopics find_stereo_topics(const Channels& channels, const std::string& wanted,
+                                const std::string& file) {
+  const std::string all = image_topics(channels);
+  const std::string there = all.empty() ? "it has no topic of images in CDR" : "its images: " + all;
+  if (!wanted.empty()) {
+    const std::size_t comma = wanted.find(',');
+    if (comma == std::string::npos) throw Error("--topics: found " + wanted + ", expected LEFT,RIGHT");
+    std::array<const McapChannel*, 2> sides{};
+    for (const std::size_t i : {0, 1}) {
+      const std::string topic = i == 0 ? wanted.substr(0, comma) : wanted.substr(comma + 1);
+      sides.at(i) = find(channels, topic);
+      if (sides.at(i) == nullptr || !is_image(*sides.at(i)))
+        throw Error("--topics: " + file + " has no images as " + topic + "; " + there);
+    }
+    return with_companions(channels, *sides[0], *sides[1]);
+  }
+  std::vector<std::pair<const McapChannel*, const McapChannel*>> best;
+  for (const auto& [id, left] : channels) {
+    if (!is_image(left)) continue;
+    const McapChannel* right = partner(channels, left);
+    if (right == nullptr) continue;
+    if (!best.empty() && rank(left) < rank(*best.front().first)) best.clear();
+    if (best.empty() || rank(left) == rank(*best.front().first)) best.emplace_back(&left, right);
+  }
+  if (best.empty())
+    throw Error(file + ": has no topics of left and right images, expected --topics LEFT,RIGHT; " + there);
+  if (best.size() > 1) {
+    std::string pairs;
+    for (const auto& [left, right] : best)
+      pairs += (pairs.empty() ? "" : "; ") + left->topic + "," + right->topic;
+    throw Error(file + ": has more than one stereo pair, expected --topics with one of them: " + pairs);
+  }
+  return with_companions(channels, *best.front().first, *best.front().second);
+}
+
+}  // namespace cairn::io

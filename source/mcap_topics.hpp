@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "../ros/mcap.hpp"
+
+/// Which topics of a recording are a stereo pair; internal to source.
+namespace cairn::io {
+
+struct StereoTopics {
+  ros::McapChannel left;
+  ros::McapChannel right;
+  std::optional<std::uint16_t> left_grey;  // the grey of left images whose colours do not say it
+  std::optional<std::uint16_t> left_info;
+  std::optional<std::uint16_t> right_info;
+  bool is_raw = false;  // by its name
+};
+
+/// Found by type and name ("left" and "right", "infra1" and "infra2", "cam0" and "cam1"): rectified images
+/// before raw ones, whole ones before compressed ones, coloured ones before grey ones. `wanted`:
+/// "LEFT,RIGHT", or empty. `file`: for messages. Throws Error where there is no pair, or more than one.
+StereoTopics find_stereo_topics(const std::map<std::uint16_t, ros::McapChannel>& channels,
+                                const std::string& wanted, const std::string& file);
+
+}  // namespace cairn::io
