@@ -54,7 +54,7 @@ if(CAIRN_IO)
     cairn_install_library("cairn_tracking;cairn_landmarks;cairn_ros;cairn_source;cairn_live;cairn_sequences" cairnSequencesTargets sequences)
     cairn_install_headers(tracking landmarks ros source live)
   endif()
-  install(FILES docs/schema/objects.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
+  install(FILES docs/schema/objects.schema.json docs/schema/batch_row.schema.json packaging/slurm/cairn.sbatch DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help names these pages.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING
     REGEX "\\.(md|png|svg)$"
