@@ -6,7 +6,8 @@ set(source "// Made from page/ by page/embed.cmake.\n#include <page/html_templat
 foreach(part IN ITEMS
     SharedStyle:shared.css SharedScript:shared.js
     PageLayout:page.html PageStyle:page.css PageScript:page.js
-    FollowLayout:follow.html FollowStyle:follow.css FollowScript:follow.js)
+    FollowLayout:follow.html FollowStyle:follow.css FollowScript:follow.js
+    LiveLayout:live.html LiveStyle:live.css LiveScene:live_scene.js LiveScript:live.js)
   string(REGEX MATCH "(.*):(.*)" unused ${part})
   file(READ ${FOLDER}/${CMAKE_MATCH_2} content)
   string(APPEND source "const std::string_view k${CMAKE_MATCH_1} = R\"cairn(${content})cairn\";\n\n")

@@ -118,18 +118,6 @@ Json maps(const PageFrame& frame) {
           {"true_disparity", packed_disparity(frame.true_disparity_px)}};
 }
 
-/// The colours and names that the pictures beside the page have, too.
-Json look() {
-  Json ramp = Json::array();
-  for (const Rgb colour : disparity_colours()) ramp.push_back(hex(colour));
-  Json reasons = Json::array();
-  for (const Reason& reason : kReasons) {
-    reasons.push_back(
-        {{"bit", static_cast<int>(reason.bit)}, {"name", reason.label}, {"colour", hex(reason.colour)}});
-  }
-  return {{"ramp", ramp}, {"reasons", reasons}, {"objects", id_colours()}};
-}
-
 }  // namespace
 
 EncodedFrame encode_frame(const PageFrame& frame) {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 /// The layouts, styles and scripts of the pages, built into the program; internal to the pages. A layout has
-/// the places {{title}}, {{style}}, {{data}} and {{script}}.
+/// the places {{title}}, {{style}}, {{data}} and {{script}}, and live.html {{nonce}}.
 namespace cairn::io {
 
 extern const std::string_view kSharedStyle;   // shared.css, before each page's own
@@ -16,5 +16,9 @@ extern const std::string_view kPageScript;    // page.js
 extern const std::string_view kFollowLayout;  // follow.html
 extern const std::string_view kFollowStyle;   // follow.css
 extern const std::string_view kFollowScript;  // follow.js
+extern const std::string_view kLiveLayout;    // live.html
+extern const std::string_view kLiveStyle;     // live.css
+extern const std::string_view kLiveScene;     // live_scene.js, before live.js
+extern const std::string_view kLiveScript;    // live.js
 
 }  // namespace cairn::io

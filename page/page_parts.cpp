@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cairn/disparity/reject.hpp>
 #include <io/overlay.hpp>
 #include <io/raster.hpp>
 #include <map>
@@ -117,9 +118,23 @@ Json id_colours() {
   return all;
 }
 
+Json look() {
+  Json ramp = Json::array();
+  for (const Rgb colour : disparity_colours()) ramp.push_back(hex(colour));
+  Json reasons = Json::array();
+  for (const Reason& reason : kReasons) {
+    reasons.push_back({{"bit", static_cast<int>(reason.bit)},
+                       {"name", reason.label},
+                       {"colour", hex(reason.colour)},
+                       {"says", reason.says}});
+  }
+  return {{"ramp", ramp}, {"reasons", reasons}, {"objects", id_colours()}};
+}
+
 PageShell page_shell(std::string_view layout, std::string_view style, std::string_view script,
-                     std::string_view title) {
+                     std::string_view title, std::string_view nonce) {
   const std::map<std::string_view, std::string> parts{{"title", for_html(title)},
+                                                      {"nonce", for_html(nonce)},
                                                       {"style", std::string(kSharedStyle) += style},
                                                       {"script", std::string(kSharedScript) += script}};
   PageShell shell;

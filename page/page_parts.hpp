@@ -43,15 +43,17 @@ std::string picture_as_uri(View<const Gray> grey, View<const Rgb> colour);
 std::string hex(Rgb colour);
 /// What ids are drawn with, as overlay.png does: id modulo the length.
 nlohmann::ordered_json id_colours();
+/// The colours and names that the image files have, too: `ramp` of disparities, `reasons` of holes, `objects`.
+nlohmann::ordered_json look();
 
 /// A page without its data: what comes before them, and what behind.
 struct PageShell {
   std::string before;
   std::string after;
 };
-/// `layout` has the places {{title}}, {{style}}, {{data}} and {{script}}. The style and script that all pages
-/// share come before the page's own.
+/// `layout` has the places {{title}}, {{style}}, {{data}} and {{script}}, and {{nonce}} where a server sends
+/// the page. The style and script that all pages share come before the page's own.
 PageShell page_shell(std::string_view layout, std::string_view style, std::string_view script,
-                     std::string_view title);
+                     std::string_view title, std::string_view nonce = {});
 
 }  // namespace cairn::io

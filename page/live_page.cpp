@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <page/html_template.hpp>
+#include <page/live_page.hpp>
+#include <page/page_parts.hpp>
+
+namespace cairn::io {
+
+std::string live_page(const std::string& nonce) {
+  const nlohmann::ordered_json run{{"command", "live"}, {"cairn", CAIRN_VERSION}, {"look", look()}};
+  const PageShell shell =
+      page_shell(kLiveLayout, kLiveStyle, std::string(kLiveScene) += kLiveScript, "cairn live", nonce);
+  return shell.before + script_block("run", for_script(run)) + shell.after;
+}
+
+std::string live_page_policy(const std::string& nonce) {
+  return "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
+         "'; img-src data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
+
+}  // namespace cairn::io
