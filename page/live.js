@@ -236,7 +236,7 @@
   // ---- painting at the screen's pace ----
 
   const due = {}, drawnAt = {};
-  const newest = {cloud: null, stats: null};
+  const newest = {cloud: null, stats: null, source: null};  // source: asked for since the last frame
   const shown = {};  // what is on the screen: {picture: frame, disparity: frame}
   let asked = 0;
   function soon() {
@@ -305,6 +305,7 @@
     phase: false,   // of blinking
     overlay: kept('overlay', 'masks'),
     isPaused: false,
+    pausedAt: -Infinity,  // when it was asked for here
   };
   const chosen = () => state.near ?? state.picked;
   function kept(name, otherwise) {
@@ -365,7 +366,8 @@
     if (before && before !== frame && before.left && !frames.has(before.stamp)) before.left.close();
     shown.picture = frame;
     drawnAt.picture = performance.now();
-    count(frame);
+    if (!frame.isCounted) count(frame);
+    frame.isCounted = true;  // one comes again where subscriptions change
   }
 
   /** The middle of each label, from each fourth pixel. */
@@ -547,7 +549,7 @@
       const d = pixelsOf(v), z = metresOf(d);
       legend.ticks[k].replaceChildren(...(isNumber(d) ? [`${fixed(d, 0)} px`, ...(isNumber(z) ? [el('br'), `${fixed(z, 1)} m`] : [])] : []));
     });
-    if (!panels.disparity.isRead) panels.disparity.count.textContent = `${percent(1 - hole / all, 0)} have one`;
+    if (!panels.disparity.isRead) panels.disparity.count.textContent = `density ${percent(1 - hole / all, 0)}`;
   }
   let blinker = 0;
   function blink(bit) {
@@ -584,10 +586,11 @@
   let thingsById = new Map();
   const life = {frame: null, at: 0, count: 0};  // the last frame that came, and when
   const trails = new Map();  // track → [{t, place}]
-  const kTrail = 6;  // s
+  const kTrail = 6, kJump = 1.5;  // s, m
 
   function heardStats(stats, stamp) {
     newest.stats = stats;
+    newest.source = null;
     if (stats.frame !== life.frame) {
       if (isNumber(life.frame) && stats.frame < life.frame) {
         history.length = 0;
@@ -601,7 +604,8 @@
       takeThings(stats, Number(stamp / 1000n) / 1e6);
       stripIsOld = true;
     }
-    state.isPaused = stats.paused === true;
+    // Frames that were on their way when it was paused know nothing of it.
+    if (stats.paused === true || performance.now() - state.pausedAt > 1000) state.isPaused = stats.paused === true;
     showScene();
     if (life.count === 1) slowly();
   }
@@ -634,8 +638,10 @@
       thingsById.set(id, thing);
       if (!corners || !inMap) continue;
       const middle = [0, 1, 2].map((k) => corners.reduce((sum, c) => sum + c[k] / 8, 0));
-      if (!trails.has(id)) trails.set(id, []);
-      trails.get(id).push({t: seconds, place: moved(inMap, middle)});
+      const place = moved(inMap, middle), trail = trails.get(id), last = trail?.at(-1);
+      const follows = last && seconds - last.t < 1 && Math.hypot(...minus3(place, last.place)) < kJump;
+      if (follows) trail.push({t: seconds, place});
+      else trails.set(id, [{t: seconds, place}]);
     }
     for (const [id, points] of trails) {
       while (points.length && points[0].t < seconds - kTrail) points.shift();
@@ -701,8 +707,8 @@
     number('distance m', (t) => t.distance_m, 2, {title: 'From the camera'}),
     {name: 'size m', title: 'Of the box: length × width × height', value: (t) => sizeOf(t)?.reduce((a, b) => a * b) ?? null, show: (t) => sizeOf(t)?.map((v) => fixed(v, 2)).join(' × ') ?? '–'},
     number('confidence', (t) => t.confidence, 2, {title: 'How likely it is one object'}),
-    {name: 'state', text: true, title: 'Of the track', value: (t) => stateOf(t), show: (t) => (t.is_moving ? [el('span', {class: 'moving'}, 'moving')] : stateOf(t))},
-    number('speed m/s', (t) => (t.is_moving ? speedOf(t) : null), 2, {title: 'Over the floor, of those that move'}),
+    {name: 'state', text: true, title: 'Of the track; the speed of those that move', value: (t) => (t.is_moving ? '' : stateOf(t)),
+      show: (t) => (t.is_moving ? [el('span', {class: 'moving'}, isNumber(speedOf(t)) ? `moving, ${fixed(speedOf(t), 2)} m/s` : 'moving')] : stateOf(t))},
   ], [], {key: (t) => t.id, pickRow: (t) => pick(t.id), selected: (t) => t.id === state.picked, enter: (t) => near(t?.id ?? null)});
   const stateOf = (thing) => words(String(thing.state ?? ''));
   function writeThings() {
@@ -734,7 +740,7 @@
     strip.colours = new Map(stay.map((s) => [s, strip.colours.get(s)]));
     for (const stage of most) if (!stay.includes(stage)) { strip.colours.set(stage, free.shift()); stay.push(stage); }
     strip.stages = stay;
-    byId('stages').replaceChildren(...strip.stages.map((stage) => el('span', {class: 'chip', title: `${words(stage)}: median of the last ${kHistory} frames`},
+    byId('stages').replaceChildren(...strip.stages.map((stage) => el('span', {class: 'chip', title: `${words(stage)}: median of the last ${kHistory} frames, in ms`},
       el('i', {style: {background: strip.colours.get(stage)}}), el('b', {}, words(stage)), el('span', {'data-stage': stage}))));
   }
   const otherOf = (stages) => [...stages].reduce((sum, [stage, ms]) => (strip.colours.has(stage) ? sum : sum + ms), 0);
@@ -786,10 +792,10 @@
   }
   function writeStages() {
     for (const node of document.querySelectorAll('#stages [data-stage]')) {
-      node.textContent = `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)} ms`;
+      node.textContent = `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)}`;
     }
     const all = median(history.map(({stages}) => [...stages.values()].reduce((a, b) => a + b, 0)));
-    byId('time-note').textContent = history.length ? `${fixed(all, 1)} ms a frame; line: from arrival to objects` : '';
+    byId('time-note').textContent = history.length ? `${fixed(all, 1)} ms a frame` : '';
   }
   function describeTime(event) {
     const box = strip.canvas.getBoundingClientRect(), each = (box.width - 34) / kHistory;
@@ -880,13 +886,23 @@
     }
     if (state.isPaused) return {kind: 'paused', word: 'paused'};
     if (idle < kSilence) return life.at ? {kind: 'live', word: stats?.is_file ? 'playing' : 'live'} : {kind: 'waiting', word: 'waiting'};
-    const source = stats?.source ?? {}, trouble = String(source.trouble || '');
+    const source = newest.source ?? stats?.source ?? {}, trouble = String(source.trouble || '');
     const why = source.is_connected === false ? `camera not connected${trouble ? `: ${trouble}` : ''}`
       : trouble || (stats?.is_file ? 'the file has ended, or a frame takes long' : 'the camera is open, but gives none');
     return {
       kind: 'waiting', word: 'no frames', head: `No frame for ${seconds(idle)}`, text: why,
       small: life.at ? `What is shown is frame ${life.frame}.` : 'None has come since this page was opened.',
     };
+  }
+  /** While no frame comes, none says how the camera does. */
+  async function askStatus() {
+    if (link.state !== 'open' || state.isPaused || performance.now() - Math.max(life.at, link.since) < kSilence - 1000) return;
+    const answer = await fetch('/status.json', {cache: 'no-store'}).catch(() => null);
+    const status = answer?.ok ? await answer.json().catch(() => null) : null;
+    if (!status) return;
+    newest.source = status.source ?? null;
+    if (!newest.stats && isNumber(status.frame)) newest.stats = status;
+    watch();
   }
   let verdict = '';
   function watch() {
@@ -974,7 +990,7 @@
   function heardParameters(parameters) {
     let isKnown = false;
     for (const {name, value} of parameters) {
-      if (name === 'live.pause') state.isPaused = value === true;
+      if (name === 'live.pause') Object.assign(state, {isPaused: value === true, pausedAt: performance.now()});
       if (name === 'live.record' && newest.stats) newest.stats.recording = Boolean(value);
       isKnown ||= tuning.rows.has(name);
     }
@@ -1066,7 +1082,7 @@
       undo.title = `Back to ${fresh.first}`;
       row.node.classList.toggle('changed', isChanged);
       row.node.classList.toggle('inactive', fresh.active === false);
-      facts.replaceChildren(help, ...(fresh.active === false && fresh.needs ? [' ', el('span', {class: 'needs'}, `Read only while ${fresh.needs}.`)] : []));
+      facts.replaceChildren(help, ...(fresh.active === false && fresh.needs ? [' ', el('span', {class: 'needs'}, `Needs ${fresh.needs}.`)] : []));
       const why = tuning.refused.get(name);
       refused.hidden = !why;
       refused.textContent = why ?? '';
@@ -1156,7 +1172,7 @@
 
   const pause = () => {
     send({op: 'setParameters', parameters: [{name: 'live.pause', value: !state.isPaused}]});
-    state.isPaused = !state.isPaused;
+    Object.assign(state, {isPaused: !state.isPaused, pausedAt: performance.now()});
     if (!state.isPaused) life.at = performance.now();
     writeGauges();
     watch();
@@ -1245,6 +1261,7 @@
     for (const {root} of Object.values(panels)) looked.observe(root);
     document.addEventListener('visibilitychange', subscribe);
     setInterval(slowly, 200);
+    setInterval(askStatus, 1000);
     const tick = () => {
       if (stripIsOld && document.visibilityState === 'visible') {
         stripIsOld = false;

@@ -13,9 +13,4 @@ std::string live_page(const std::string& nonce) {
   return shell.before + script_block("run", for_script(run)) + shell.after;
 }
 
-std::string live_page_policy(const std::string& nonce) {
-  return "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
-         "'; img-src data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-}
-
 }  // namespace cairn::io

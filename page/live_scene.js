@@ -85,8 +85,12 @@ const kEdges = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], 
  */
 function makeScene(stage, onPick) {
   const canvas = stage.querySelector('canvas'), layer = stage.querySelector('.marks');
-  const gl = canvas.getContext('webgl2', {antialias: true, alpha: false, powerPreference: 'low-power'});
+  const wanted = {alpha: false, powerPreference: 'low-power'};
+  // Without a graphics processor the view must not take the time that the images need: fewer and coarser pictures.
+  const quick = canvas.getContext('webgl2', {...wanted, antialias: true, failIfMajorPerformanceCaveat: true});
+  const gl = quick ?? canvas.getContext('webgl2', {...wanted, antialias: false});
   if (!gl) return null;
+  const kPause = quick ? 0 : 250;  // ms between two pictures, unless somebody turns the view
   let lines, faces, clouds, grid;
   function begin() {
     lines = program(kLineShader, ['clip', 'size']);
@@ -179,8 +183,15 @@ function makeScene(stage, onPick) {
   const kViews = {behind: {yaw: 0, pitch: 0.52, far: 6.5}, side: {yaw: 1.15, pitch: 0.42, far: 6.5}, above: {yaw: 0, pitch: 1.55, far: 8}};
   const view = {at: [2.6, 0, 0.3], ...kViews.behind, isTouched: false};
   let size = {wide: 0, high: 0, dpr: 1};
-  let asked = 0;
+  let asked = 0, paintedAt = 0;
+  let grip = null;  // where the pointer holds the view
   const draw = () => { asked ||= requestAnimationFrame(() => { asked = 0; paint(); }); };
+  let waits = 0;
+  const drawSoon = () => {
+    const left = paintedAt + kPause - performance.now();
+    if (left <= 0 || grip) draw();
+    else waits ||= setTimeout(() => { waits = 0; draw(); }, left);
+  };
   const eye = () => minus3(view.at, [
     Math.cos(view.yaw) * Math.cos(view.pitch), Math.sin(view.yaw) * Math.cos(view.pitch), -Math.sin(view.pitch)].map((v) => v * view.far));
   const cameraPlace = () => { const m = shown.floorFromCamera; return m ? [m[3], m[7], m[11]] : [0, 0, 0]; };
@@ -198,11 +209,12 @@ function makeScene(stage, onPick) {
     const reach = Math.min(12, Math.max(2, ahead[Math.floor(ahead.length * 0.9)]));
     view.at[0] += (reach * 0.62 - view.at[0]) * share;
     view.at[1] += (0 - view.at[1]) * share;
-    view.far += (Math.max(3.2, reach * 1.5 + 0.6) - view.far) * share;
+    view.far += (Math.max(2.6, reach * 1.15 + 0.6) - view.far) * share;
   }
 
   function paint() {
-    const wide = stage.clientWidth, high = stage.clientHeight, dpr = Math.min(2, devicePixelRatio || 1);
+    const wide = stage.clientWidth, high = stage.clientHeight, dpr = Math.min(2, devicePixelRatio || 1) * (quick ? 1 : 0.7);
+    paintedAt = performance.now();
     if (!wide || !high || gl.isContextLost()) return;
     if (size.wide !== wide || size.high !== high || size.dpr !== dpr) {
       size = {wide, high, dpr};
@@ -293,40 +305,53 @@ function makeScene(stage, onPick) {
   }
 
   const marksById = new Map();
-  /** The names over the boxes. */
+  /** The names over the boxes, and the metres on the floor. */
   function name(clip, wide, high) {
-    const wanted = new Set();
-    const put = (key, text, place, properties) => {
+    const wanted = [];
+    const put = (key, text, place, look, colour, isName) => {
       const [x, y, , w] = [0, 1, 2, 3].map((r) => clip[r] * place[0] + clip[4 + r] * place[1] + clip[8 + r] * place[2] + clip[12 + r]);
       if (w < 0.1) return;
       let mark = marksById.get(key);
       if (!mark) {
-        marksById.set(key, mark = el('span', {class: 'mark'}));
-        layer.append(mark);
+        marksById.set(key, mark = {node: el('span', {class: 'mark'}), text: null, look: null});
+        mark.node.style.setProperty('--colour', colour);
+        layer.append(mark.node);
       }
-      wanted.add(key);
-      if (mark.textContent !== text) mark.textContent = text;
-      const look = `mark ${properties.class ?? ''}`;
-      if (mark.className !== look) mark.className = look;
-      mark.style.setProperty('--colour', properties.colour ?? '');
-      mark.style.transform = `translate(${((x / w + 1) / 2 * wide).toFixed(1)}px, ${((1 - y / w) / 2 * high).toFixed(1)}px) translate(-50%, ${properties.lift ?? '-130%'})`;
-      mark.style.zIndex = String(1000 - Math.min(999, Math.round(w * 10)));
+      if (mark.look !== look) mark.node.className = mark.look = look;
+      if (mark.text !== text) {
+        mark.node.textContent = mark.text = text;
+        mark.wide = mark.node.offsetWidth;
+      }
+      wanted.push(Object.assign(mark, {key, isName, x: (x / w + 1) / 2 * wide, y: (1 - y / w) / 2 * high - (isName ? 13 : 0)}));
     };
     for (const {id, text, corners, colour, dim, moving} of shown.things) {
       const top = corners.reduce((sum, c) => [sum[0] + c[0] / 8, sum[1] + c[1] / 8, Math.max(sum[2], c[2])], [0, 0, -Infinity]);
-      put(`t${id}`, text, top, {colour, class: `${dim ? 'dim' : ''}${moving ? ' moving' : ''}`});
+      put(`t${id}`, text, top, `mark${dim ? ' dim' : ''}${moving ? ' moving' : ''}`, colour, true);
     }
-    if (shown.hasFloor) for (const metre of [1, 2, 3, 4, 6, 8, 10]) if (metre < view.far * 1.6) put(`m${metre}`, `${metre} m`, [metre, 0, 0], {class: 'metre', lift: '-50%'});
+    if (shown.hasFloor) for (const metre of [1, 2, 3, 4, 6, 8, 10]) if (metre < view.far * 1.6) put(`m${metre}`, `${metre} m`, [metre, 0, 0], 'mark metre', '', false);
+    // Names that would lie on others move up, the nearest box's the least.
+    const placed = [];
+    for (const mark of wanted.sort((a, b) => b.isName - a.isName || b.y - a.y)) {
+      const hits = (other) => Math.abs(other.x - mark.x) < (other.wide + mark.wide) / 2 + 2 && Math.abs(other.y - mark.y) < 20;
+      if (!mark.isName && placed.some(hits)) {
+        mark.node.style.visibility = 'hidden';
+        continue;
+      }
+      for (let other = placed.find(hits); mark.isName && other; other = placed.find(hits)) mark.y = other.y - 20.5;
+      placed.push(mark);
+      mark.node.style.visibility = '';
+      mark.node.style.transform = `translate(${mark.x.toFixed(1)}px, ${mark.y.toFixed(1)}px) translate(-50%, -50%)`;
+    }
+    const kept = new Set(wanted);
     for (const [key, mark] of marksById) {
-      if (wanted.has(key)) continue;
-      mark.remove();
+      if (kept.has(mark)) continue;
+      mark.node.remove();
       marksById.delete(key);
     }
   }
 
   // ---- turning it ----
 
-  let grip = null;
   stage.addEventListener('pointerdown', (event) => {
     grip = {x: event.clientX, y: event.clientY, moves: event.shiftKey || event.button !== 0, far: 0};
     stage.setPointerCapture(event.pointerId);
@@ -398,7 +423,7 @@ function makeScene(stage, onPick) {
       Object.assign(shown, what);
       if (what.cloud) shown.isCloudNew = true;
       if (what.things) fit(0.05);
-      draw();
+      drawSoon();
     },
     lookFrom,
   };
