@@ -13,6 +13,7 @@
 #include "follow_options.hpp"
 #include "interrupt.hpp"
 #include "live_record.hpp"
+#include "live_view.hpp"
 #include "source_options.hpp"
 
 namespace cairn::cli {
@@ -35,6 +36,7 @@ struct LiveCommandOptions {
   double duration_s = 0;
   bool loop = false;
   bool json_lines = false;
+  ViewInput view;
 };
 
 /// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json.
@@ -117,6 +119,7 @@ std::string summary_text(const live::LiveSummary& summary) {
 int live_command(LiveCommandOptions options) {
   check(options);
   const RecordedConfig recorded(options.source.source, options.config, options.is_config_told);
+  check(options.view);
   const Exec exec = make_exec(options.exec);
   const auto open = [&] { return open_source(options.source, exec.pool); };
   const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
@@ -151,6 +154,8 @@ int live_command(LiveCommandOptions options) {
       options.record,
       live::recorded_run(*source, options.source.source, preset_of(options.config), !options.no_tracks),
       options.every_frame));
+  if (auto view = make_view(options.view, runner, *source, preset_of(options.config)))
+    sinks.push_back(std::move(view));
   for (const auto& sink : sinks) runner.add(*sink);
 
   const EndsBySignal ends(*source);
@@ -188,6 +193,7 @@ Work declare_live(CLI::App& app) {
   add_exec_options(app, options->exec);
   app.add_flag("--json-lines", options->json_lines, "print each frame as a line of JSON");
   add_record_options(app, options->record);
+  add_view_options(app, options->view);
   return [options, &app] {
     options->is_config_told = app.count("--preset") + app.count("--config") > 0;
     return live_command(*options);

@@ -70,7 +70,7 @@ struct PixelRows {
 };
 /// A PNG file's bytes. Throws Error without a file's name.
 std::string encode_png(const PixelRows& rows);
-/// A JPEG file's bytes, for looking at: quality 90; 8 bits only. Throws Error without a file's name.
-std::string encode_jpeg(const PixelRows& rows);
+/// A JPEG file's bytes, for looking at; 8 bits only. `quality`: 1 … 100. Throws Error without a file's name.
+std::string encode_jpeg(const PixelRows& rows, int quality = 90);
 
 }  // namespace cairn::io

@@ -152,8 +152,7 @@ Raster decode_jpeg(std::string_view file) {
   return raster;
 }
 
-std::string encode_jpeg(const PixelRows& rows) {
-  constexpr int kQuality = 90;
+std::string encode_jpeg(const PixelRows& rows, int quality) {
   Writer writer;
   jpeg_compress_struct& jpeg = writer.jpeg;
   const auto steps = [&] {
@@ -164,7 +163,7 @@ std::string encode_jpeg(const PixelRows& rows) {
     jpeg.input_components = rows.channels;
     jpeg.in_color_space = rows.channels == 3 ? JCS_RGB : JCS_GRAYSCALE;
     jpeg_set_defaults(&jpeg);
-    jpeg_set_quality(&jpeg, kQuality, TRUE);
+    jpeg_set_quality(&jpeg, quality, TRUE);
     jpeg_start_compress(&jpeg, TRUE);
     for (int y = 0; y < rows.size.height; ++y) {
       // libjpeg's type, not its habit: it reads these rows.

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "live_view.hpp"
+
+#include <cairn/core/error.hpp>
+#include <iostream>
+#include <live/view/view_server.hpp>
+
+namespace cairn::cli {
+namespace {
+
+live::ViewedRun viewed(live::Runner& runner, const io::Sequence& source, const std::string& preset) {
+  live::ViewedRun run;
+  run.name = source.name();
+  run.preset = preset;
+  run.image = source.image_size();
+  run.rig = source.rig();
+  run.config = [&runner] { return runner.config(); };
+  run.set = [&runner](const auto& options) { runner.set(options); };
+  if (!source.status().is_live) {
+    run.pause = [&runner](bool on) { runner.pause(on); };
+    run.is_paused = [&runner] { return runner.is_paused(); };
+    run.step = [&runner] { runner.step(); };
+  }
+  return run;
+}
+
+}  // namespace
+
+void add_view_options(CLI::App& app, ViewInput& input) {
+  app.add_option_function<std::string>(
+         "--view",
+         [&input](const std::string& address) {
+           input.is_wanted = true;
+           input.address = address;
+         },
+         "show the run in a browser, and to Foxglove, at this address (default: 127.0.0.1:8765)")
+      ->type_name("[ADDRESS:PORT]")
+      ->expected(0, 1)
+      ->run_callback_for_default();
+  app.add_flag("--tunable", input.options.tunable, "viewers may change options, pause and record");
+  app.add_option("--view-token", input.options.token,
+                 "what a viewer must know (default: a random one; 16 to 128 letters, digits, - and _)")
+      ->type_name("TOKEN");
+  app.add_option("--view-origin", input.options.origins,
+                 "a page from elsewhere that may connect, such as https://app.foxglove.dev")
+      ->type_name("URL");
+  app.add_option("--tls-cert", input.options.tls_cert, "certificate of an encrypted view, with its chain")
+      ->type_name("FILE.pem");
+  app.add_option("--tls-key", input.options.tls_key, "its private key")->type_name("FILE.pem");
+  app.add_flag("--insecure", input.options.insecure,
+               "let an address that the network reaches be viewed without encryption");
+}
+
+void check(const ViewInput& input) {
+  if (input.is_wanted) return;
+  const auto& options = input.options;
+  for (const auto& [is_given, name] :
+       {std::pair{options.tunable, "--tunable"}, std::pair{!options.token.empty(), "--view-token"},
+        std::pair{!options.origins.empty(), "--view-origin"},
+        std::pair{!options.tls_cert.empty(), "--tls-cert"}, std::pair{!options.tls_key.empty(), "--tls-key"},
+        std::pair{options.insecure, "--insecure"}}) {
+    if (is_given) throw Error(std::string(name) + ": found no --view, which it is of");
+  }
+}
+
+std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner,
+                                      const io::Sequence& source, const std::string& preset) {
+  if (!input.is_wanted) return nullptr;
+  live::ViewOptions options = input.options;
+  if (!input.address.empty()) live::read_view_address(input.address, options);
+  auto server = std::make_unique<live::ViewServer>(std::move(options), viewed(runner, source, preset));
+  std::cerr << "view: " << server->url() << "\n";
+  return server;
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <live/live_frame.hpp>
+#include <live/runner.hpp>
+#include <live/view/view_options.hpp>
+#include <memory>
+#include <string>
+
+namespace cairn::cli {
+
+/// What cairn live --view is given.
+struct ViewInput {
+  bool is_wanted = false;
+  std::string address;  // "127.0.0.1:8765"
+  live::ViewOptions options;
+};
+void add_view_options(CLI::App& app, ViewInput& input);
+/// Throws Error where an option of the view is given without it.
+void check(const ViewInput& input);
+
+/// None where no view is wanted. Says on stderr where it is. Throws Error as live::ViewServer does. The
+/// runner and the source must outlive it.
+std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner,
+                                      const io::Sequence& source, const std::string& preset);
+
+}  // namespace cairn::cli

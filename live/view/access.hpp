@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "view_options.hpp"
+
+/// Who may see a live view. Internal to it. (docs/live_view.md, "Security")
+namespace cairn::live {
+
+/// 128 bits of the system's randomness, as 32 hexadecimal digits.
+std::string random_token();
+
+/// Takes as long wherever the two differ.
+bool is_equal_in_constant_time(std::string_view a, std::string_view b);
+
+/// Whether an IP address, in text, is one that only this computer reaches. Throws Error where it is no
+/// address.
+bool is_loopback(const std::string& address);
+
+/// What decides of a request: its line and three of its headers, empty where it has none.
+struct ViewRequest {
+  std::string_view method;
+  std::string_view target;
+  std::string_view host;
+  std::string_view origin;
+  std::string_view cookie;
+  bool is_upgrade = false;
+};
+
+struct ViewVerdict {
+  int status = 200;         // 303: the token was right and belongs into a cookie
+  std::string text;         // why not, in one line
+  std::string path;         // without the query
+  std::string cookie = {};  // to be set, of 303
+};
+
+class Access {
+ public:
+  /// Throws Error where the options are not sound, or less than safe without `insecure`. An empty token is
+  /// made up.
+  explicit Access(const ViewOptions& options);
+
+  [[nodiscard]] ViewVerdict judge(const ViewRequest& request) const;
+  [[nodiscard]] const std::string& token() const { return token_; }
+  [[nodiscard]] bool is_tls() const { return is_tls_; }
+
+ private:
+  [[nodiscard]] bool is_own(std::string_view host) const;
+  [[nodiscard]] bool may_connect(const ViewRequest& request) const;
+
+  std::string token_;
+  bool is_tls_;
+  bool is_loopback_;
+  std::vector<std::string> hosts_;
+  std::vector<std::string> origins_;
+};
+
+}  // namespace cairn::live

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../source/sequence.hpp"
+#include "../../tracking/follow_config.hpp"
+
+namespace cairn::live {
+
+/// The run that is viewed, and what its viewers may do to it. The functions are called from the server's
+/// threads; one that is missing is a thing that cannot be done.
+struct ViewedRun {
+  std::string name;                // of the source
+  std::string preset = "default";  // that the options differ from
+  Size image;
+  std::optional<StereoRig> rig;
+  std::function<std::shared_ptr<const FollowConfig>()> config;  // with which the next frame is computed
+  /// As Runner::set().
+  std::function<void(const std::vector<std::pair<std::string, std::string>>&)> set;
+  // Of files only.
+  std::function<void(bool)> pause;
+  std::function<bool()> is_paused;
+  std::function<void()> step;
+  // Both or none.
+  std::function<void(bool)> record;
+  std::function<bool()> is_recording;
+};
+
+struct ViewOptions {
+  std::string address = "127.0.0.1";  // an IP address; others than loopback ask for TLS or `insecure`
+  std::uint16_t port = 8765;          // 0: a free one
+  std::string token;                  // 16 … 128 letters, digits, - and _; empty: 128 random bits
+  std::string tls_cert;               // PEM files: both or none
+  std::string tls_key;
+  bool insecure = false;             // network without TLS: whoever listens sees all, the token too
+  std::vector<std::string> origins;  // of other pages that may connect: "https://app.foxglove.dev"
+  bool tunable = false;              // viewers may change options, pause and record
+  int max_clients = 8;
+};
+
+/// "127.0.0.1:8765", "[::1]:8765", "0.0.0.0" or ":8765": what is left out stays as it is. Throws Error.
+void read_view_address(const std::string& text, ViewOptions& options);
+
+}  // namespace cairn::live
