@@ -830,9 +830,10 @@
     const stats = newest.stats;
     if (!stats) return;
     const {drops = {}, source = {}} = stats, here = cairnStats.p50_ms, age = stats.latency_ms + here;
-    gauge('rate', fixed(stats.rate_hz, 1), 'Hz', 'Frames that are worked on each second');
-    gauge('drawn', fixed(drawnRate(), 1), 'Hz', 'Frames that this page draws each second');
-    gauge('age', fixed(age, 0), 'ms', `From a pair's arrival at the computer until it is drawn here: ${fixed(stats.latency_ms, 1)} ms there, ${fixed(here, 1)} ms here (median), without the network between`, age > 250 ? 'warn' : '');
+    const comes = link.state === 'open' && performance.now() - life.at < kSilence && !state.isPaused;
+    gauge('rate', comes ? fixed(stats.rate_hz, 1) : '–', 'Hz', 'Frames that are worked on each second');
+    gauge('drawn', comes && inView.get('picture') !== false ? fixed(drawnRate(), 1) : '–', 'Hz', 'Frames that this page draws each second');
+    gauge('age', comes ? fixed(age, 0) : '–', 'ms', `From a pair's arrival at the computer until it is drawn here: ${fixed(stats.latency_ms, 1)} ms there, ${fixed(here, 1)} ms here (median), without the network between`, comes && age > 250 ? 'warn' : '');
     const lost = [['replaced', 'replaced', 'a newer pair was there before their turn came'], ['too_old', 'too old', 'older than --max-age when their turn came'], ['at_source', 'at source', 'lost or unpaired at the camera']];
     const some = lost.filter(([key]) => drops[key] > 0);
     const all = lost.reduce((sum, [key]) => sum + (drops[key] ?? 0), 0);
@@ -879,7 +880,7 @@
       const left = link.retryAt ? `Next attempt in ${seconds(link.retryAt - now)}` : 'Trying';
       return {
         kind: 'gone', word: 'server gone', bad: true,
-        head: link.refused ? 'The server refuses this page' : `No server since ${seconds(now - link.since)}`,
+        head: link.refused ? 'The server refuses this page' : `No server for ${seconds(now - link.since)}`,
         text: link.refused ? 'It was started again and has a new token: open the address that it printed.' : 'cairn live has ended, or the network between is down.',
         small: `${left} (${counted(link.attempt, 'attempt')} so far).${life.at ? ' What is shown is the last that came.' : ''}`,
       };
@@ -1156,7 +1157,6 @@
     const answer = await fetch('/config.yaml', {cache: 'no-store'}).catch(() => null);
     if (!answer?.ok) return toast('The configuration cannot be fetched: the server is gone or refuses.', 'error');
     const text = await answer.text();
-    window.cairnStats.yaml = text;
     try {
       await navigator.clipboard.writeText(text);
       toast('Copied. Save it as config.yaml, for: cairn live … --config config.yaml');

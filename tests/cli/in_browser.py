@@ -32,11 +32,12 @@ def cairn(*arguments):
     subprocess.run([CAIRN, *map(str, arguments)], check=True, capture_output=True)
 
 
-def browser():
+def browser(*more_arguments):
     options = webdriver.ChromeOptions()
     options.binary_location = shutil.which("chromium")
     # No sandbox: Chromium refuses to run as root with one, and the page is our own.
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1366,1000"):
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1366,1000",
+                     *more_arguments):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
