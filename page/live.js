@@ -397,7 +397,7 @@
       const x = sums.x / sums.n * scale, y = sums.y / sums.n * scale;
       let mark = pictureMarks.get(id);
       if (!mark) {
-        mark = {node: el('span', {class: 'mark', 'data-key': id}, el('b', {}, String(id)), el('span', {}, markText(id))), x, y};
+        mark = {node: el('span', {class: 'mark', 'data-key': id}, el('b', {}, String(id)), ' ', el('span', {}, markText(id))), x, y};
         mark.node.style.setProperty('--colour', idColour(id));
         marks.append(mark.node);
         pictureMarks.set(id, mark);
@@ -859,7 +859,7 @@
       if (tuning.revision !== null) reloadOptions();
       tuning.revision = stats.revision;
     }
-    if (stats.tunable !== tuning.tunable) {
+    if ((stats.tunable === true) !== tuning.tunable) {
       tuning.tunable = stats.tunable === true;
       writeOptions();
     }
@@ -945,7 +945,7 @@
 
   // ---- options ----
 
-  const tuning = {rows: new Map(), refused: new Map(), options: [], revision: null, tunable: false, waiting: 0, sent: new Map(), timer: 0};
+  const tuning = {rows: new Map(), refused: new Map(), options: [], revision: null, tunable: null, waiting: 0, sent: new Map(), timer: 0};
   const kMinus = /^[−-]1 = off, /;
   /** What an option's domain says: {choices} or {low, high, odd, hasOff}. */
   function domainOf({type, domain = ''}) {
@@ -1072,7 +1072,7 @@
       el('label', {class: 'name', for: id, title: `${name}${row.title ? `: ${row.title}` : ''}${unit ? ` ${unit}` : ''}`}, words(short)), control, el('span', {class: 'unit', title: unit || null}, unit), undo, bar, facts, refused);
     row.refresh = (fresh) => {
       row.option = fresh;
-      const isOpen = tuning.tunable && fresh.active !== false;
+      const isOpen = tuning.tunable === true && fresh.active !== false;
       const isBusy = document.activeElement && row.node.contains(document.activeElement) && (document.activeElement === control && type !== 'bool' && !domain.choices || row.isHeld);
       if (!isBusy && !tuning.sent.has(name)) row.write(fresh.value);
       control.disabled = !isOpen;

@@ -63,7 +63,7 @@ class LivePage(PageTest):
         cls.folder = tempfile.TemporaryDirectory()
         cls.source = pathlib.Path(cls.folder.name) / HOSTILE
         long_sequence(cls.source)
-        cls.browser = browser()
+        cls.browser = browser("--enable-unsafe-swiftshader")  # WebGL without a graphics processor
         cls.browser.set_script_timeout(60)
         cls.lives = []
 
@@ -128,6 +128,11 @@ class LivePage(PageTest):
         self.find("#step").click()
         self.wait_until(lambda: self.frame()["frame"] == before + 1, "the next frame")
 
+    def segmented(self, frame, option):
+        result = subprocess.run([CAIRN, "segment", str(self.source / f"{frame:04}"), "--json", "--set", option],
+                                check=True, capture_output=True)
+        return json.loads(result.stdout)["objects"]
+
     def option(self, name):
         return self.find(f".option[data-name='{name}']")
 
@@ -173,19 +178,19 @@ class LivePage(PageTest):
         self.look_at(self.live("--tunable", "--no-tracks"))
         self.pause()
         before = self.frame()
-        self.slide("objects.min_confidence", 0.9)
+        confidences = sorted(o["confidence"] for o in before["objects"])
+        least = round(confidences[-1] - 0.01, 2)  # one may stay
+        self.slide("objects.min_confidence", least)
         self.wait_until(lambda: "changed" in self.option("objects.min_confidence").get_attribute("class"), "the server takes it")
         self.step()
         after = self.frame()
         self.assertEqual(after["revision"], before["revision"] + 1)
-        segmented = json.loads(subprocess.run(
-            [CAIRN, "segment", str(self.source / f"{after['frame']:04}"), "--json", "--set", "objects.min_confidence=0.9"],
-            check=True, capture_output=True).stdout)["objects"]
+        segmented = self.segmented(after["frame"], f"objects.min_confidence={least}")
         self.assertEqual([o["id"] for o in after["objects"]], [o["id"] for o in segmented])
         self.assertEqual([round(o["distance_m"], 3) for o in after["objects"]],
                          [round(sum(v * v for v in o["position_m"]) ** 0.5, 3) for o in segmented])
         self.wait_until(lambda: self.column("things", "id") == [str(o["id"]) for o in segmented], "the list follows")
-        self.assertLess(len(segmented), max(len(before["objects"]), 2))
+        self.assertLess(len(segmented), len(self.segmented(after["frame"], "objects.min_confidence=0.3")))
         self.keep("live_tuned")
         self.find("#reset").click()
         self.wait_until(lambda: "changed" not in self.option("objects.min_confidence").get_attribute("class"), "it is reset")
@@ -211,7 +216,7 @@ class LivePage(PageTest):
         self.assertLess(len(names), 15)
         self.find("#search").clear()
         self.find("#search").send_keys(Keys.ESCAPE)
-        self.slide("match.num_disparities", 0.5)
+        self.slide("match.num_disparities", 0.6)
         self.wait_until(lambda: "changed" in self.option("match.num_disparities").get_attribute("class"), "the server takes it")
         self.browser.execute_cdp_cmd("Browser.grantPermissions", {"permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"]})
         self.find("#yaml").click()
