@@ -39,7 +39,8 @@ set(private_headers
   [a-z]+/[a-z_]+_kernels
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
   source/frame_list source/frame_watch source/json_line source/load_module source/open_video source/text_lines
-  io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts)
+  io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts page/live_page
+  view/access view/channels view/client view/frame_json view/parameters)
 list(JOIN private_headers "|" private_headers)
 
 cairn_install_library(cairn cairnTargets library)
@@ -77,6 +78,10 @@ endif()
 set(CAIRN_GSTREAMER_PACKAGE)
 if(CAIRN_HAS_GSTREAMER AND NOT TARGET cairn_gstreamer)
   set(CAIRN_GSTREAMER_PACKAGE GStreamerApp)
+endif()
+set(CAIRN_VIEW_PACKAGE)
+if(CAIRN_HAS_VIEW)
+  set(CAIRN_VIEW_PACKAGE OpenSSL)
 endif()
 configure_package_config_file(cmake/cairnConfig.cmake.in cairnConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(cairnConfigVersion.cmake COMPATIBILITY SameMinorVersion)
