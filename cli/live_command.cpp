@@ -13,6 +13,7 @@
 #include "follow_options.hpp"
 #include "interrupt.hpp"
 #include "live_record.hpp"
+#include "live_ros2.hpp"
 #include "live_view.hpp"
 #include "source_options.hpp"
 
@@ -37,6 +38,7 @@ struct LiveCommandOptions {
   bool loop = false;
   bool json_lines = false;
   ViewInput view;
+  Ros2CommandOptions ros2;
 };
 
 /// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json.
@@ -156,6 +158,7 @@ int live_command(LiveCommandOptions options) {
       options.every_frame));
   if (auto view = make_view(options.view, runner, *source, preset_of(options.config)))
     sinks.push_back(std::move(view));
+  if (auto sink = make_ros2_sink(options.ros2, *source)) sinks.push_back(std::move(sink));
   for (const auto& sink : sinks) runner.add(*sink);
 
   const EndsBySignal ends(*source);
@@ -194,6 +197,7 @@ Work declare_live(CLI::App& app) {
   app.add_flag("--json-lines", options->json_lines, "print each frame as a line of JSON");
   add_record_options(app, options->record);
   add_view_options(app, options->view);
+  add_ros2_options(app, options->ros2);
   return [options, &app] {
     options->is_config_told = app.count("--preset") + app.count("--config") > 0;
     return live_command(*options);

@@ -1,4 +1,4 @@
-# What `cmake --install` puts in place, in the components library, sequences, video, gstreamer, dev and tools; docs/install.md says how
+# What `cmake --install` puts in place, in the components library, sequences, video, gstreamer, ros2, dev and tools; docs/install.md says how
 # it is used.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
@@ -20,6 +20,7 @@ function(cairn_install_headers)
       PATTERN "*.hpp"
       PATTERN video EXCLUDE
       PATTERN camera EXCLUDE
+      PATTERN dds EXCLUDE
       REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
   endforeach()
 endfunction()
@@ -38,7 +39,7 @@ set(private_headers
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
-  source/frame_list source/frame_watch source/json_line source/load_module source/open_video source/text_lines
+  source/frame_list source/frame_watch source/json_line source/load_module source/open_video source/open_ros2 source/text_lines
   io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts page/live_page
   view/access view/channels view/client view/frame_json view/parameters)
 list(JOIN private_headers "|" private_headers)
@@ -141,6 +142,9 @@ if(CAIRN_IO)
   endif()
   if(TARGET cairn_gstreamer)
     install(TARGETS cairn_gstreamer LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT gstreamer)
+endif()
+  if(TARGET cairn_dds)
+    install(TARGETS cairn_dds LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT ros2)
   endif()
   set(manual ${PROJECT_BINARY_DIR}/manual)
   foreach(section 1 7)

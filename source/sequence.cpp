@@ -14,6 +14,7 @@
 #include "frame_list.hpp"
 #include "frame_watch.hpp"
 #include "mcap_sequence.hpp"
+#include "open_ros2.hpp"
 #include "open_video.hpp"
 
 namespace cairn::io {
@@ -235,6 +236,10 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
                                         const Pool& pool) {
   check(options);
   if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
+  if (source.starts_with("ros2:") && !exists(source)) {
+    check_no_layout(options, source);
+    return open_ros2(source, options, pool);
+  }
   if (is_camera(source)) return open_camera(source, options, pool);
   for (const char* web : {"http://", "https://"}) {
     if (source.starts_with(web)) {

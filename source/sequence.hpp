@@ -119,7 +119,7 @@ class Sequence {
 /// "DIR_L,DIR_R" two folders of images, paired in order or by stamps; "left_%04d.png,right_%04d.png" two
 /// patterns; a video with options.layout, or "l.mp4,r.mp4"; a recording (MCAP); cameras (docs/cameras.md):
 /// "v4l2:/dev/video0[,/dev/video2][,w=2560,h=720,fps=30,format=YUYV,layout=side_by_side]",
-/// "gst:PIPELINE[ !! PIPELINE]", "rtsp://...".
+/// "gst:PIPELINE[ !! PIPELINE]", "rtsp://..."; "ros2:/stereo" topics of ROS 2 (docs/ros2.md).
 /// Throws Error (one line: what was found, what was expected, which file or option).
 std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceOptions& options,
                                         const Pool& pool = {});

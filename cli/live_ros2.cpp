@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "live_ros2.hpp"
+
+#include <cairn/core/error.hpp>
+#include <live/ros2.hpp>
+
+namespace cairn::cli {
+
+void add_ros2_options(CLI::App& app, Ros2CommandOptions& options) {
+  options.is_wanted = app.add_option("--ros2", options.name_space,
+                                     "publish on topics of ROS 2 below this name (default: cairn)")
+                          ->type_name("NAME")
+                          ->expected(0, 1);
+  app.add_option("--ros2-frame", options.frame, "frame_id of the left camera (default: cairn_camera)")
+      ->type_name("NAME");
+  app.add_option("--ros2-holes", options.holes,
+                 "pixels without a disparity: nan (default) or ros, which is min_disparity - 1")
+      ->type_name("NAME");
+}
+
+std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const io::Sequence& source) {
+  if (options.is_wanted->count() == 0) {
+    if (!options.frame.empty()) throw Error("--ros2-frame: is of --ros2");
+    if (!options.holes.empty()) throw Error("--ros2-holes: is of --ros2");
+    return nullptr;
+  }
+  if (!options.holes.empty() && options.holes != "nan" && options.holes != "ros")
+    throw Error("--ros2-holes: found " + options.holes + ", expected nan or ros");
+  live::Ros2Options how;
+  how.name_space = options.name_space;
+  if (!options.frame.empty()) how.frames.camera = options.frame;
+  how.marks_holes_as_ros = options.holes == "ros";
+  return live::publish_ros2(how, source.rig());
+}
+
+}  // namespace cairn::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <live/live_frame.hpp>
+#include <memory>
+#include <string>
+
+namespace cairn::cli {
+
+/// --ros2 and what belongs to it.
+struct Ros2CommandOptions {
+  const CLI::Option* is_wanted = nullptr;
+  std::string name_space = "cairn";
+  std::string holes;
+  std::string frame;
+};
+void add_ros2_options(CLI::App& app, Ros2CommandOptions& options);
+/// Publishes from now on; nothing where it is not wanted. Throws Error.
+std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const io::Sequence& source);
+
+}  // namespace cairn::cli

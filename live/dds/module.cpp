@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "module.hpp"
+
+#include "../../source/dds/ros2_sequence.hpp"
+#include "ros2_sink.hpp"
+
+extern "C" {
+
+__attribute__((visibility("default"))) const char* cairn_module_version() {
+  return CAIRN_VERSION;
+}
+
+__attribute__((visibility("default"))) cairn::io::Sequence* cairn_open_ros2(
+    const cairn::dds::Ros2Request& request) {
+  return cairn::dds::ros2_sequence(request.source, request.options, request.pool).release();
+}
+
+__attribute__((visibility("default"))) cairn::live::Sink* cairn_publish_ros2(
+    const cairn::live::Ros2Options& options, const std::optional<cairn::StereoRig>& rig) {
+  return cairn::dds::ros2_sink(options, rig).release();
+}
+
+}  // extern "C"

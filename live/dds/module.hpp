@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include "../../source/dds/module.hpp"
+#include "../ros2.hpp"
+
+namespace cairn::dds {
+
+inline constexpr const char* kRos2SinkEntry = "cairn_publish_ros2";
+/// The function of that name: the caller owns what it returns. Throws Error.
+using Ros2SinkEntry = live::Sink* (*)(const live::Ros2Options&, const std::optional<StereoRig>&);
+
+}  // namespace cairn::dds

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "../ros2.hpp"
+
+namespace cairn::dds {
+
+/// As live::publish_ros2().
+std::unique_ptr<live::Sink> ros2_sink(const live::Ros2Options& options, const std::optional<StereoRig>& rig);
+
+/// What is said on NAMESPACE/stats: how the run goes, as JSON. Times are in ms.
+std::string stats_json(const live::LiveFrame& frame, std::uint64_t skipped);
+
+}  // namespace cairn::dds

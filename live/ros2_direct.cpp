@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "dds/ros2_sink.hpp"
+#include "ros2.hpp"
+
+/// Without a module: sanitizers want one program.
+namespace cairn::live {
+
+std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig) {
+  return dds::ros2_sink(options, rig);
+}
+
+}  // namespace cairn::live

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "dds/module.hpp"
+
+/// Who publishes nothing loads no DDS.
+namespace cairn::live {
+
+std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig) {
+  const auto entry =
+      reinterpret_cast<dds::Ros2SinkEntry>(io::module_entry(dds::dds_module(dds::kRos2SinkEntry), "--ros2"));
+  return std::unique_ptr<Sink>(entry(options, rig));
+}
+
+}  // namespace cairn::live

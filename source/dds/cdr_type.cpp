@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "cdr_type.hpp"
+
+#include <dds/ddsi/q_radmin.h>
+#include <dds/ddsrt/heap.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <new>
+
+namespace cairn::dds {
+namespace {
+
+struct CdrType : ddsi_sertype {};
+
+/// Padded to a multiple of four bytes, as RTPS sends it; `size` is without the padding.
+struct CdrData : ddsi_serdata {
+  CdrData(const ddsi_sertype* cdr_type, ddsi_serdata_kind data_kind, ros::Bytes value)
+      : ddsi_serdata{}, bytes(std::move(value)), length(bytes.size()) {
+    ddsi_serdata_init(this, cdr_type, data_kind);
+    bytes.resize((length + 3) / 4 * 4);
+  }
+  ros::Bytes bytes;
+  std::size_t length = 0;
+};
+
+const CdrData& own(const ddsi_serdata* data) {
+  return *static_cast<const CdrData*>(data);
+}
+
+/// Nothing is thrown through Cyclone's C: nullptr where memory is short.
+CdrData* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) noexcept {
+  try {
+    return new CdrData(type, kind, ros::Bytes(size));
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+// ---- values ----
+
+bool equal_keys(const ddsi_serdata*, const ddsi_serdata*) {
+  return true;  // without a key all values are of one instance
+}
+
+std::uint32_t size_of(const ddsi_serdata* data) {
+  return static_cast<std::uint32_t>(own(data).length);
+}
+
+/// From the network: fragments in order, which may overlap.
+ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
+                             std::size_t size) {
+  CdrData* const data = make(type, kind, size);
+  if (data == nullptr) return nullptr;
+  std::uint32_t done = 0;
+  for (; fragment != nullptr; fragment = fragment->nextfrag) {
+    const std::uint32_t end = std::min(fragment->maxp1, static_cast<std::uint32_t>(size));
+    if (end <= done || fragment->min > done) continue;
+    const unsigned char* payload = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
+    std::copy(payload + (done - fragment->min), payload + (end - fragment->min), data->bytes.data() + done);
+    done = end;
+  }
+  return data;
+}
+
+ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
+                          const ddsrt_iovec_t* pieces, std::size_t size) {
+  CdrData* const data = make(type, kind, size);
+  if (data == nullptr) return nullptr;
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < count && done < size; ++i) {
+    const std::size_t length = std::min(pieces[i].iov_len, size - done);
+    std::copy_n(static_cast<const std::uint8_t*>(pieces[i].iov_base), length, data->bytes.data() + done);
+    done += length;
+  }
+  return data;
+}
+
+ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
+  return make(type, SDK_KEY, 4);
+}
+
+/// A sample is the bytes themselves.
+ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
+  if (kind != SDK_DATA) return make(type, kind, 4);
+  const auto& bytes = *static_cast<const ros::Bytes*>(sample);
+  CdrData* const data = make(type, kind, bytes.size());
+  if (data != nullptr) std::copy(bytes.begin(), bytes.end(), data->bytes.begin());
+  return data;
+}
+
+void to_bytes(const ddsi_serdata* data, std::size_t offset, std::size_t size, void* to) {
+  std::copy_n(own(data).bytes.data() + offset, size, static_cast<std::uint8_t*>(to));
+}
+
+ddsi_serdata* borrow_bytes(const ddsi_serdata* data, std::size_t offset, std::size_t size,
+                           ddsrt_iovec_t* piece) {
+  piece->iov_base = const_cast<std::uint8_t*>(own(data).bytes.data()) + offset;
+  piece->iov_len = size;
+  return ddsi_serdata_ref(data);
+}
+
+void give_back_bytes(ddsi_serdata* data, const ddsrt_iovec_t*) {
+  ddsi_serdata_unref(data);
+}
+
+bool to_sample(const ddsi_serdata* data, void* sample, void**, void*) {
+  const CdrData& from = own(data);
+  try {
+    static_cast<ros::Bytes*>(sample)->assign(from.bytes.begin(),
+                                             from.bytes.begin() + static_cast<std::ptrdiff_t>(from.length));
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+}
+
+ddsi_serdata* to_untyped(const ddsi_serdata* data) {
+  CdrData* const untyped = make(data->type, SDK_KEY, 4);
+  if (untyped != nullptr) untyped->type = nullptr;
+  return untyped;
+}
+
+bool untyped_to_sample(const ddsi_sertype*, const ddsi_serdata*, void* sample, void**, void*) {
+  static_cast<ros::Bytes*>(sample)->clear();
+  return true;
+}
+
+void free_data(ddsi_serdata* data) {
+  delete static_cast<CdrData*>(data);
+}
+
+std::size_t print(const ddsi_sertype*, const ddsi_serdata* data, char* to, std::size_t size) {
+  return static_cast<std::size_t>(std::max(0, std::snprintf(to, size, "%zu bytes", own(data).length)));
+}
+
+void keyhash_of(const ddsi_serdata*, ddsi_keyhash* hash, bool) {
+  std::fill(std::begin(hash->value), std::end(hash->value), static_cast<unsigned char>(0));
+}
+
+constexpr ddsi_serdata_ops data_operations() {
+  ddsi_serdata_ops operations{};
+  operations.eqkey = equal_keys;
+  operations.get_size = size_of;
+  operations.from_ser = from_fragments;
+  operations.from_ser_iov = from_pieces;
+  operations.from_keyhash = from_keyhash;
+  operations.from_sample = from_sample;
+  operations.to_ser = to_bytes;
+  operations.to_ser_ref = borrow_bytes;
+  operations.to_ser_unref = give_back_bytes;
+  operations.to_sample = to_sample;
+  operations.to_untyped = to_untyped;
+  operations.untyped_to_sample = untyped_to_sample;
+  operations.free = free_data;
+  operations.print = print;
+  operations.get_keyhash = keyhash_of;
+  return operations;
+}
+const ddsi_serdata_ops kDataOperations = data_operations();
+
+// ---- types ----
+
+void free_type(ddsi_sertype* type) {
+  ddsi_sertype_fini(type);
+  delete static_cast<CdrType*>(type);
+}
+
+// Samples are never made by Cyclone here: values are taken as bytes (dds_takecdr).
+void zero_samples(const ddsi_sertype*, void*, std::size_t) {}
+void realloc_samples(void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {}
+void free_samples(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
+
+bool equal_types(const ddsi_sertype*, const ddsi_sertype*) {
+  return true;  // their names are compared before
+}
+std::uint32_t hash_of_type(const ddsi_sertype*) {
+  return 0;
+}
+
+ddsi_sertype_ops type_operations() {
+  ddsi_sertype_ops operations{};
+  operations.version = ddsi_sertype_v0;
+  operations.free = free_type;
+  operations.zero_samples = zero_samples;
+  operations.realloc_samples = realloc_samples;
+  operations.free_samples = free_samples;
+  operations.equal = equal_types;
+  operations.hash = hash_of_type;
+  return operations;
+}
+const ddsi_sertype_ops kTypeOperations = type_operations();
+
+}  // namespace
+
+ddsi_sertype* make_cdr_type(const std::string& name) {
+  auto type = std::make_unique<CdrType>();
+  ddsi_sertype_init(type.get(), name.c_str(), &kTypeOperations, &kDataOperations, true);
+  type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
+  return type.release();
+}
+
+ddsi_serdata* make_cdr_data(const ddsi_sertype* type, ros::Bytes bytes) {
+  return new CdrData(type, SDK_DATA, std::move(bytes));
+}
+
+std::span<const std::uint8_t> bytes_of(const ddsi_serdata* data) {
+  return {own(data).bytes.data(), own(data).length};
+}
+
+}  // namespace cairn::dds

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <string>
+
+#include "../load_module.hpp"
+#include "../sequence.hpp"
+
+/// What the libraries and the module for ROS 2's topics say to each other. All are made by one build.
+namespace cairn::dds {
+
+/// `entry`: what of the module is wanted.
+constexpr io::ModuleNames dds_module(const char* entry) {
+  return {"cairn-dds.so", entry, "topics of ROS 2 need", "Cyclone DDS (libddsc0debian)",
+          "package cairn-ros2; it is built where cyclonedds-dev is"};
+}
+
+struct Ros2Request {
+  std::string source;
+  io::SourceOptions options;
+  Pool pool;
+};
+inline constexpr const char* kRos2Entry = "cairn_open_ros2";
+/// The function of that name: the caller owns what it returns. Throws Error.
+using Ros2Entry = io::Sequence* (*)(const Ros2Request&);
+
+}  // namespace cairn::dds

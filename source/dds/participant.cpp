@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "participant.hpp"
+
+#include <dds/dds.h>
+#include <unistd.h>
+
+#include <cairn/core/error.hpp>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <mutex>
+
+#include "cdr_type.hpp"
+
+namespace cairn::dds {
+namespace {
+
+/// Beyond it there are no ports left (7400 + 250 · domain).
+constexpr unsigned kLastDomain = 232;
+/// How long a writer waits for slow readers; ROS's own is the same.
+constexpr dds_duration_t kMostBlocking = DDS_MSECS(100);
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::uint32_t domain_id() {
+  const std::string text = environment("ROS_DOMAIN_ID");
+  if (text.empty()) return 0;
+  std::uint32_t id = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  if (error != std::errc{} || end != text.data() + text.size() || id > kLastDomain)
+    throw Error("ROS_DOMAIN_ID: found " + text + ", expected 0 ... " + std::to_string(kLastDomain));
+  return id;
+}
+
+std::string configured(const std::string& domain) {
+  return "<CycloneDDS><Domain>" + domain + "</Domain></CycloneDDS>";
+}
+
+/// What ROS_LOCALHOST_ONLY (up to Humble) and ROS_AUTOMATIC_DISCOVERY_RANGE (from Iron on) ask for.
+std::string discovery_range() {
+  const std::string localhost_only = environment("ROS_LOCALHOST_ONLY");
+  if (localhost_only == "1") {
+    return configured(R"(<General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>)"
+                      "<AllowMulticast>false</AllowMulticast></General>");
+  }
+  if (!localhost_only.empty() && localhost_only != "0")
+    throw Error("ROS_LOCALHOST_ONLY: found " + localhost_only + ", expected 0 or 1");
+  const std::string range = environment("ROS_AUTOMATIC_DISCOVERY_RANGE");
+  if (range.empty() || range == "SUBNET" || range == "SYSTEM_DEFAULT") return "";
+  if (range == "LOCALHOST") {
+    return configured(
+        "<General><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
+        "</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
+        R"(<Peers><Peer address="localhost"/></Peers></Discovery>)");
+  }
+  if (range == "OFF") {
+    return configured(
+        "<General><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>none"
+        "</ParticipantIndex><Tag>cairn_alone_" +
+        std::to_string(::getpid()) + "</Tag></Discovery>");
+  }
+  throw Error("ROS_AUTOMATIC_DISCOVERY_RANGE: found " + range +
+              ", expected SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
+}
+
+/// A domain's configuration is the process's: it is made with the first participant, and goes with the last.
+std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
+  static std::mutex mutex;
+  static std::weak_ptr<Entity> known;
+  if (settings.configuration.empty()) return nullptr;
+  const std::lock_guard lock(mutex);
+  if (auto domain = known.lock()) return domain;
+  const dds_entity_t domain = dds_create_domain(settings.id, settings.configuration.c_str());
+  if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;  // somebody else of this process made it
+  auto made = std::make_shared<Entity>(domain, "DDS domain " + std::to_string(settings.id));
+  known = made;
+  return made;
+}
+
+using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
+
+Qos make_qos(std::string_view ros_type, bool reliable, int depth) {
+  Qos qos(dds_create_qos(), &dds_delete_qos);
+  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       kMostBlocking);
+  dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
+  if (const std::string_view hash = type_hash(ros_type); !hash.empty()) {
+    const std::string data = "typehash=" + std::string(hash) + ";";
+    dds_qset_userdata(qos.get(), data.data(), data.size());
+  }
+  return qos;
+}
+
+struct Topic {
+  Entity entity;
+  const ddsi_sertype* type = nullptr;
+};
+
+Topic make_topic(const Participant& participant, const std::string& topic, std::string_view ros_type) {
+  ddsi_sertype* type = make_cdr_type(dds_type_name(ros_type));
+  const dds_entity_t handle = dds_create_topic_sertype(participant.handle(), ("rt" + topic).c_str(), &type,
+                                                       nullptr, nullptr, nullptr);
+  if (handle < 0) ddsi_sertype_unref(type);
+  return {Entity(handle, topic), type};
+}
+
+}  // namespace
+
+// ---- handles ----
+
+Entity::Entity(std::int32_t handle, const std::string& what) : handle_(handle) {
+  if (handle < 0) {
+    handle_ = 0;
+    throw Error(what + ": DDS refuses it: " + dds_strretcode(handle));
+  }
+}
+
+Entity& Entity::operator=(Entity&& other) noexcept {
+  if (this != &other) {
+    reset();
+    handle_ = std::exchange(other.handle_, 0);
+  }
+  return *this;
+}
+
+void Entity::reset() {
+  if (handle_ > 0) dds_delete(handle_);
+  handle_ = 0;
+}
+
+// ---- domain ----
+
+DomainSettings domain_of_environment() {
+  DomainSettings settings{domain_id(), discovery_range()};
+  if (const std::string uri = environment("CYCLONEDDS_URI"); !settings.configuration.empty() && !uri.empty())
+    settings.configuration += "," + uri;
+  return settings;
+}
+
+Participant::Participant(const DomainSettings& settings)
+    : id_(settings.id),
+      domain_(domain_of(settings)),
+      participant_(dds_create_participant(settings.id, nullptr, nullptr),
+                   "DDS domain " + std::to_string(settings.id)) {}
+
+std::string checked_name(const std::string& name, const std::string& option) {
+  const std::string full = name.starts_with('/') ? name : "/" + name;
+  bool is_name = full.size() > 1;
+  char before = 0;
+  for (const char c : full) {
+    const bool begins = before == '/' || before == 0;
+    const bool fits = c == '/' ? before != '/'
+                               : (std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' ||
+                                  (!begins && std::isdigit(static_cast<unsigned char>(c)) != 0));
+    is_name = is_name && fits;
+    before = c;
+  }
+  if (!is_name || before == '/') {
+    throw Error(
+        option + ": found \"" + name +
+        "\", expected a name of ROS: letters, digits and _ between slashes, none begins with a digit");
+  }
+  return full;
+}
+
+std::string dds_type_name(std::string_view ros_type) {
+  const std::size_t first = ros_type.find('/');
+  const std::size_t last = ros_type.rfind('/');
+  return std::string(ros_type.substr(0, first)) +
+         "::" + std::string(ros_type.substr(first + 1, last - first - 1)) +
+         "::dds_::" + std::string(ros_type.substr(last + 1)) + "_";
+}
+
+// ---- writing ----
+
+BytesWriter::BytesWriter(const Participant& participant, const std::string& topic,
+                         std::string_view ros_type) {
+  Topic made = make_topic(participant, topic, ros_type);
+  writer_ = Entity(dds_create_writer(participant.handle(), made.entity.handle(),
+                                     make_qos(ros_type, true, 5).get(), nullptr),
+                   topic);
+  topic_ = std::move(made.entity);
+  type_ = made.type;
+}
+
+bool BytesWriter::has_reader() const {
+  dds_publication_matched_status_t status{};
+  return dds_get_publication_matched_status(writer_.handle(), &status) == DDS_RETCODE_OK &&
+         status.current_count > 0;
+}
+
+bool BytesWriter::write(ros::Bytes message) {
+  return dds_writecdr(writer_.handle(), make_cdr_data(static_cast<const ddsi_sertype*>(type_),
+                                                      std::move(message))) == DDS_RETCODE_OK;
+}
+
+bool BytesWriter::wait_for_readers(std::chrono::nanoseconds timeout) const {
+  return dds_wait_for_acks(writer_.handle(), timeout.count()) == DDS_RETCODE_OK;
+}
+
+// ---- reading ----
+
+BytesReader::BytesReader(const Participant& participant, const std::string& topic, std::string_view ros_type,
+                         ReaderQos qos) {
+  Topic made = make_topic(participant, topic, ros_type);
+  reader_ = Entity(dds_create_reader(participant.handle(), made.entity.handle(),
+                                     make_qos(ros_type, qos.reliable, qos.depth).get(), nullptr),
+                   topic);
+  topic_ = std::move(made.entity);
+}
+
+std::optional<ros::Bytes> BytesReader::take() {
+  while (true) {
+    ddsi_serdata* data = nullptr;
+    dds_sample_info_t info{};
+    if (dds_takecdr(reader_.handle(), &data, 1, &info, DDS_ANY_STATE) <= 0 || data == nullptr)
+      return std::nullopt;
+    const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> owned(data, &ddsi_serdata_unref);
+    if (!info.valid_data) continue;  // a writer has gone
+    const auto bytes = bytes_of(data);
+    return ros::Bytes(bytes.begin(), bytes.end());
+  }
+}
+
+std::uint64_t BytesReader::lost() const {
+  dds_sample_lost_status_t status{};
+  return dds_get_sample_lost_status(reader_.handle(), &status) == DDS_RETCODE_OK ? status.total_count : 0;
+}
+
+bool BytesReader::has_writer() const {
+  dds_subscription_matched_status_t status{};
+  return dds_get_subscription_matched_status(reader_.handle(), &status) == DDS_RETCODE_OK &&
+         status.current_count > 0;
+}
+
+ReaderWait::ReaderWait(const Participant& participant, const std::vector<const BytesReader*>& readers)
+    : guard_(dds_create_guardcondition(participant.handle()), "DDS"),
+      waitset_(dds_create_waitset(participant.handle()), "DDS") {
+  const auto attach = [&](std::int32_t condition) {
+    if (const dds_return_t done = dds_waitset_attach(waitset_.handle(), condition, 0); done != DDS_RETCODE_OK)
+      throw Error(std::string("DDS: cannot wait for messages: ") + dds_strretcode(done));
+  };
+  attach(guard_.handle());
+  for (const BytesReader* reader : readers) {
+    conditions_.emplace_back(dds_create_readcondition(reader->handle(), DDS_ANY_STATE), "DDS");
+    attach(conditions_.back().handle());
+  }
+}
+
+bool ReaderWait::wait(std::chrono::nanoseconds timeout) const {
+  return dds_waitset_wait(waitset_.handle(), nullptr, 0, timeout.count()) > 0 && !is_woken_;
+}
+
+void ReaderWait::wake() {
+  is_woken_ = true;
+  dds_set_guardcondition(guard_.handle(), true);
+}
+
+}  // namespace cairn::dds

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "ros2_sequence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cairn/core/error.hpp>
+#include <cstdio>
+#include <mutex>
+
+#include "../../ros/from_step.hpp"
+#include "../frame_list.hpp"
+#include "../frame_watch.hpp"
+#include "pairing.hpp"
+#include "participant.hpp"
+#include "ros_pictures.hpp"
+
+namespace cairn::dds {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kPrefix = "ros2:";
+/// How soon next() notices that it is stopped, where stop() was called in a signal handler.
+constexpr auto kNotice = 50ms;
+/// How long a first pair waits for the cameras' camera_info.
+constexpr auto kInfoWait = 2s;
+/// Without a pair for so long, the cameras count as lost.
+constexpr auto kSilence = 3s;
+constexpr std::array kSides{"left", "right"};
+
+std::string seconds_of(double seconds) {
+  std::array<char, 32> words{};
+  std::snprintf(words.data(), words.size(), "%g s", seconds);
+  return words.data();
+}
+
+std::string number_text(std::size_t index) {
+  std::array<char, 32> words{};
+  std::snprintf(words.data(), words.size(), "%06zu", index);
+  return words.data();
+}
+
+class Ros2Sequence : public io::Sequence {
+ public:
+  Ros2Sequence(std::string source, const io::SourceOptions& options, Pool pool)
+      : source_(std::move(source)),
+        prefix_(prefix_of(source_)),
+        options_(options),
+        pool_(std::move(pool)),
+        watch_(options.max_gap_s),
+        calibration_(io::open_calibration(options, std::nullopt, false, false)),
+        topics_{topic("left"), topic("right")},
+        images_{Reader<ros::Image>(participant_, topics_[0]), Reader<ros::Image>(participant_, topics_[1])},
+        infos_{Reader<ros::CameraInfo>(participant_, prefix_ + "/left/camera_info"),
+               Reader<ros::CameraInfo>(participant_, prefix_ + "/right/camera_info")},
+        wait_(participant_, {&images_[0], &images_[1]}),
+        pairing_(static_cast<std::int64_t>(options.max_skew_ms * 1e6)) {
+    first_ = opened();
+  }
+
+  std::optional<io::SequenceFrame> next() override {
+    std::optional<io::SequenceFrame> frame;
+    if (first_) {
+      frame = std::exchange(first_, std::nullopt);
+    } else {
+      while (!is_stopped_ && !frame && !is_past_range()) {
+        if (const auto pair = taken()) {
+          frame = frame_of(*pair);
+        } else {
+          wait_.wait(kNotice);
+        }
+      }
+    }
+    note_losses(frame ? frame->name : number_text(count_));
+    if (is_stopped_) return std::nullopt;
+    return frame;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> size() const override {
+    if (!options_.frames.last_excluded) return std::nullopt;
+    const io::FrameRange& range = options_.frames;
+    return (*range.last_excluded - range.first + range.step - 1) / range.step;
+  }
+  [[nodiscard]] std::string name() const override { return prefix_.empty() ? "/" : prefix_; }
+  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
+  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
+  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
+  [[nodiscard]] const io::Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] std::string stamps_from() const override { return "header.stamp of " + topics_[0]; }
+  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::string& ended_early() const override { return none_; }
+
+  void stop() override {
+    is_stopped_ = true;
+    wait_.wake();
+  }
+
+  [[nodiscard]] io::SourceStatus status() const override {
+    io::SourceStatus status;
+    status.is_live = true;
+    status.clock = "source";
+    status.dropped = lost();
+    status.unpaired = unpaired_;
+    if (Clock::now() - last_pair_.load() > kSilence) {
+      status.is_connected = false;
+      status.trouble = "no pair on " + topics_[0] + " and " + topics_[1] + " for more than 3 s";
+    }
+    return status;
+  }
+
+ private:
+  struct Received {
+    ros::Image image;
+    Clock::time_point arrived;
+  };
+  using Pair = std::pair<Received, Received>;
+
+  static std::string prefix_of(const std::string& source) {
+    const std::string name = source.substr(kPrefix.size());
+    return name.empty() || name == "/" ? "" : checked_name(name, "SOURCE " + source);
+  }
+  [[nodiscard]] std::string topic(const char* side) const {
+    return prefix_ + "/" + side + (options_.rectify ? "/image_raw" : "/image_rect");
+  }
+  [[nodiscard]] std::uint64_t lost() const { return images_[0].lost() + images_[1].lost(); }
+  [[nodiscard]] bool is_past_range() const {
+    return options_.frames.last_excluded && count_ >= *options_.frames.last_excluded;
+  }
+
+  /// The pair that the next image completes; none where there is no image. What cannot be a message is left
+  /// out: anybody may write on a topic.
+  std::optional<Pair> taken() {
+    while (true) {
+      bool is_idle = true;
+      for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+        try {
+          std::optional<ros::Image> image = images_[side].take();
+          if (!image) continue;
+          is_idle = false;
+          has_come_[side] = true;
+          const Stamp stamp = ros::stamp_of(image->header.stamp);
+          std::optional<Pair> pair = pairing_.add(side, stamp, {std::move(*image), Clock::now()});
+          unpaired_ = pairing_.unpaired();
+          if (!pair) continue;
+          last_pair_ = Clock::now();
+          return pair;
+        } catch (const Error& error) {
+          is_idle = false;
+          io::remark(remarks_, {"message that is no image", 1,
+                                "on " + topics_[side] + " (" + error.what() + ")", true, false});
+        }
+      }
+      if (is_idle) return std::nullopt;
+    }
+  }
+
+  /// Takes the cameras' parameters, as far as they have come; true where both are known.
+  bool take_infos() {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
+      while (std::optional<ros::CameraInfo> info = infos_[side].take()) last_infos_[side] = std::move(info);
+    return last_infos_[0] && last_infos_[1];
+  }
+
+  /// The first frame. Throws Error.
+  io::SequenceFrame opened() {
+    const Clock::time_point deadline =
+        Clock::now() +
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.open_timeout_s));
+    const bool needs_infos = calibration_.path.empty();
+    std::optional<Pair> pair;
+    std::optional<Clock::time_point> since;
+    while (true) {
+      if (std::optional<Pair> newer = taken()) {
+        pair = std::move(newer);
+        if (!since) since = Clock::now();
+      }
+      const bool has_infos = !needs_infos || take_infos();
+      if (pair && (has_infos || Clock::now() - *since > kInfoWait)) {
+        calibrate(*pair, needs_infos);
+        if (std::optional<io::SequenceFrame> frame = frame_of(*pair)) return std::move(*frame);
+        pair.reset();
+      }
+      if (!pair && Clock::now() > deadline) throw Error(source_ + ": " + why_none());
+      wait_.wait(kNotice);
+    }
+  }
+
+  [[nodiscard]] std::string why_none() const {
+    const std::string within = " within " + seconds_of(options_.open_timeout_s) + " in domain " +
+                               std::to_string(participant_.domain());
+    if (has_come_[0] && has_come_[1]) {
+      return "no pair" + within + ": stamps on " + topics_[0] + " and " + topics_[1] +
+             " differ by more than " + seconds_of(options_.max_skew_ms * 1e-3) + " (--max-skew)";
+    }
+    std::string silent;
+    std::string unknown;
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      if (has_come_[side]) continue;
+      silent += (silent.empty() ? "" : " and ") + topics_[side];
+      if (!images_[side].has_writer()) unknown += (unknown.empty() ? "" : " nor ") + topics_[side];
+    }
+    return "nothing came on " + silent + within + ", expected sensor_msgs/msg/Image" +
+           (unknown.empty() ? "; somebody publishes there: are messages lost (docs/ros2.md, \"Buffers\")?"
+                            : "; nobody publishes " + unknown +
+                                  " (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, the topics' names)");
+  }
+
+  void calibrate(const Pair& pair, bool needs_infos) {
+    const Size size{static_cast<int>(pair.first.image.width), static_cast<int>(pair.first.image.height)};
+    if (calibration_.rectifier) {
+      calibration_.says.num_disparities = io::disparities_down_to(0, *calibration_.says.rig, size.width);
+    } else if (!needs_infos) {
+      io::check_size(calibration_.says, size, calibration_.path);
+      io::check_search_range(calibration_.says, calibration_.path);
+    } else if (last_infos_[0] && last_infos_[1]) {
+      calibration_.says.rig = rig_of_infos(size);
+    } else {
+      const char* const side = kSides[last_infos_[0] ? 1 : 0];
+      remarks_.push_back(
+          {"nothing came on " + prefix_ + "/" + side + "/camera_info: no metres (--calib FILE instead)", 0,
+           "", false, false});
+    }
+  }
+
+  [[nodiscard]] StereoRig rig_of_infos(Size size) const {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      const ros::CameraInfo& info = *last_infos_[side];
+      const Size of_info{static_cast<int>(info.width), static_cast<int>(info.height)};
+      if (of_info != size && of_info.width != 0) {
+        throw Error(prefix_ + "/" + kSides[side] + "/camera_info: is of images of " + text(of_info) +
+                    ", expected " + text(size) + " as they come");
+      }
+    }
+    try {
+      return ros::rig_of(*last_infos_[0], *last_infos_[1]);
+    } catch (const Error& error) {
+      throw Error(source_ + ": " + error.what());
+    }
+  }
+
+  /// None where it is not one of the range, or not later than the one before.
+  std::optional<io::SequenceFrame> frame_of(const Pair& pair) {
+    const Stamp stamp = ros::stamp_of(pair.first.image.header.stamp);
+    if (last_stamp_ && stamp <= *last_stamp_) {
+      io::remark(remarks_,
+                 {"frame whose stamp is not later than the one before", 1, number_text(count_), true, false});
+      return std::nullopt;
+    }
+    const std::size_t index = count_++;
+    if (!io::is_in(options_.frames, index)) return std::nullopt;
+    last_stamp_ = stamp;
+    io::PicturePair pictures =
+        pictures_of(pair.first.image, topics_[0], pair.second.image, topics_[1], bits_, pool_);
+    bits_ = pictures.bits;
+    pictures = calibration_.rectified(std::move(pictures), pool_);
+    io::SequenceFrame frame{
+        number_text(index),
+        index,
+        stamp,
+        std::move(pictures.left),
+        std::move(pictures.right.gray),
+        false,
+        std::max(pair.first.arrived, pair.second.arrived),
+    };
+    watch_.see(frame, source_, remarks_);
+    return frame;
+  }
+
+  void note_losses(const std::string& before) {
+    note("image without its other half within --max-skew", unpaired_, before);
+    note("image that was sent and never came", lost(), before);
+  }
+  /// A remark with a count that grows.
+  void note(const char* what, std::uint64_t count, const std::string& before) {
+    if (count == 0) return;
+    const auto known = std::find_if(remarks_.begin(), remarks_.end(),
+                                    [&](const io::SourceRemark& other) { return other.what == what; });
+    if (known == remarks_.end()) {
+      remarks_.push_back({what, count, "before " + before, true, false});
+    } else {
+      known->count = count;
+    }
+  }
+
+  std::string source_;
+  std::string prefix_;
+  io::SourceOptions options_;
+  Pool pool_;
+  io::FrameWatch watch_;
+  io::SourceCalibration calibration_;
+  std::array<std::string, 2> topics_;
+  Participant participant_;
+  std::array<Reader<ros::Image>, 2> images_;
+  std::array<Reader<ros::CameraInfo>, 2> infos_;
+  ReaderWait wait_;
+  Pairing<Received> pairing_;
+  std::array<std::optional<ros::CameraInfo>, 2> last_infos_;
+  std::array<bool, 2> has_come_{};
+  std::vector<io::SourceRemark> remarks_;
+  std::string none_;
+  std::optional<Stamp> last_stamp_;
+  std::size_t count_ = 0;
+  int bits_ = 8;
+  std::optional<io::SequenceFrame> first_;
+  std::atomic<bool> is_stopped_ = false;
+  std::atomic<std::uint64_t> unpaired_ = 0;
+  std::atomic<Clock::time_point> last_pair_ = Clock::now();
+};
+
+}  // namespace
+
+std::unique_ptr<io::Sequence> ros2_sequence(const std::string& source, const io::SourceOptions& options,
+                                            const Pool& pool) {
+  return std::make_unique<Ros2Sequence>(source, options, pool);
+}
+
+}  // namespace cairn::dds

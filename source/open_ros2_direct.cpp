@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "dds/ros2_sequence.hpp"
+#include "open_ros2.hpp"
+
+/// Without a module: sanitizers want one program.
+namespace cairn::io {
+
+std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
+                                    const Pool& pool) {
+  return dds::ros2_sequence(source, options, pool);
+}
+
+}  // namespace cairn::io

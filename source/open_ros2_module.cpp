@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "dds/module.hpp"
+#include "open_ros2.hpp"
+
+/// Who asks for no topic loads no DDS.
+namespace cairn::io {
+
+std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
+                                    const Pool& pool) {
+  const auto entry =
+      reinterpret_cast<dds::Ros2Entry>(module_entry(dds::dds_module(dds::kRos2Entry), source));
+  return std::unique_ptr<Sequence>(entry({source, options, pool}));
+}
+
+}  // namespace cairn::io

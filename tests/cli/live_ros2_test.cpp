@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <map>
+#include <nlohmann/json.hpp>
+#include <ros/messages.hpp>
+#include <source/dds/participant.hpp>
+#include <sstream>
+#include <thread>
+
+#include "command.hpp"
+#include "support/dds_domain.hpp"
+
+/// cairn live --ros2, as another process hears it.
+namespace cairn::command {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+class LiveRos2 : public CommandTest {
+ protected:
+  static void SetUpTestSuite() { enter_own_domain(); }
+
+  static std::string sequence() { return CAIRN_SOURCE_DIR "/sequences/rolling_ball"; }
+  static std::map<std::int64_t, Json> frames_of(const std::string& lines) {
+    std::map<std::int64_t, Json> frames;
+    std::istringstream text(lines);
+    for (std::string line; std::getline(text, line);) {
+      const Json frame = Json::parse(line);
+      frames[frame["stamp_ns"].get<std::int64_t>()] = frame;
+    }
+    return frames;
+  }
+};
+
+/// What the command says of the objects that have a place, and what was heard.
+void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard) {
+  std::vector<Json> placed;
+  for (const Json& object : frame["objects"])
+    if (!object["position_m"].is_null()) placed.push_back(object);
+  ASSERT_EQ(heard.detections.size(), placed.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const ros::Detection3D& detection = heard.detections[i];
+    const auto place = placed[i]["position_m"].get<std::array<double, 3>>();
+    const auto& position = detection.results.front().pose.pose.position;
+    EXPECT_NEAR(position.x, place[0], 1e-3);
+    EXPECT_NEAR(position.y, place[1], 1e-3);
+    EXPECT_NEAR(position.z, place[2], 1e-3);
+    EXPECT_NEAR(detection.results.front().hypothesis.score, placed[i]["confidence"].get<double>(), 1e-3);
+    EXPECT_EQ(detection.id, std::to_string(placed[i]["id"].get<int>()));
+    EXPECT_EQ(detection.header.frame_id, "cairn_camera");
+  }
+}
+
+TEST_F(LiveRos2, AnotherProcessHearsWhatIsPrinted) {
+  const dds::Participant participant;
+  const std::string prefix = own_topic("run");
+  dds::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
+  dds::Reader<ros::String> stats(participant, prefix + "/stats", {true, 1000});
+  const Outcome outcome = run(
+      {"live", sequence(), "--no-tracks", "--every-frame", "--rate", "3", "--json-lines", "--ros2", prefix});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto printed = frames_of(outcome.out);
+  ASSERT_EQ(printed.size(), 6U);
+  int heard = 0;
+  while (const auto message = objects.take()) {
+    const auto frame = printed.find(ros::stamp_of(message->header.stamp).ns);
+    ASSERT_NE(frame, printed.end());
+    expect_same_objects(frame->second, *message);
+    ++heard;
+  }
+  EXPECT_GE(heard, 4) << outcome.err;  // the first ones before the two knew each other
+  const auto said = stats.take();
+  ASSERT_TRUE(said);
+  EXPECT_TRUE(Json::parse(said->data).contains("worked_ms"));
+  EXPECT_NE(outcome.err.find("ros2 in domain "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(prefix + "/objects " + std::to_string(heard)), std::string::npos) << outcome.err;
+}
+
+TEST_F(LiveRos2, RefusesWhatRosHasNot) {
+  refuses({"live", sequence(), "--ros2", "a-b"}, {"--ros2", "a-b", "expected a name of ROS"});
+  refuses({"live", sequence(), "--ros2", "--ros2-holes", "zero"}, {"--ros2-holes", "zero", "nan or ros"});
+  refuses({"live", sequence(), "--ros2-holes", "ros"}, {"--ros2-holes", "is of --ros2"});
+  refuses({"live", "ros2:/a//b"}, {"a//b", "expected a name of ROS"});
+  refuses({"live", "ros2:/a", "--layout", "side_by_side"}, {"--layout"});
+  const std::string domain = std::getenv("ROS_DOMAIN_ID");
+  ::setenv("ROS_DOMAIN_ID", "300", 1);
+  refuses({"live", sequence(), "--ros2"}, {"ROS_DOMAIN_ID", "300", "0 ... 232"});
+  ::setenv("ROS_DOMAIN_ID", domain.c_str(), 1);
+}
+
+/// The sockets that a process has open.
+int sockets_of(pid_t process) {
+  int sockets = 0;
+  std::error_code gone;
+  for (const auto& entry : fs::directory_iterator("/proc/" + std::to_string(process) + "/fd", gone))
+    sockets += fs::read_symlink(entry.path(), gone).string().starts_with("socket:") ? 1 : 0;
+  return sockets;
+}
+
+/// Sockets of the command while it runs.
+int sockets_while(std::vector<std::string> arguments, const std::string& out) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  for (const int number : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, number, out.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  arguments.insert(arguments.begin(), CAIRN_COMMAND);
+  std::vector<char*> argv;
+  for (std::string& word : arguments) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_t child = 0;
+  EXPECT_EQ(posix_spawn(&child, CAIRN_COMMAND, &files, nullptr, argv.data(), environ), 0);
+  posix_spawn_file_actions_destroy(&files);
+  EXPECT_TRUE(comes_true([&] { return !content(out).empty(); }));  // its first frame
+  const int sockets = sockets_of(child);
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << content(out);
+  return sockets;
+}
+
+TEST_F(LiveRos2, OpensNoSocketUnlessItIsAsked) {
+  const int own = sockets_of(getpid());  // what a child may inherit
+  EXPECT_LE(sockets_while({"live", sequence(), "--json-lines"}, path("without")), own);
+  EXPECT_GT(sockets_while({"live", sequence(), "--json-lines", "--ros2"}, path("with")), own);
+}
+
+}  // namespace
+}  // namespace cairn::command

@@ -1,0 +1,579 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <dds/dds.h>
+#include <gtest/gtest.h>
+#include <ros.h>
+
+#include <cairn/core/error.hpp>
+#include <cairn/pipeline/segment.hpp>
+#include <cmath>
+#include <io/calibration_files.hpp>
+#include <io/image_files.hpp>
+#include <live/dds/ros2_sink.hpp>
+#include <nlohmann/json.hpp>
+#include <source/dds/pairing.hpp>
+#include <source/dds/participant.hpp>
+#include <source/dds/ros2_sequence.hpp>
+#include <source/dds/ros_pictures.hpp>
+
+#include "support/dds_domain.hpp"
+#include "support/type_hash.hpp"
+
+/// Topics of ROS 2: our bytes are Cyclone's, what is published is what was found, and pairs come as they were
+/// sent.
+namespace cairn::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Dds : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { enter_own_domain(); }
+};
+
+std::string message_of(const auto& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A picture with objects, as a robot's loop has it.
+live::LiveFramePtr live_frame() {
+  static const live::LiveFramePtr made = [] {
+    const std::filesystem::path folder =
+        std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
+    io::PicturePair pictures = io::load_pair(folder / "left.png", folder / "right.png");
+    const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
+    FollowConfig config;
+    config.segmentation.match.num_disparities = calibration.num_disparities.value_or(64);
+    auto frame = std::make_shared<live::LiveFrame>();
+    frame->step.stamp = {1'700'000'000'123'456'789};
+    frame->step.frame = segment(StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb),
+                                calibration.rig, config.segmentation, {});
+    auto pair = std::make_shared<io::SequenceFrame>();
+    pair->name = "four_in_a_row";
+    pair->left = std::move(pictures.left);
+    pair->right = std::move(pictures.right.gray);
+    frame->pair = std::move(pair);
+    frame->config = std::make_shared<const FollowConfig>(config);
+    return frame;
+  }();
+  return made;
+}
+StereoRig rig() {
+  return *io::load_calibration(std::filesystem::path(CAIRN_SOURCE_DIR) / "samples/four_in_a_row/calib.txt")
+              .rig;
+}
+
+// ---- names and hashes ----
+
+TEST_F(Dds, NamesAreThoseOfRos) {
+  EXPECT_EQ(dds_type_name("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
+  EXPECT_EQ(checked_name("cairn", "--ros2"), "/cairn");
+  EXPECT_EQ(checked_name("/robot_1/left", "--ros2"), "/robot_1/left");
+  for (const char* name : {"", "/", "a/", "a//b", "1a", "a/2b", "a-b", "a b", "~a"}) {
+    EXPECT_NE(message_of([&] { checked_name(name, "--ros2"); }).find("expected a name of ROS"),
+              std::string::npos)
+        << name;
+  }
+}
+
+template <class M>
+void expect_known_hash() {
+  EXPECT_EQ(type_hash(M::kType), ros::TypeDescription::hash<M>()) << M::kType;
+}
+
+TEST_F(Dds, TypeHashesAreThoseOfTheMessagesMembers) {
+  EXPECT_EQ(ros::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  expect_known_hash<ros::String>();
+  expect_known_hash<ros::Image>();
+  expect_known_hash<ros::CameraInfo>();
+  expect_known_hash<ros::PointCloud2>();
+  expect_known_hash<ros::DisparityImage>();
+  expect_known_hash<ros::Detection3DArray>();
+  expect_known_hash<ros::OccupancyGrid>();
+  expect_known_hash<ros::TFMessage>();
+  // As ROS 2 publishes it with its interfaces.
+  EXPECT_EQ(type_hash("std_msgs/msg/String"),
+            "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
+  EXPECT_EQ(type_hash("no/msg/Type"), "");
+}
+
+TEST_F(Dds, TheEnvironmentOfRosSaysWhichDomain) {
+  const std::string own = std::getenv("ROS_DOMAIN_ID");
+  ::setenv("ROS_DOMAIN_ID", "7", 1);
+  EXPECT_EQ(domain_of_environment().id, 7U);
+  EXPECT_NE(domain_of_environment().configuration.find("127.0.0.1"), std::string::npos);
+  for (const char* wrong : {"233", "-1", "7a", "x"}) {
+    ::setenv("ROS_DOMAIN_ID", wrong, 1);
+    EXPECT_EQ(message_of([] { domain_of_environment(); }),
+              "ROS_DOMAIN_ID: found " + std::string(wrong) + ", expected 0 ... 232");
+  }
+  ::unsetenv("ROS_DOMAIN_ID");
+  EXPECT_EQ(domain_of_environment().id, 0U);
+  ::setenv("ROS_LOCALHOST_ONLY", "0", 1);
+  EXPECT_EQ(domain_of_environment().configuration, "");
+  ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
+  EXPECT_NE(domain_of_environment().configuration.find("localhost"), std::string::npos);
+  ::setenv("CYCLONEDDS_URI", "file:///robot.xml", 1);
+  EXPECT_TRUE(domain_of_environment().configuration.ends_with(",file:///robot.xml"));
+  ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "NEAR", 1);
+  EXPECT_NE(message_of([] { domain_of_environment(); }).find("expected SUBNET, LOCALHOST, OFF"),
+            std::string::npos);
+  ::setenv("ROS_LOCALHOST_ONLY", "yes", 1);
+  EXPECT_EQ(message_of([] { domain_of_environment(); }), "ROS_LOCALHOST_ONLY: found yes, expected 0 or 1");
+  enter_own_domain();
+  ::setenv("ROS_DOMAIN_ID", own.c_str(), 1);
+}
+
+// ---- bytes ----
+
+/// Sends a message to a reader that was made of IDL, writes what it understood with a writer of that kind,
+/// and compares what comes back.
+template <class Theirs, ros::Message M>
+void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t& description) {
+  const Participant ours;
+  const std::string there = own_topic("there/" + std::string(M::kType.substr(M::kType.rfind('/') + 1)));
+  const std::string back = own_topic("back/" + std::string(M::kType.substr(M::kType.rfind('/') + 1)));
+  Writer<M> writer(ours, there);
+  BytesReader reader(ours, back, M::kType, {true, 5});
+
+  const Entity theirs(dds_create_participant(ours.domain(), nullptr, nullptr), "theirs");
+  const Entity there_topic(
+      dds_create_topic(theirs.handle(), &description, ("rt" + there).c_str(), nullptr, nullptr), there);
+  const Entity back_topic(
+      dds_create_topic(theirs.handle(), &description, ("rt" + back).c_str(), nullptr, nullptr), back);
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  const Entity their_reader(dds_create_reader(theirs.handle(), there_topic.handle(), qos, nullptr), there);
+  const Entity their_writer(dds_create_writer(theirs.handle(), back_topic.handle(), qos, nullptr), back);
+  dds_delete_qos(qos);
+  const auto has_their_reader = [&] {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(their_writer.handle(), &status);
+    return status.current_count > 0;
+  };
+  ASSERT_TRUE(comes_true([&] { return writer.has_reader() && reader.has_writer() && has_their_reader(); }));
+
+  ASSERT_TRUE(writer.write(message));
+  void* sample = nullptr;
+  dds_sample_info_t info{};
+  ASSERT_TRUE(comes_true([&] { return dds_take(their_reader.handle(), &sample, &info, 1, 1) == 1; }));
+  ASSERT_TRUE(info.valid_data);
+  ASSERT_EQ(dds_write(their_writer.handle(), static_cast<const Theirs*>(sample)), DDS_RETCODE_OK);
+  dds_return_loan(their_reader.handle(), &sample, 1);
+
+  std::optional<ros::Bytes> came;
+  ASSERT_TRUE(comes_true([&] { return (came = reader.take()).has_value(); }));
+  ros::Bytes sent = ros::encode(message);
+  // The header's last byte counts what fills up the last four bytes, in newer versions of the protocol.
+  (*came)[3] = 0;
+  came->resize(std::max(came->size(), sent.size()));
+  sent.resize(came->size());
+  EXPECT_LT(came->size() - ros::encode(message).size(), 4U);
+  EXPECT_TRUE(sent == *came) << M::kType;
+}
+
+TEST_F(Dds, BytesAreThoseThatCycloneMakes) {
+  const Step& step = live_frame()->step;
+  const ros::Header header = ros::header_of(step.stamp, "camera");
+  const StereoRig camera = rig();
+  expect_the_bytes_of_cyclone<std_msgs_msg_dds__String_>(ros::String{"so"}, std_msgs_msg_dds__String__desc);
+  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__Image_>(ros::labels_of(header, step),
+                                                           sensor_msgs_msg_dds__Image__desc);
+  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__CameraInfo_>(
+      ros::camera_info_of(header, camera, {640, 480}, ros::Side::right),
+      sensor_msgs_msg_dds__CameraInfo__desc);
+  expect_the_bytes_of_cyclone<stereo_msgs_msg_dds__DisparityImage_>(
+      ros::disparity_image_of(header, step.frame, camera, live_frame()->config->segmentation.match),
+      stereo_msgs_msg_dds__DisparityImage__desc);
+  const ros::PointCloud2 cloud =
+      ros::cloud_of(header, step.frame, Space::obstacle, camera, live_frame()->pair->left.gray.view(), {}, 3);
+  EXPECT_GT(cloud.width, 100U);
+  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__PointCloud2_>(cloud,
+                                                                 sensor_msgs_msg_dds__PointCloud2__desc);
+  const ros::Detection3DArray detections = ros::detections_of(header, step, camera);
+  EXPECT_GE(detections.detections.size(), 2U);
+  expect_the_bytes_of_cyclone<vision_msgs_msg_dds__Detection3DArray_>(
+      detections, vision_msgs_msg_dds__Detection3DArray__desc);
+  const auto grid = ros::grid_of(header, step.frame, camera, live_frame()->config->segmentation.space);
+  ASSERT_TRUE(grid);
+  expect_the_bytes_of_cyclone<nav_msgs_msg_dds__OccupancyGrid_>(*grid, nav_msgs_msg_dds__OccupancyGrid__desc);
+  const auto floor = ros::floor_transform_of(step.stamp, {}, step.frame.ground, camera);
+  ASSERT_TRUE(floor);
+  expect_the_bytes_of_cyclone<tf2_msgs_msg_dds__TFMessage_>(ros::TFMessage{{*floor, *floor}},
+                                                            tf2_msgs_msg_dds__TFMessage__desc);
+}
+
+TEST_F(Dds, WritersSayTheirTypesHash) {
+  const Participant participant;
+  const std::string topic = own_topic("hash");
+  const Writer<ros::Image> writer(participant, topic);
+  const Entity reader(
+      dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+      "builtin");
+  std::string data;
+  ASSERT_TRUE(comes_true([&] {
+    void* sample = nullptr;
+    dds_sample_info_t info{};
+    while (dds_take(reader.handle(), &sample, &info, 1, 1) == 1) {
+      const auto* endpoint = static_cast<const dds_builtintopic_endpoint_t*>(sample);
+      if (info.valid_data && endpoint->topic_name == "rt" + topic) {
+        void* value = nullptr;
+        std::size_t size = 0;
+        dds_qget_userdata(endpoint->qos, &value, &size);
+        data.assign(static_cast<const char*>(value), size);
+        dds_free(value);
+      }
+      dds_return_loan(reader.handle(), &sample, 1);
+      sample = nullptr;
+    }
+    return !data.empty();
+  }));
+  EXPECT_EQ(data, "typehash=" + std::string(type_hash(ros::Image::kType)) + ";");
+}
+
+// ---- what goes out ----
+
+TEST_F(Dds, WhatIsFoundIsPublished) {
+  const live::LiveFramePtr frame = live_frame();
+  live::Ros2Options options;
+  options.name_space = own_topic("found");
+  const StereoRig camera = rig();
+  const auto sink = ros2_sink(options, camera);
+  const Participant participant;
+  const auto topic = [&](const char* name) { return options.name_space + "/" + name; };
+  Reader<ros::Detection3DArray> objects(participant, topic("objects"), {true, 5});
+  Reader<ros::DisparityImage> disparity(participant, topic("disparity"));
+  Reader<ros::PointCloud2> obstacles(participant, topic("obstacles"));
+  Reader<ros::PointCloud2> floor(participant, topic("floor"));
+  Reader<ros::Image> labels(participant, topic("labels"));
+  Reader<ros::Image> reject(participant, topic("reject"));
+  Reader<ros::OccupancyGrid> grid(participant, topic("grid"));
+  Reader<ros::String> stats(participant, topic("stats"));
+  Reader<ros::TFMessage> transforms(participant, "/tf", {true, 50});
+  // Those before all are connected may miss a reader.
+  const auto come = [&](auto& reader) {
+    auto message = reader.take();
+    comes_true([&] {
+      if (!message) sink->offer(frame);
+      std::this_thread::sleep_for(20ms);
+      return message || (message = reader.take());
+    });
+    return message;
+  };
+  const ros::Header header = ros::header_of(frame->step.stamp, "cairn_camera");
+  const Frame& found = frame->step.frame;
+  const auto expect_same = [](const auto& message, const auto& expected) {
+    ASSERT_TRUE(message.has_value());
+    EXPECT_TRUE(ros::encode(*message) == ros::encode(expected));
+  };
+  const View<const Gray> left = frame->pair->left.gray.view();
+  const View<const Rgb> colours = frame->pair->left.rgb.view();
+  expect_same(come(objects), ros::detections_of(header, frame->step, camera));
+  expect_same(come(disparity),
+              ros::disparity_image_of(header, found, camera, frame->config->segmentation.match));
+  expect_same(come(obstacles), ros::cloud_of(header, found, Space::obstacle, camera, left, colours));
+  expect_same(come(floor), ros::cloud_of(header, found, Space::floor, camera, left, colours));
+  expect_same(come(labels), ros::labels_of(header, frame->step));
+  expect_same(come(reject), ros::reject_of(header, found));
+  expect_same(come(grid), *ros::grid_of(ros::header_of(frame->step.stamp, "cairn_floor"), found, camera,
+                                        frame->config->segmentation.space));
+  const auto said = come(stats);
+  ASSERT_TRUE(said);
+  const auto json = nlohmann::json::parse(said->data);
+  EXPECT_EQ(json["objects"], found.objects.list.size());
+  EXPECT_EQ(json["name"], "four_in_a_row");
+  EXPECT_EQ(json["stamp_ns"], frame->step.stamp.ns);
+  const auto transform = come(transforms);
+  ASSERT_TRUE(transform);
+  EXPECT_EQ(transform->transforms.front().header.frame_id, "cairn_camera");
+  EXPECT_EQ(transform->transforms.front().child_frame_id, "cairn_floor");
+  sink->finish();
+  EXPECT_NE(sink->summary().find(topic("objects")), std::string::npos) << sink->summary();
+}
+
+TEST_F(Dds, HolesAreAsRosHasThemWhereThatIsAsked) {
+  live::Ros2Options options;
+  options.name_space = own_topic("holes");
+  options.marks_holes_as_ros = true;
+  options.frames.camera = "left_optical";
+  const auto sink = ros2_sink(options, rig());
+  const Participant participant;
+  Reader<ros::DisparityImage> reader(participant, options.name_space + "/disparity");
+  std::optional<ros::DisparityImage> came;
+  ASSERT_TRUE(comes_true([&] {
+    sink->offer(live_frame());
+    std::this_thread::sleep_for(20ms);
+    return (came = reader.take()).has_value();
+  }));
+  EXPECT_EQ(came->header.frame_id, "left_optical");
+  std::size_t holes = 0;
+  for (std::size_t i = 0; i < came->image.data.size(); i += 4) {
+    float value = 0;
+    std::memcpy(&value, came->image.data.data() + i, 4);
+    ASSERT_FALSE(std::isnan(value));
+    holes += value < came->min_disparity ? 1 : 0;
+    if (value < came->min_disparity) {
+      EXPECT_EQ(value, came->min_disparity - 1);
+    }
+  }
+  EXPECT_GT(holes, 100U);
+}
+
+TEST_F(Dds, NothingIsMadeForNobody) {
+  live::Ros2Options options;
+  options.name_space = own_topic("nobody");
+  const auto sink = ros2_sink(options, rig());
+  for (int i = 0; i < 3; ++i) {
+    sink->offer(live_frame());
+    std::this_thread::sleep_for(30ms);
+  }
+  sink->finish();
+  EXPECT_NE(sink->summary().find("nobody listened"), std::string::npos) << sink->summary();
+}
+
+TEST_F(Dds, AWriterDoesNotWaitForAReaderThatIsStuck) {
+  live::Ros2Options options;
+  options.name_space = own_topic("stuck");
+  const auto sink = ros2_sink(options, rig());
+  const Participant participant;
+  const Reader<ros::DisparityImage> stuck(participant, options.name_space + "/disparity", {true, 5});
+  ASSERT_TRUE(comes_true([&] { return stuck.has_writer(); }));
+  const auto began = std::chrono::steady_clock::now();
+  for (int i = 0; i < 1000; ++i) sink->offer(live_frame());
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 500ms);
+}
+
+// ---- what comes in ----
+
+TEST(Pairing, PutsTogetherWhatIsOfOneMoment) {
+  Pairing<int> pairing(5'000'000);
+  const auto at = [](int ms) { return Stamp{std::int64_t{ms} * 1'000'000}; };
+  EXPECT_FALSE(pairing.add(0, at(0), 1));
+  EXPECT_EQ(pairing.add(1, at(0), 10), (std::pair{1, 10}));
+  // The nearest that is there.
+  EXPECT_FALSE(pairing.add(1, at(30), 20));
+  EXPECT_FALSE(pairing.add(1, at(34), 21));
+  EXPECT_EQ(pairing.add(0, at(33), 2), (std::pair{2, 21}));
+  EXPECT_EQ(pairing.unpaired(), 1U);
+  // Too far apart, then one that fits: what lies before it is given up.
+  EXPECT_FALSE(pairing.add(0, at(60), 3));
+  EXPECT_FALSE(pairing.add(1, at(70), 30));
+  EXPECT_EQ(pairing.add(0, at(66), 4), (std::pair{4, 30}));
+  EXPECT_EQ(pairing.unpaired(), 2U);
+  // One side alone keeps a few only.
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(pairing.add(0, at(100 + 33 * i), i));
+  EXPECT_EQ(pairing.unpaired(), 8U);
+}
+
+TEST(Pairing, BeginsAnewWhereTheClockWasSetBack) {
+  Pairing<int> pairing(0);
+  EXPECT_FALSE(pairing.add(0, {1000}, 1));
+  EXPECT_FALSE(pairing.add(0, {500}, 2));
+  EXPECT_EQ(pairing.add(1, {500}, 3), (std::pair{2, 3}));
+  EXPECT_EQ(pairing.unpaired(), 1U);
+}
+
+ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step, ros::Bytes data) {
+  ros::Image message;
+  message.width = width;
+  message.step = step;
+  message.height = static_cast<std::uint32_t>(data.size() / step);
+  message.encoding = encoding;
+  message.data = std::move(data);
+  return message;
+}
+
+io::PicturePair pictures(const ros::Image& left, const ros::Image& right, int bits = 8) {
+  return pictures_of(left, "/l", right, "/r", bits, {});
+}
+
+TEST(RosPictures, RowsMayBeLongerThanTheImage) {
+  const ros::Image grey = image("mono8", 2, 4, {1, 2, 9, 9, 3, 4, 9, 9});
+  const io::PicturePair pair = pictures(grey, grey);
+  EXPECT_EQ(pair.left.gray.size(), (Size{2, 2}));
+  EXPECT_EQ(pair.left.gray(1, 0), 2);
+  EXPECT_EQ(pair.left.gray(0, 1), 3);
+  EXPECT_TRUE(pair.left.rgb.empty());
+}
+
+TEST(RosPictures, ColoursStandInTheirOrder) {
+  const io::PicturePair pair = pictures(image("bgr8", 1, 3, {10, 20, 30}), image("rgb8", 1, 3, {10, 20, 30}));
+  EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{30, 20, 10}));
+  EXPECT_EQ(pair.left.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
+  EXPECT_EQ(pair.right.gray(0, 0), (77 * 10 + 150 * 20 + 29 * 30 + 128) >> 8);
+  EXPECT_TRUE(pair.right.rgb.empty());
+}
+
+TEST(RosPictures, DeepImagesKeepTheirHighBits) {
+  ros::Image left = image("mono16", 2, 4, {0x00, 0x01, 0xff, 0x0f});
+  const ros::Image right = image("mono16", 2, 4, {0x10, 0x00, 0x20, 0x00});
+  const io::PicturePair pair = pictures(left, right);
+  EXPECT_EQ(pair.bits, 12);
+  EXPECT_EQ(pair.left.gray(0, 0), 0x10);
+  EXPECT_EQ(pair.left.gray(1, 0), 0xff);
+  EXPECT_EQ(pair.right.gray(1, 0), 0x02);
+  EXPECT_EQ(pictures(right, right, 12).left.gray(1, 0), 0x02);
+  left.is_bigendian = 1;
+  EXPECT_EQ(pictures(left, left).left.gray(1, 0), 0xff);
+  EXPECT_EQ(pictures(left, left).bits, 16);
+}
+
+TEST(RosPictures, RefusesWhatIsNoImage) {
+  const ros::Image sound = image("mono8", 2, 2, {1, 2, 3, 4});
+  ros::Image other = sound;
+  other.encoding = "bayer_rggb8";
+  EXPECT_EQ(message_of([&] { pictures(sound, other); }),
+            "/r: found the encoding \"bayer_rggb8\", expected mono8, mono16, rgb8 or bgr8");
+  other = sound;
+  other.data.pop_back();
+  EXPECT_NE(message_of([&] { pictures(other, sound); }).find("/l: found 3 bytes for an image of 2 x 2"),
+            std::string::npos);
+  other = sound;
+  other.width = 0xffffffff;
+  EXPECT_NE(message_of([&] { pictures(other, sound); }).find("4294967295"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              pictures(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
+            }).find("/r: is 4x1"),
+            std::string::npos)
+      << message_of([&] {
+           pictures(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
+         });
+  EXPECT_NE(message_of([&] {
+              pictures(sound, image("mono16", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8}));
+            }).find("a pair has one scale"),
+            std::string::npos);
+}
+
+/// A camera that publishes the sample, 20 pairs a second.
+class Camera {
+ public:
+  explicit Camera(const std::string& prefix, bool with_infos = true, std::int64_t right_later_ns = 0)
+      : images_{Writer<ros::Image>(participant_, prefix + "/left/image_rect"),
+                Writer<ros::Image>(participant_, prefix + "/right/image_rect")},
+        infos_{Writer<ros::CameraInfo>(participant_, prefix + "/left/camera_info"),
+               Writer<ros::CameraInfo>(participant_, prefix + "/right/camera_info")},
+        thread_([this, with_infos, right_later_ns] { work(with_infos, right_later_ns); }) {}
+  ~Camera() { end(); }
+  void end() {
+    is_over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  void work(bool with_infos, std::int64_t right_later_ns) {
+    const io::SequenceFrame& pair = *live_frame()->pair;
+    const StereoRig camera = rig();
+    for (std::int64_t i = 1; !is_over_; ++i) {
+      const Stamp stamp{i * 50'000'000};
+      for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+        const ros::Header header =
+            ros::header_of({stamp.ns + (side == 1 ? right_later_ns : 0)}, "left_optical");
+        if (with_infos) {
+          infos_[side].write(ros::camera_info_of(header, camera, pair.right.size(),
+                                                 side == 0 ? ros::Side::left : ros::Side::right));
+        }
+        images_[side].write(side == 0 ? pair.left.rgb.empty() ? ros::image_of(header, pair.left.gray.view())
+                                                              : ros::image_of(header, pair.left.rgb.view())
+                                      : ros::image_of(header, pair.right.view()));
+      }
+      std::this_thread::sleep_for(50ms);
+    }
+  }
+
+  Participant participant_;
+  std::array<Writer<ros::Image>, 2> images_;
+  std::array<Writer<ros::CameraInfo>, 2> infos_;
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
+
+bool equal(View<const Gray> a, View<const Gray> b) {
+  if (a.size() != b.size()) return false;
+  for (int y = 0; y < a.height(); ++y)
+    if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
+  return true;
+}
+
+TEST_F(Dds, ASourceDeliversPairsAsTheyWereSent) {
+  const std::string prefix = own_topic("stereo");
+  const Camera camera(prefix);
+  const auto source = ros2_sequence("ros2:" + prefix, {}, {});
+  const io::SequenceFrame& sent = *live_frame()->pair;
+  EXPECT_EQ(source->image_size(), sent.right.size());
+  ASSERT_TRUE(source->rig());
+  const StereoRig expected = rig();
+  EXPECT_EQ(source->rig()->focal_px, expected.focal_px);
+  EXPECT_EQ(source->rig()->cx_px, expected.cx_px);
+  EXPECT_NEAR(source->rig()->baseline_m, expected.baseline_m, 1e-6);
+  EXPECT_NEAR(source->rig()->doffs_px, expected.doffs_px, 1e-4);
+  Stamp before;
+  for (int i = 0; i < 3; ++i) {
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(equal(frame->left.gray, sent.left.gray));
+    EXPECT_TRUE(equal(frame->right, sent.right));
+    EXPECT_TRUE(frame->arrived);
+    EXPECT_GT(frame->stamp, before);
+    EXPECT_EQ(frame->stamp.ns % 50'000'000, 0);
+    before = frame->stamp;
+  }
+  EXPECT_TRUE(source->status().is_live);
+  EXPECT_TRUE(source->status().is_connected);
+}
+
+TEST_F(Dds, ASourceEndsSoonWhenItIsStopped) {
+  const std::string prefix = own_topic("stopped");
+  auto camera = std::make_unique<Camera>(prefix);
+  const auto source = ros2_sequence("ros2:" + prefix, {}, {});
+  camera.reset();
+  std::atomic<bool> has_ended = false;
+  std::thread taker([&] {
+    while (source->next()) {
+    }
+    has_ended = true;
+  });
+  std::this_thread::sleep_for(200ms);
+  EXPECT_FALSE(has_ended);
+  const auto began = std::chrono::steady_clock::now();
+  source->stop();
+  taker.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 200ms);
+  EXPECT_FALSE(source->next());
+}
+
+TEST_F(Dds, ASourceSaysWhatItWaitsFor) {
+  io::SourceOptions options;
+  options.open_timeout_s = 0.5;
+  const std::string prefix = own_topic("silent");
+  const std::string domain = std::getenv("ROS_DOMAIN_ID");
+  EXPECT_EQ(message_of([&] { ros2_sequence("ros2:" + prefix, options, {}); }),
+            "ros2:" + prefix + ": nothing came on " + prefix + "/left/image_rect and " + prefix +
+                "/right/image_rect within 0.5 s in domain " + domain +
+                ", expected sensor_msgs/msg/Image; nobody publishes " + prefix + "/left/image_rect nor " +
+                prefix + "/right/image_rect (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, the topics' names)");
+  EXPECT_NE(message_of([&] { ros2_sequence("ros2:/a-b", options, {}); }).find("expected a name of ROS"),
+            std::string::npos);
+}
+
+TEST_F(Dds, ASourcePairsWithinTheSkew) {
+  const std::string prefix = own_topic("skewed");
+  const Camera camera(prefix, false, 4'000'000);
+  io::SourceOptions options;
+  options.open_timeout_s = 2;
+  options.max_skew_ms = 1;
+  const std::string refused = message_of([&] { ros2_sequence("ros2:" + prefix, options, {}); });
+  EXPECT_NE(refused.find("differ by more than 0.001 s (--max-skew)"), std::string::npos) << refused;
+  options.max_skew_ms = 5;
+  options.calib = std::string(CAIRN_SOURCE_DIR) + "/samples/four_in_a_row/calib.txt";
+  const auto source = ros2_sequence("ros2:" + prefix, options, {});
+  EXPECT_TRUE(source->next());
+  EXPECT_TRUE(source->rig());
+}
+
+}  // namespace
+}  // namespace cairn::dds
