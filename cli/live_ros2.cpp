@@ -28,7 +28,7 @@ std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, co
   if (!options.holes.empty() && options.holes != "nan" && options.holes != "ros")
     throw Error("--ros2-holes: found " + options.holes + ", expected nan or ros");
   live::Ros2Options how;
-  how.name_space = options.name_space;
+  if (!options.name_space.empty()) how.name_space = options.name_space;
   if (!options.frame.empty()) how.frames.camera = options.frame;
   how.marks_holes_as_ros = options.holes == "ros";
   return live::publish_ros2(how, source.rig());

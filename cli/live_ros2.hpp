@@ -12,7 +12,7 @@ namespace cairn::cli {
 /// --ros2 and what belongs to it.
 struct Ros2CommandOptions {
   const CLI::Option* is_wanted = nullptr;
-  std::string name_space = "cairn";
+  std::string name_space;  // "" where --ros2 has no value
   std::string holes;
   std::string frame;
 };

@@ -40,23 +40,25 @@ std::string configured(const std::string& domain) {
   return "<CycloneDDS><Domain>" + domain + "</Domain></CycloneDDS>";
 }
 
+/// Unicast to this computer only; loopback has no multicast.
+std::string localhost_discovery(const std::string& general) {
+  return configured("<General>" + general +
+                    "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
+                    "</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
+                    R"(<Peers><Peer address="127.0.0.1"/></Peers></Discovery>)");
+}
+
 /// What ROS_LOCALHOST_ONLY (up to Humble) and ROS_AUTOMATIC_DISCOVERY_RANGE (from Iron on) ask for.
 std::string discovery_range() {
   const std::string localhost_only = environment("ROS_LOCALHOST_ONLY");
   if (localhost_only == "1") {
-    return configured(R"(<General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>)"
-                      "<AllowMulticast>false</AllowMulticast></General>");
+    return localhost_discovery(R"(<Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>)");
   }
   if (!localhost_only.empty() && localhost_only != "0")
     throw Error("ROS_LOCALHOST_ONLY: found " + localhost_only + ", expected 0 or 1");
   const std::string range = environment("ROS_AUTOMATIC_DISCOVERY_RANGE");
   if (range.empty() || range == "SUBNET" || range == "SYSTEM_DEFAULT") return "";
-  if (range == "LOCALHOST") {
-    return configured(
-        "<General><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
-        "</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
-        R"(<Peers><Peer address="localhost"/></Peers></Discovery>)");
-  }
+  if (range == "LOCALHOST") return localhost_discovery("");
   if (range == "OFF") {
     return configured(
         "<General><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>none"
