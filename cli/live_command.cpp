@@ -146,17 +146,18 @@ int live_command(LiveCommandOptions options) {
   }
   live::Runner runner(*source, options.source.source, files, config, how, exec);
 
+  const auto recorder = open_recorder(
+      options.record,
+      live::recorded_run(*source, options.source.source, preset_of(options.config), !options.no_tracks),
+      options.every_frame);
+  runner.add(*recorder);
   std::vector<std::unique_ptr<live::Sink>> sinks;
   sinks.push_back(std::make_unique<StatusLine>());
   if (options.json_lines) {
     sinks.push_back(
         std::make_unique<JsonLines>(preset_of(options.config), source->rig(), !options.no_tracks));
   }
-  sinks.push_back(open_recorder(
-      options.record,
-      live::recorded_run(*source, options.source.source, preset_of(options.config), !options.no_tracks),
-      options.every_frame));
-  if (auto view = make_view(options.view, runner, *source, preset_of(options.config)))
+  if (auto view = make_view(options.view, runner, *recorder, *source, preset_of(options.config)))
     sinks.push_back(std::move(view));
   if (auto sink = make_ros2_sink(options.ros2, *source)) sinks.push_back(std::move(sink));
   for (const auto& sink : sinks) runner.add(*sink);
@@ -165,6 +166,7 @@ int live_command(LiveCommandOptions options) {
   catch_interrupts();
   const live::LiveSummary summary = runner.run();
   std::cerr << remarks_text(*source) << summary_text(summary);
+  if (const std::string line = recorder->summary(); !line.empty()) std::cerr << line << "\n";
   for (const auto& sink : sinks) {
     if (const std::string line = sink->summary(); !line.empty()) std::cerr << line << "\n";
   }

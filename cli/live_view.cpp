@@ -5,11 +5,13 @@
 #include <cairn/core/error.hpp>
 #include <iostream>
 #include <live/view/view_server.hpp>
+#include <ros/mcap.hpp>
 
 namespace cairn::cli {
 namespace {
 
-live::ViewedRun viewed(live::Runner& runner, const io::Sequence& source, const std::string& preset) {
+live::ViewedRun viewed(live::Runner& runner, live::Recorder& recorder, const io::Sequence& source,
+                       const std::string& preset) {
   live::ViewedRun run;
   run.name = source.name();
   run.preset = preset;
@@ -21,6 +23,16 @@ live::ViewedRun viewed(live::Runner& runner, const io::Sequence& source, const s
     run.pause = [&runner](bool on) { runner.pause(on); };
     run.is_paused = [&runner] { return runner.is_paused(); };
     run.step = [&runner] { runner.step(); };
+  }
+  if (ros::has_mcap()) {
+    run.record = [&recorder](bool on) {
+      if (on) {
+        recorder.start(live::recording_name());
+      } else {
+        recorder.stop();
+      }
+    };
+    run.is_recording = [&recorder] { return recorder.status().is_recording; };
   }
   return run;
 }
@@ -64,12 +76,13 @@ void check(const ViewInput& input) {
   }
 }
 
-std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner,
+std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner, live::Recorder& recorder,
                                       const io::Sequence& source, const std::string& preset) {
   if (!input.is_wanted) return nullptr;
   live::ViewOptions options = input.options;
   if (!input.address.empty()) live::read_view_address(input.address, options);
-  auto server = std::make_unique<live::ViewServer>(std::move(options), viewed(runner, source, preset));
+  auto server =
+      std::make_unique<live::ViewServer>(std::move(options), viewed(runner, recorder, source, preset));
   std::cerr << "view: " << server->url() << "\n";
   return server;
 }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <live/live_frame.hpp>
+#include <live/recorder.hpp>
 #include <live/runner.hpp>
 #include <live/view/view_options.hpp>
 #include <memory>
@@ -22,8 +23,8 @@ void add_view_options(CLI::App& app, ViewInput& input);
 void check(const ViewInput& input);
 
 /// None where no view is wanted. Says on stderr where it is. Throws Error as live::ViewServer does. The
-/// runner and the source must outlive it.
-std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner,
+/// runner, the recorder and the source must outlive it.
+std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner, live::Recorder& recorder,
                                       const io::Sequence& source, const std::string& preset);
 
 }  // namespace cairn::cli

@@ -20,6 +20,11 @@
 #include <io/results.hpp>
 #include <io/rle.hpp>
 #include <landmarks/map_file.hpp>
+#include <live/view/access.hpp>
+#include <live/view/parameters.hpp>
+#include <nlohmann/json.hpp>
+#include <ros/from_step.hpp>
+#include <ros/mcap.hpp>
 #include <source/json_line.hpp>
 #include <source/laser_scans.hpp>
 #include <source/priors.hpp>
@@ -104,12 +109,16 @@ std::string encoded(int channels, int bytes_each, std::string (*encode)(const io
       {{kSeedSide, kSeedSide}, channels, bytes_each, pixels.data(), static_cast<std::ptrdiff_t>(row)});
 }
 
+std::string jpeg_of(const io::PixelRows& rows) {
+  return io::encode_jpeg(rows);
+}
+
 std::vector<std::string> pictures() {
   return {encoded(1, 1, io::encode_png),
           encoded(3, 1, io::encode_png),
           encoded(1, 2, io::encode_png),
-          encoded(1, 1, io::encode_jpeg),
-          encoded(3, 1, io::encode_jpeg),
+          encoded(1, 1, jpeg_of),
+          encoded(3, 1, jpeg_of),
           "P2\n# grey\n3 2\n255\n0 10 20\n30 40 255\n",
           "P3\n2 1\n255\n1 2 3 4 5 6\n",
           std::string("P5\n2 2\n65535\n\0\1\2\3\4\5\6\7", 20),
@@ -310,6 +319,132 @@ std::vector<std::string> map_files() {
   return {bytes.str()};
 }
 
+// ---- what is live ----
+
+template <class M>
+bool message(std::span<const std::uint8_t> bytes) {
+  return is_taken([&] { (void)ros::decode<M>(bytes); });
+}
+
+bool messages(std::string_view bytes) {
+  const std::span<const std::uint8_t> all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  bool taken = message<ros::Image>(all);
+  taken |= message<ros::CompressedImage>(all);
+  taken |= message<ros::CameraInfo>(all);
+  taken |= message<ros::DisparityImage>(all);
+  taken |= message<ros::Detection3DArray>(all);
+  taken |= message<ros::PointCloud2>(all);
+  taken |= message<ros::OccupancyGrid>(all);
+  taken |= message<ros::TFMessage>(all);
+  return taken;
+}
+std::vector<std::string> message_bytes() {
+  const auto text = [](const ros::Bytes& bytes) { return std::string(bytes.begin(), bytes.end()); };
+  const ros::Header header = ros::header_of(Stamp{1'500'000'000}, "camera");
+  Image<Gray> image({3, 2});
+  image.fill(7);
+  const StereoRig rig{500, 1, 1, 0.1F, 0};
+  return {text(ros::encode(ros::image_of(header, image))),
+          text(ros::encode(ros::camera_info_of(header, rig, {3, 2}, ros::Side::right))),
+          text(ros::encode(ros::Detection3DArray{})), text(ros::encode(ros::TFMessage{}))};
+}
+
+bool recording(std::string_view bytes) {
+  if (!ros::has_mcap()) return true;
+  const fs::path file = written("run.mcap", bytes);
+  return is_taken([&] {
+    ros::McapReader reader(file);
+    std::size_t all = 0;
+    while (const auto message = reader.next()) all += message->bytes.size();
+    (void)ros::attachment_of(reader, "config.yaml");
+    (void)io::open_sequence(file.string(), {});
+  });
+}
+std::vector<std::string> recordings() {
+  if (!ros::has_mcap()) return {"-"};
+  std::vector<std::string> all;
+  for (const bool compress : {true, false}) {
+    const Place place;
+    const fs::path path = place.path() / "made.mcap";
+    {
+      ros::McapOptions options;
+      options.compress = compress;
+      ros::McapWriter writer(path, options);
+      const std::uint16_t left = writer.channel("/stereo/left/image_rect", "sensor_msgs/msg/Image", "x");
+      const std::uint16_t right = writer.channel("/stereo/right/image_rect", "sensor_msgs/msg/Image", "x");
+      Image<Gray> image({4, 3});
+      image.fill(9);
+      for (int k = 0; k < 2; ++k) {
+        const Stamp stamp{k * 100'000'000};
+        const ros::Bytes bytes = ros::encode(ros::image_of(ros::header_of(stamp, "camera"), image));
+        writer.message(left, stamp, bytes);
+        writer.message(right, stamp, bytes);
+      }
+      writer.attachment("config.yaml", "text/yaml", "preset: default\n");
+      writer.close();
+    }
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    all.push_back(bytes.str());
+  }
+  return all;
+}
+
+/// "METHOD TARGET\nHOST\nORIGIN\nCOOKIE": whoever has no token sees nothing.
+bool request(std::string_view bytes) {
+  static const live::Access access([] {
+    live::ViewOptions options;
+    options.token = "a-token-of-the-fuzzer";
+    return options;
+  }());
+  std::vector<std::string> lines(4);
+  std::istringstream text{std::string(bytes)};
+  for (std::string& line : lines) std::getline(text, line);
+  const std::size_t blank = std::min(lines[0].find(' '), lines[0].size());
+  live::ViewRequest asked;
+  asked.method = std::string_view(lines[0]).substr(0, blank);
+  asked.target = std::string_view(lines[0]).substr(std::min(blank + 1, lines[0].size()));
+  asked.host = lines[1];
+  asked.origin = lines[2];
+  asked.cookie = lines[3];
+  asked.is_upgrade = bytes.size() % 2 == 0;
+  const live::ViewVerdict verdict = access.judge(asked);
+  if (verdict.status < 400 && bytes.find("a-token-of-the-fuzzer") == std::string_view::npos)
+    throw std::logic_error("seen without the token");
+  return verdict.status < 400;
+}
+std::vector<std::string> requests() {
+  return {"GET /?token=a-token-of-the-fuzzer\n127.0.0.1:8765\n\n\n",
+          "GET /status.json\nlocalhost:8765\n\ncairn_token=a-token-of-the-fuzzer\n",
+          "GET /\n127.0.0.1:8765\nhttp://evil.example\n\n"};
+}
+
+/// What a viewer asks to be set.
+bool parameters(std::string_view bytes) {
+  return is_taken([&] {
+    const std::optional<nlohmann::json> list = io::parsed_json(std::string(bytes));
+    if (!list) throw Error("no JSON");
+    auto config = std::make_shared<FollowConfig>();
+    live::ViewedRun run;
+    run.config = [&] { return config; };
+    run.set = [&](const auto& options) {
+      FollowConfig changed = *config;
+      for (const auto& [name, value] : options) set(changed, name, value);
+      validate(changed);
+      *config = changed;
+    };
+    live::Parameters all(run, true);
+    all.set(*list);
+    (void)all.values(all.take_changes()).dump();
+  });
+}
+std::vector<std::string> parameter_lists() {
+  return {
+      R"([{"name": "objects.min_confidence", "value": 0.5}, {"name": "match.method", "value": "window"}])",
+      R"([{"name": "tracking.min_hits"}])", R"([{"name": "match.num_disparities", "value": 1e300}])"};
+}
+
 // ---- the method ----
 
 /// Reads numbers from bytes; zeros when they are used up.
@@ -415,7 +550,7 @@ bool method(std::string_view bytes) {
 }
 std::vector<std::string> method_inputs() {
   std::vector<std::string> all;
-  for (const char preset : {0, 1}) {
+  for (const char preset : {'\0', '\1'}) {
     std::string input{preset, 1, 0, 7, 9, 0, 40, 30, 100, 0, 3};
     for (int i = 0; i < 600; ++i) input += static_cast<char>((i * i * 31 + i * 7) % 251);
     all.push_back(input);
@@ -450,6 +585,10 @@ const std::vector<Target>& targets() {
       {"scans", scans, scan_files},
       {"tracks", tracks, track_lines},
       {"map", map_file, map_files},
+      {"messages", messages, message_bytes},
+      {"recording", recording, recordings},
+      {"request", request, requests},
+      {"parameters", parameters, parameter_lists},
       {"method", method, method_inputs},
   };
   return all;
