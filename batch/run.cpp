@@ -18,9 +18,24 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // of run.json and config.yaml
 
-std::string id_of(const std::string& manifest_sha256, const std::string& config_sha256) {
-  return io::sha256(std::string("cairn batch ") + CAIRN_VERSION + "\n" + manifest_sha256 + "\n" +
-                    config_sha256 + "\n");
+std::string id_of(const Run& run) {
+  return io::sha256(std::string("cairn batch ") + CAIRN_VERSION + "\n" + run.manifest_sha256 + "\n" +
+                    run.config_sha256 + "\n" + Json(run.sequences).dump() + "\n");
+}
+
+/// Of run.json. Throws Error where they do not rise from the first frame on.
+std::vector<std::size_t> sequences_in(const Json& json, std::size_t frames, const fs::path& file) {
+  std::vector<std::size_t> sequences;
+  const auto found = json.find("sequences");
+  if (found == json.end()) return sequences;
+  bool is_good = found->is_array();
+  for (const Json& begin : *found) {
+    is_good = is_good && begin.is_number_unsigned() && begin < frames &&
+              (sequences.empty() ? begin == 0U : begin > sequences.back());
+    if (is_good) sequences.push_back(begin.get<std::size_t>());
+  }
+  if (!is_good) throw Error(file.string() + ": `sequences` are no numbers of frames that rise from 0 on");
+  return sequences;
 }
 
 /// Throws Error where JSON cannot hold a name: it is Unicode.
@@ -73,14 +88,15 @@ std::string file_sha256(const fs::path& path) {
 
 }  // namespace
 
-Planned plan(const fs::path& folder, const std::vector<PlannedFrame>& frames, std::string_view config_yaml) {
+Planned plan(const fs::path& folder, const std::vector<PlannedFrame>& frames,
+             const std::vector<std::size_t>& sequences, std::string_view config_yaml) {
   if (frames.empty()) throw Error("the inputs hold no frame");
   check_names(frames);
-  Run run{folder, {}, frames.size(), {}, io::sha256(config_yaml)};
+  Run run{folder, {}, frames.size(), sequences, {}, io::sha256(config_yaml)};
   io::Sha256 sum;
   for (const PlannedFrame& frame : frames) sum.add(line_of(frame));
   run.manifest_sha256 = sum.hex();
-  run.id = id_of(run.manifest_sha256, run.config_sha256);
+  run.id = id_of(run);
   std::error_code unknown;
   if (fs::exists(folder / "run.json", unknown)) {
     const Run there = open_run(folder);
@@ -98,11 +114,12 @@ Planned plan(const fs::path& folder, const std::vector<PlannedFrame>& frames, st
   for (const PlannedFrame& frame : frames) manifest.append(line_of(frame));
   manifest.finish();
   io::write_file(run.config(), config_yaml);
-  const Json json{{"cairn", CAIRN_VERSION},
-                  {"run", run.id},
-                  {"frames", run.frames},
-                  {"manifest_sha256", run.manifest_sha256},
-                  {"config_sha256", run.config_sha256}};
+  Json json{{"cairn", CAIRN_VERSION},
+            {"run", run.id},
+            {"frames", run.frames},
+            {"manifest_sha256", run.manifest_sha256},
+            {"config_sha256", run.config_sha256}};
+  if (!sequences.empty()) json["sequences"] = sequences;
   io::write_file(folder / "run.json", json.dump(1) + "\n");
   return {run, false};
 }
@@ -121,13 +138,18 @@ Run open_run(const fs::path& folder) {
                 ", and this is " CAIRN_VERSION
                 ", which may find other objects; expected that version or a new plan");
   }
-  Run run{folder, text_at(json, "run", file), 0, text_at(json, "manifest_sha256", file),
+  Run run{folder,
+          text_at(json, "run", file),
+          0,
+          {},
+          text_at(json, "manifest_sha256", file),
           text_at(json, "config_sha256", file)};
   const auto frames = json.find("frames");
   if (frames == json.end() || !frames->is_number_unsigned() || *frames == 0U)
     throw Error(file.string() + ": `frames` is no count, expected a file that cairn batch plan wrote");
   run.frames = frames->get<std::size_t>();
-  if (run.id != id_of(run.manifest_sha256, run.config_sha256))
+  run.sequences = sequences_in(json, run.frames, file);
+  if (run.id != id_of(run))
     throw Error(file.string() + ": was changed: its `run` is not that of its manifest and configuration");
   return run;
 }

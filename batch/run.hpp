@@ -26,6 +26,9 @@ struct Run {
   std::filesystem::path folder;
   std::string id;  // SHA-256 over version, manifest, configuration
   std::size_t frames = 0;
+  /// Of a run with tracks: the first frame of each sequence, which no shard parts. Empty: frames by
+  /// themselves.
+  std::vector<std::size_t> sequences;
   std::string manifest_sha256;
   std::string config_sha256;
 
@@ -40,11 +43,11 @@ struct Planned {
   bool was_there = false;  // the same run had been planned before
 };
 
-/// Writes a run's manifest, a line for each frame, and its configuration; run.json last. Where the folder
-/// holds the same run already nothing changes. Throws Error where it holds another one or other files, where
-/// two frames have one name, and where there is no frame.
+/// Writes a run's manifest, a line for each frame, and its configuration; run.json last. `sequences`: as in
+/// Run. Where the folder holds the same run already nothing changes. Throws Error where it holds another one
+/// or other files, where two frames have one name, and where there is no frame.
 Planned plan(const std::filesystem::path& folder, const std::vector<PlannedFrame>& frames,
-             std::string_view config_yaml);
+             const std::vector<std::size_t>& sequences, std::string_view config_yaml);
 
 /// Reads run.json. Throws Error where the folder holds no run, or one that another version planned.
 Run open_run(const std::filesystem::path& folder);

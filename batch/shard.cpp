@@ -266,11 +266,16 @@ std::optional<Shard> shard_of_slurm() {
               " on, expected one without gaps (--array=1-8), or --shard K/N");
 }
 
-FrameSpan span_of(Shard shard, std::size_t frames) {
+FrameSpan span_of(Shard shard, const Run& run) {
+  const std::size_t count = run.sequences.empty() ? run.frames : run.sequences.size();
   // Without the product of the two, which may be too large.
-  const std::size_t each = frames / shard.of;
-  const std::size_t rest = frames % shard.of;  // the first ones have one more
-  const auto begin_of = [&](std::size_t before) { return each * before + std::min(before, rest); };
+  const std::size_t each = count / shard.of;
+  const std::size_t rest = count % shard.of;  // the first ones have one more
+  const auto begin_of = [&](std::size_t before) {
+    const std::size_t begin = each * before + std::min(before, rest);
+    if (run.sequences.empty()) return begin;
+    return begin < count ? run.sequences[begin] : run.frames;
+  };
   return {begin_of(shard.number - 1), begin_of(shard.number)};
 }
 
@@ -301,7 +306,7 @@ std::optional<SeenWorker> see_worker(const fs::path& lock_file) {
 
 Worked work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFrame& on_frame,
                const std::function<void(const std::string&)>& on_wait) {
-  const FrameSpan span = span_of(shard, run.frames);
+  const FrameSpan span = span_of(shard, run);
   Worked worked{false, span.end - span.begin};
   const fs::path part = part_file(run, shard);
   std::error_code unknown;

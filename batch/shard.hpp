@@ -23,12 +23,13 @@ Shard parse_shard(std::string_view text);
 std::optional<Shard> shard_of_slurm();
 std::string text(Shard shard);
 
-/// The frames begin … end − 1 of the manifest: neighbours, so that a video is decoded in one go.
+/// The frames begin … end − 1 of the manifest: neighbours, so that a video is decoded in one go. With tracks
+/// a shard has whole sequences.
 struct FrameSpan {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
-FrameSpan span_of(Shard shard, std::size_t frames);
+FrameSpan span_of(Shard shard, const Run& run);
 
 std::filesystem::path part_file(const Run& run, Shard shard);
 /// The shard that a file in parts/ or work/ belongs to.

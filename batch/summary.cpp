@@ -34,7 +34,7 @@ struct Part {
 std::vector<Part> parts_of(const Run& run) {
   std::vector<Part> parts;
   for (const Shard shard : shards_in(run.parts(), ".jsonl")) {
-    const FrameSpan span = span_of(shard, run.frames);
+    const FrameSpan span = span_of(shard, run);
     if (span.begin < span.end) parts.push_back({span, shard});
   }
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
@@ -77,7 +77,7 @@ class PartReader {
       : path_(part_file(run, stretch.shard)), file_(path_, std::ios::binary) {
     if (!file_) throw Error(path_.string() + ": cannot be read");
     std::string row;
-    for (std::size_t i = span_of(stretch.shard, run.frames).begin; i < stretch.span.begin; ++i)
+    for (std::size_t i = span_of(stretch.shard, run).begin; i < stretch.span.begin; ++i)
       std::getline(file_, row);
   }
   /// With its newline. Throws Error where it is not the row of this frame.
@@ -104,7 +104,7 @@ Status status_of(const Run& run) {
   const auto at = [&](Shard shard) -> ShardStatus& {
     ShardStatus& status = shards[shard];
     status.shard = shard;
-    status.span = span_of(shard, run.frames);
+    status.span = span_of(shard, run);
     return status;
   };
   for (const Shard shard : shards_in(run.parts(), ".jsonl")) at(shard).is_done = true;

@@ -53,8 +53,10 @@ int plan(const BatchOptions& options) {
   BatchInputs inputs = options.inputs;
   inputs.paths = options.paths;
   const Pool pool = Pool::make();
-  const std::string config = config_of_run(options.config);
-  const batch::Planned planned = batch::plan(options.output, planned_frames(inputs, pool), config);
+  const std::string config =
+      inputs.tracks ? config_of_tracked_run(options.config) : config_of_run(options.config);
+  const auto [frames, sequences] = planned_frames(inputs, pool);
+  const batch::Planned planned = batch::plan(options.output, frames, sequences, config);
   std::cout << (planned.was_there ? "already planned: " : "planned: ")
             << count_of(planned.run.frames, "frame") << " of " << count_of(inputs.paths.size(), "input")
             << ", run " << planned.run.id.substr(0, 12) << " in " << options.output << "\n";
@@ -72,10 +74,15 @@ class RowMaker {
   RowMaker(const batch::Run& run, const BatchOptions& options)
       : exec_(make_exec(options.exec)),
         reader_({"default", run.config().string(), {}}, exec_),
-        kept_(options.keep ? run.folder / "frames" : fs::path()) {}
+        kept_(options.keep ? run.folder / "frames" : fs::path()) {
+    if (run.sequences.empty()) return;
+    if (options.keep) throw Error("--keep: is of runs without --tracks");
+    tracks_.emplace(ConfigOptions{"default", run.config().string(), {}}, exec_);
+  }
 
   std::string operator()(const batch::PlannedFrame& planned) {
     reader_.check(planned);
+    if (tracks_) return tracks_->row(planned);
     BatchFrame read;
     Frame frame;
     try {
@@ -94,6 +101,7 @@ class RowMaker {
  private:
   Exec exec_;
   BatchReader reader_;
+  std::optional<TrackRows> tracks_;
   fs::path kept_;
 };
 
@@ -102,7 +110,7 @@ int work(const BatchOptions& options) {
   const batch::Shard shard = shard_of(options);
   batch::check_unchanged(run);
   RowMaker make_row(run, options);
-  const batch::FrameSpan span = batch::span_of(shard, run.frames);
+  const batch::FrameSpan span = batch::span_of(shard, run);
   const Progress progress(span.end - span.begin);
   const batch::Worked worked = batch::work_on(
       run, shard, [&](const batch::PlannedFrame& frame) { return make_row(frame); },
@@ -226,6 +234,8 @@ Work declare_batch(CLI::App& app) {
   app.add_option("--frames", options->inputs.frames,
                  "of plan: only these of each input: FIRST:END or FIRST:END:STEP, or a number of first ones")
       ->type_name("A:B:STEP");
+  app.add_flag("--tracks", options->inputs.tracks,
+               "of plan: follow each input as cairn follow does; a shard has whole inputs");
   add_config_options(app, options->config);
   app.add_option("--shard", options->shard,
                  "of work: the K-th of N parts of the run, K from 1; default: the task of a Slurm array, "
@@ -247,7 +257,7 @@ Work declare_batch(CLI::App& app) {
                       options->action);
       }
     };
-    of("plan", {"--calib", "--rectify", "--layout", "--frames", "--preset", "--config", "--set"});
+    of("plan", {"--calib", "--rectify", "--layout", "--frames", "--tracks", "--preset", "--config", "--set"});
     of("work", {"--shard", "--keep", "--threads", "--target"});
     of("merge", {"--partial"});
     if (!options->output.empty() && (options->action == "work" || options->action == "status"))

@@ -73,13 +73,16 @@ class Planner {
         range_(inputs.frames.empty() ? io::FrameRange{} : range_of(inputs.frames)),
         pool_(pool) {}
 
-  std::vector<PlannedFrame> frames() && { return std::move(frames_); }
+  PlannedFrames planned() && { return {std::move(frames_), std::move(sequences_)}; }
 
   void add(const std::string& input) {
     if (input.empty()) throw Error("INPUT: found an empty name, expected a folder, a video or LEFT,RIGHT");
     const std::string name = inputs_.paths.size() == 1 ? "" : name_of_input(input);
     const auto two = two_of(input);
-    if (two && is_picture(two->first) && is_picture(two->second)) {
+    if (inputs_.tracks) {
+      sequences_.push_back(frames_.size());
+      add_sequence(input, two, name);
+    } else if (two && is_picture(two->first) && is_picture(two->second)) {
       const fs::path left = two->first;
       io::FrameFiles files{left.stem().string(), left.parent_path(), left, two->second, {}};
       files.calib = io::calibration_in(left.parent_path().empty() ? "." : left.parent_path());
@@ -146,6 +149,7 @@ class Planner {
       std::string number = std::to_string(index);
       if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
       Json how{{"frame", joined(name, number)}, {"source", sequence.source}, {"index", index}};
+      if (inputs_.tracks) how["first"] = range_.first;
       if (sequence.step != 1) how["step"] = sequence.step;
       if (!sequence.layout.empty()) how["layout"] = sequence.layout;
       if (sequence.rectify) how["rectify"] = true;
@@ -167,6 +171,7 @@ class Planner {
   io::FrameRange range_;
   const Pool& pool_;
   std::vector<PlannedFrame> frames_;
+  std::vector<std::size_t> sequences_;
   std::map<std::string, std::string> sums_;
 };
 
@@ -181,11 +186,6 @@ Value value_at(const PlannedFrame& frame, const char* key, Value otherwise) {
   return found == frame.how.end() || found->is_string() ? otherwise : found->get<Value>();
 }
 
-BatchSequence sequence_of(const PlannedFrame& frame) {
-  return {text_at(frame, "source"), text_at(frame, "calib"), text_at(frame, "layout"),
-          value_at(frame, "rectify", false), value_at(frame, "step", std::size_t{1})};
-}
-
 /// The folder without which a frame says more of the machine than of itself.
 fs::path folder_of(const PlannedFrame& frame) {
   const std::string left = text_at(frame, "left");
@@ -197,23 +197,37 @@ fs::path folder_of(const PlannedFrame& frame) {
 
 }  // namespace
 
-std::vector<PlannedFrame> planned_frames(const BatchInputs& inputs, const Pool& pool) {
+BatchSequence sequence_of(const PlannedFrame& frame) {
+  return {text_at(frame, "source"),
+          text_at(frame, "calib"),
+          text_at(frame, "layout"),
+          value_at(frame, "rectify", false),
+          value_at(frame, "step", std::size_t{1}),
+          value_at(frame, "first", std::size_t{0})};
+}
+
+std::size_t index_of(const PlannedFrame& frame) {
+  return value_at(frame, "index", std::size_t{0});
+}
+
+PlannedFrames planned_frames(const BatchInputs& inputs, const Pool& pool) {
   if (!inputs.calib.empty() && !inputs.rectify) (void)io::load_calibration(inputs.calib);
   Planner planner(inputs, pool);
   for (const std::string& input : inputs.paths) planner.add(input);
-  return std::move(planner).frames();
+  return std::move(planner).planned();
 }
 
-std::string config_of_run(const ConfigOptions& options) {
-  const ResolvedConfig resolved = resolve(options);
+std::string config_of_run(const ConfigOptions& options,
+                          const std::function<bool(std::string_view, std::string_view)>& elsewhere) {
+  const ResolvedConfig resolved = resolve(options, std::nullopt, elsewhere);
   std::vector<std::string> also;
   for (const std::string& assignment : options.sets)
     also.push_back(assignment.substr(0, assignment.find('=')));
   // What the file or --set say goes before a calibration, also where it is what the preset has.
   constexpr int kSome = 32;
   constexpr int kOthers = 48;
-  if (resolve(options, kSome).config.match.num_disparities ==
-      resolve(options, kOthers).config.match.num_disparities)
+  if (resolve(options, kSome, elsewhere).config.match.num_disparities ==
+      resolve(options, kOthers, elsewhere).config.match.num_disparities)
     also.emplace_back("match.num_disparities");
   return io::changed_config_yaml(resolved.preset, resolved.config, also);
 }
@@ -237,8 +251,7 @@ void BatchReader::check(const PlannedFrame& frame) {
 }
 
 BatchFrame BatchReader::read(const PlannedFrame& frame) {
-  if (!text_at(frame, "source").empty())
-    return sequences_.read(sequence_of(frame), value_at(frame, "index", std::size_t{0}));
+  if (!text_at(frame, "source").empty()) return sequences_.read(sequence_of(frame), index_of(frame));
   io::FrameFiles files;
   files.name = frame.name;
   files.left = text_at(frame, "left");

@@ -22,14 +22,22 @@ struct BatchInputs {
   std::string layout;  // of one video
   std::string frames;  // of each input: "10:60:2"
   bool rectify = false;
+  bool tracks = false;  // each input is a sequence, and followed from its first frame on
 };
 
+struct PlannedFrames {
+  std::vector<batch::PlannedFrame> frames;
+  std::vector<std::size_t> sequences;  // with tracks: the first frame of each
+};
 /// The frames of all inputs in their order. Throws Error.
-std::vector<batch::PlannedFrame> planned_frames(const BatchInputs& inputs, const Pool& pool);
+PlannedFrames planned_frames(const BatchInputs& inputs, const Pool& pool);
 
 /// A file of options that loads as the command line's: what the calibration of a frame says still counts
-/// where they leave it open.
-std::string config_of_run(const ConfigOptions& options);
+/// where they leave it open. `elsewhere`: as of resolve().
+std::string config_of_run(const ConfigOptions& options,
+                          const std::function<bool(std::string_view, std::string_view)>& elsewhere = {});
+/// The same with the options of a sequence.
+std::string config_of_tracked_run(const ConfigOptions& options);
 
 struct BatchFrame {
   LoadedFrame loaded;
@@ -42,7 +50,8 @@ struct BatchSequence {
   std::string calib;
   std::string layout;
   bool rectify = false;
-  std::size_t step = 1;  // between the frames that are planned
+  std::size_t step = 1;   // between the frames that are planned
+  std::size_t first = 0;  // with tracks: where they begin
 
   bool operator==(const BatchSequence&) const = default;
 };
@@ -64,6 +73,25 @@ class SequenceReader {
   /// What a frame gives depends on nothing but the sequence and its number, whichever were read before.
   /// Throws Error where it cannot be read.
   BatchFrame read(const BatchSequence& sequence, std::size_t index);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// How the frame of a manifest's line is read; the source is empty where it has files of its own.
+BatchSequence sequence_of(const batch::PlannedFrame& frame);
+std::size_t index_of(const batch::PlannedFrame& frame);
+
+/// Makes the rows of sequences that are followed: the lines of tracks.jsonl, under the frames' names.
+class TrackRows {
+ public:
+  TrackRows(ConfigOptions config, const Exec& exec);
+  TrackRows(const TrackRows&) = delete;
+  TrackRows& operator=(const TrackRows&) = delete;
+  ~TrackRows();
+  /// Goes through all frames of the sequence before, where it has not just made the row of the one before.
+  std::string row(const batch::PlannedFrame& frame);
 
  private:
   struct State;

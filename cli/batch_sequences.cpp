@@ -2,9 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 #include <cstdlib>
-#include <source/sequence.hpp>
+#include <io/config_files.hpp>
+#include <nlohmann/json.hpp>
+#include <source/follow_files.hpp>
+#include <source/sequence_run.hpp>
+#include <tracking/follow_config.hpp>
 
 #include "batch_frames.hpp"
+#include "follow_options.hpp"
 #include "source_options.hpp"
 
 namespace cairn::cli {
@@ -22,6 +27,17 @@ std::unique_ptr<io::Sequence> open(const BatchSequence& sequence, const io::Fram
   return io::open_sequence(sequence.source, options, pool);
 }
 
+/// Frames in folders of their own keep their numbers where one has no right image. None of other sources.
+std::optional<std::size_t> count_in_folder(const std::string& source) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(source, unknown)) return std::nullopt;
+  try {
+    return io::find_frames(source).size();
+  } catch (const Error&) {  // raw cameras' folders, in which all frames are pairs
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io::FrameRange& range,
@@ -35,10 +51,12 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io
     for (std::size_t i = next; i < end; i += range.step) frames.push_back(i);
   };
   std::error_code unknown;
-  const bool is_of_images =
-      !std::filesystem::is_regular_file(sequence.source.substr(0, sequence.source.find(',')), unknown);
-  if (is_of_images) {  // each of them is listed: none needs to be decoded
-    add_until(range.first + opened->size().value_or(0) * range.step);
+  const std::filesystem::path left = sequence.source.substr(0, sequence.source.find(','));
+  if (!std::filesystem::is_regular_file(left, unknown)) {  // images are listed: none needs to be decoded
+    std::size_t end = range.first + opened->size().value_or(0) * range.step;
+    if (const auto all = count_in_folder(sequence.source))
+      end = std::min(*all, range.last_excluded.value_or(*all));
+    add_until(end);
     return frames;
   }
   // Frames that cannot be decoded are planned, too: their rows say so.
@@ -114,6 +132,73 @@ BatchFrame SequenceReader::read(const BatchSequence& sequence, std::size_t index
   }
   if (auto frame = state.read_on(index)) return state.loaded(std::move(*frame), *state.opened);
   return state.alone(index);
+}
+
+// ---- tracks ----
+
+std::string config_of_tracked_run(const ConfigOptions& options) {
+  const auto is_of_sequence = [](std::string_view name, std::string_view) { return is_of_following(name); };
+  return config_of_run(options, is_of_sequence) + io::options_yaml(sequence_options(options));
+}
+
+struct TrackRows::State {
+  ConfigOptions config;
+  const Exec& exec;
+  BatchSequence of;
+  std::unique_ptr<io::Sequence> opened;
+  std::optional<io::SequenceRun> run;
+  std::optional<io::SequenceFrame> read_ahead;
+  std::size_t next = 0;  // the frame that is followed next
+  std::string ended;     // why no frame can be followed any more
+
+  void begin(const BatchSequence& sequence) {
+    of = sequence;
+    next = of.first;
+    read_ahead.reset();
+    run.reset();
+    ended.clear();
+    try {
+      opened = open(of, {of.first, {}, of.step}, exec.pool);
+      run.emplace(*opened, of.source, io::CompanionFiles{},
+                  resolve_follow(config, opened->disparities(), opened->ground()), exec);
+    } catch (const Error& error) {
+      ended = error.what();
+    }
+  }
+
+  /// The row of the frame `next` under this name.
+  std::string advance(const std::string& name) {
+    const std::size_t index = next;
+    next += of.step;
+    if (!ended.empty()) return batch::error_row(name, ended);
+    try {
+      if (!read_ahead) read_ahead = opened->next();
+      if (!read_ahead || read_ahead->index != index)
+        return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
+      const io::SequenceFrame frame = *std::exchange(read_ahead, std::nullopt);
+      const Step step = run->next(frame);
+      auto line = batch::Json::parse(io::step_json(step, name, run->marked()));
+      line["frame"] = name;
+      line.erase("name");
+      return line.dump();
+    } catch (const Error& error) {
+      ended = error.what();
+      return batch::error_row(name, ended);
+    }
+  }
+};
+
+TrackRows::TrackRows(ConfigOptions config, const Exec& exec)
+    : state_(std::make_unique<State>(State{std::move(config), exec, {}, {}, {}, {}, 0, {}})) {}
+TrackRows::~TrackRows() = default;
+
+std::string TrackRows::row(const batch::PlannedFrame& frame) {
+  State& state = *state_;
+  const BatchSequence sequence = sequence_of(frame);
+  const std::size_t index = index_of(frame);
+  if (sequence != state.of || index != state.next) state.begin(sequence);
+  while (state.next < index) (void)state.advance(frame.name);
+  return state.advance(frame.name);
 }
 
 }  // namespace cairn::cli

@@ -54,6 +54,15 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& /*sequence*/, cons
                                          const Pool& /*pool*/) {
   refuse();
 }
+std::string config_of_tracked_run(const ConfigOptions& /*options*/) {
+  refuse();
+}
+struct TrackRows::State {};
+TrackRows::TrackRows(ConfigOptions /*config*/, const Exec& /*exec*/) {}
+TrackRows::~TrackRows() = default;
+std::string TrackRows::row(const batch::PlannedFrame& /*frame*/) {
+  refuse();
+}
 struct SequenceReader::State {};
 SequenceReader::SequenceReader(ConfigOptions /*config*/, Pool /*pool*/) {}
 SequenceReader::~SequenceReader() = default;
