@@ -43,6 +43,14 @@ std::vector<Part> parts_of(const Run& run) {
   return parts;
 }
 
+/// The rows of a shard that is not done; 0 where nobody has begun, or without locks.
+std::size_t lines_in(const Run& run, Shard shard) {
+  std::ifstream file(run.work() / (part_file(run, shard).stem().string() + ".rows"), std::ios::binary);
+  std::size_t lines = 0;
+  for (std::string line; std::getline(file, line) && !file.eof();) ++lines;
+  return lines;
+}
+
 /// How many frames some span holds.
 std::size_t united(std::vector<FrameSpan> spans) {
   std::sort(spans.begin(), spans.end(),
@@ -116,14 +124,15 @@ Status status_of(const Run& run) {
   double frames_per_s = 0;
   for (auto& [shard, status] : shards) {
     const auto& worker = status.worker;
-    const std::size_t rows = status.is_done ? status.span.end - status.span.begin
-                             : worker       ? worker->note.rows
-                                            : 0;
-    spans.push_back({status.span.begin, std::min(status.span.begin + rows, status.span.end)});
+    const std::size_t frames = status.span.end - status.span.begin;
+    status.rows = status.is_done ? frames : std::min(lines_in(run, shard), frames);
+    spans.push_back({status.span.begin, status.span.begin + status.rows});
     if (worker) all.errors += worker->note.errors;
     if (worker && worker->is_held && !status.is_done) {
-      const double seconds = worker->note.updated_s - worker->note.started_s;
-      if (seconds > 0) frames_per_s += static_cast<double>(rows - worker->note.resumed) / seconds;
+      const WorkerNote& note = worker->note;
+      const double seconds = note.updated_s - note.started_s;
+      if (seconds > 0 && note.rows > note.resumed)
+        frames_per_s += static_cast<double>(note.rows - note.resumed) / seconds;
     }
     all.shards.push_back(status);
   }

@@ -16,6 +16,7 @@ struct ShardStatus {
   Shard shard;
   FrameSpan span;
   bool is_done = false;
+  std::size_t rows = 0;
   std::optional<SeenWorker> worker;  // the last one, where its note can be read
 };
 

@@ -133,8 +133,7 @@ std::string worker_text(const batch::ShardStatus& status) {
   if (!worker) return {};
   const double age = std::max(0.0, static_cast<double>(std::time(nullptr)) - worker->note.updated_s);
   std::string text = worker->note.host + ", process " + std::to_string(worker->note.pid);
-  if (!status.is_done) text += ", " + duration_text(age) + " ago";
-  return text;
+  return text + ", " + duration_text(age) + " ago";
 }
 
 int status(const BatchOptions& options) {
@@ -151,12 +150,11 @@ int status(const BatchOptions& options) {
   std::size_t done = 0;
   for (const batch::ShardStatus& status : all.shards) {
     done += status.is_done ? 1 : 0;
-    const bool is_running = !status.is_done && status.worker && status.worker->is_held;
-    const std::size_t frames = status.span.end - status.span.begin;
-    const std::size_t rows = status.is_done ? frames : status.worker ? status.worker->note.rows : 0;
     if (status.is_done) continue;  // there may be thousands
+    const bool is_running = status.worker && status.worker->is_held;
+    const std::size_t frames = status.span.end - status.span.begin;
     table.add({batch::text(status.shard), is_running ? "running" : "interrupted",
-               std::to_string(rows) + "/" + std::to_string(frames),
+               std::to_string(status.rows) + "/" + std::to_string(frames),
                std::to_string(status.worker ? status.worker->note.errors : 0), worker_text(status)});
   }
   std::cout << count_of(done, "shard") << " done";

@@ -39,8 +39,8 @@ set(private_headers
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
-  source/frame_list source/frame_watch source/json_line source/load_module source/open_video source/open_ros2 source/text_lines
-  io/calibration_forms io/raster io/read_file io/yaml_text page/html_template page/page_parts page/live_page
+  source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video source/open_ros2 source/text_lines
+  io/calibration_forms io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts page/live_page
   view/access view/channels view/client view/frame_json view/parameters)
 list(JOIN private_headers "|" private_headers)
 

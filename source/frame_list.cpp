@@ -11,6 +11,7 @@
 #include <map>
 #include <system_error>
 
+#include "names_and_numbers.hpp"
 #include "stamps.hpp"
 
 namespace cairn::io {
@@ -23,47 +24,6 @@ constexpr double kUsualRateHz = 10;
 bool is_file(const fs::path& path) {
   std::error_code unknown;
   return fs::is_regular_file(path, unknown);
-}
-
-bool is_folder(const fs::path& path) {
-  std::error_code unknown;
-  return fs::is_directory(path, unknown);
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/// 9 before 10, whether or not the numbers are padded with zeros; ties by bytes.
-bool in_natural_order(const std::string& a, const std::string& b) {
-  std::size_t i = 0;
-  std::size_t j = 0;
-  const auto number_at = [](const std::string& text, std::size_t& at) {
-    while (at < text.size() && text[at] == '0') ++at;
-    const std::size_t begin = at;
-    while (at < text.size() && is_digit(text[at])) ++at;
-    return std::string_view(text).substr(begin, at - begin);
-  };
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const std::string_view left = number_at(a, i);
-      const std::string_view right = number_at(b, j);
-      if (left.size() != right.size()) return left.size() < right.size();
-      if (left != right) return left < right;
-    } else {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i;
-      ++j;
-    }
-  }
-  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
-}
-
-std::optional<std::size_t> number_of(std::string_view text) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
 }
 
 /// The images of a folder in their order.
@@ -111,7 +71,7 @@ std::vector<Stamp> stamps_by_line(const fs::path& path, const std::vector<std::s
   if (all.size() == names.size()) return all;
   std::vector<Stamp> some;
   for (const std::string& name : names) {
-    const std::optional<std::size_t> number = number_of(name);
+    const std::optional<std::size_t> number = whole<std::size_t>(name);
     if (!number || *number >= all.size()) refuse_count(path, all.size(), names.size());
     some.push_back(all[*number]);
   }
@@ -126,7 +86,7 @@ std::vector<Stamp> stamps_by_frame(const fs::path& path, const std::vector<Frame
   }
   std::vector<Stamp> stamps;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto found = by_frame.find(number_of(names[i]).value_or(i));
+    const auto found = by_frame.find(whole<std::size_t>(names[i]).value_or(i));
     if (found != by_frame.end()) stamps.push_back(found->second);
   }
   if (stamps.size() == names.size()) return stamps;
@@ -314,7 +274,7 @@ Numbered files_of(const std::string& text) {
       continue;
     const std::string digits = name.substr(pattern->before.size(), name.size() - around);
     const bool is_padded = digits.size() == pattern->digits || digits.front() != '0';
-    const std::optional<std::size_t> number = is_padded ? number_of(digits) : std::nullopt;
+    const std::optional<std::size_t> number = is_padded ? whole<std::size_t>(digits) : std::nullopt;
     if (!number) continue;
     found.side.files.push_back(file);
     found.numbers.push_back(*number);

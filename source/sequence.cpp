@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
-#include <charconv>
 #include <filesystem>
 #include <io/read_file.hpp>
 #include <system_error>
@@ -14,6 +13,7 @@
 #include "frame_list.hpp"
 #include "frame_watch.hpp"
 #include "mcap_sequence.hpp"
+#include "names_and_numbers.hpp"
 #include "open_ros2.hpp"
 #include "open_video.hpp"
 
@@ -140,21 +140,9 @@ class FileSequence : public Sequence {
   std::string none_;
 };
 
-std::optional<std::size_t> count_in(std::string_view text) {
-  std::size_t count = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return count;
-}
-
 bool exists(const fs::path& path) {
   std::error_code unknown;
   return fs::exists(path, unknown);
-}
-
-bool is_folder(const fs::path& path) {
-  std::error_code unknown;
-  return fs::is_directory(path, unknown);
 }
 
 std::string name_of(const fs::path& path) {
@@ -209,7 +197,7 @@ FrameRange parse_frame_range(std::string_view text) {
   FrameRange range;
   const std::size_t first_colon = text.find(':');
   if (first_colon == std::string_view::npos) {
-    range.last_excluded = count_in(text);
+    range.last_excluded = whole<std::size_t>(text);
     if (!range.last_excluded || *range.last_excluded == 0) refuse();
     return range;
   }
@@ -217,15 +205,15 @@ FrameRange parse_frame_range(std::string_view text) {
   const std::string_view first = text.substr(0, first_colon);
   const std::string_view last = text.substr(first_colon + 1, second_colon - first_colon - 1);
   if (!first.empty()) {
-    if (!count_in(first)) refuse();
-    range.first = *count_in(first);
+    if (!whole<std::size_t>(first)) refuse();
+    range.first = *whole<std::size_t>(first);
   }
   if (!last.empty()) {
-    range.last_excluded = count_in(last);
+    range.last_excluded = whole<std::size_t>(last);
     if (!range.last_excluded || *range.last_excluded <= range.first) refuse();
   }
   if (second_colon < text.size()) {
-    const auto step = count_in(text.substr(second_colon + 1));
+    const auto step = whole<std::size_t>(text.substr(second_colon + 1));
     if (!step || *step == 0) refuse();
     range.step = *step;
   }

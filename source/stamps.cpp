@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <io/read_file.hpp>
 #include <limits>
 
+#include "names_and_numbers.hpp"
 #include "text_lines.hpp"
 
 namespace cairn::io {
@@ -23,16 +23,8 @@ constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 /// A century either side of 1970 and then some; sums and differences of two fit 64 bits.
 constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;
 
-template <class Number>
-std::optional<Number> whole(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
 bool is_digits(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
 }
 
 std::optional<Stamp> stamp_of(std::int64_t seconds, std::int64_t ns) {
@@ -69,8 +61,8 @@ std::optional<Stamp> date(std::string_view text) {
   constexpr std::string_view kForm = "0000-00-00 00:00:00";
   if (text.size() < kForm.size()) return std::nullopt;
   for (std::size_t i = 0; i < kForm.size(); ++i) {
-    const bool is_digit = text[i] >= '0' && text[i] <= '9';
-    const bool fits = kForm[i] == '0' ? is_digit : text[i] == kForm[i] || (kForm[i] == ' ' && text[i] == 'T');
+    const bool fits =
+        kForm[i] == '0' ? is_digit(text[i]) : text[i] == kForm[i] || (kForm[i] == ' ' && text[i] == 'T');
     if (!fits) return std::nullopt;
   }
   const std::string_view fraction = text.substr(kForm.size());

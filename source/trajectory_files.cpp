@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <io/read_file.hpp>
 
+#include "names_and_numbers.hpp"
 #include "stamps.hpp"
 #include "text_lines.hpp"
 
@@ -121,7 +122,9 @@ Trajectory load_folder(const fs::path& folder) {
     fs::path file = entry.path() / "pose.txt";
     if (fs::is_regular_file(file, ignored)) files.push_back(std::move(file));
   }
-  std::sort(files.begin(), files.end());
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return in_natural_order(a.parent_path().filename().string(), b.parent_path().filename().string());
+  });
   if (files.empty()) throw Error(folder.string() + ": no frame in this folder holds a pose.txt");
   Trajectory all;
   for (const fs::path& file : files) all.poses.push_back({{}, load_pose(file)});

@@ -88,6 +88,17 @@ TEST_F(TrajectoryFiles, OfEurocMayNameTheirColumns) {
   EXPECT_EQ(angle_of(read.poses[0].map_from_camera), 0);
 }
 
+TEST_F(TrajectoryFiles, FramesOfAFolderAreInTheOrderOfTheirNumbers) {
+  for (const int frame : {1, 2, 9, 10, 11}) {
+    with("seq/" + std::to_string(frame) + "/pose.txt",
+         "1 0 0 " + std::to_string(frame) + "\n0 1 0 0\n0 0 1 0\n");
+  }
+  std::vector<double> order;
+  for (const TimedPose& pose : load_trajectory(folder() / "seq").poses)
+    order.push_back(pose.map_from_camera.translation_m.x);
+  EXPECT_EQ(order, (std::vector<double>{1, 2, 9, 10, 11}));
+}
+
 TEST_F(TrajectoryFiles, AFolderOfFramesHoldsAPoseEach) {
   with("seq/000/pose.txt", "# camera-to-world\n1 0 0 0.5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   with("seq/001/pose.txt", "1 0 0 0.6\n0 1 0 0\n0 0 1 0\n");
