@@ -248,7 +248,7 @@
     });
   }
   /** How long frames take from the arrival of their first message until they are drawn; for those who measure. */
-  const cairnStats = window.cairnStats = {drawn: 0, p50_ms: 0, p95_ms: 0};
+  const cairnStats = window.cairnStats = {received: 0, drawn: 0, p50_ms: 0, p95_ms: 0};
   const delays = [];
   const drawnTimes = [];
   function count(frame) {
@@ -258,7 +258,7 @@
     drawnTimes.push(now);
     if (drawnTimes.length > 60) drawnTimes.shift();
     ++cairnStats.drawn;
-    if (cairnStats.drawn % 10) return;
+    if (cairnStats.drawn > 10 && cairnStats.drawn % 10) return;
     const sorted = [...delays].sort((a, b) => a - b);
     cairnStats.p50_ms = sorted[Math.floor(sorted.length * 0.5)];
     cairnStats.p95_ms = sorted[Math.floor(sorted.length * 0.95)];
@@ -275,6 +275,13 @@
       canvases: [...root.querySelectorAll('canvas')], marks: root.querySelector('.marks'),
     }];
   }));
+  // Kept, since asking for them would lay the page out again and again.
+  const sizes = new Map();  // element → {wide, high} on the screen
+  const measured = new ResizeObserver((entries) => {
+    for (const {target, contentRect} of entries) sizes.set(target, {wide: contentRect.width, high: contentRect.height});
+    stripIsOld = true;
+    if (shown.picture?.labels) placeMarks(shown.picture.labels);
+  });
   /** An image as large as a canvas, whose pixels are numbers. */
   function buffers(canvas) {
     let image = null, context = null, pixels = null;
@@ -392,7 +399,7 @@
   };
   function placeMarks(labels) {
     const found = state.overlay === 'none' ? new Map() : middles(labels), {marks, screen} = panels.picture;
-    const scale = screen.clientWidth / labels.width, wide = screen.clientWidth, high = screen.clientHeight;
+    const {wide, high} = sizes.get(screen) ?? {wide: screen.clientWidth, high: screen.clientHeight}, scale = wide / labels.width;
     for (const [id, sums] of found) {
       const x = sums.x / sums.n * scale, y = sums.y / sums.n * scale;
       let mark = pictureMarks.get(id);
@@ -597,6 +604,7 @@
         trails.clear();
       }
       Object.assign(life, {frame: stats.frame, at: performance.now(), count: life.count + 1});
+      cairnStats.received = life.count;
       const stages = new Map();
       for (const {stage, ms} of stats.stages ?? []) if (isNumber(ms)) stages.set(String(stage), (stages.get(String(stage)) ?? 0) + ms);
       history.push({frame: stats.frame, stages, latency: stats.latency_ms});
@@ -729,7 +737,8 @@
   const strip = {canvas: document.querySelector('.strip canvas'), stages: [], chosenAt: 0, top: 10};
   let stripIsOld = true;
   function chooseStages() {
-    if (strip.stages.length && life.count - strip.chosenAt < 240) return;
+    // Again as soon as the first frames, which take longer, are of no weight.
+    if (strip.stages.length && life.count - strip.chosenAt < Math.min(240, strip.chosenAt + 10)) return;
     strip.chosenAt = life.count;
     const sums = new Map();
     for (const {stages} of history) for (const [stage, ms] of stages) sums.set(stage, (sums.get(stage) ?? 0) + ms);
@@ -746,7 +755,7 @@
   const otherOf = (stages) => [...stages].reduce((sum, [stage, ms]) => (strip.colours.has(stage) ? sum : sum + ms), 0);
   const median = (values) => (values.length ? [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)] : NaN);
   function drawStrip() {
-    const {canvas} = strip, wide = canvas.clientWidth, high = canvas.clientHeight, dpr = Math.min(2, devicePixelRatio || 1);
+    const {canvas} = strip, {wide, high} = sizes.get(canvas) ?? {}, dpr = Math.min(2, devicePixelRatio || 1);
     if (!wide || !high) return;
     if (canvas.width !== Math.round(wide * dpr) || canvas.height !== Math.round(high * dpr)) {
       [canvas.width, canvas.height] = [Math.round(wide * dpr), Math.round(high * dpr)];
@@ -1270,7 +1279,8 @@
       requestAnimationFrame(tick);
     };
     tick();
-    new ResizeObserver(() => { stripIsOld = true; if (shown.picture?.labels) placeMarks(shown.picture.labels); }).observe(byId('desk'));
+    measured.observe(panels.picture.screen);
+    measured.observe(strip.canvas);
     watch();
     connect();
   }

@@ -90,7 +90,7 @@ function makeScene(stage, onPick) {
   const quick = canvas.getContext('webgl2', {...wanted, antialias: true, failIfMajorPerformanceCaveat: true});
   const gl = quick ?? canvas.getContext('webgl2', {...wanted, antialias: false});
   if (!gl) return null;
-  const kPause = quick ? 0 : 250;  // ms between two pictures, unless somebody turns the view
+  const kPause = quick ? 0 : 400;  // ms between two pictures, unless somebody turns the view
   let lines, faces, clouds, grid;
   function begin() {
     lines = program(kLineShader, ['clip', 'size']);
@@ -182,7 +182,8 @@ function makeScene(stage, onPick) {
   const shown = {things: [], trails: [], cloud: null, isCloudNew: false, floorFromCamera: null, hasFloor: false, frustum: null};
   const kViews = {behind: {yaw: 0, pitch: 0.52, far: 6.5}, side: {yaw: 1.15, pitch: 0.42, far: 6.5}, above: {yaw: 0, pitch: 1.55, far: 8}};
   const view = {at: [2.6, 0, 0.3], ...kViews.behind, isTouched: false};
-  let size = {wide: 0, high: 0, dpr: 1};
+  let size = {wide: 0, high: 0, dpr: 1};  // of the canvas
+  const room = {wide: 0, high: 0};        // for it
   let asked = 0, paintedAt = 0;
   let grip = null;  // where the pointer holds the view
   const draw = () => { asked ||= requestAnimationFrame(() => { asked = 0; paint(); }); };
@@ -213,7 +214,7 @@ function makeScene(stage, onPick) {
   }
 
   function paint() {
-    const wide = stage.clientWidth, high = stage.clientHeight, dpr = Math.min(2, devicePixelRatio || 1) * (quick ? 1 : 0.7);
+    const {wide, high} = room, dpr = Math.min(2, devicePixelRatio || 1) * (quick ? 1 : 0.6);
     paintedAt = performance.now();
     if (!wide || !high || gl.isContextLost()) return;
     if (size.wide !== wide || size.high !== high || size.dpr !== dpr) {
@@ -416,7 +417,10 @@ function makeScene(stage, onPick) {
 
   canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
   canvas.addEventListener('webglcontextrestored', () => { begin(); draw(); });
-  new ResizeObserver(draw).observe(stage);
+  new ResizeObserver(([{contentRect}]) => {
+    Object.assign(room, {wide: contentRect.width, high: contentRect.height});
+    draw();
+  }).observe(stage);
   begin();
   return {
     show(what) {
