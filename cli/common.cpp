@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <io/calibration_files.hpp>
 #include <io/config_files.hpp>
 #include <io/disparity_files.hpp>
@@ -181,6 +182,13 @@ void check_rights(const std::vector<io::FrameFiles>& frames) {
     (void)right_of(frames.front());
 }
 
+/// MCAP: by its first bytes, since what reads it may not be built in.
+bool is_recording(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(6, '\0');
+  return file.read(begin.data(), 6) && begin == "\x89MCAP0";
+}
+
 }  // namespace
 
 std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
@@ -192,6 +200,10 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
     return frames;
   }
   if (options.right.empty() && options.disparity.empty() && fs::exists(options.left, ignored)) {
+    if (is_recording(options.left)) {
+      throw Error(options.left + ": is a recording, expected pictures (cairn record " + options.left +
+                  " -o DIR makes a folder of frames of it; cairn follow and cairn live read it as it is)");
+    }
     throw Error(options.left + ": a left picture alone, expected the right one as well");
   }
   if (options.right.empty() && options.disparity.empty()) {

@@ -38,8 +38,10 @@ set(private_headers
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
+  ros/mcap_format source/mcap_sequence source/mcap_topics
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
-  source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video source/open_ros2 source/text_lines
+  source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video
+  source/open_ros2 source/text_lines
   io/calibration_forms io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts page/live_page
   view/access view/channels view/client view/frame_json view/parameters)
 list(JOIN private_headers "|" private_headers)
@@ -84,13 +86,18 @@ set(CAIRN_VIEW_PACKAGE)
 if(CAIRN_HAS_VIEW)
   set(CAIRN_VIEW_PACKAGE OpenSSL)
 endif()
+set(CAIRN_MCAP_PACKAGES)
+if(CAIRN_HAS_MCAP)
+  set(CAIRN_MCAP_PACKAGES Zstd)
+endif()
 configure_package_config_file(cmake/cairnConfig.cmake.in cairnConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(cairnConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cairnConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/cairnConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT dev)
 if(CAIRN_IO AND static_library)
   install(FILES cmake/FindOpenCVImgproc.cmake cmake/FindOpenCVCalib3d.cmake cmake/FindOpenCVVideo.cmake
-    cmake/FindOpenCVVideoio.cmake cmake/FindGStreamerApp.cmake DESTINATION ${package_dir} COMPONENT dev)
+    cmake/FindOpenCVVideoio.cmake cmake/FindGStreamerApp.cmake cmake/FindZstd.cmake
+    DESTINATION ${package_dir} COMPONENT dev)
 endif()
 
 # ---- for pkg-config ----
@@ -127,8 +134,12 @@ if(CAIRN_IO)
   cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results" "-lcairn-io"
     "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "${opencv_libs}")
   if(CAIRN_HAS_TRACKING)
+    set(mcap_requires)
+    if(CAIRN_HAS_MCAP)
+      set(mcap_requires " libzstd")
+    endif()
     cairn_install_pkgconfig(cairn-sequences "Sequences with cairn: odometry, tracks, landmarks, sources of frames"
-      "-lcairn-source -lcairn-ros -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3"
+      "-lcairn-source -lcairn-ros -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3${mcap_requires}"
       "-lSQLiteCpp -lopencv_video -lopencv_calib3d -ldl")
   endif()
 endif()

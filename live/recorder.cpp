@@ -245,6 +245,7 @@ struct Recorder::State {
   std::condition_variable changed;
   std::deque<Waiting> queue;
   std::uint64_t skipped_before = 0;
+  std::uint64_t in_file = 0;  // frames, of status.frames; the others are in the chunk at hand
   bool is_stopping = false;
   RecorderStatus status;
 };
@@ -270,6 +271,7 @@ void Recorder::start(const std::filesystem::path& path) {
     const std::lock_guard lock(s.mutex);
     s.queue.clear();
     s.skipped_before = 0;
+    s.in_file = 0;
     s.is_stopping = false;
     s.status = {true, path.string(), 0, 0, s.recording->bytes(), {}};
   }
@@ -330,6 +332,8 @@ void Recorder::State::write_all() {
       else
         recording->flush();
       const std::lock_guard lock(mutex);
+      // What was written meanwhile holds all frames before this one.
+      if (recording->bytes() != status.bytes) in_file = status.frames;
       status.frames += next.frame ? 1 : 0;
       status.bytes = recording->bytes();
     }
@@ -348,6 +352,7 @@ void Recorder::State::fail(const std::string& why) {
   {
     const std::lock_guard lock(mutex);
     status.is_recording = false;
+    status.frames = in_file;
     status.trouble = why;
     queue.clear();
     line = "recording stopped: " + why;

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "command.hpp"
+
+/// cairn live --record, and what plays such a recording again.
+namespace cairn::command {
+namespace {
+
+using Json = nlohmann::json;
+
+class LiveRecord : public CommandTest {
+ protected:
+  [[nodiscard]] static std::string sequence() {
+    return (fs::path(CAIRN_SOURCE_DIR) / "sequences" / "rolling_ball").string();
+  }
+  /// Of every frame of the sequence, or of `source`.
+  Outcome record(const std::vector<std::string>& more = {}, const std::string& source = sequence()) const {
+    std::vector<std::string> words{"live", source,     "--every-frame", "--pace",
+                                   "0",    "--record", path("run.mcap")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  /// Without names and times, which may differ.
+  static std::string plain(Json frame) {
+    for (const char* key : {"name", "stamp_ns", "timings_ms", "timings"}) frame.erase(key);
+    return frame.dump();
+  }
+  static std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+      Json frame = Json::parse(line);
+      frame.erase("name");
+      all.push_back(frame.dump());
+    }
+    return all;
+  }
+};
+
+TEST_F(LiveRecord, PlayedAgainItGivesTheObjectsOfTheImages) {
+  const Outcome recorded = record({"--no-tracks"});
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  EXPECT_NE(recorded.err.find("recorded " + path("run.mcap") + ": 6 frames"), std::string::npos)
+      << recorded.err;
+  const Outcome again =
+      run({"live", path("run.mcap"), "--every-frame", "--no-tracks", "--pace", "0", "--json-lines"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  std::istringstream found(again.out);
+  for (const char* name : {"000", "001", "002", "003", "004", "005"}) {
+    const std::string folder = sequence() + "/" + name;
+    std::string line;
+    ASSERT_TRUE(std::getline(found, line)) << name;
+    EXPECT_EQ(plain(Json::parse(line)), plain(Json::parse(run({"segment", folder, "--json"}).out))) << name;
+  }
+}
+
+TEST_F(LiveRecord, PlayedAgainItGivesTheTracksOfTheOriginal) {
+  const std::string original = run({"follow", sequence(), "--json-lines"}).out;
+  ASSERT_EQ(record().code, 0);
+  const Outcome followed = run({"follow", path("run.mcap"), "--json-lines"});
+  EXPECT_EQ(followed.code, 0) << followed.err;
+  EXPECT_EQ(lines_of(followed.out), lines_of(original));
+  const Outcome live = run({"live", path("run.mcap"), "--every-frame", "--pace", "0", "--json-lines"});
+  EXPECT_EQ(lines_of(live.out), lines_of(original));
+  const Outcome folder = run({"record", path("run.mcap"), "-o", path("folder")});
+  EXPECT_EQ(folder.code, 0) << folder.err;
+  EXPECT_EQ(lines_of(run({"follow", path("folder"), "--json-lines"}).out), lines_of(original));
+}
+
+TEST_F(LiveRecord, KeepsTheOptionsThatItWasMadeWith) {
+  const std::vector<std::string> options{"--set", "superpixels.count=100", "--set", "tracking.min_hits=2"};
+  ASSERT_EQ(record(options).code, 0);
+  std::vector<std::string> follow{"follow", sequence(), "--json-lines"};
+  follow.insert(follow.end(), options.begin(), options.end());
+  const std::string original = run(follow).out;
+  const std::vector<std::string> live{"live", path("run.mcap"), "--every-frame", "--pace",
+                                      "0",    "--json-lines"};
+  const Outcome again = run(live);
+  EXPECT_EQ(lines_of(again.out), lines_of(original));
+  EXPECT_TRUE(again.err.starts_with("cairn: " + path("run.mcap") + ": the options that it was recorded with"))
+      << again.err;
+  const Outcome others = run(with("live", {live.begin() + 1, live.end()}, {"--preset", "default"}));
+  EXPECT_EQ(others.err.find("recorded with"), std::string::npos);
+  EXPECT_NE(lines_of(others.out), lines_of(original));
+}
+
+TEST_F(LiveRecord, AFileThatMayNotGrowEndsTheRecordingAndNotTheRun) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit small = before;
+  small.rlim_cur = 500'000;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Outcome outcome = record({"--json-lines", "--record-what", "all"});
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 6);
+  EXPECT_NE(outcome.err.find("cairn: recording stopped: " + path("run.mcap") +
+                             ": cannot be written any further: File too large\n"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("; stopped: "), std::string::npos) << outcome.err;
+}
+
+TEST_F(LiveRecord, CutOffItIsReadUpToItsLastChunk) {
+  ASSERT_EQ(record().code, 0);
+  fs::resize_file(at("run.mcap"), fs::file_size(at("run.mcap")) - 1000);
+  const Outcome whole = run({"follow", path("run.mcap"), "--json-lines"});
+  EXPECT_EQ(whole.code, 3) << whole.err;
+  EXPECT_NE(whole.err.find("is cut off"), std::string::npos) << whole.err;
+}
+
+TEST_F(LiveRecord, RefusesInOneLine) {
+  write(at("there.mcap"), "something");
+  write(at("text.mcap"), "\x89MCAP0\r\n");
+  refuses({"live", sequence(), "--record", path("there.mcap")}, {"there.mcap", "is there already"});
+  refuses({"live", sequence(), "--record", path("no/folder.mcap")}, {"no/folder.mcap", "cannot be written"});
+  refuses({"live", sequence(), "--record-what", "pictures"},
+          {"--record-what", "\"pictures\"", "input, objects"});
+  refuses({"follow", path("text.mcap")}, {"text.mcap", "--topics LEFT,RIGHT"});
+  refuses({"segment", path("text.mcap")}, {"text.mcap", "is a recording", "cairn record"});
+}
+
+}  // namespace
+}  // namespace cairn::command

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+#include <cairn/core/error.hpp>
+#include <io/image_files.hpp>
+#include <source/sequence.hpp>
+
+#include "support/recordings.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace cairn::io {
+namespace {
+
+namespace fs = std::filesystem;
+using recordings::CameraFile;
+using recordings::dots;
+using support::TemporaryFolder;
+
+constexpr Size kSize{40, 30};
+const StereoRig kRig{100, 19.5F, 14.5F, 0.12F, 0};
+
+class McapSequence : public testing::Test {
+ protected:
+  [[nodiscard]] fs::path file() const { return folder_.path() / "run.mcap"; }
+  [[nodiscard]] std::unique_ptr<Sequence> open(const SourceOptions& options = {}) const {
+    return open_sequence(file().string(), options);
+  }
+  [[nodiscard]] std::string refusal(const SourceOptions& options = {}) const {
+    try {
+      (void)open(options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  static ros::CameraInfo info(ros::Side side) { return ros::camera_info_of({}, kRig, kSize, side); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+bool shows_dots(View<const Gray> image, unsigned seed) {
+  const Image<Gray> expected = dots(kSize, seed);
+  if (image.size() != kSize) return false;
+  for (int y = 0; y < image.height(); ++y)
+    if (!std::equal(image.row(y), image.row(y) + image.width(), expected.row(y))) return false;
+  return true;
+}
+
+ros::Image message_of_dots(Stamp stamp, unsigned seed) {
+  const Image<Gray> image = dots(kSize, seed);
+  return ros::image_of(ros::header_of(stamp, "camera"), image.view());
+}
+
+TEST_F(McapSequence, PairsImagesByTheirStamps) {
+  {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::Image>("/cam/left/image_rect");
+    const auto right = camera.topic<ros::Image>("/cam/right/image_rect");
+    const auto left_info = camera.topic<ros::CameraInfo>("/cam/left/camera_info");
+    const auto right_info = camera.topic<ros::CameraInfo>("/cam/right/camera_info");
+    for (int i = 0; i < 10; ++i) {
+      const Stamp stamp{1'000'000'000LL + i * 100'000'000LL};
+      // The right camera is half a millisecond late, and misses one; its messages come first.
+      if (i != 4)
+        camera.add(right, {stamp.ns + 500'000},
+                   message_of_dots({stamp.ns + 500'000}, 100U + static_cast<unsigned>(i)));
+      camera.add(left, stamp, message_of_dots(stamp, static_cast<unsigned>(i)));
+      camera.add(left_info, stamp, info(ros::Side::left));
+      camera.add(right_info, stamp, info(ros::Side::right));
+    }
+  }
+  const auto sequence = open();
+  ASSERT_TRUE(sequence->rig());
+  EXPECT_EQ(sequence->rig()->baseline_m, kRig.baseline_m);
+  EXPECT_EQ(sequence->image_size(), kSize);
+  EXPECT_EQ(sequence->size(), 9U);
+  std::vector<int> seen;
+  while (const auto frame = sequence->next()) {
+    const auto i = static_cast<int>((frame->stamp.ns - 1'000'000'000) / 100'000'000);
+    seen.push_back(i);
+    EXPECT_TRUE(shows_dots(frame->left.gray, static_cast<unsigned>(i)));
+    EXPECT_TRUE(shows_dots(frame->right, 100U + static_cast<unsigned>(i)));
+  }
+  EXPECT_EQ(seen, (std::vector<int>{0, 1, 2, 3, 5, 6, 7, 8, 9}));
+  ASSERT_EQ(sequence->remarks().size(), 1U);
+  EXPECT_EQ(sequence->remarks()[0].what, "left image without a right one");
+  EXPECT_EQ(sequence->remarks()[0].count, 1U);
+  EXPECT_EQ(sequence->ended_early(), "");
+  SourceOptions strict;
+  strict.max_skew_ms = 0.1;
+  EXPECT_NE(refusal(strict).find("left image without a right one"), std::string::npos) << refusal(strict);
+}
+
+TEST_F(McapSequence, AsManyFramesAsAreAskedFor) {
+  {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::Image>("/left/image_raw");
+    const auto right = camera.topic<ros::Image>("/right/image_raw");
+    const auto left_info = camera.topic<ros::CameraInfo>("/left/camera_info");
+    const auto right_info = camera.topic<ros::CameraInfo>("/right/camera_info");
+    for (int i = 0; i < 10; ++i) {
+      camera.add(left, {i * 1000 + 1000}, message_of_dots({i * 1000 + 1000}, static_cast<unsigned>(i)));
+      camera.add(right, {i * 1000 + 1000},
+                 message_of_dots({i * 1000 + 1000}, 100U + static_cast<unsigned>(i)));
+    }
+    camera.add(left_info, {0}, info(ros::Side::left));
+    camera.add(right_info, {0}, info(ros::Side::right));
+  }
+  SourceOptions options;
+  options.frames = parse_frame_range("2:8:3");
+  const auto sequence = open(options);
+  EXPECT_EQ(sequence->size(), 2U);
+  EXPECT_EQ(sequence->next()->name, "000002");
+  EXPECT_EQ(sequence->next()->index, 5U);
+  EXPECT_FALSE(sequence->next());
+  EXPECT_TRUE(sequence->remarks().empty());
+}
+
+TEST_F(McapSequence, ReadsTheUsualEncodings) {
+  {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::Image>("/l/left/image_color");
+    const auto right = camera.topic<ros::Image>("/l/right/image_color");
+    ros::Image image;
+    image.width = 2;
+    image.height = 1;
+    const auto add = [&](std::int64_t stamp, const char* encoding, std::uint32_t step, ros::Bytes bytes) {
+      image.header = ros::header_of({stamp}, "c");
+      image.encoding = encoding;
+      image.step = step;
+      image.data = std::move(bytes);
+      camera.add(left, {stamp}, image);
+      camera.add(right, {stamp}, image);
+    };
+    add(1, "rgb8", 8, {10, 20, 30, 40, 50, 60, 0, 0});  // with a gap at the row's end
+    add(2, "bgr8", 6, {30, 20, 10, 60, 50, 40});
+    add(3, "bgra8", 8, {30, 20, 10, 255, 60, 50, 40, 255});
+    add(4, "mono8", 2, {7, 9});
+    image.is_bigendian = 1;
+    add(5, "mono16", 4, {0x0f, 0xff, 0x08, 0x00});  // 12 bits
+  }
+  const auto sequence = open();
+  for (int i = 0; i < 3; ++i) {
+    const auto frame = sequence->next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->left.rgb(0, 0), (Rgb{10, 20, 30}));
+    EXPECT_EQ(frame->left.rgb(1, 0), (Rgb{40, 50, 60}));
+    EXPECT_EQ(frame->right(0, 0), frame->left.gray(0, 0));
+  }
+  EXPECT_EQ(sequence->next()->left.gray(1, 0), 9);
+  const auto deep = sequence->next();
+  EXPECT_EQ(deep->left.gray(0, 0), 255);
+  EXPECT_EQ(deep->left.gray(1, 0), 128);
+}
+
+TEST_F(McapSequence, ReadsCompressedImages) {
+  const Image<Gray> image = dots(kSize, 1);
+  Image<Rgb> colours(kSize, Rgb{1, 2, 3}, {});
+  {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::CompressedImage>("/left/image_rect/compressed");
+    const auto right = camera.topic<ros::CompressedImage>("/right/image_rect/compressed");
+    const std::string png = png_bytes(colours.view());
+    for (const auto channel : {left, right})
+      camera.add(channel, {5},
+                 ros::CompressedImage{ros::header_of({5}, "c"), "png", {png.begin(), png.end()}});
+    for (const auto channel : {left, right})
+      camera.add(channel, {6}, ros::CompressedImage{ros::header_of({6}, "c"), "jpeg", {0xff, 0xd8, 0xff, 0}});
+  }
+  const auto sequence = open();
+  const auto frame = sequence->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->left.rgb(3, 3), (Rgb{1, 2, 3}));
+  EXPECT_FALSE(sequence->next());
+  ASSERT_EQ(sequence->remarks().size(), 1U);
+  EXPECT_TRUE(sequence->remarks()[0].is_unusable);
+}
+
+TEST_F(McapSequence, SaysWhichTopicsThereAreWhereItCannotChoose) {
+  {
+    CameraFile camera(file());
+    for (const char* name : {"/a/left/image_rect", "/a/right/image_rect", "/b/left/image_rect",
+                             "/b/right/image_rect", "/b/left/image_raw", "/b/right/image_raw"}) {
+      const auto topic = camera.topic<ros::Image>(name);
+      camera.add(topic, {1000}, message_of_dots({1000}, topic));
+    }
+  }
+  EXPECT_EQ(refusal(), file().string() +
+                           ": has more than one stereo pair, expected --topics with one of them: "
+                           "/a/left/image_rect,/a/right/image_rect; /b/left/image_rect,/b/right/image_rect");
+  SourceOptions options;
+  options.topics = "/b/left/image_rect,/b/right/image_rect";
+  EXPECT_TRUE(shows_dots(open(options)->next()->left.gray, 3));
+  options.topics = "/b/left/image_rect,/c";
+  EXPECT_NE(refusal(options).find("has no images as /c; its images: /a/left/image_rect"), std::string::npos);
+}
+
+TEST_F(McapSequence, RawImagesAskToBeRectified) {
+  ros::CameraInfo left = info(ros::Side::left);
+  left.d = {0.1, 0, 0, 0, 0};
+  {
+    CameraFile camera(file());
+    for (const char* side : {"left", "right"}) {
+      const std::string name = std::string("/") + side;
+      camera.add(camera.topic<ros::Image>(name + "/image_raw"), {1000}, message_of_dots({1000}, 1));
+      camera.add(camera.topic<ros::CameraInfo>(name + "/camera_info"), {1000},
+                 name == "/left" ? left : info(ros::Side::right));
+    }
+  }
+  EXPECT_NE(
+      refusal().find("/left/image_raw are raw images with distortion, expected rectified ones, or --rectify"),
+      std::string::npos)
+      << refusal();
+  SourceOptions options;
+  options.rectify = true;
+  try {
+    const auto sequence = open(options);
+    ASSERT_TRUE(sequence->rig());
+    EXPECT_NEAR(sequence->rig()->baseline_m, 0.12, 1e-4);
+    EXPECT_NE(sequence->rectifier(), nullptr);
+  } catch (const Error& error) {  // built without OpenCV's calib3d
+    EXPECT_NE(std::string(error.what()).find("calib3d"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(McapSequence, OtherRecordingsAreRefusedInOneLine) {
+  { CameraFile camera(file()); }
+  EXPECT_NE(refusal().find("has no topics of left and right images"), std::string::npos) << refusal();
+  {
+    CameraFile camera(file());
+    for (const char* name : {"/left/image", "/right/image"}) {
+      ros::Image image = message_of_dots({1}, 1);
+      image.encoding = "bayer_rggb8";
+      camera.add(camera.topic<ros::Image>(name), {1}, image);
+    }
+  }
+  EXPECT_NE(refusal().find("has the encoding bayer_rggb8, expected mono8"), std::string::npos) << refusal();
+  {
+    CameraFile camera(file());
+    for (const char* name : {"/left/image", "/right/image"}) {
+      ros::Image image = message_of_dots({1}, 1);
+      image.height = 1'000'000;
+      camera.add(camera.topic<ros::Image>(name), {1}, image);
+    }
+  }
+  EXPECT_NE(refusal().find("claims 40x1000000 pixels"), std::string::npos) << refusal();
+}
+
+TEST_F(McapSequence, ACutOffRecordingSaysSoAtItsEnd) {
+  {
+    CameraFile camera(file(), {.chunk_bytes = 3000, .sync = false});
+    const auto left = camera.topic<ros::Image>("/left/image");
+    const auto right = camera.topic<ros::Image>("/right/image");
+    for (int i = 0; i < 20; ++i) {
+      camera.add(left, {1000 + i}, message_of_dots({1000 + i}, static_cast<unsigned>(i)));
+      camera.add(right, {1000 + i}, message_of_dots({1000 + i}, 100U + static_cast<unsigned>(i)));
+    }
+  }
+  fs::resize_file(file(), fs::file_size(file()) / 2);
+  const auto sequence = open();
+  int frames = 0;
+  while (sequence->next()) ++frames;
+  EXPECT_GT(frames, 5);
+  EXPECT_LT(frames, 15);
+  EXPECT_NE(sequence->ended_early().find("is cut off"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cairn::io
