@@ -12,6 +12,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <source/camera/without_password.hpp>
 #include <source/follow_files.hpp>
 #include <source/follow_page.hpp>
 #include <source/sequence_run.hpp>
@@ -113,7 +114,7 @@ Json summary_json(const Run& run, const FollowOptions& options, const io::Sequen
     if (option.active) settings[option.name] = option.value;
   }
   return {{"cairn", CAIRN_VERSION},
-          {"source", options.source.source},
+          {"source", io::without_password(options.source.source)},
           {"stamps", source.stamps_from()},
           {"state", state},
           {"frames", run.milliseconds.size()},

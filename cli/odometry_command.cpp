@@ -7,6 +7,7 @@
 #include <io/atomic_file.hpp>
 #include <iostream>
 #include <map>
+#include <source/camera/without_password.hpp>
 #include <source/sequence_run.hpp>
 #include <source/trajectory_files.hpp>
 #include <tracking/first_pose.hpp>
@@ -104,7 +105,8 @@ int estimate(const OdometryOptions& options) {
   const EndsBySignal ends(*source);
   const FollowConfig config = resolve_odometry(options, *source);
   if (!source->rig())
-    throw Error(options.input.source + ": has no calibration, and so no metres; give one with --calib");
+    throw Error(io::without_password(options.input.source) +
+                ": has no calibration, and so no metres; give one with --calib");
   const StereoRig rig = *source->rig();
   const std::unique_ptr<io::MotionPriors> priors = load_priors(options, *source);
 

@@ -36,9 +36,8 @@ void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option(
          "SOURCE", input.source,
          "folder of frames, of KITTI's or EuRoC's; a video; a recording (MCAP); LEFT,RIGHT: two folders, two "
-         "videos, or two patterns such as left_%04d.png,right_%04d.png; or a camera: "
-         "v4l2:/dev/video0[,/dev/video2][,w=2560,h=720,fps=30,format=YUYV,layout=side_by_side], "
-         "gst:'PIPELINE[ !! PIPELINE]', rtsp://..., ros2:/NAME (topics of ROS 2)")
+         "videos, or two patterns such as left_%04d.png,right_%04d.png; or a camera: v4l2:/dev/video0, "
+         "gst:'PIPELINE', rtsp://... (docs/cameras.md), ros2:/NAME (docs/ros2.md)")
       ->required()
       ->type_name("");
   app.add_option("--calib", input.options.calib,

@@ -12,10 +12,10 @@ namespace {
 namespace fs = std::filesystem;
 
 VideoEntry video_entry(const fs::path& video) {
-  return reinterpret_cast<VideoEntry>(module_entry(
-      {"cairn-video.so", kVideoEntry, "videos need", "OpenCV's videoio (libopencv-videoio)",
-       "package cairn-video; it is built where libopencv-videoio-dev is"},
-      video.string()));
+  return reinterpret_cast<VideoEntry>(
+      module_entry({"cairn-video.so", kVideoEntry, "videos need", "OpenCV's videoio (libopencv-videoio)",
+                    "package cairn-video; it is built where libopencv-videoio-dev is"},
+                   video.string()));
 }
 
 }  // namespace

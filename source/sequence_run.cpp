@@ -9,6 +9,7 @@
 #include <tracking/first_pose.hpp>
 #include <utility>
 
+#include "camera/without_password.hpp"
 #include "trajectory_files.hpp"
 
 namespace cairn::io {
@@ -81,7 +82,7 @@ Step SequenceRun::next(const SequenceFrame& frame) {
 void SequenceRun::mark(const Step& step, const SequenceFrame& frame) {
   const bool writes = map_ && !is_map_read_only_;
   if (!has_begun_) {
-    const std::int64_t run = writes ? map_->begin_run(source_name_, step.stamp) : 0;
+    const std::int64_t run = writes ? map_->begin_run(without_password(source_name_), step.stamp) : 0;
     marked_.state = begin_landmarks(map_ ? map_->load() : LandmarkMap{}, run, start_);
   }
   const LandmarkFrame seen = landmark_frame(step, *source_.rig(), frame.left.gray, frame.left.rgb);

@@ -48,14 +48,14 @@ class CameraSequence : public Sequence {
         pairer_(options.max_skew_ms) {
     const bool has_two = makers.size() > 1;
     for (std::size_t side = 0; side < makers.size(); ++side) {
-      cameras_.push_back(std::make_unique<KeptCamera>(
-          std::move(makers[side]), times, [this, has_two, side](CameraImage&& image) {
-            if (has_two) {
-              pair_up(static_cast<int>(side), std::move(image));
-            } else {
-              offer(std::move(image));
-            }
-          }));
+      cameras_.push_back(std::make_unique<KeptCamera>(std::move(makers[side]), times,
+                                                      [this, has_two, side](CameraImage&& image) {
+                                                        if (has_two) {
+                                                          pair_up(static_cast<int>(side), std::move(image));
+                                                        } else {
+                                                          offer(std::move(image));
+                                                        }
+                                                      }));
     }
     first_ = opened();
   }
@@ -212,9 +212,10 @@ class CameraSequence : public Sequence {
     const std::lock_guard lock(mutex_);
     if (const std::optional<double> nearest = pairer_.nearest_unpaired_ms()) {
       return "no pair" + within +
-             formatted(": left and right images are %.1f ms apart at least, expected at most %g ms "
-                       "(--max-skew)",
-                       *nearest, options_.max_skew_ms);
+             formatted(
+                 ": left and right images are %.1f ms apart at least, expected at most %g ms "
+                 "(--max-skew)",
+                 *nearest, options_.max_skew_ms);
     }
     if (cameras_.size() > 1) {
       for (std::size_t side = 0; side < cameras_.size(); ++side) {
@@ -255,8 +256,8 @@ class CameraSequence : public Sequence {
     }
     is_after_gap_ = is_after_gap_ || image.is_after_gap;
     if (last_stamp_ && image.stamp <= *last_stamp_) {
-      remark(remarks_, {"frame whose stamp is not later than the one before", 1, number_text(count_), true,
-                        false});
+      remark(remarks_,
+             {"frame whose stamp is not later than the one before", 1, number_text(count_), true, false});
       return std::nullopt;
     }
     const std::size_t index = count_++;
@@ -264,7 +265,7 @@ class CameraSequence : public Sequence {
     last_stamp_ = image.stamp;
     PicturePair pair =
         calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
-    SequenceFrame frame{number_text(index),     index, image.stamp, std::move(pair.left),
+    SequenceFrame frame{number_text(index),         index, image.stamp,  std::move(pair.left),
                         std::move(pair.right.gray), false, image.arrived};
     watch_.see(frame, names_.source, remarks_);
     frame.after_gap = frame.after_gap || std::exchange(is_after_gap_, false);
@@ -305,9 +306,9 @@ class CameraSequence : public Sequence {
   /// A remark in words that change.
   void note_once(const std::string& head, const std::string& words) {
     const std::string what = head + ": " + words;
-    const auto known =
-        std::find_if(remarks_.begin(), remarks_.end(),
-                     [&](const SourceRemark& other) { return other.what.starts_with(head + ": "); });
+    const auto known = std::find_if(remarks_.begin(), remarks_.end(), [&](const SourceRemark& other) {
+      return other.what.starts_with(head + ": ");
+    });
     if (known == remarks_.end()) {
       remarks_.push_back({what, 0, "", false, false});
     } else {

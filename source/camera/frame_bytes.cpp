@@ -46,10 +46,14 @@ struct Weights {
 };
 Weights weights_of(YuvCoding coding) {
   switch (coding) {
-    case YuvCoding::bt601: return {16, 298, 409, 100, 208, 516};
-    case YuvCoding::bt601_full: return {0, 256, 359, 88, 183, 454};
-    case YuvCoding::bt709: return {16, 298, 459, 55, 136, 541};
-    case YuvCoding::bt709_full: return {0, 256, 403, 48, 120, 475};
+    case YuvCoding::bt601:
+      return {16, 298, 409, 100, 208, 516};
+    case YuvCoding::bt601_full:
+      return {0, 256, 359, 88, 183, 454};
+    case YuvCoding::bt709:
+      return {16, 298, 459, 55, 136, 541};
+    case YuvCoding::bt709_full:
+      return {0, 256, 403, 48, 120, 475};
   }
   return {};
 }
@@ -130,14 +134,18 @@ FrameBytes grey_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride
 }
 
 FrameBytes yuyv_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, YuvCoding coding) {
-  return {size, FrameBytes::Kind::yuv, {data, stride, 2}, {data + 1, stride, 4, 1}, {data + 3, stride, 4, 1},
+  return {size,  FrameBytes::Kind::yuv, {data, stride, 2}, {data + 1, stride, 4, 1}, {data + 3, stride, 4, 1},
           coding};
 }
 
 FrameBytes rgb_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, int step, int red, int green,
                      int blue) {
-  return {size, FrameBytes::Kind::rgb, {data + red, stride, step}, {data + green, stride, step},
-          {data + blue, stride, step}, {}};
+  return {size,
+          FrameBytes::Kind::rgb,
+          {data + red, stride, step},
+          {data + green, stride, step},
+          {data + blue, stride, step},
+          {}};
 }
 
 Layout layout_of(std::string_view name) {

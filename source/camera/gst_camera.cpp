@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-#include "open_camera.hpp"
+#include "without_password.hpp"
 
 namespace cairn::io {
 namespace {
@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Eight bits, in any order: what a source has is taken as it is, so that its grey is exact.
 constexpr const char* kCaps =
-    "video/x-raw, format={ NV12, I420, YV12, NV21, YUY2, UYVY, YVYU, Y42B, Y444, GRAY8, RGB, BGR, RGBx, BGRx, "
+    "video/x-raw, format={ NV12, I420, YV12, NV21, YUY2, UYVY, YVYU, Y42B, Y444, GRAY8, RGB, BGR, RGBx, "
+    "BGRx, "
     "xRGB, xBGR, RGBA, BGRA, ARGB, ABGR }";
 
 template <class T>
@@ -71,7 +72,8 @@ Ref<GstElement> parsed(const std::string& pipeline) {
   GstElement* element = gst_parse_launch_full(text.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error);
   if (error != nullptr || element == nullptr) {
     std::string words = error != nullptr ? words_of(*error, nullptr) : "unknown error";
-    if (error != nullptr && error->domain == GST_PARSE_ERROR && error->code == GST_PARSE_ERROR_NO_SUCH_ELEMENT)
+    if (error != nullptr && error->domain == GST_PARSE_ERROR &&
+        error->code == GST_PARSE_ERROR_NO_SUCH_ELEMENT)
       words += ", expected an installed element (gst-inspect-1.0 lists them)";
     g_clear_error(&error);
     if (element != nullptr) gst_object_unref(element);
@@ -126,8 +128,8 @@ class GstCamera : public Camera {
   ~GstCamera() override { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
 
   std::optional<CameraImage> next(std::chrono::milliseconds timeout) override {
-    const std::unique_ptr<GstSample, UnrefSample> sample(gst_app_sink_try_pull_sample(
-        sink(), static_cast<GstClockTime>(timeout.count()) * GST_MSECOND));
+    const std::unique_ptr<GstSample, UnrefSample> sample(
+        gst_app_sink_try_pull_sample(sink(), static_cast<GstClockTime>(timeout.count()) * GST_MSECOND));
     if (!sample) {
       throw_error();
       has_ended_ = gst_app_sink_is_eos(sink()) != 0;
@@ -256,7 +258,7 @@ class GstCamera : public Camera {
   }
 
   GstRequest request_;
-  std::mutex mutex_;         // of the next two
+  std::mutex mutex_;        // of the next two
   std::uint64_t came_ = 0;  // buffers at the sink
   std::array<std::pair<const GstBuffer*, std::uint64_t>, 8> numbered_{};
   Ref<GstElement> pipeline_;

@@ -82,8 +82,9 @@ void KeptCamera::read(Camera& camera) {
         return;
       }
       // The first image of all may take as long as whoever opened it waits.
-      if ((!is_first || has_image) && Clock::now() - last > times_.silence)
-        throw Error("gives no frame for " + seconds_of(times_.silence));
+      if (is_first && !has_image) continue;
+      const std::chrono::milliseconds most = has_image ? times_.silence : times_.first_image;
+      if (Clock::now() - last > most) throw Error("gives no frame for " + seconds_of(most));
       continue;
     }
     const Size size = image->left.gray.size();

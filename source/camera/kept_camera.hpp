@@ -17,7 +17,8 @@ namespace cairn::io {
 
 /// How long things may take before a camera counts as lost, and how soon it is opened again.
 struct CameraTimes {
-  std::chrono::milliseconds silence{3000};        // without an image
+  std::chrono::milliseconds first_image{10000};   // after it was opened again; RTSP tries UDP for 5 s
+  std::chrono::milliseconds silence{3000};        // between images
   std::chrono::milliseconds first_back_off{500};  // doubled with each attempt
   std::chrono::milliseconds most_back_off{8000};
 };

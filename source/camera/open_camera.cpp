@@ -11,6 +11,7 @@
 
 #include "camera_sequence.hpp"
 #include "gst_camera.hpp"
+#include "without_password.hpp"
 
 namespace cairn::io {
 namespace {
@@ -84,7 +85,8 @@ GstRequest gst_request(const std::string& part, const std::string& source) {
   if (is_rtsp(part)) {
     // 50 ms even out the network; what comes later than that is not waited for.
     request.pipeline =
-        "rtspsrc name=cairn_source latency=50 drop-on-latency=true ! application/x-rtp,media=video ! decodebin";
+        "rtspsrc name=cairn_source latency=50 drop-on-latency=true ! application/x-rtp,media=video ! "
+        "decodebin";
     request.location = part;
     request.must_not_end = true;
     return request;
@@ -92,7 +94,8 @@ GstRequest gst_request(const std::string& part, const std::string& source) {
   request.pipeline = part;
   const std::size_t first = part.find_first_not_of(' ');
   if (first == std::string::npos)
-    throw Error(source + ": found an empty pipeline, expected one as gst-launch-1.0 takes it, without the sink");
+    throw Error(source +
+                ": found an empty pipeline, expected one as gst-launch-1.0 takes it, without the sink");
   return request;
 }
 
@@ -122,17 +125,6 @@ std::unique_ptr<Sequence> open_pipelines(const std::string& source, const Source
 }
 
 }  // namespace
-
-std::string without_password(std::string text) {
-  std::size_t from = 0;
-  while ((from = text.find("://", from)) != std::string::npos) {
-    from += 3;
-    const std::size_t end = text.find_first_of("/ \"'", from);
-    const std::size_t at = text.substr(0, end).rfind('@');
-    if (at != std::string::npos && at >= from) text.replace(from, at - from, "***");
-  }
-  return text;
-}
 
 bool is_camera(std::string_view source) {
   return source.starts_with(kV4l2) || source.starts_with(kGst) || is_rtsp(source);

@@ -20,9 +20,6 @@ bool is_camera(std::string_view source);
 std::unique_ptr<Sequence> open_camera(const std::string& source, const SourceOptions& options,
                                       const Pool& pool);
 
-/// A name and password have no place in messages: "rtsp://***@host/".
-std::string without_password(std::string text);
-
 // Parts of it, for tests:
 
 /// "v4l2:/dev/video0,w=2560,h=720": one request, or one for each of two devices. Throws Error.

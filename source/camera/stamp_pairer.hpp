@@ -32,7 +32,7 @@ class StampPairer {
   struct Skew {
     double least_ms = 0;
     double most_ms = 0;
-    double drift_ppm = 0;     // how much slower the right camera's pace is; over the pairs since the last jump
+    double drift_ppm = 0;  // how much slower the right camera's pace is; over the pairs since the last jump
     double drift_over_s = 0;  // that long; the drift is worth little before some 10 s
   };
   [[nodiscard]] Skew skew() const;

@@ -33,9 +33,8 @@ struct Format {
   int bytes_each;  // per pixel; 0: compressed
 };
 /// What is taken where no format is asked for: both images in one where there are, then the cheapest.
-constexpr std::array kFormats = {
-    Format{"Y8I", V4L2_PIX_FMT_Y8I, 2}, Format{"GREY", V4L2_PIX_FMT_GREY, 1},
-    Format{"YUYV", V4L2_PIX_FMT_YUYV, 2}, Format{"MJPG", V4L2_PIX_FMT_MJPEG, 0}};
+constexpr std::array kFormats = {Format{"Y8I", V4L2_PIX_FMT_Y8I, 2}, Format{"GREY", V4L2_PIX_FMT_GREY, 1},
+                                 Format{"YUYV", V4L2_PIX_FMT_YUYV, 2}, Format{"MJPG", V4L2_PIX_FMT_MJPEG, 0}};
 constexpr std::uint32_t kBuffers = 4;
 /// The kernel reports frames that were damaged on the way with EIO; as many in a row are no accident.
 constexpr int kMostErrors = 8;
@@ -59,11 +58,15 @@ class Device {
     switch (errno) {
       case ENOENT:
       case ENODEV:
-      case ENXIO: throw Error("is not there, expected a camera (v4l2-ctl --list-devices names them)");
+      case ENXIO:
+        throw Error("is not there, expected a camera (v4l2-ctl --list-devices names them)");
       case EACCES:
-      case EPERM: throw Error("may not be read, expected a user of the group video");
-      case EBUSY: throw Error("is used by another program");
-      default: throw Error("cannot be opened: " + reason());
+      case EPERM:
+        throw Error("may not be read, expected a user of the group video");
+      case EBUSY:
+        throw Error("is used by another program");
+      default:
+        throw Error("cannot be opened: " + reason());
     }
   }
   ~Device() {
@@ -109,9 +112,10 @@ class Device {
     }
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     if (!control(VIDIOC_STREAMON, type)) {
-      throw Error(errno == ENOSPC ? "cannot start: the USB bus has no room for it, expected a smaller size, a "
-                                    "lower rate, format=MJPG or another port"
-                                  : "cannot start: " + reason());
+      throw Error(errno == ENOSPC
+                      ? "cannot start: the USB bus has no room for it, expected a smaller size, a "
+                        "lower rate, format=MJPG or another port"
+                      : "cannot start: " + reason());
     }
     is_streaming_ = true;
   }
@@ -158,8 +162,9 @@ class V4l2Camera : public Camera {
     count_gap(buffer.sequence);
     std::optional<CameraImage> image;
     if (buffer.index < device_.buffers() && (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0)
-      image = image_of(device_.bytes(buffer.index).first(
-          std::min<std::size_t>(buffer.bytesused, device_.bytes(buffer.index).size())));
+      image =
+          image_of(device_.bytes(buffer.index)
+                       .first(std::min<std::size_t>(buffer.bytesused, device_.bytes(buffer.index).size())));
     if (!device_.give_back(buffer.index)) throw Error("takes no buffer back: " + reason());
     if (!image) {
       ++dropped_;
@@ -208,8 +213,9 @@ class V4l2Camera : public Camera {
     std::string names;
     for (const std::uint32_t code : offered) names += (names.empty() ? "" : ", ") + name_of(code);
     throw Error("has the formats " + (names.empty() ? "none" : names) + ", expected " +
-                (request_.format.empty() ? "GREY, Y8I, YUYV or MJPG (gst:'v4l2src device=...' may read others)"
-                                         : request_.format));
+                (request_.format.empty()
+                     ? "GREY, Y8I, YUYV or MJPG (gst:'v4l2src device=...' may read others)"
+                     : request_.format));
   }
 
   void set_size() {
@@ -282,14 +288,17 @@ class V4l2Camera : public Camera {
   std::optional<CameraImage> failed() {
     switch (errno) {
       case EAGAIN:
-      case EINTR: return std::nullopt;
+      case EINTR:
+        return std::nullopt;
       case EIO:
         ++dropped_;
         if (++errors_ < kMostErrors) return std::nullopt;
         throw Error("gives errors only (EIO): cable, power or USB bus");
       case ENODEV:
-      case ENXIO: throw Error("was unplugged");
-      default: throw Error("gives no frame: " + reason());
+      case ENXIO:
+        throw Error("was unplugged");
+      default:
+        throw Error("gives no frame: " + reason());
     }
   }
 
@@ -306,11 +315,13 @@ class V4l2Camera : public Camera {
   /// None where it is too short or damaged.
   std::optional<CameraImage> image_of(std::span<const std::uint8_t> bytes) {
     if (format_->bytes_each == 0) return image_of_jpeg(bytes);
-    const std::size_t row = static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(format_->bytes_each);
+    const std::size_t row =
+        static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(format_->bytes_each);
     if (bytes.size() < stride_ * (static_cast<std::size_t>(size_.height) - 1) + row) return std::nullopt;
     const auto stride = static_cast<std::ptrdiff_t>(stride_);
     switch (format_->code) {
-      case V4L2_PIX_FMT_YUYV: return split(yuyv_bytes(size_, bytes.data(), stride, coding_));
+      case V4L2_PIX_FMT_YUYV:
+        return split(yuyv_bytes(size_, bytes.data(), stride, coding_));
       case V4L2_PIX_FMT_Y8I: {
         FrameBytes left = grey_bytes(size_, bytes.data(), stride);
         left.first.step = 2;
@@ -318,7 +329,8 @@ class V4l2Camera : public Camera {
         ++right.first.data;
         return both(left, right);
       }
-      default: return split(grey_bytes(size_, bytes.data(), stride));
+      default:
+        return split(grey_bytes(size_, bytes.data(), stride));
     }
   }
 

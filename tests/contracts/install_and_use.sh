@@ -74,12 +74,21 @@ find_video_module() {
   ! grep -q 'cairn-video.so\|videoio' <<<"$said" && grep -q 'broken.mp4' <<<"$said" || { echo "$said"; exit 1; }
 }
 
+# And that for cameras.
+find_gstreamer_module() {
+  [[ -e $(find "$scratch/prefix" -name cairn-gstreamer.so) ]] || return 0
+  local said
+  said=$("$scratch/prefix/bin/cairn" follow "gst:no_such_element" 2>&1) && { echo "$said"; exit 1; }
+  grep -q 'no element "no_such_element"' <<<"$said" || { echo "$said"; exit 1; }
+}
+
 case $how in
   cmake)
     install_and_move
     build_consumer -DCMAKE_PREFIX_PATH="$scratch/prefix"
     run_programs
     find_video_module
+    find_gstreamer_module
     if [[ -x $scratch/build/files && -e $(find "$scratch/prefix" -name libcairn.a) ]]; then lose_io; fi
     ;;
   pkg-config)

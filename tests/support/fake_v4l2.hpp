@@ -22,8 +22,8 @@ namespace cairn::support {
 
 /// What happens next at a device, when somebody waits for it or fetches a frame.
 struct DeviceEvent {
-  int error = 0;                // DQBUF fails with it; 0: a frame
-  bool is_silence = false;      // nothing happens for the time that is waited
+  int error = 0;            // DQBUF fails with it; 0: a frame
+  bool is_silence = false;  // nothing happens for the time that is waited
   std::uint32_t sequence = 0;
   std::int64_t stamp_us = 0;
   std::optional<std::string> bytes;  // other than the device's picture
@@ -36,15 +36,15 @@ struct FakeDevice {
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV};
   std::uint32_t width = 8, height = 4;
   std::optional<std::pair<std::uint32_t, std::uint32_t>> gives_size;  // whatever is asked for
-  std::uint32_t stride = 0;                                          // 0: without padding
-  double gives_fps = 0;                                              // 0: what is asked for
-  std::map<unsigned long, int> refuses;                              // ioctls that fail, with errno
+  std::uint32_t stride = 0;                                           // 0: without padding
+  double gives_fps = 0;                                               // 0: what is asked for
+  std::map<unsigned long, int> refuses;                               // ioctls that fail, with errno
   std::uint32_t buffers = 4;
   std::deque<int> open_errors;  // of the next attempts to open it
   std::string picture;          // every frame's bytes, unless the event has others
   std::deque<DeviceEvent> events;
-  int pace_ms = 0;         // from event to event
-  bool repeats = false;    // after the last event, frames as the last one go on
+  int pace_ms = 0;       // from event to event
+  bool repeats = false;  // after the last event, frames as the last one go on
 };
 
 /// Devices that replay what they are told to. Silence where there is nothing more.
@@ -130,11 +130,19 @@ class FakeV4l2 : public io::V4l2Ops {
         buffer.m.offset = buffer.index * kBufferBytes;
         return 0;
       }
-      case VIDIOC_QBUF: file.queued.push_back(static_cast<v4l2_buffer*>(argument)->index); return 0;
-      case VIDIOC_STREAMON: ++streaming_now; return 0;
-      case VIDIOC_STREAMOFF: --streaming_now; return 0;
-      case VIDIOC_DQBUF: return fetch(file, *static_cast<v4l2_buffer*>(argument));
-      default: return fail(ENOTTY);
+      case VIDIOC_QBUF:
+        file.queued.push_back(static_cast<v4l2_buffer*>(argument)->index);
+        return 0;
+      case VIDIOC_STREAMON:
+        ++streaming_now;
+        return 0;
+      case VIDIOC_STREAMOFF:
+        --streaming_now;
+        return 0;
+      case VIDIOC_DQBUF:
+        return fetch(file, *static_cast<v4l2_buffer*>(argument));
+      default:
+        return fail(ENOTTY);
     }
   }
   void* map(int fd, std::size_t, std::int64_t offset) override {

@@ -89,8 +89,8 @@ TEST_F(Pipelines, GiveTheVeryGreyOfTheFilesThatTheyShow) {
 
 TEST_F(Pipelines, AreTakenInTheFormThatTheyHave) {
   // What is the same picture in every form, as far as grey goes: white, grey, black.
-  for (const char* form : {"GRAY8", "NV12", "I420", "YV12", "NV21", "YUY2", "UYVY", "YVYU", "Y42B", "Y444", "RGB",
-                           "BGR", "RGBx", "BGRx", "xRGB", "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"}) {
+  for (const char* form : {"GRAY8", "NV12", "I420", "YV12", "NV21", "YUY2", "UYVY", "YVYU", "Y42B", "Y444",
+                           "RGB",   "BGR",  "RGBx", "BGRx", "xRGB", "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"}) {
     const auto source = open_sequence(
         std::string("gst:videotestsrc num-buffers=2 pattern=solid-color foreground-color=0xffff0000 ! "
                     "video/x-raw,width=64,height=32,framerate=30/1,format=") +
@@ -151,7 +151,7 @@ TEST_F(Pipelines, OfFilesGoAtThePaceOfTheirStamps) {
       "gst:videotestsrc num-buffers=10 ! video/x-raw,format=GRAY8,width=64,height=32,framerate=20/1", soon());
   std::size_t count = 0;
   while (source->next()) ++count;
-  EXPECT_GE(count, 8U);
+  EXPECT_EQ(count + source->status().dropped, 10U);
   EXPECT_GE(Clock::now() - began, 400ms);
 }
 
@@ -195,7 +195,8 @@ TEST_F(Pipelines, ThatDoNotWorkAreRefusedInOneLine) {
   EXPECT_TRUE(has(refused("gst:"), {"empty pipeline"}));
   EXPECT_TRUE(has(refused("gst:a !! b !! c"), {"3 pipelines"}));
   EXPECT_TRUE(has(refused("gst:videotestsrc ! !"), {"cannot be made", "syntax error"}));
-  EXPECT_TRUE(has(refused("gst:no_such_camera_src"), {"no element \"no_such_camera_src\"", "gst-inspect-1.0"}));
+  EXPECT_TRUE(
+      has(refused("gst:no_such_camera_src"), {"no element \"no_such_camera_src\"", "gst-inspect-1.0"}));
   EXPECT_TRUE(has(refused("gst:videotestsrc ! fakesink"), {"cannot be made", "could not link"}));
   EXPECT_TRUE(has(refused("gst:videotestsrc nonsense=3"), {"cannot be made", "nonsense"}));
   EXPECT_TRUE(has(refused("gst:filesrc location=/no/such/file ! decodebin"), {"/no/such/file"}));

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <string>
+
+namespace cairn::io {
+
+/// A name and password have no place in messages and files: "rtsp://***@host/".
+std::string without_password(std::string text);
+
+}  // namespace cairn::io
