@@ -576,6 +576,49 @@ TEST(ViewServer, TakesForeignTextForWhatItIs) {
   EXPECT_EQ(ask(served.port, request("/", served.host() + served.cookie())).status, 200);
 }
 
+TEST(ViewServer, TakesMutatedMessagesForWhatTheyAre) {
+  const std::vector<std::string> sound{
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2},{"id":3,"channelId":4}]})",
+      R"({"op":"unsubscribe","subscriptionIds":[1,3]})",
+      R"({"op":"getParameters","parameterNames":["match.method","live.pause"],"id":"x"})",
+      R"({"op":"setParameters","parameters":[{"name":"match.min_disparity","value":-3,"type":"float64"}],"id":"y"})",
+      R"({"op":"subscribeParameterUpdates","parameterNames":[]})"};
+  const std::string_view bits = "{}[]\",:0129-.eE\\ux \x80\xff";
+  ViewedRun run = run_of_test();
+  int sets = 0;
+  run.set = [&](const auto&) { ++sets; };
+  Parameters parameters(run, true);
+  std::mt19937 random(11);
+  for (int round = 0; round < 1500; ++round) {
+    Client client(parameters, "a test", "1");
+    std::string text = sound[random() % sound.size()];
+    for (auto change = random() % 4; change > 0; --change) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 3) {
+        case 0:
+          text[at] = bits[random() % bits.size()];
+          break;
+        case 1:
+          text.erase(at, 1 + random() % 5);
+          break;
+        default:
+          text.insert(at, text.substr(random() % text.size(), random() % 20));
+      }
+      if (text.empty()) text = "{";
+    }
+    while (client.next()) {
+    }  // the greeting
+    client.on_text(text);
+    int answers = 0;
+    while (const auto out = client.next()) {
+      ++answers;
+      ASSERT_TRUE(Json::accept(out->text)) << text;
+    }
+    ASSERT_LE(answers, 8) << text;
+  }
+  EXPECT_GT(sets, 30);
+}
+
 TEST(ViewServer, SaysGoodbye) {
   Served served;
   WebSocket socket = served.connect();
