@@ -69,6 +69,12 @@ std::string discovery_range() {
               ", expected SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
 }
 
+/// What an error of the whole domain begins with.
+std::string domain_words(std::uint32_t id) {
+  const std::string uri = environment("CYCLONEDDS_URI");
+  return "DDS domain " + std::to_string(id) + (uri.empty() ? "" : " with CYCLONEDDS_URI=" + uri);
+}
+
 /// A domain's configuration is the process's: it is made with the first participant, and goes with the last.
 std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
   static std::mutex mutex;
@@ -78,7 +84,7 @@ std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
   if (auto domain = known.lock()) return domain;
   const dds_entity_t domain = dds_create_domain(settings.id, settings.configuration.c_str());
   if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;  // somebody else of this process made it
-  auto made = std::make_shared<Entity>(domain, "DDS domain " + std::to_string(settings.id));
+  auto made = std::make_shared<Entity>(domain, domain_words(settings.id));
   known = made;
   return made;
 }
@@ -147,8 +153,7 @@ DomainSettings domain_of_environment() {
 Participant::Participant(const DomainSettings& settings)
     : id_(settings.id),
       domain_(domain_of(settings)),
-      participant_(dds_create_participant(settings.id, nullptr, nullptr),
-                   "DDS domain " + std::to_string(settings.id)) {}
+      participant_(dds_create_participant(settings.id, nullptr, nullptr), domain_words(settings.id)) {}
 
 std::string checked_name(const std::string& name, const std::string& option) {
   const std::string full = name.starts_with('/') ? name : "/" + name;

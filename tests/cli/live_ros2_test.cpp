@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <atomic>
+#include <io/calibration_files.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <ros/messages.hpp>
+#include <ros/from_step.hpp>
 #include <source/dds/participant.hpp>
 #include <sstream>
 #include <thread>
@@ -75,6 +77,72 @@ TEST_F(LiveRos2, AnotherProcessHearsWhatIsPrinted) {
   EXPECT_TRUE(Json::parse(said->data).contains("worked_ms"));
   EXPECT_NE(outcome.err.find("ros2 in domain "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find(prefix + "/objects " + std::to_string(heard)), std::string::npos) << outcome.err;
+}
+
+/// A camera that publishes a sample, ten pairs a second.
+class Camera {
+ public:
+  explicit Camera(const std::string& prefix)
+      : left_(participant_, prefix + "/left/image_rect"),
+        right_(participant_, prefix + "/right/image_rect"),
+        left_info_(participant_, prefix + "/left/camera_info"),
+        right_info_(participant_, prefix + "/right/camera_info"),
+        thread_([this] { work(); }) {}
+  ~Camera() {
+    is_over_ = true;
+    thread_.join();
+  }
+  static fs::path sample() { return fs::path(CAIRN_SOURCE_DIR) / "samples/four_in_a_row"; }
+
+ private:
+  void work() {
+    const io::PicturePair pair = io::load_pair(sample() / "left.png", sample() / "right.png");
+    const StereoRig rig = *io::load_calibration(sample() / "calib.txt").rig;
+    for (std::int64_t i = 1; !is_over_; ++i) {
+      const ros::Header header = ros::header_of({i * 100'000'000}, "left_optical");
+      const Size size = pair.left.gray.size();
+      left_info_.write(ros::camera_info_of(header, rig, size, ros::Side::left));
+      right_info_.write(ros::camera_info_of(header, rig, size, ros::Side::right));
+      left_.write(ros::image_of(header, pair.left.rgb.view()));
+      right_.write(ros::image_of(header, pair.right.gray.view()));
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+
+  dds::Participant participant_;
+  dds::Writer<ros::Image> left_;
+  dds::Writer<ros::Image> right_;
+  dds::Writer<ros::CameraInfo> left_info_;
+  dds::Writer<ros::CameraInfo> right_info_;
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
+
+TEST_F(LiveRos2, ACameraOnTopicsIsSegmentedAsItsImagesAre) {
+  const std::string prefix = own_topic("stereo");
+  const dds::Participant participant;
+  dds::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
+  const Camera camera(prefix);
+  const Outcome live = run({"live", "ros2:" + prefix, "--no-tracks", "--max-age", "0", "--frames", "8",
+                            "--set", "match.num_disparities=32", "--json-lines", "--ros2", prefix});
+  ASSERT_EQ(live.code, 0) << live.err;
+  const fs::path sample = Camera::sample();
+  const Outcome alone =
+      run({"segment", sample / "left.png", sample / "right.png", "--calib", sample / "calib.txt", "--json"});
+  const Json expected = Json::parse(alone.out);
+  const auto frames = frames_of(live.out);
+  ASSERT_GE(frames.size(), 1U) << live.err;
+  for (const auto& [stamp, frame] : frames) {
+    EXPECT_EQ(stamp % 100'000'000, 0);
+    EXPECT_EQ(frame["objects"], expected["objects"]);
+    EXPECT_EQ(frame["floor_frame"], expected["floor_frame"]);
+  }
+  int heard = 0;
+  while (const auto message = objects.take()) {
+    expect_same_objects(expected, *message);
+    ++heard;
+  }
+  EXPECT_GE(heard, 1) << live.err;
 }
 
 TEST_F(LiveRos2, RefusesWhatRosHasNot) {

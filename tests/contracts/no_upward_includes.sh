@@ -28,7 +28,7 @@ find cairn tracking io page landmarks ros source live timing batch cli python ex
       sub("^(\\.\\./)+", "", quoted[2])  # beside the folder, as it is installed
       to = folder_of(quoted[2])
       if (to ~ "^cairn/(io|page|tracking|source|landmarks|ros|live)$") sub("cairn/", "", to)  # as they are installed
-      if (to !~ "^cairn" && !(to in rank)) next  # not ours, or beside the file
+      if (to !~ "^cairn(/|$)" && !(to in rank)) next  # not ours, or beside the file
       if (!(from in rank) || !(to in rank)) {
         printf "%s:%d: a folder without a rank: %s includes %s\n", FILENAME, FNR, from, to
         wrong = 1
