@@ -41,10 +41,9 @@ int show(const ExecOptions& options) {
                         "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "
                         "libsqlitecpp-dev")
             << built_in("videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev")
-            << built_in("packed results of batch runs (zstd)", CAIRN_WITH_ZSTD != 0, "libzstd-dev")
             << built_in("cameras by GStreamer: gst:, rtsp://", CAIRN_WITH_GSTREAMER != 0,
                         "libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev")
-            << built_in("recordings (MCAP)", CAIRN_WITH_MCAP != 0, "libzstd-dev")
+            << built_in("recordings (MCAP), packed batch results", CAIRN_WITH_ZSTD != 0, "libzstd-dev")
             << built_in("live views: live --view", CAIRN_WITH_VIEW != 0, "libboost-dev libssl-dev")
             << built_in("topics of ROS 2 (Cyclone DDS)", CAIRN_WITH_DDS != 0, "cyclonedds-dev");
   return 0;

@@ -76,7 +76,7 @@ if(type STREQUAL "STATIC_LIBRARY")
 endif()
 set(CAIRN_SEQUENCES_PACKAGES)
 foreach(optional IN ITEMS VIDEO:cairn_video:OpenCVVideoio GSTREAMER:cairn_gstreamer:GStreamerApp DDS:cairn_dds:CycloneDDS
-    VIEW::OpenSSL MCAP::Zstd)
+    VIEW::OpenSSL ZSTD::Zstd)
   string(REPLACE ":" ";" optional ${optional})
   list(GET optional 0 part)
   list(GET optional 1 module)
@@ -131,11 +131,11 @@ if(CAIRN_IO)
     "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "${opencv_libs}")
   if(CAIRN_HAS_TRACKING)
     set(mcap_requires)
-    if(CAIRN_HAS_MCAP)
+    if(CAIRN_HAS_ZSTD)
       set(mcap_requires " libzstd")
     endif()
     cairn_install_pkgconfig(cairn-sequences "Sequences with cairn: odometry, tracks, landmarks, sources of frames"
-      "-lcairn-source -lcairn-ros -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3${mcap_requires}"
+      "-lcairn-live -lcairn-source -lcairn-ros -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3${mcap_requires}"
       "-lSQLiteCpp -lopencv_video -lopencv_calib3d -ldl")
   endif()
 endif()

@@ -18,7 +18,7 @@
 #include "messages.hpp"
 
 /// Recordings in the format MCAP (mcap.dev), as ROS 2, Foxglove and Lichtblick write and read them. Built
-/// without it (CAIRN_MCAP=OFF) all that opens a file throws an Error that says so. (docs/recordings.md)
+/// without it (CAIRN_ZSTD=OFF) all that opens a file throws an Error that says so. (docs/recordings.md)
 namespace cairn::ros {
 
 using Words = std::map<std::string, std::string>;
