@@ -36,9 +36,11 @@ struct FakeDevice {
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV};
   std::uint32_t width = 8, height = 4;
   std::optional<std::pair<std::uint32_t, std::uint32_t>> gives_size;  // whatever is asked for
-  std::uint32_t stride = 0;                                           // 0: without padding
-  double gives_fps = 0;                                               // 0: what is asked for
-  std::map<unsigned long, int> refuses;                               // ioctls that fail, with errno
+  bool shrinks = false;  // to half its width when it is opened once more
+  int opens = 0;
+  std::uint32_t stride = 0;              // 0: without padding
+  double gives_fps = 0;                  // 0: what is asked for
+  std::map<unsigned long, int> refuses;  // ioctls that fail, with errno
   std::uint32_t buffers = 4;
   std::deque<int> open_errors;  // of the next attempts to open it
   std::string picture;          // every frame's bytes, unless the event has others
@@ -67,6 +69,7 @@ class FakeV4l2 : public io::V4l2Ops {
       if (error != 0) return fail(error);
     }
     ++opened;
+    if (++device.opens > 1 && device.shrinks) device.gives_size = {{device.width / 2, device.height}};
     ++open_now;
     const int fd = next_fd_++;
     files_[fd].device = &device;

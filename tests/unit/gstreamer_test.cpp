@@ -26,7 +26,7 @@ class Pipelines : public testing::Test {
   }
   static SourceOptions soon() {
     SourceOptions options;
-    options.open_timeout_s = 5;
+    options.open_timeout_s = 20;
     return options;
   }
   static std::string refused(const std::string& source, const SourceOptions& options = soon()) {

@@ -467,9 +467,9 @@ TEST_F(V4l2Sequence, SilenceIsALoss) {
 TEST_F(V4l2Sequence, ThatComesBackInAnotherSizeIsWaitedFor) {
   FakeDevice& device = steady();
   device.events = {frame(0, 1000), error(ENODEV), frame(0, 2000)};
+  device.shrinks = true;
   const auto source = sequence();
   ASSERT_TRUE(source->next());
-  device.gives_size = {{4, 4}};
   SourceStatus status;
   for (int i = 0; i < 200 && !has(status.trouble, {"gives 2x4"}); ++i) {
     std::this_thread::sleep_for(5ms);
