@@ -400,4 +400,26 @@ std::unique_ptr<Sequence> open_mcap(const fs::path& file, const SourceOptions& o
   return std::make_unique<McapSequence>(file, options, pool);
 }
 
+std::optional<fs::path> recording_in(const fs::path& folder) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(folder / "metadata.yaml", unknown)) return std::nullopt;
+  std::vector<fs::path> parts;
+  bool has_other = false;
+  for (const auto& entry : fs::directory_iterator(folder, unknown)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".mcap") parts.push_back(entry.path());
+    has_other = has_other || ending == ".db3" || ending == ".zstd";
+  }
+  if (parts.size() == 1) return parts.front();
+  if (parts.size() > 1) {
+    std::ranges::sort(parts);
+    throw Error(folder.string() + ": is a recording in " + std::to_string(parts.size()) +
+                " parts, expected one of them: " + parts.front().string());
+  }
+  if (!has_other) return std::nullopt;
+  throw Error(
+      folder.string() +
+      ": is a recording of ros2 bag that is not in MCAP, expected one that is (ros2 bag convert makes it)");
+}
+
 }  // namespace cairn::io

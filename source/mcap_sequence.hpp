@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "sequence.hpp"
 
@@ -14,5 +15,9 @@ namespace cairn::io {
 /// headers. Its calibration: options.calib, else what cairn recorded beside the images, else camera_info.
 std::unique_ptr<Sequence> open_mcap(const std::filesystem::path& file, const SourceOptions& options,
                                     const Pool& pool);
+
+/// The recording in a folder of `ros2 bag`, which has a metadata.yaml beside it; none in any other folder.
+/// Throws Error where there are several parts, or none in MCAP.
+std::optional<std::filesystem::path> recording_in(const std::filesystem::path& folder);
 
 }  // namespace cairn::io

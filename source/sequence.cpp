@@ -255,6 +255,7 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
     return open_video(source, options, pool);
   }
   check_no_layout(options, source);
+  if (const auto recording = recording_in(source)) return open_mcap(*recording, options, pool);
   const fs::path folder = (fs::path(source) / "").parent_path();  // without a slash at its end
   return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
 }

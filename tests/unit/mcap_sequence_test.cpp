@@ -247,6 +247,32 @@ TEST_F(McapSequence, OtherRecordingsAreRefusedInOneLine) {
   EXPECT_NE(refusal().find("claims 40x1000000 pixels"), std::string::npos) << refusal();
 }
 
+TEST_F(McapSequence, AFolderOfRos2BagIsItsRecording) {
+  const fs::path folder = file().parent_path();
+  {
+    CameraFile camera(file());
+    for (const char* name : {"/left/image", "/right/image"})
+      camera.add(camera.topic<ros::Image>(name), {1}, message_of_dots({1}, 1));
+  }
+  const auto refusal_of_folder = [&] {
+    try {
+      (void)open_sequence(folder.string(), {});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_NE(refusal_of_folder(), "none");  // a folder of whatever else
+  recordings::write(folder / "metadata.yaml", "rosbag2_bagfile_information:\n");
+  EXPECT_EQ(open_sequence(folder.string(), {})->name(), "run.mcap");
+  fs::copy_file(file(), folder / "run_1.mcap");
+  EXPECT_EQ(refusal_of_folder(), folder.string() + ": is a recording in 2 parts, expected one of them: " +
+                                     (folder / "run.mcap").string());
+  fs::remove(file());
+  fs::rename(folder / "run_1.mcap", folder / "run.db3");
+  EXPECT_NE(refusal_of_folder().find("is not in MCAP"), std::string::npos);
+}
+
 TEST_F(McapSequence, ACutOffRecordingSaysSoAtItsEnd) {
   {
     CameraFile camera(file(), {.chunk_bytes = 3000, .sync = false});
