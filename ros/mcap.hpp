@@ -39,8 +39,8 @@ struct McapOptions {
 class McapWriter {
  public:
   /// Replaces a file that is there. Throws Error (names `path` and the system's reason), as all of it does
-  /// where the file cannot be written; the file then ends with its last whole chunk, and nothing more is
-  /// written.
+  /// where the file cannot be written. Nothing more is taken then, and what was written before is a whole
+  /// recording after close() where the summary has room, else a file that was cut off.
   explicit McapWriter(const std::filesystem::path& path, const McapOptions& options = {});
   /// Closes it, and keeps quiet where that fails.
   ~McapWriter();

@@ -62,21 +62,11 @@ class OutFile {
     while (done < bytes.size()) {
       const ssize_t wrote = ::write(file_, bytes.data() + done, bytes.size() - done);
       if (wrote < 0 && errno == EINTR) continue;
-      if (wrote <= 0) {
-        const int reason = wrote == 0 ? ENOSPC : errno;
-        [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(size_));
-        errno = reason;
-        fail("cannot be written any further");
-      }
+      if (wrote <= 0) end_here(wrote == 0 ? ENOSPC : errno);
       done += static_cast<std::size_t>(wrote);
     }
     // A pipe or a device knows of no such thing.
-    if (sync && ::fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) {
-      const int reason = errno;
-      [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(size_));
-      errno = reason;
-      fail("cannot be written any further");
-    }
+    if (sync && ::fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) end_here(errno);
     crc_ = crc_of(crc_, bytes);
     size_ += bytes.size();
   }
@@ -84,6 +74,13 @@ class OutFile {
   [[nodiscard]] std::uint32_t crc() const { return crc_; }
 
  private:
+  /// What did not fit as a whole is taken back.
+  [[noreturn]] void end_here(int reason) const {
+    [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(size_));
+    [[maybe_unused]] const off_t at = ::lseek(file_, static_cast<off_t>(size_), SEEK_SET);
+    errno = reason;
+    fail("cannot be written any further");
+  }
   [[noreturn]] void fail(const char* what) const {
     throw Error(path_ + ": " + what + ": " + std::strerror(errno));
   }
@@ -112,18 +109,21 @@ struct McapWriter::State {
   };
 
   void finish_chunk();
+  void drop_chunk();
   void write(const Writer& records, bool sync) {
     try {
       file.append(records.bytes(), sync);
     } catch (const Error&) {
-      is_over = true;
+      is_over = is_broken;  // the first time, the summary may still have room
+      is_broken = true;
       throw;
     }
   }
 
   McapOptions options;
   OutFile file;
-  bool is_over = false;  // closed, or broken
+  bool is_broken = false;  // takes no more messages
+  bool is_over = false;    // closed, or beyond help
   std::map<std::string, std::uint16_t, std::less<>> schemas;
   Writer schema_records;
   Writer channel_records;
@@ -196,7 +196,7 @@ std::uint16_t McapWriter::channel(std::string_view topic, std::string_view type,
 
 void McapWriter::message(std::uint16_t id, Stamp stamp, std::span<const std::uint8_t> bytes) {
   State& s = *state_;
-  if (s.is_over) return;
+  if (s.is_over || s.is_broken) return;
   if (s.chunk.size() > 0 && s.chunk.size() + bytes.size() > s.options.chunk_bytes) s.finish_chunk();
   if (s.chunk.size() == 0) s.chunk_began = Clock::now();
   // All that are known, in the first chunk: who reads a file that was cut off then knows them at once.
@@ -208,7 +208,6 @@ void McapWriter::message(std::uint16_t id, Stamp stamp, std::span<const std::uin
   const std::uint64_t time = time_of_file(stamp);
   channel.index.push_back({time, s.chunk.size()});
   s.chunk_range.add(time);
-  s.range.add(time);
   constexpr std::uint64_t kFields = 22;
   s.chunk.number(static_cast<std::uint8_t>(Op::message));
   s.chunk.number(kFields + bytes.size());
@@ -217,8 +216,6 @@ void McapWriter::message(std::uint16_t id, Stamp stamp, std::span<const std::uin
   s.chunk.number(time);
   s.chunk.number(time);
   s.chunk.raw(bytes);
-  ++channel.count;
-  ++s.messages;
   flush();
 }
 
@@ -276,6 +273,16 @@ void McapWriter::State::finish_chunk() {
   write(records, options.sync);
   chunk_indexes.record(Op::chunk_index, summary);
   ++chunks;
+  range.add(chunk_range.first);
+  range.add(chunk_range.last);
+  for (Channel& channel : channels) {
+    channel.count += channel.index.size();
+    messages += channel.index.size();
+  }
+  drop_chunk();
+}
+
+void McapWriter::State::drop_chunk() {
   chunk.clear();
   chunk_range = {};
   for (Channel& channel : channels) channel.index.clear();
@@ -283,7 +290,7 @@ void McapWriter::State::finish_chunk() {
 
 void McapWriter::attachment(std::string_view name, std::string_view media_type, std::string_view bytes) {
   State& s = *state_;
-  if (s.is_over) return;
+  if (s.is_over || s.is_broken) return;
   s.finish_chunk();
   Writer content;
   content.number(std::uint64_t{0});  // when: with the recording
@@ -310,7 +317,7 @@ void McapWriter::attachment(std::string_view name, std::string_view media_type, 
 
 void McapWriter::metadata(std::string_view name, const Words& words) {
   State& s = *state_;
-  if (s.is_over) return;
+  if (s.is_over || s.is_broken) return;
   s.finish_chunk();
   Writer content;
   content.text(name);
@@ -328,7 +335,7 @@ void McapWriter::metadata(std::string_view name, const Words& words) {
 
 void McapWriter::flush(bool now) {
   State& s = *state_;
-  if (s.is_over || s.chunk.size() == 0) return;
+  if (s.is_over || s.is_broken || s.chunk.size() == 0) return;
   if (now || s.chunk.size() >= s.options.chunk_bytes || Clock::now() - s.chunk_began >= s.options.chunk_time)
     s.finish_chunk();
 }
@@ -336,7 +343,10 @@ void McapWriter::flush(bool now) {
 void McapWriter::close() {
   State& s = *state_;
   if (s.is_over) return;
-  s.finish_chunk();
+  if (s.is_broken)
+    s.drop_chunk();  // what did not fit
+  else
+    s.finish_chunk();
   Writer end;
   Writer data_end;
   data_end.number(s.file.crc());
@@ -393,7 +403,9 @@ void McapWriter::close() {
 }
 
 std::uint64_t McapWriter::messages() const {
-  return state_->messages;
+  std::uint64_t waiting = 0;
+  for (const State::Channel& channel : state_->channels) waiting += channel.index.size();
+  return state_->messages + waiting;
 }
 
 std::uint64_t McapWriter::bytes() const {

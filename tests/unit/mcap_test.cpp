@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
 #include <cairn/core/error.hpp>
+#include <csignal>
 #include <ros/mcap_format.hpp>
 
 #include "support/recordings.hpp"
@@ -242,6 +245,26 @@ TEST_F(Mcap, AFullDiskIsSaid) {
     EXPECT_STREQ(error.what(), "/dev/full: cannot be written any further: No space left on device");
   }
   EXPECT_THROW(McapWriter(at("no/such/folder/a.mcap")), Error);
+}
+
+TEST_F(Mcap, WhatFitsOnAFullDiskIsAWholeRecording) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit small = before;
+  small.rlim_cur = 10'000;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW((void)numbers(1000, {.chunk_bytes = 4000, .compress = false}), Error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_LE(fs::file_size(at("numbers.mcap")), 10'000U);
+  McapReader reader(at("numbers.mcap"));
+  EXPECT_TRUE(reader.is_whole());
+  const std::vector<int> found = read(reader);
+  EXPECT_GT(found.size(), 20U);
+  EXPECT_EQ(found, up_to(static_cast<int>(found.size())));
+  EXPECT_EQ(reader.counts().at(1) + reader.counts().at(2), found.size());
+  EXPECT_EQ(reader.damaged_chunks(), 0U);
 }
 
 TEST_F(Mcap, OtherFilesAreNone) {
