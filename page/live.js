@@ -1045,7 +1045,7 @@
     } else {
       const first = Number(option.first), on = first === -1 && domain.hasOff ? domain.low : first;
       const scale = scaleOf(domain, on);
-      control = el('input', {id, class: 'value', type: 'text', inputmode: 'decimal', spellcheck: 'false', autocomplete: 'off', onchange: () => {
+      control = el('input', {id, class: 'value', type: 'text', inputmode: 'decimal', spellcheck: 'false', autocomplete: 'off', onfocus: () => control.select(), onchange: () => {
         const text = control.value.trim().replace('−', '-');
         if (text === '' || !Number.isFinite(Number(text))) row.write(row.option.value);
         else change(text === 'off' ? '-1' : String(Number(text)));
