@@ -17,6 +17,7 @@ live::ViewedRun viewed(live::Runner& runner, live::Recorder& recorder, const io:
   run.preset = preset;
   run.image = source.image_size();
   run.rig = source.rig();
+  run.source = [&source] { return source.status(); };
   run.config = [&runner] { return runner.config(); };
   run.set = [&runner](const auto& options) { runner.set(options); };
   if (!source.status().is_live) {

@@ -208,9 +208,9 @@ function makeScene(stage, onPick) {
     if (view.isTouched || !shown.things.length) return;
     const ahead = shown.things.map((t) => t.corners[0][0]).sort((a, b) => a - b);
     const reach = Math.min(12, Math.max(2, ahead[Math.floor(ahead.length * 0.9)]));
-    view.at[0] += (reach * 0.62 - view.at[0]) * share;
+    view.at[0] += (reach * 0.72 - view.at[0]) * share;
     view.at[1] += (0 - view.at[1]) * share;
-    view.far += (Math.max(2.6, reach * 1.15 + 0.6) - view.far) * share;
+    view.far += (Math.max(2.4, reach * 1.02 + 0.5) - view.far) * share;
   }
 
   function paint() {

@@ -58,6 +58,7 @@ struct ViewState {
   bool is_recording = false;
   bool is_file = false;  // that can be paused
   bool is_paused = false;
+  std::optional<io::SourceStatus> source;  // now; none: as it was at the frame
 };
 
 /// Throws Error where a message cannot hold the frame's stamp, or its image cannot be encoded.

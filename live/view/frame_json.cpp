@@ -259,7 +259,7 @@ std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& r
                    {{"at_source", frame.drops.at_source},
                     {"replaced", frame.drops.replaced},
                     {"too_old", frame.drops.too_old}}},
-                  {"source", source_json(frame.source)},
+                  {"source", source_json(state.source.value_or(frame.source))},
                   {"revision", frame.revision},
                   {"clients", state.clients},
                   {"skipped", state.skipped},
@@ -275,6 +275,12 @@ std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& r
                   {"paused", state.is_paused},
                   {"objects", objects},
                   {"camera", camera_json(step, rig)}});
+}
+
+std::string stats_json(const ViewState& state) {
+  return text_of({{"frame", nullptr},
+                  {"clients", state.clients},
+                  {"source", source_json(state.source.value_or(io::SourceStatus{}))}});
 }
 
 std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& rig) {

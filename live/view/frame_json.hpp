@@ -12,6 +12,8 @@ namespace cairn::live {
 
 /// Of /cairn/stats. (docs/live_view.md, "Statistics")
 std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& rig, const ViewState& state);
+/// Before the first frame: what is known without one.
+std::string stats_json(const ViewState& state);
 extern const std::string_view kStatsSchema;
 
 /// Of /cairn/scene: a foxglove.SceneUpdate with a box and a text for every object that has a place.

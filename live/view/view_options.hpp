@@ -22,6 +22,8 @@ struct ViewedRun {
   std::string preset = "default";  // that the options differ from
   Size image;
   std::optional<StereoRig> rig;
+  /// How the source does now: a camera that gives no frames says it in none.
+  std::function<io::SourceStatus()> source;
   std::function<std::shared_ptr<const FollowConfig>()> config;  // with which the next frame is computed
   /// As Runner::set().
   std::function<void(const std::vector<std::pair<std::string, std::string>>&)> set;

@@ -319,8 +319,7 @@ class ViewServer::Hub {
       const std::lock_guard lock(mutex_);
       frame = newest_;
     }
-    if (frame) return stats_json(*frame, run_.rig, state()) + "\n";
-    return nlohmann::json{{"frame", nullptr}, {"clients", clients_.load()}}.dump() + "\n";
+    return (frame ? stats_json(*frame, run_.rig, state()) : stats_json(state())) + "\n";
   }
 
   [[nodiscard]] ViewState state() const {
@@ -332,6 +331,7 @@ class ViewServer::Hub {
     state.is_recording = run_.is_recording && run_.is_recording();
     state.is_file = static_cast<bool>(run_.pause);
     state.is_paused = run_.is_paused && run_.is_paused();
+    if (run_.source) state.source = run_.source();
     return state;
   }
 
