@@ -28,6 +28,8 @@
     link.socket = socket;
     link.channels.clear();
     link.subscriptions.clear();
+    frames.clear();
+    Object.assign(latest, {picture: -1n, disparity: -1n});  // another run's stamps may be earlier
     socket.onopen = () => {
       Object.assign(link, {state: 'open', attempt: 0, refused: false, since: performance.now()});
       send({op: 'subscribeParameterUpdates', parameterNames: []});
@@ -174,6 +176,7 @@
   const kKept = 6;
   const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity', obstacles: 'scene'};
   const frames = new Map();  // stamp → {stamp, at, and by topic what came}
+  const latest = {picture: -1n, disparity: -1n};  // the stamp that was drawn last, or will be
   let decoding = 0;
 
   function receive(buffer) {
@@ -228,7 +231,8 @@
     // On a slow link the two may never meet; then it is better to see one of them than none.
     const isLate = panel === 'picture' && frame.left && performance.now() - (drawnAt.picture ?? link.since) > 400;
     if (!isWhole && !isLate) return;
-    if (due[panel] && due[panel].stamp > stamp) return;
+    if (stamp < latest[panel]) return;  // its picture was decoded late
+    latest[panel] = stamp;
     due[panel] = frame;
     soon();
   }
@@ -351,7 +355,7 @@
   function paintPicture(frame, again = false) {
     const {canvases: [photo], screen} = panels.picture;
     const before = shown.picture;
-    if (frame.left) {
+    if (frame.left?.width) {  // a picture that was given back has none
       const {width, height} = frame.left;
       if (photo.width !== width || photo.height !== height) {
         [photo.width, photo.height] = [width, height];
@@ -724,7 +728,9 @@
     thingsTable.refill(all);
     const moving = all.filter((t) => t.is_moving).length;
     thingsNote.textContent = all.length ? `${all.length} in view${moving ? `, ${moving} moving` : ''}` : 'none';
-    panels.picture.count.textContent = newest.stats?.image ? `${newest.stats.image.width} × ${newest.stats.image.height}` : '';
+    const {image, name} = newest.stats ?? {};
+    panels.picture.count.textContent = [name, image && `${image.width} × ${image.height}`].filter(Boolean).join(' · ');
+    panels.picture.count.title = name ?? '';
     const floor = newest.stats && floorFromCamera(newest.stats) !== null;
     panels.scene.count.textContent = !newest.stats ? '' : !newest.stats.rig ? 'no calibration: no metres' : floor ? 'grid: 1 m' : 'no floor found';
   }
