@@ -537,6 +537,23 @@ TEST(ViewServer, AClientThatDoesNotReadCostsTheOthersNothing) {
               more / 1000);
 }
 
+TEST(ViewServer, SaysHowTheCameraDoesWhileItGivesNoFrame) {
+  ViewedRun run = run_of_test();
+  run.source = [] {
+    io::SourceStatus status;
+    status.is_live = true;
+    status.is_connected = false;
+    status.trouble = "/dev/video0: unplugged";
+    return status;
+  };
+  const Served served(options_of_test(), std::move(run));
+  const Json status =
+      Json::parse(ask(served.port, request("/status.json", served.host() + served.cookie())).body);
+  EXPECT_TRUE(status.at("frame").is_null());
+  EXPECT_FALSE(status.at("source").at("is_connected"));
+  EXPECT_EQ(status.at("source").at("trouble"), "/dev/video0: unplugged");
+}
+
 TEST(ViewServer, TakesForeignTextForWhatItIs) {
   Served served;
   WebSocket socket = served.connect();
