@@ -29,8 +29,4 @@ std::uint64_t ViewServer::encoded() const {
   return 0;
 }
 
-bool has_view() {
-  return false;
-}
-
 }  // namespace cairn::live

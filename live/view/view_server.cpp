@@ -756,8 +756,4 @@ std::uint64_t ViewServer::encoded() const {
   return hub_->encoded();
 }
 
-bool has_view() {
-  return true;
-}
-
 }  // namespace cairn::live

@@ -23,6 +23,7 @@ class ViewServer : public Sink {
   void offer(const LiveFramePtr& frame) override;
   /// Tells the viewers that the run is over, and closes.
   void finish() override;
+  /// After finish().
   [[nodiscard]] std::string summary() const override;
 
   [[nodiscard]] std::uint16_t port() const;
@@ -35,8 +36,5 @@ class ViewServer : public Sink {
   class Hub;
   std::unique_ptr<Hub> hub_;
 };
-
-/// Whether there is one in this build.
-bool has_view();
 
 }  // namespace cairn::live
