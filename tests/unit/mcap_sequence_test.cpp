@@ -177,6 +177,29 @@ TEST_F(McapSequence, ReadsCompressedImages) {
   EXPECT_TRUE(sequence->remarks()[0].is_unusable);
 }
 
+TEST_F(McapSequence, TheGreyOfColoursThatWereRectifiedIsItsOwn) {
+  {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::Image>("/stereo/left/image_rect");
+    const auto grey = camera.topic<ros::Image>("/stereo/left/image_grey");
+    const auto right = camera.topic<ros::Image>("/stereo/right/image_rect");
+    const Image<Rgb> colours(kSize, Rgb{10, 20, 30}, {});
+    for (int i = 1; i <= 3; ++i) {
+      const Stamp stamp{i * 1000};
+      camera.add(left, stamp, ros::image_of(ros::header_of(stamp, "c"), colours.view()));
+      if (i != 2) camera.add(grey, stamp, message_of_dots(stamp, static_cast<unsigned>(i)));
+      camera.add(right, stamp, message_of_dots(stamp, 9));
+    }
+  }
+  const auto sequence = open();
+  for (unsigned i = 1; i <= 3; ++i) {
+    const auto frame = sequence->next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->left.rgb(5, 5), (Rgb{10, 20, 30}));
+    EXPECT_EQ(shows_dots(frame->left.gray, i), i != 2) << i;
+  }
+}
+
 TEST_F(McapSequence, SaysWhichTopicsThereAreWhereItCannotChoose) {
   {
     CameraFile camera(file());
