@@ -3,14 +3,15 @@
 # Each public header compiles alone, and twice over: one generated source per header.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
   ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp ${PROJECT_SOURCE_DIR}/page/*.hpp
-  ${PROJECT_SOURCE_DIR}/tracking/*.hpp ${PROJECT_SOURCE_DIR}/landmarks/*.hpp ${PROJECT_SOURCE_DIR}/source/*.hpp)
+  ${PROJECT_SOURCE_DIR}/tracking/*.hpp ${PROJECT_SOURCE_DIR}/landmarks/*.hpp ${PROJECT_SOURCE_DIR}/source/*.hpp
+  ${PROJECT_SOURCE_DIR}/ros/*.hpp ${PROJECT_SOURCE_DIR}/live/*.hpp)
 # What a kernel's source includes once per instruction set is no header in this sense.
 list(FILTER headers EXCLUDE REGEX "-inl\\.hpp$")
 if(NOT CAIRN_IO)
   list(FILTER headers EXCLUDE REGEX "^(io|page)/|^cairn/opencv\\.hpp$")
 endif()
 if(NOT CAIRN_HAS_TRACKING)
-  list(FILTER headers EXCLUDE REGEX "^(tracking|landmarks|source)/")
+  list(FILTER headers EXCLUDE REGEX "^(tracking|landmarks|source|ros|live)/")
 endif()
 set(alone_sources)
 foreach(header IN LISTS headers)
