@@ -564,7 +564,7 @@ TEST_F(Dds, ASourcePairsWithinTheSkew) {
   const std::string prefix = own_topic("skewed");
   const Camera camera(prefix, false, 4'000'000);
   io::SourceOptions options;
-  options.open_timeout_s = 2;
+  options.open_timeout_s = 1;
   options.max_skew_ms = 1;
   const std::string refused = message_of([&] { ros2_sequence("ros2:" + prefix, options, {}); });
   EXPECT_NE(refused.find("differ by more than 0.001 s (--max-skew)"), std::string::npos) << refused;
