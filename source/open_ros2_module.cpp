@@ -8,8 +8,7 @@ namespace cairn::io {
 
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
                                     const Pool& pool) {
-  const auto entry =
-      reinterpret_cast<dds::Ros2Entry>(module_entry(dds::dds_module(dds::kRos2Entry), source));
+  const auto entry = reinterpret_cast<dds::Ros2Entry>(module_entry(dds::dds_module(dds::kRos2Entry), source));
   return std::unique_ptr<Sequence>(entry({source, options, pool}));
 }
 
