@@ -247,7 +247,7 @@ class GstCamera : public Camera {
   std::uint64_t dropped_before(const GstBuffer& buffer) {
     std::uint64_t dropped = 0;
     if (const std::uint64_t number = number_of(&buffer); number > 0) {
-      if (taken_ > 0 && number > taken_ + 1) dropped = number - taken_ - 1;
+      if (number > taken_ + 1) dropped = number - taken_ - 1;  // before the first one, too
       taken_ = number;
     }
     const std::uint64_t offset = GST_BUFFER_OFFSET(&buffer);
