@@ -49,8 +49,7 @@ inline constexpr std::array kCommands{
             declare_follow},
     Command{"live", "find and follow objects in what a camera sees, or in a recording as it was",
             "cairn live sequence/ --pace 0 --json-lines\n"
-            "cairn live sequence/ --every-frame --no-tracks --set objects.min_confidence=0.6\n"
-            "cairn live v4l2:/dev/video0,w=2560,h=720,fps=30 --calib calib.txt\n",
+            "cairn live sequence/ --every-frame --no-tracks --set objects.min_confidence=0.6\n",
             declare_live},
     Command{"batch", "work on an archive in shards, on one machine or on many",
             "cairn batch plan frames/ -o run\n"

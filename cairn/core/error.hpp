@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace cairn {
 
@@ -10,7 +11,9 @@ namespace cairn {
 /// Thrown at the doors only (files, config, StereoPair::from); past them a stage cannot fail.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// What it says may quote names and contents from anywhere: control characters, which would break the line
+  /// or steer a terminal, are written as escapes ("\n", "\x1b").
+  explicit Error(const std::string& says);
 };
 
 }  // namespace cairn

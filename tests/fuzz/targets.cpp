@@ -139,8 +139,13 @@ std::vector<std::string> disparities() {
   return {encoded(1, 2, io::encode_png), encoded(1, 1, io::encode_png), pfm};
 }
 
+/// Their form is told by the name.
 bool disparity(std::string_view bytes) {
-  return read_file_of<[](const fs::path& file) { return io::load_disparity(file); }>("disparity", bytes);
+  constexpr auto kRead = [](const fs::path& file) { return io::load_disparity(file); };
+  bool taken = read_file_of<kRead>("disparity.pfm", bytes);
+  taken |= read_file_of<kRead>("disparity.png", bytes);
+  taken |= read_file_of<kRead>("disparity.npy", bytes);
+  return taken;
 }
 
 // ---- calibrations and configurations ----

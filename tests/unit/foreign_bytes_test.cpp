@@ -13,9 +13,15 @@
 /// Whatever stands in a file ends in a result or in an Error of one line: the seeds of every fuzzer, what
 /// fuzzing found once, and changes of both that nobody chose.
 namespace cairn::fuzz {
-namespace {
 
 namespace fs = std::filesystem;
+
+/// For the names of the tests.
+static void PrintTo(const Target& target, std::ostream* out) {
+  *out << target.name;
+}
+
+namespace {
 
 class ForeignBytes : public testing::TestWithParam<Target> {};
 
