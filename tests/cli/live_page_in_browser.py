@@ -44,7 +44,7 @@ class Live:
 
     def end(self):
         self.process.terminate()
-        self.process.wait(timeout=20)
+        self.process.wait(timeout=60)
 
 
 def long_sequence(folder):
@@ -95,7 +95,7 @@ class LivePage(PageTest):
     def script(self, text, *arguments):
         return self.browser.execute_script(text, *arguments)
 
-    def wait_until(self, condition, what, seconds=20):
+    def wait_until(self, condition, what, seconds=60):
         until = time.time() + seconds
         while time.time() < until:
             if value := condition():
