@@ -43,7 +43,8 @@ std::string picture_as_uri(View<const Gray> grey, View<const Rgb> colour);
 std::string hex(Rgb colour);
 /// What ids are drawn with, as overlay.png does: id modulo the length.
 nlohmann::ordered_json id_colours();
-/// The colours and names that the image files have, too: `ramp` of disparities, `reasons` of holes, `objects`.
+/// The colours and names that the image files have, too: `ramp` of disparities, `reasons` of holes,
+/// `objects`.
 nlohmann::ordered_json look();
 
 /// A page without its data: what comes before them, and what behind.
