@@ -18,7 +18,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 TOKEN = "0123456789abcdef-of-a-test"
-FRAMES = 400  # at 5 Hz: longer than any test looks
+FRAMES = 3000  # at 5 Hz: longer than any test looks, on however busy a machine
 
 
 class Live:
@@ -28,6 +28,7 @@ class Live:
         self.process = subprocess.Popen(
             [CAIRN, "live", str(source), "--view", at, "--view-token", TOKEN, *arguments], stderr=subprocess.PIPE, text=True)
         self.said = []
+        self.is_ended = False
         self.url = None
         for line in self.process.stderr:
             self.said.append(line)
@@ -43,6 +44,7 @@ class Live:
         return re.match(r"http://([^/]+)/", self.url)[1]
 
     def end(self):
+        self.is_ended = True
         self.process.terminate()
         self.process.wait(timeout=60)
 
@@ -78,8 +80,10 @@ class LivePage(PageTest):
 
     def tearDown(self):
         self.browser.get("about:blank")
+        ended = [(live.process.returncode, live.said) for live in self.lives if live.process.poll() and not live.is_ended]
         for live in self.lives:
             live.end()
+        self.assertEqual(ended, [])  # by itself
         # WebGL without a graphics processor reports how slow it is.
         said = [entry["message"] for entry in self.browser.get_log("browser") if "GL Driver Message" not in entry["message"]]
         if self.may_fail_to_connect:
