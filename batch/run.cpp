@@ -176,6 +176,10 @@ void each_planned(const Run& run, std::size_t begin, std::size_t end,
     if (!is_there || !json.is_object() || !json.contains("frame") || !json["frame"].is_string())
       throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": is no frame of a manifest");
     std::string name = json["frame"].get<std::string>();
+    const std::filesystem::path below(name);
+    if (name.empty() || below.is_absolute() || std::ranges::find(below, "..") != below.end())
+      throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": found the frame " + name +
+                  ", expected a name that stays below the run's folder");
     visit(i, {std::move(name), std::move(json)});
   }
 }

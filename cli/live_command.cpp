@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
-#include <charconv>
 #include <iostream>
 #include <live/looped.hpp>
 #include <live/runner.hpp>
-#include <nlohmann/json.hpp>
-#include <source/follow_files.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"
 #include "follow_options.hpp"
 #include "interrupt.hpp"
+#include "json_lines.hpp"
 #include "live_record.hpp"
 #include "live_ros2.hpp"
 #include "live_view.hpp"
@@ -19,8 +17,6 @@
 
 namespace cairn::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct LiveCommandOptions {
   SourceInput source;
@@ -39,32 +35,6 @@ struct LiveCommandOptions {
   bool json_lines = false;
   ViewInput view;
   Ros2CommandOptions ros2;
-};
-
-/// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json.
-class JsonLines : public live::Sink {
- public:
-  JsonLines(std::string preset, std::optional<StereoRig> rig, bool tracks)
-      : preset_(std::move(preset)), rig_(rig), tracks_(tracks) {}
-
-  void offer(const live::LiveFramePtr& frame) override {
-    if (tracks_) {
-      Landmarked marked;
-      marked.tracks = frame->landmarks;
-      marked.events = frame->events;
-      std::cout << io::step_json(frame->step, frame->pair->name, marked) << std::flush;
-      return;
-    }
-    Json line{{"name", frame->pair->name}, {"stamp_ns", frame->step.stamp.ns}};
-    line.update(Json::parse(
-        io::objects_json(frame->step.frame, {preset_, frame->config->segmentation, rig_, {}, false})));
-    std::cout << line.dump() << "\n" << std::flush;
-  }
-
- private:
-  std::string preset_;
-  std::optional<StereoRig> rig_;
-  bool tracks_;
 };
 
 /// A line a second on stderr where somebody looks.
@@ -125,19 +95,29 @@ int live_command(LiveCommandOptions options) {
   const Exec exec = make_exec(options.exec);
   const auto open = [&] { return open_source(options.source, exec.pool); };
   const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
-  if (options.loop && source->status().is_live)
-    throw Error("--loop: " + options.source.source + " is a camera, which has no end");
-  const FollowConfig config = resolve_follow(options.config, source->disparities(), source->ground());
+  const FollowConfig config = [&] {
+    try {
+      return resolve_follow(options.config, source->disparities(), source->ground());
+    } catch (const Error& error) {
+      throw Error(recorded.named(error.what()));
+    }
+  }();
+  std::cerr << recorded.notice();
   io::CompanionFiles files;
   if (!options.map.empty()) files.map = options.map;
   files.is_map_read_only = options.map_read_only;
+  std::unique_ptr<JsonLines> lines;
+  if (options.json_lines) {
+    lines = std::make_unique<JsonLines>(preset_of(options.config), source->rig(), !options.no_tracks,
+                                        options.every_frame);
+  }
   live::LiveOptions how;
   how.every_frame = options.every_frame;
   if (options.max_age_ms > 0) {
     how.max_age = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double, std::milli>(options.max_age_ms));
   }
-  how.is_ended = [] { return is_interrupted() || !std::cout; };
+  how.is_ended = [&lines] { return is_interrupted() || (lines && lines->is_closed()); };
   how.tracks = !options.no_tracks;
   how.pace = options.pace;
   if (options.duration_s > 0) {
@@ -153,10 +133,7 @@ int live_command(LiveCommandOptions options) {
   runner.add(*recorder);
   std::vector<std::unique_ptr<live::Sink>> sinks;
   sinks.push_back(std::make_unique<StatusLine>());
-  if (options.json_lines) {
-    sinks.push_back(
-        std::make_unique<JsonLines>(preset_of(options.config), source->rig(), !options.no_tracks));
-  }
+  if (lines) runner.add(*lines);
   if (auto view = make_view(options.view, runner, *recorder, *source, preset_of(options.config)))
     sinks.push_back(std::move(view));
   if (auto sink = make_ros2_sink(options.ros2, *source)) sinks.push_back(std::move(sink));
@@ -164,8 +141,10 @@ int live_command(LiveCommandOptions options) {
 
   const EndsBySignal ends(*source);
   catch_interrupts();
+  begin_recording(options.record, *recorder);
   const live::LiveSummary summary = runner.run();
   std::cerr << remarks_text(*source) << summary_text(summary);
+  if (lines && !lines->summary().empty()) std::cerr << lines->summary() << "\n";
   if (const std::string line = recorder->summary(); !line.empty()) std::cerr << line << "\n";
   for (const auto& sink : sinks) {
     if (const std::string line = sink->summary(); !line.empty()) std::cerr << line << "\n";

@@ -33,12 +33,15 @@ std::unique_ptr<live::Recorder> open_recorder(const LiveRecordOptions& options, 
   how.on_trouble = [](const std::string& line) { std::cerr << "cairn: " + line + "\n" << std::flush; };
   // A file that may grow no further is refused as a full disk is, and does not end the run.
   std::signal(SIGXFSZ, SIG_IGN);
-  auto recorder = std::make_unique<live::Recorder>(std::move(run), std::move(how));
-  if (!options.file.empty()) recorder->start(options.file);
-  return recorder;
+  return std::make_unique<live::Recorder>(std::move(run), std::move(how));
 }
 
-RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options, bool is_told) {
+void begin_recording(const LiveRecordOptions& options, live::Recorder& recorder) {
+  if (!options.file.empty()) recorder.start(options.file);
+}
+
+RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options, bool is_told)
+    : source_(source) {
   if (is_told || !ros::has_mcap() || !ros::is_mcap(source)) return;
   const auto text = ros::attachment_of(ros::McapReader(source), "config.yaml");
   if (!text) return;
@@ -47,10 +50,23 @@ RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options
   if (file < 0) throw Error(pattern + ": cannot be written, expected a temporary folder with room");
   ::close(file);
   file_ = pattern;
-  std::ofstream(file_, std::ios::binary) << *text;
+  std::ofstream copy(file_, std::ios::binary);
+  copy << *text;
+  copy.close();
+  if (!copy) throw Error(file_ + ": cannot be written, expected a temporary folder with room");
   options.file = file_;
-  std::cerr << "cairn: " << source << ": the options that it was recorded with are used (--preset default: "
-            << "others)\n";
+}
+
+std::string RecordedConfig::notice() const {
+  if (file_.empty()) return {};
+  return "cairn: " + source_ +
+         ": the options that it was recorded with are used (--preset default: others)\n";
+}
+
+std::string RecordedConfig::named(std::string message) const {
+  if (!file_.empty() && message.starts_with(file_))
+    message.replace(0, file_.size(), source_ + ": config.yaml");
+  return message;
 }
 
 RecordedConfig::~RecordedConfig() {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "looped.hpp"
 
+#include <cairn/core/error.hpp>
 #include <utility>
 
 namespace cairn::live {
@@ -13,7 +14,10 @@ using io::SequenceFrame;
 class Looped : public Sequence {
  public:
   explicit Looped(std::function<std::unique_ptr<Sequence>()> open)
-      : open_(std::move(open)), inner_(open_()), rig_(inner_->rig()), size_(inner_->image_size()) {}
+      : open_(std::move(open)), inner_(open_()), rig_(inner_->rig()), size_(inner_->image_size()) {
+    if (inner_->status().is_live)
+      throw Error(inner_->name() + ": is a camera, which has no end to begin again at");
+  }
 
   std::optional<SequenceFrame> next() override {
     std::optional<SequenceFrame> frame = inner_->next();

@@ -16,15 +16,23 @@ namespace cairn::live {
 template <class T>
 class NewestSlot {
  public:
-  /// Nothing after close().
-  void put(T value) {
+  /// Nothing after close(). `merge(value, replaced)`: what of a value that nobody took goes on with this one.
+  template <class Merge>
+  void put(T value, Merge&& merge) {
     {
       const std::lock_guard lock(mutex_);
       if (is_closed_) return;
-      if (value_) ++replaced_;
+      if (value_) {
+        ++replaced_;
+        merge(value, *value_);
+      }
       value_ = std::move(value);
     }
     changed_.notify_one();
+  }
+
+  void put(T value) {
+    put(std::move(value), [](T&, const T&) {});
   }
 
   /// Waits for a value; none where the slot is closed and empty, or the time is over.

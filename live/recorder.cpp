@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "../ros/mcap.hpp"
+#include "../source/camera/without_password.hpp"
 
 namespace cairn::live {
 namespace {
@@ -266,7 +267,12 @@ void Recorder::start(const std::filesystem::path& path) {
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_character_file(path, unknown))
     throw Error(path.string() + ": is there already, expected a new file to record into");
-  s.recording = std::make_unique<Recording>(path, s.run, s.options);
+  try {
+    s.recording = std::make_unique<Recording>(path, s.run, s.options);
+  } catch (...) {
+    if (std::filesystem::is_regular_file(path, unknown)) std::filesystem::remove(path, unknown);
+    throw;
+  }
   {
     const std::lock_guard lock(s.mutex);
     s.queue.clear();
@@ -403,14 +409,9 @@ RecordWhat parse_record_what(std::string_view text) {
 
 RecordedRun recorded_run(const io::Sequence& source, const std::string& name, const std::string& preset,
                          bool tracks) {
-  return {name,
-          source.rig(),
-          source.image_size(),
-          source.disparities(),
-          source.ground(),
-          preset,
-          source.stamps_from(),
-          tracks};
+  return {io::without_password(name), source.rig(),    source.image_size(),
+          source.disparities(),       source.ground(), preset,
+          source.stamps_from(),       tracks};
 }
 
 std::string recording_name() {

@@ -6,6 +6,7 @@
 #include <cairn/pipeline/segment.hpp>
 #include <exception>
 #include <thread>
+#include <utility>
 
 namespace cairn::live {
 namespace {
@@ -65,9 +66,10 @@ LiveSummary Runner::run() {
     is_stopped_ = true;
     source_.stop();
     if (reader.joinable()) reader.join();
-    follow_.close(state);
     for (Sink* sink : sinks_) sink->finish();
+    follow_.close(trouble ? RunState::aborted : state);
   };
+  bool is_after_gap = false;
   try {
     while (!is_over()) {
       PairPtr pair;
@@ -79,19 +81,25 @@ LiveSummary Runner::run() {
         auto next = source_.next();
         if (!next) break;
         wait_for_its_time(*next);
-        pair = std::make_shared<const io::SequenceFrame>(std::move(*next));
+        pair = std::make_shared<io::SequenceFrame>(std::move(*next));
       }
       if (!pair) continue;
       if (drops && options_.max_age && pair->arrived && Clock::now() - *pair->arrived > *options_.max_age) {
         ++drops_.too_old;
+        is_after_gap = is_after_gap || pair->after_gap;
         continue;
       }
+      pair->after_gap = pair->after_gap || std::exchange(is_after_gap, false);
       const LiveFramePtr frame = work(std::move(pair));
       for (Sink* sink : sinks_) sink->offer(frame);
     }
   } catch (...) {
-    end(RunState::aborted);
-    throw;
+    const std::exception_ptr first = std::current_exception();
+    try {
+      end(RunState::aborted);
+    } catch (const Error&) {  // the first fault says more
+    }
+    std::rethrow_exception(first);
   }
   end(RunState::done);
   if (trouble) std::rethrow_exception(trouble);
@@ -107,7 +115,10 @@ void Runner::read_source(NewestSlot<PairPtr>& slot) {
     if (!pair) return;
     wait_for_its_time(*pair);
     if (!pair->arrived) pair->arrived = Clock::now();
-    slot.put(std::make_shared<const io::SequenceFrame>(std::move(*pair)));
+    // A gap before a pair that is dropped is one before the next.
+    slot.put(std::make_shared<io::SequenceFrame>(std::move(*pair)), [](PairPtr& fresh, const PairPtr& old) {
+      fresh->after_gap = fresh->after_gap || old->after_gap;
+    });
   }
 }
 

@@ -61,12 +61,17 @@ class Runner {
   void reset();
   [[nodiscard]] std::shared_ptr<const FollowConfig> config() const;
   /// Nothing is taken from the source while it is paused; step() lets one pair pass. Of files only.
-  void pause(bool on) { is_paused_ = on; }
-  void step() { ++steps_; }
+  void pause(bool on) {
+    steps_ = 0;
+    is_paused_ = on;
+  }
+  void step() {
+    if (is_paused_) ++steps_;
+  }
   [[nodiscard]] bool is_paused() const { return is_paused_; }
 
  private:
-  using PairPtr = std::shared_ptr<const io::SequenceFrame>;
+  using PairPtr = std::shared_ptr<io::SequenceFrame>;
 
   [[nodiscard]] bool is_over() const;
   void read_source(NewestSlot<PairPtr>& slot);

@@ -25,6 +25,7 @@ using mcap::Reader;
 constexpr std::uint64_t kMostChunkBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostAttachmentBytes = std::uint64_t{16} << 20;
+constexpr std::size_t kMostDefinitionBytes = std::size_t{64} << 20;  // of all channels together
 constexpr std::uint64_t kFooterBytes = 20;
 
 /// A file that is read in pieces, none beyond its end.
@@ -151,7 +152,15 @@ struct McapReader::State {
     if (damaged_count++ == 0) first_damage = file.path() + ": " + why;
   }
 
+  /// Of what is read more than once: all of it together is no more than the file.
+  [[nodiscard]] bool may_read(std::uint64_t length) {
+    read_bytes += std::min(length, file.size() + 1);
+    return read_bytes <= file.size();
+  }
+
   InFile file;
+  std::uint64_t read_bytes = 0;      // of attachments and metadata
+  std::size_t definition_bytes = 0;  // that the channels' schemas take
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, McapChannel> channels;
   std::map<std::uint16_t, std::uint64_t> counts;
@@ -193,6 +202,8 @@ McapReader::McapReader(McapReader&&) noexcept = default;
 McapReader& McapReader::operator=(McapReader&&) noexcept = default;
 
 void McapReader::State::forget() {
+  read_bytes = 0;
+  definition_bytes = 0;
   schemas.clear();
   channels.clear();
   counts.clear();
@@ -220,13 +231,19 @@ void McapReader::State::add(Op op, std::span<const std::uint8_t> content) {
     channel.encoding = in.text();
     channel.type = schema.name;
     channel.schema_encoding = schema.encoding;
+    // Many channels may name one large schema.
+    const auto before = channels.find(channel.id);
+    if (before != channels.end()) definition_bytes -= before->second.schema.size();
+    definition_bytes += schema.text.size();
+    if (definition_bytes > kMostDefinitionBytes)
+      throw Error("definitions of more than " + std::to_string(kMostDefinitionBytes) + " bytes");
     channel.schema = schema.text;
     channels.insert_or_assign(channel.id, std::move(channel));
   }
 }
 
 void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes) return;  // none of ours
+  if (length > kMostAttachmentBytes || !may_read(length)) return;  // none of ours
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   (void)in.take(16);
@@ -241,7 +258,7 @@ void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t l
 }
 
 void McapReader::State::add_metadata(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes) return;
+  if (length > kMostAttachmentBytes || !may_read(length)) return;
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   std::string name = in.text();

@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 
 // So many images of one camera wait for the other's at most.
 constexpr std::size_t kMostWaiting = 64;
+// And no more of all of them together, but for one of each.
+constexpr std::size_t kMostWaitingBytes = std::size_t{512} << 20;
 
 std::string number_text(std::size_t index) {
   constexpr std::size_t kDigits = 6;
@@ -167,7 +169,11 @@ class McapSequence : public Sequence {
     reader_.only({*channel});
     const auto message = reader_.next();
     if (!message) return std::nullopt;
-    return ros::decode<M>(message->bytes);
+    try {
+      return ros::decode<M>(message->bytes);
+    } catch (const Error& error) {
+      throw Error(file_.string() + ": " + error.what());
+    }
   }
 
   void calibrate(const StereoTopics& topics) {
@@ -241,10 +247,18 @@ class McapSequence : public Sequence {
       else
         take_grey(*message);
       for (Side* full : {&left_, &right_}) {
-        if (full->waiting.size() > kMostWaiting) leave(*full);
+        while (full->waiting.size() > kMostWaiting ||
+               (full->waiting.size() > 1 && bytes_of(*full) > kMostWaitingBytes))
+          leave(*full);
       }
     }
     return true;
+  }
+
+  static std::size_t bytes_of(const Side& side) {
+    std::size_t bytes = 0;
+    for (const Side::Taken& taken : side.waiting) bytes += taken.image ? taken.image->bytes.size() : 0;
+    return bytes;
   }
 
   void take(Side& side, const ros::McapMessage& message) {
@@ -269,7 +283,12 @@ class McapSequence : public Sequence {
     try {
       const auto image = ros::decode<ros::Image>(message.bytes);
       greys_.emplace_back(stamp_of(image.header, message), raster_of(image));
-      if (greys_.size() > kMostWaiting) greys_.pop_front();
+      std::size_t bytes = 0;
+      for (const auto& [stamp, grey] : greys_) bytes += grey.bytes.size();
+      while (greys_.size() > kMostWaiting || (greys_.size() > 1 && bytes > kMostWaitingBytes)) {
+        bytes -= greys_.front().second.bytes.size();
+        greys_.pop_front();
+      }
     } catch (const Error&) {  // the colours say it, too, but for rounding
     }
   }

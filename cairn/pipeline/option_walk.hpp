@@ -244,6 +244,7 @@ bool set_known(C& config, std::string_view name, std::string_view value) {
 
 [[noreturn]] inline void refuse_unknown(std::string_view name, const std::vector<OptionInfo>& known) {
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const OptionInfo& option : known) names.push_back(option.name);
   const std::string close = nearest(name, names);
   throw Error("unknown option '" + std::string(name.substr(0, 80)) + "'" +

@@ -108,7 +108,7 @@ class Ros2Sink : public live::Sink {
       if (!frame) continue;
       try {
         publish(**frame);
-      } catch (const Error& error) {
+      } catch (const std::exception& error) {
         trouble_ = error.what();  // said at the end; the next frame may be better
       }
     }

@@ -120,7 +120,15 @@ class ViewServer::Hub {
     if (access_.is_tls()) load_tls();
     listen();
     accept();
-    server_ = std::thread([this] { io_.run(); });
+    server_ = std::thread([this] {
+      while (true) {
+        try {
+          io_.run();
+          return;
+        } catch (const std::exception&) {  // of one answer: the others go on
+        }
+      }
+    });
     encoder_ = std::thread([this] { encode_frames(); });
   }
   ~Hub() { close(); }
@@ -369,7 +377,7 @@ class ViewServer::Hub {
       message->frame = number;
       ++encoded_;
       return message;
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {  // no memory is no reason to end the robot's run
       trouble_ = std::string(channels()[index_of(channel)].topic) + " could not be sent: " + error.what();
       return nullptr;
     }

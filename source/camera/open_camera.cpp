@@ -101,11 +101,11 @@ GstRequest gst_request(const std::string& part, const std::string& source) {
 
 std::unique_ptr<Sequence> open_pipelines(const std::string& source, const SourceOptions& options,
                                          const Pool& pool) {
-  check(options, source);
+  const std::string shown = without_password(source);
+  check(options, shown);
   std::string_view text = source;
   if (text.starts_with(kGst)) text.remove_prefix(kGst.size());
   const std::vector<std::string> parts = parts_of(text, kBetweenPipelines);
-  const std::string shown = without_password(source);
   if (parts.size() > 2) {
     throw Error(shown + ": has " + std::to_string(parts.size()) +
                 " pipelines, expected one with both images or LEFT !! RIGHT");

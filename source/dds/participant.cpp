@@ -246,13 +246,11 @@ bool BytesReader::has_writer() const {
 }
 
 ReaderWait::ReaderWait(const Participant& participant, const std::vector<const BytesReader*>& readers)
-    : guard_(dds_create_guardcondition(participant.handle()), "DDS"),
-      waitset_(dds_create_waitset(participant.handle()), "DDS") {
+    : waitset_(dds_create_waitset(participant.handle()), "DDS") {
   const auto attach = [&](std::int32_t condition) {
     if (const dds_return_t done = dds_waitset_attach(waitset_.handle(), condition, 0); done != DDS_RETCODE_OK)
       throw Error(std::string("DDS: cannot wait for messages: ") + dds_strretcode(done));
   };
-  attach(guard_.handle());
   for (const BytesReader* reader : readers) {
     conditions_.emplace_back(dds_create_readcondition(reader->handle(), DDS_ANY_STATE), "DDS");
     attach(conditions_.back().handle());
@@ -260,12 +258,7 @@ ReaderWait::ReaderWait(const Participant& participant, const std::vector<const B
 }
 
 bool ReaderWait::wait(std::chrono::nanoseconds timeout) const {
-  return dds_waitset_wait(waitset_.handle(), nullptr, 0, timeout.count()) > 0 && !is_woken_;
-}
-
-void ReaderWait::wake() {
-  is_woken_ = true;
-  dds_set_guardcondition(guard_.handle(), true);
+  return dds_waitset_wait(waitset_.handle(), nullptr, 0, timeout.count()) > 0;
 }
 
 }  // namespace cairn::dds

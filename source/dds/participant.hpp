@@ -112,16 +112,12 @@ class BytesReader {
 class ReaderWait {
  public:
   ReaderWait(const Participant& participant, const std::vector<const BytesReader*>& readers);
-  /// False where nothing came in time, or wake() was called.
+  /// False where nothing came in time.
   bool wait(std::chrono::nanoseconds timeout) const;
-  /// From any thread: wait() returns at once, now and from then on.
-  void wake();
 
  private:
   std::vector<Entity> conditions_;
-  Entity guard_;
   Entity waitset_;
-  std::atomic<bool> is_woken_ = false;
 };
 
 template <ros::Message M>

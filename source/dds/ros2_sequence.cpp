@@ -94,10 +94,8 @@ class Ros2Sequence : public io::Sequence {
   [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return none_; }
 
-  void stop() override {
-    is_stopped_ = true;
-    wait_.wake();
-  }
+  /// next() looks every 50 ms: nothing of DDS is called, so that a signal's handler may call this.
+  void stop() override { is_stopped_ = true; }
 
   [[nodiscard]] io::SourceStatus status() const override {
     io::SourceStatus status;

@@ -115,6 +115,15 @@ TEST(NewestSlot, GivesWhatIsLatestAndCountsWhatWasReplaced) {
   EXPECT_TRUE(slot.is_closed());
 }
 
+TEST(NewestSlot, WhatIsReplacedMayLeaveSomethingToTheNext) {
+  NewestSlot<int> slot;
+  const auto add = [](int& fresh, const int& old) { fresh += old; };
+  slot.put(1, add);
+  slot.put(10, add);
+  slot.put(100, add);
+  EXPECT_EQ(slot.take(0ms), 111);
+}
+
 TEST(Latencies, ArePercentilesOfWhatWasAdded) {
   Latencies all;
   EXPECT_EQ(all.percentile(0.5), 0);
@@ -162,6 +171,49 @@ TEST(Runner, PairsThatAreTooOldAreDroppedAndCounted) {
   const LiveSummary summary = run(camera, options, notebook);
   EXPECT_EQ(summary.frames, 0U);
   EXPECT_GT(summary.drops.too_old, 0U);
+}
+
+/// A camera whose second pair comes after a gap.
+struct Gapped : Camera {
+  using Camera::Camera;
+  std::optional<io::SequenceFrame> next() override {
+    auto frame = Camera::next();
+    if (frame) frame->after_gap = frame->index == 1;
+    return frame;
+  }
+};
+
+TEST(Runner, AGapBeforeAPairThatIsDroppedIsOneBeforeTheNext) {
+  Gapped camera(40, 1ms, true);
+  Notebook notebook;
+  notebook.then = [](const LiveFrame&) { std::this_thread::sleep_for(30ms); };
+  Runner runner(camera, "camera", {}, config(), {}, {});
+  runner.add(notebook);
+  runner.run();
+  ASSERT_GE(notebook.frames.size(), 2U);
+  std::size_t gaps = 0;
+  for (const LiveFramePtr& frame : notebook.frames) gaps += frame->pair->after_gap ? 1 : 0;
+  EXPECT_EQ(gaps, 1U);
+}
+
+TEST(Runner, StepsCountOnlyWhileItIsPaused) {
+  Camera camera(1'000'000, 1ms, false);
+  Notebook notebook;
+  LiveOptions options;
+  options.every_frame = true;
+  options.pace = 0;
+  Runner runner(camera, "camera", {}, config(), options, {});
+  runner.add(notebook);
+  for (int k = 0; k < 100; ++k) runner.step();
+  runner.pause(true);
+  std::thread loop([&] { runner.run(); });
+  std::this_thread::sleep_for(100ms);
+  runner.step();
+  std::this_thread::sleep_for(300ms);
+  runner.stop();
+  loop.join();
+  EXPECT_LE(notebook.frames.size(), 2U) << "the one step, and the pair that waited when it ended";
+  EXPECT_GE(notebook.frames.size(), 1U);
 }
 
 TEST(Runner, FilesArePlayedAtThePaceOfTheirStamps) {
@@ -247,6 +299,7 @@ TEST(Looped, GoesOnWithRisingStampsAndAGapBetweenTheRounds) {
     before = frame->stamp;
   }
   EXPECT_EQ(source->size(), std::nullopt);
+  EXPECT_THROW((void)looped([] { return std::make_unique<Camera>(3, 0ms, true); }), Error);
   const auto empty = looped([] { return std::make_unique<Camera>(0, 0ms, false); });
   EXPECT_FALSE(empty->next());
 }

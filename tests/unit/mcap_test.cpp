@@ -194,6 +194,74 @@ TEST_F(Mcap, ClaimsBeyondReasonAreRefusedBeforeAnythingIsAllocated) {
   EXPECT_NE(reader.first_damage().find("claims 1152921504606846976 bytes"), std::string::npos);
 }
 
+/// Records that point to one place again and again would take memory without end.
+TEST_F(Mcap, WhatIsNamedManyTimesIsReadOnce) {
+  mcap::Writer file;
+  file.raw(mcap::kMagic);
+  mcap::Writer header;
+  header.text("");
+  header.text("");
+  file.record(mcap::Op::header, header);
+  const std::uint64_t attachment_at = file.size();
+  mcap::Writer attachment;
+  attachment.number(std::uint64_t{0});
+  attachment.number(std::uint64_t{0});
+  attachment.text("calib.txt");
+  attachment.text("text/plain");
+  attachment.number(std::uint64_t{1} << 20);
+  attachment.raw(std::string(std::size_t{1} << 20, 'x'));
+  attachment.number(std::uint32_t{0});
+  file.record(mcap::Op::attachment, attachment);
+  const std::uint64_t attachment_bytes = file.size() - attachment_at;
+  file.record(mcap::Op::data_end, [] {
+    mcap::Writer end;
+    end.number(std::uint32_t{0});
+    return end;
+  }());
+  const std::uint64_t summary_at = file.size();
+  mcap::Writer statistics;
+  statistics.number(std::uint64_t{0});
+  statistics.raw(std::string(2 + 4 + 4 + 4 + 4 + 8 + 8 + 4, '\0'));
+  file.record(mcap::Op::statistics, statistics);
+  for (int k = 0; k < 10'000; ++k) {
+    mcap::Writer index;
+    index.number(attachment_at);
+    index.number(attachment_bytes);
+    file.record(mcap::Op::attachment_index, index);
+  }
+  mcap::Writer footer;
+  footer.number(summary_at);
+  footer.number(std::uint64_t{0});
+  footer.number(std::uint32_t{0});
+  file.record(mcap::Op::footer, footer);
+  file.raw(mcap::kMagic);
+  write(at("many.mcap"), {reinterpret_cast<const char*>(file.bytes().data()), file.size()});
+  const McapReader reader(at("many.mcap"));
+  EXPECT_EQ(reader.attachments().size(), 1U);
+}
+
+TEST_F(Mcap, ManyChannelsOfALargeDefinitionAreRefused) {
+  const fs::path path = at("definitions.mcap");
+  {
+    McapOptions options;
+    options.sync = false;
+    McapWriter writer(path, options);
+    const std::string definition(std::size_t{1} << 20, ' ');
+    for (int k = 0; k < 100; ++k) {
+      const std::uint16_t channel = writer.channel("/t" + std::to_string(k), String::kType, definition);
+      writer.message(channel, {k}, encode(String{"x"}));
+    }
+    writer.close();
+  }
+  std::size_t bytes = 0;
+  try {
+    const McapReader reader(path);
+    for (const auto& [id, channel] : reader.channels()) bytes += channel.schema.size();
+  } catch (const Error&) {
+  }
+  EXPECT_LE(bytes, std::size_t{64} << 20);
+}
+
 TEST_F(Mcap, OtherCompressionsAreRefusedByName) {
   write(at("lz4.mcap"), foreign("lz4", 100, Bytes(100)));
   McapReader reader(at("lz4.mcap"));

@@ -665,6 +665,8 @@ TEST(CameraNames, HaveNoPasswordInMessages) {
   EXPECT_EQ(without_password("gst:rtspsrc location=rtsp://a:b@h ! x !! rtspsrc location=rtsp://c@d/e"),
             "gst:rtspsrc location=rtsp://***@h ! x !! rtspsrc location=rtsp://***@d/e");
   EXPECT_EQ(without_password("rtsp://h/a@b"), "rtsp://h/a@b");
+  EXPECT_EQ(without_password("gst:rtspsrc location=rtsp://h/a user-id=me user-pw=\"a b\" ! x !! y user-pw=z"),
+            "gst:rtspsrc location=rtsp://h/a user-id=*** user-pw=*** ! x !! y user-pw=***");
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <live/live_frame.hpp>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace cairn::cli {
+
+/// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json. Written on a
+/// thread of its own: a reader that hangs costs lines, which are counted, and not the run.
+class JsonLines : public live::Sink {
+ public:
+  /// `waits`: for the reader, so that no line is missing.
+  JsonLines(std::string preset, std::optional<StereoRig> rig, bool tracks, bool waits);
+  ~JsonLines() override;
+
+  void offer(const live::LiveFramePtr& frame) override;
+  /// What waits is written, unless the reader hangs and somebody ends the run.
+  void finish() override;
+  [[nodiscard]] std::string summary() const override;
+  /// Nobody reads any more.
+  [[nodiscard]] bool is_closed() const;
+
+ private:
+  [[nodiscard]] std::string line_of(const live::LiveFrame& frame) const;
+  void work();
+
+  std::string preset_;
+  std::optional<StereoRig> rig_;
+  bool tracks_;
+  bool waits_;
+  mutable std::mutex mutex_;  // of the next four
+  std::condition_variable changed_;
+  std::deque<live::LiveFramePtr> queue_;
+  std::uint64_t skipped_ = 0;
+  bool is_finishing_ = false;
+  bool is_closed_ = false;
+  std::thread thread_;
+};
+
+}  // namespace cairn::cli
