@@ -173,7 +173,8 @@ Constellation explained(const Pose& pose, double slack, const std::vector<Allowe
   std::sort(near.begin(), near.end());
   Constellation found;
   found.map_from_odom = pose;
-  for (const auto& [squared, i] : near) {
+  for (const auto& [squared, nearest] : near) {
+    const std::size_t i = nearest;
     const bool is_taken = std::any_of(found.pairs.begin(), found.pairs.end(), [&](std::size_t other) {
       return pairs[other].candidate == pairs[i].candidate || pairs[other].landmark == pairs[i].landmark;
     });

@@ -105,7 +105,7 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
     const std::size_t comma = wanted.find(',');
     if (comma == std::string::npos) throw Error("--topics: found " + wanted + ", expected LEFT,RIGHT");
     std::array<const McapChannel*, 2> sides{};
-    for (const std::size_t i : {0, 1}) {
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       const std::string topic = i == 0 ? wanted.substr(0, comma) : wanted.substr(comma + 1);
       sides.at(i) = find(channels, topic);
       if (sides.at(i) == nullptr || !is_image(*sides.at(i)))

@@ -29,7 +29,8 @@ void Controller::begin_search(Size image) {
     if (std::ranges::find(reported_, arm) == reported_.end()) round_.push_back({arm, {}, {}});
   }
   // What helped once may help again.
-  std::ranges::stable_partition(round_, [&](const ArmScore& s) { return s.arm.option == last_option_; });
+  std::stable_partition(round_.begin(), round_.end(),
+                        [&](const ArmScore& s) { return s.arm.option == last_option_; });
   at_ = 0;
   samples_ = kFirstSamples;
 }

@@ -52,6 +52,9 @@ struct Choice {
   std::string_view name;
   E value;
 };
+// Clang tells it from C++20's aggregates only from version 17 on.
+template <class E>
+Choice(std::string_view, E) -> Choice<E>;
 
 /// The name of a value; "?" for one that is none of the choices.
 template <class E, std::size_t N>
