@@ -36,6 +36,23 @@ PicturePair SourceCalibration::rectified(PicturePair pair, const Pool& pool) con
   }
 }
 
+void SourceCalibration::suit(Size image) {
+  if (rectifier) {
+    says.num_disparities = disparities_down_to(0, *says.rig, image.width);
+  } else if (!path.empty()) {
+    check_size(says, image, path);
+    check_search_range(says, path);
+  }
+}
+
+std::optional<SourceRemark> SourceCalibration::remark_on_raw(const std::string& first) const {
+  if (rectifier || path.empty() || !says.of_raw_cameras) return std::nullopt;
+  return SourceRemark{path.string() +
+                          ": describes raw cameras and their distortion; the images are taken for "
+                          "rectified ones (--rectify: they are raw)",
+                      0, first, false, false};
+}
+
 SourceCalibration open_calibration(const SourceOptions& options, const std::optional<fs::path>& found,
                                    bool grey_cameras, bool is_raw) {
   SourceCalibration calibration;

@@ -26,6 +26,12 @@ struct SourceCalibration {
   /// The rectified pair where the images are raw, else the pair itself. Throws Error where the calibration
   /// was made for another size.
   [[nodiscard]] PicturePair rectified(PicturePair pair, const Pool& pool) const;
+
+  /// Once the images' size is known: the search range of raw ones; else throws Error where the file was made
+  /// for another size, or its range is wider than the images.
+  void suit(Size image);
+  /// Of images that are taken for rectified, where the file describes raw cameras. `first`: its name.
+  [[nodiscard]] std::optional<SourceRemark> remark_on_raw(const std::string& first) const;
 };
 /// `found`: beside the images; options.calib goes before. Throws Error, also where raw images have none.
 SourceCalibration open_calibration(const SourceOptions& options,

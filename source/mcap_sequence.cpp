@@ -15,6 +15,7 @@
 #include "frame_list.hpp"
 #include "frame_watch.hpp"
 #include "mcap_topics.hpp"
+#include "names_and_numbers.hpp"
 
 namespace cairn::io {
 namespace {
@@ -25,13 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostWaiting = 64;
 // And no more of all of them together, but for one of each.
 constexpr std::size_t kMostWaitingBytes = std::size_t{512} << 20;
-
-std::string number_text(std::size_t index) {
-  constexpr std::size_t kDigits = 6;
-  std::string text = std::to_string(index);
-  if (text.size() < kDigits) text.insert(0, kDigits - text.size(), '0');
-  return text;
-}
 
 /// How an encoding stores a pixel.
 struct Encoding {
@@ -121,13 +115,7 @@ class McapSequence : public Sequence {
                                                              : ": holds no images of " + left_.channel.topic +
                                                                    " and " + right_.channel.topic));
     }
-    const Size size = watch_.image_size();
-    if (calibration_.rectifier) {
-      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
-    } else if (!calibration_.path.empty()) {
-      check_size(calibration_.says, size, calibration_.path);
-      check_search_range(calibration_.says, calibration_.path);
-    }
+    calibration_.suit(watch_.image_size());
   }
 
   std::optional<SequenceFrame> next() override {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ std::optional<Number> whole(std::string_view text) {
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
 }
+
+/// "000012": the name of a frame that has only a number.
+std::string number_text(std::size_t index);
 
 bool is_digit(char c);
 

@@ -50,19 +50,8 @@ class FileSequence : public Sequence {
     calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw);
     if (each_has_own_) calib_bytes_ = read_file(calibration_.path, kMostTextBytes);
     first_ = load(first);
-    const Size size = first_->left.gray.size();
-    if (calibration_.rectifier) {
-      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
-    } else if (!calibration_.path.empty()) {
-      check_size(calibration_.says, size, calibration_.path);
-      check_search_range(calibration_.says, calibration_.path);
-      if (calibration_.says.of_raw_cameras) {
-        list_.remarks.push_back({calibration_.path.string() +
-                                     ": describes raw cameras and their distortion; the images are taken for "
-                                     "rectified ones (--rectify: they are raw)",
-                                 0, first.name, false, false});
-      }
-    }
+    calibration_.suit(first_->left.gray.size());
+    if (auto raw = calibration_.remark_on_raw(first.name)) list_.remarks.push_back(std::move(*raw));
   }
 
   std::optional<SequenceFrame> next() override {

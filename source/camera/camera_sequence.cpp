@@ -13,6 +13,7 @@
 
 #include "../frame_list.hpp"
 #include "../frame_watch.hpp"
+#include "../names_and_numbers.hpp"
 #include "stamp_pairer.hpp"
 
 namespace cairn::io {
@@ -30,10 +31,6 @@ std::string formatted(const char* form, Values... values) {
   std::array<char, 200> words{};
   std::snprintf(words.data(), words.size(), form, values...);
   return words.data();
-}
-
-std::string number_text(std::size_t index) {
-  return formatted("%06zu", index);
 }
 
 class CameraSequence : public Sequence {
@@ -227,19 +224,8 @@ class CameraSequence : public Sequence {
   }
 
   void check_calibration() {
-    const Size size = watch_.image_size();
-    if (calibration_.rectifier) {
-      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
-    } else if (!calibration_.path.empty()) {
-      check_size(calibration_.says, size, calibration_.path);
-      check_search_range(calibration_.says, calibration_.path);
-      if (calibration_.says.of_raw_cameras) {
-        remarks_.push_back({calibration_.path.string() +
-                                ": describes raw cameras and their distortion; the images are taken for "
-                                "rectified ones (--rectify: they are raw)",
-                            0, "", false, false});
-      }
-    }
+    calibration_.suit(watch_.image_size());
+    if (auto raw = calibration_.remark_on_raw("")) remarks_.push_back(std::move(*raw));
   }
 
   void note_openings() {

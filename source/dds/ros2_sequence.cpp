@@ -12,6 +12,7 @@
 #include "../../ros/from_step.hpp"
 #include "../frame_list.hpp"
 #include "../frame_watch.hpp"
+#include "../names_and_numbers.hpp"
 #include "pairing.hpp"
 #include "participant.hpp"
 #include "ros_pictures.hpp"
@@ -34,12 +35,6 @@ constexpr std::array kSides{"left", "right"};
 std::string seconds_of(double seconds) {
   std::array<char, 32> words{};
   std::snprintf(words.data(), words.size(), "%g s", seconds);
-  return words.data();
-}
-
-std::string number_text(std::size_t index) {
-  std::array<char, 32> words{};
-  std::snprintf(words.data(), words.size(), "%06zu", index);
   return words.data();
 }
 
@@ -74,7 +69,7 @@ class Ros2Sequence : public io::Sequence {
         }
       }
     }
-    note_losses(frame ? frame->name : number_text(count_));
+    note_losses(frame ? frame->name : io::number_text(count_));
     if (is_stopped_) return std::nullopt;
     return frame;
   }
@@ -209,11 +204,8 @@ class Ros2Sequence : public io::Sequence {
 
   void calibrate(const Pair& pair, bool needs_infos) {
     const Size size{static_cast<int>(pair.first.image.width), static_cast<int>(pair.first.image.height)};
-    if (calibration_.rectifier) {
-      calibration_.says.num_disparities = io::disparities_down_to(0, *calibration_.says.rig, size.width);
-    } else if (!needs_infos) {
-      io::check_size(calibration_.says, size, calibration_.path);
-      io::check_search_range(calibration_.says, calibration_.path);
+    if (calibration_.rectifier || !needs_infos) {
+      calibration_.suit(size);
     } else if (last_infos_[0] && last_infos_[1]) {
       calibration_.says.rig = rig_of_infos(size);
     } else {
@@ -244,8 +236,8 @@ class Ros2Sequence : public io::Sequence {
   std::optional<io::SequenceFrame> frame_of(const Pair& pair) {
     const Stamp stamp = ros::stamp_of(pair.first.image.header.stamp);
     if (last_stamp_ && stamp <= *last_stamp_) {
-      io::remark(remarks_,
-                 {"frame whose stamp is not later than the one before", 1, number_text(count_), true, false});
+      io::remark(remarks_, {"frame whose stamp is not later than the one before", 1, io::number_text(count_),
+                            true, false});
       return std::nullopt;
     }
     const std::size_t index = count_++;
@@ -256,7 +248,7 @@ class Ros2Sequence : public io::Sequence {
     bits_ = pictures.bits;
     pictures = calibration_.rectified(std::move(pictures), pool_);
     io::SequenceFrame frame{
-        number_text(index),
+        io::number_text(index),
         index,
         stamp,
         std::move(pictures.left),

@@ -14,6 +14,7 @@
 #include <opencv2/videoio/registry.hpp>
 #include <source/frame_list.hpp>
 #include <source/frame_watch.hpp>
+#include <source/names_and_numbers.hpp>
 #include <source/stamps.hpp>
 #include <system_error>
 
@@ -132,13 +133,6 @@ Picture picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
   return picture;
 }
 
-std::string number_text(std::size_t index) {
-  constexpr std::size_t kDigits = 6;
-  std::string text = std::to_string(index);
-  if (text.size() < kDigits) text.insert(0, kDigits - text.size(), '0');
-  return text;
-}
-
 /// What sequences of one and of two videos share.
 class VideoSequence : public Sequence {
  public:
@@ -186,13 +180,7 @@ class VideoSequence : public Sequence {
       const bool is_ranged = options_.frames.first > 0;
       throw Error(file_.string() + (is_ranged ? ": has no frame that is in --frames" : ": holds no frames"));
     }
-    const Size size = watch_.image_size();
-    if (calibration_.rectifier) {
-      calibration_.says.num_disparities = disparities_down_to(0, *calibration_.says.rig, size.width);
-    } else if (!calibration_.path.empty()) {
-      check_size(calibration_.says, size, calibration_.path);
-      check_search_range(calibration_.says, calibration_.path);
-    }
+    calibration_.suit(watch_.image_size());
   }
   [[nodiscard]] const SourceOptions& options() const { return options_; }
   [[nodiscard]] const Pool& pool() const { return pool_; }

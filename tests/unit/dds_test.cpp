@@ -87,7 +87,7 @@ void expect_known_hash() {
 }
 
 TEST_F(Dds, TypeHashesAreThoseOfTheMessagesMembers) {
-  EXPECT_EQ(ros::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(io::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   expect_known_hash<ros::String>();
   expect_known_hash<ros::Image>();
   expect_known_hash<ros::CameraInfo>();
