@@ -11,16 +11,16 @@
 #include <string_view>
 #include <type_traits>
 
-/// cv::Mat in and out, for programs that use OpenCV anyway: they link it themselves
-/// (opencv_core), the library knows nothing of it, and cairn.hpp does not include this header.
+/// Conversion from and to cv::Mat, for programs that link OpenCV (opencv_core) themselves. The library does
+/// not depend on OpenCV, and cairn.hpp does not include this header.
 ///
-///   const auto pair = cairn::stereo_pair(left_bgr, right_bgr);                     // as cv::imread gives
-///   them const auto frame = cairn::segment(pair, rig, config, exec); const cv::Mat disparity =
-///   cairn::mat_of(frame.disparity.disparity_px);         // CV_32FC1, NaN = hole const cv::Mat labels =
-///   cairn::mat_of(frame.objects.labels);                    // CV_32SC1, 0 = none
+///   const auto pair = cairn::stereo_pair(left_bgr, right_bgr);  // as from cv::imread
+///   const auto frame = cairn::segment(pair, rig, config, exec);
+///   const cv::Mat disparity = cairn::mat_of(frame.disparity.disparity_px);  // CV_32FC1, NaN = hole
+///   const cv::Mat labels = cairn::mat_of(frame.objects.labels);             // CV_32SC1, 0 = none
 namespace cairn {
 
-/// OpenCV's number of the pixel type T: CV_8UC1 for Gray, CV_16UC1 for Reject, CV_8UC3 for Rgb, CV_32SC1 for
+/// The OpenCV type of the pixel type T: CV_8UC1 for Gray, CV_16UC1 for Reject, CV_8UC3 for Rgb, CV_32SC1 for
 /// RegionId and ObjectId, CV_32FC1 for float, and so on.
 template <class T>
 constexpr int mat_type() {
@@ -35,7 +35,7 @@ constexpr int mat_type() {
 
 namespace opencv_detail {
 
-/// What usually stands behind a wrong type, and how to put it right; empty where nothing is known.
+/// The usual cause of a wrong type and its remedy; empty if unknown.
 template <class T>
 std::string way_out(int found) {
   if (std::is_same_v<T, Gray> && found == CV_8UC3) return "; cv::cvtColor with COLOR_BGR2GRAY makes it grey";
@@ -46,10 +46,10 @@ std::string way_out(int found) {
 
 }  // namespace opencv_detail
 
-/// The pixels of `mat`, which must live on and keep its size as long as the view is used. An empty matrix
-/// gives an empty view. Rgb means what it says: OpenCV's own order is BGR, and cv::cvtColor with
-/// COLOR_BGR2RGB turns it. Throws Error naming `what` where the matrix has other pixels than T, more than two
-/// dimensions, or rows that are not a whole number of pixels apart.
+/// The pixels of `mat`, which must outlive the view and keep its size. An empty matrix gives an empty view.
+/// Rgb is in the order R, G, B: convert OpenCV's BGR by cv::cvtColor with COLOR_BGR2RGB. Throws Error naming
+/// `what` if the pixels are not of type T, the matrix has more than two dimensions, or its rows are not a
+/// whole number of pixels apart.
 template <class T>
 View<const T> view_of(const cv::Mat& mat, std::string_view what = "cv::Mat") {
   if (mat.empty()) return {};
@@ -70,9 +70,9 @@ View<const T> view_of(const cv::Mat& mat, std::string_view what = "cv::Mat") {
 
 namespace opencv_detail {
 
-/// Both of a CV_8UC3 matrix in OpenCV's order, the grey as cairn's file readers make it.
+/// Grey and colour of a CV_8UC3 matrix in OpenCV's order; the grey is that of cairn's file readers.
 inline void convert(const cv::Mat& bgr, std::string_view what, Image<Gray>& gray, Image<Rgb>* rgb) {
-  const View<const Rgb> from = view_of<Rgb>(bgr, what);  // its r is B
+  const View<const Rgb> from = view_of<Rgb>(bgr, what);  // r holds B
   gray = Image<Gray>(from.size());
   if (rgb != nullptr) *rgb = Image<Rgb>(from.size());
   for (int y = 0; y < from.height(); ++y) {
@@ -86,9 +86,9 @@ inline void convert(const cv::Mat& bgr, std::string_view what, Image<Gray>& gray
 
 }  // namespace opencv_detail
 
-/// A rectified pair of matrices, to be passed wherever a StereoPair is taken. Grey matrices are borrowed and
-/// must live on; of coloured ones it keeps grey and colour itself. It must be named: of a temporary the
-/// pixels would be gone.
+/// A rectified pair of matrices that converts to StereoPair. Grey matrices are borrowed and must outlive it;
+/// for coloured ones it owns grey and colour. It must be a named variable: the pixels of a temporary would be
+/// gone.
 class MatPair {
  public:
   MatPair(const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_rgb)
@@ -99,7 +99,9 @@ class MatPair {
                opencv_detail::convert(right_bgr, "right", right_, nullptr),
                StereoPair::from(left_, right_, left_rgb_))) {}
 
-  operator const StereoPair&() const& { return pair_; }  // NOLINT(google-explicit-constructor): it is one
+  operator const StereoPair&() const& {
+    return pair_;
+  }  // NOLINT(google-explicit-constructor): MatPair is a StereoPair
   operator const StereoPair&() && = delete;
   [[nodiscard]] View<const Gray> left() const { return pair_.left(); }
   [[nodiscard]] View<const Gray> right() const { return pair_.right(); }
@@ -107,21 +109,21 @@ class MatPair {
   [[nodiscard]] Size size() const { return pair_.size(); }
 
  private:
-  Image<Gray> left_;  // empty where the matrices are borrowed
+  Image<Gray> left_;  // empty if the matrices are borrowed
   Image<Gray> right_;
   Image<Rgb> left_rgb_;
   StereoPair pair_;
 };
 
-/// Both CV_8UC3 in OpenCV's order B, G, R; or both CV_8UC1, and `left_rgb` CV_8UC3 in the order R, G, B, or
-/// empty. Throws Error as view_of() and StereoPair::from() do.
+/// Two CV_8UC3 matrices in OpenCV's order B, G, R; or two CV_8UC1 and `left_rgb`, a CV_8UC3 matrix in the
+/// order R, G, B, or empty. Throws Error like view_of() and StereoPair::from().
 inline MatPair stereo_pair(const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_rgb = {}) {
   if (left.type() == CV_8UC3 && left_rgb.empty()) return {left, right};
   return {left, right, left_rgb};
 }
 
-/// A header over the view's pixels: they are not copied, and the matrix does not own them. OpenCV knows no
-/// matrix of const pixels: do not write into one made from const pixels.
+/// A matrix header over the pixels of the view, without a copy and without ownership. OpenCV has no matrix of
+/// const pixels: do not write to one made from const pixels.
 template <class T>
 cv::Mat mat_of(View<T> view) {
   using Pixel = std::remove_const_t<T>;
@@ -129,7 +131,7 @@ cv::Mat mat_of(View<T> view) {
   return cv::Mat(view.height(), view.width(), mat_type<Pixel>(), const_cast<Pixel*>(view.data()),
                  static_cast<std::size_t>(view.stride()) * sizeof(T));
 }
-/// The same over an image, which must live on as long as the matrix is used.
+/// The same for an image, which must outlive the matrix.
 template <class T>
 cv::Mat mat_of(Image<T>& image) {
   return mat_of(image.view());
@@ -139,6 +141,6 @@ cv::Mat mat_of(const Image<T>& image) {
   return mat_of(image.view());
 }
 template <class T>
-cv::Mat mat_of(Image<T>&& image) = delete;  // the pixels would be gone before the matrix is
+cv::Mat mat_of(Image<T>&& image) = delete;  // the matrix would outlive its pixels
 
 }  // namespace cairn

@@ -10,8 +10,8 @@
 
 namespace cairn {
 
-/// A forest over the numbers 0 … count − 1: each tree is a set, and its root stands for it. At first each
-/// number is a set of its own.
+/// A union-find forest over the numbers 0 … count − 1: each tree is a set, represented by its root. Initially
+/// each number is a set of its own.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count, const Pool& pool = {}) : parents_(count, pool) {
@@ -20,7 +20,7 @@ class DisjointSets {
 
   [[nodiscard]] std::size_t size() const { return parents_.size(); }
   [[nodiscard]] bool is_root(std::int32_t i) const { return parents_[i] == i; }
-  /// The root of i's set; the way to it gets shorter.
+  /// The root of i's set; halves the path to it.
   std::int32_t root(std::int32_t i) {
     std::int32_t* const parents = parents_.data();
     while (parents[i] != i) {
@@ -29,20 +29,20 @@ class DisjointSets {
     }
     return i;
   }
-  /// The smaller of the two roots becomes that of both. Used alone, this makes every set's smallest number
-  /// its root.
+  /// Merges two sets; the smaller root becomes the root of both. If only unite() is used, the root of a set
+  /// is its smallest number.
   void unite(std::int32_t a, std::int32_t b) {
     a = root(a);
     b = root(b);
     parents_[std::max(a, b)] = std::min(a, b);
   }
-  /// Hangs a root and all below it under another.
+  /// Makes a root, with all below it, a child of another element.
   void hang(std::int32_t root, std::int32_t under) { parents_[root] = under; }
-  /// Where the smallest numbers are the roots: numbers the sets in the order of these, each element's set in
-  /// numbers[i]. Returns how many sets there are.
+  /// Numbers the sets in order of their roots: numbers[i] = the set of element i. Requires every root to be
+  /// the smallest number of its set. Returns the number of sets.
   std::int32_t number(std::int32_t* numbers) const {
     std::int32_t count = 0;
-    // A parent is smaller than its children and has its number already.
+    // A parent is smaller than its children and is numbered before them.
     for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(parents_.size()); ++i)
       numbers[i] = parents_[i] == i ? count++ : numbers[parents_[i]];
     return count;

@@ -8,8 +8,8 @@
 
 namespace cairn {
 
-/// Calls body(i, exec) for 0 … count−1 on `threads` threads; each has one Exec of its own with a pool. The
-/// first exception is thrown on.
+/// Calls body(i, exec) for i = 0 … count−1 on `threads` threads, each with its own Exec and pool. Rethrows
+/// the first exception.
 void for_each_index(std::size_t count, int threads,
                     const std::function<void(std::size_t index, const Exec& exec)>& body,
                     Target target = Target::best);

@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The one way in which a file of kernels is compiled for each instruction set. A kernel file is three:
+// Compiles a file of kernels for each instruction set. The kernels of one topic are three files:
 //
-//   gradient_kernels.hpp      the seam: a struct of functions, and gradient_kernels(target)
+//   gradient_kernels.hpp      a struct of functions, and gradient_kernels(target)
 //   gradient_kernels-inl.hpp  the functions, in namespace cairn::kernels::CAIRN_KERNEL_TARGET, and a constant
-//   of the
-//                             struct that lists them
+//                             of the struct that lists them
 //   gradient_kernels.cpp      #define CAIRN_KERNELS "cairn/image/gradient_kernels-inl.hpp"
 //                             #include <cairn/core/each_target-inl.hpp>
 //                             CAIRN_CHOOSE_KERNELS(GradientKernels, gradient_kernels, kGradientKernels)
 //
-// What CAIRN_KERNELS names is included here once for each of Highway's targets and once for plain C++, then
-// with CAIRN_PLAIN_KERNELS = 1. Plain loops need no more than that, as what Highway adds to them is the
-// switch of the instruction set; kernels that are written in its vectors define CAIRN_KERNELS_USE_VECTORS
-// before.
+// The file CAIRN_KERNELS is included here once for each Highway target and once for plain C++, the latter
+// with CAIRN_PLAIN_KERNELS = 1. Plain loops need only this: Highway switches the instruction set of the
+// compiler. Kernels written in Highway's vectors define CAIRN_KERNELS_USE_VECTORS before.
 //
-// No include guard: to be included once, by a source.
+// No include guard: to be included once, by a source file.
 #include <cairn/core/target.hpp>
 
 #if defined(__GNUC__)
@@ -30,7 +28,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cairn/core/one_target-inl.hpp"
 #include <hwy/foreach_target.h>
-// The last target, of which Highway leaves the inclusion to the source.
+// The last target; Highway leaves its inclusion to the source file.
 #include <cairn/core/one_target-inl.hpp>
 #endif
 
@@ -42,8 +40,8 @@
 #define CAIRN_UNROLL
 #include CAIRN_KERNELS
 
-// CAIRN_OF_TARGET(target, name) ends a function: it returns the address of what is called `name` in the
-// namespace for `target`, nullptr where this build has none.
+// CAIRN_OF_TARGET(target, name) ends a function: it returns the address of `name` in the namespace of
+// `target`, or nullptr if this build lacks the target.
 #if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_SSE4)
 #define CAIRN_OF_SSE4(name) \
   case Target::sse4:        \
@@ -85,8 +83,8 @@
       return nullptr;                 \
   }
 
-// Defines `choose(target)`, nullptr where this build has no kernels for it, and `choose(exec)`, those for the
-// target that `exec` gets: the constant `list`, a Kernels, of each target.
+// Defines `choose(target)`, nullptr if this build has no kernels for it, and `choose(exec)`, the kernels for
+// the active target of `exec`: the constant `list` of each target, a Kernels.
 #define CAIRN_CHOOSE_KERNELS(Kernels, choose, list) \
   namespace cairn::kernels {                        \
   const Kernels* choose(Target target) {            \

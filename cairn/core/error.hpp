@@ -7,12 +7,12 @@
 
 namespace cairn {
 
-/// Bad input from outside. One sentence: what was found, what was expected, which file or option.
-/// Thrown at the doors only (files, config, StereoPair::from); past them a stage cannot fail.
+/// Bad input from outside. One sentence: what was found, what was expected, in which file or option. Thrown
+/// only where input enters (files, config, StereoPair::from); stages do not fail.
 class Error : public std::runtime_error {
  public:
-  /// What it says may quote names and contents from anywhere: control characters, which would break the line
-  /// or steer a terminal, are written as escapes ("\n", "\x1b").
+  /// `says` may quote names and contents from anywhere: control characters, which would break the line or
+  /// steer a terminal, are escaped ("\n", "\x1b").
   explicit Error(const std::string& says);
 };
 

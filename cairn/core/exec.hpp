@@ -13,7 +13,7 @@
 
 namespace cairn {
 
-enum class Reject : std::uint16_t;  // defined in disparity/reject.hpp; the rest beside its stage
+enum class Reject : std::uint16_t;  // defined in disparity/reject.hpp; the rest next to its stage
 struct Matches;
 struct DisparityMap;
 struct Ground;
@@ -27,33 +27,33 @@ struct Objects;
 struct LeftOut;
 enum class Space : std::uint8_t;  // defined in objects/space.hpp
 
-/// What a stage made, as an observer sees it: borrowed, valid during the call only.
+/// The result of a stage, as passed to an observer: borrowed, valid during the call only.
 using Artifact =
     std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
                  const Ground*, const Image<std::uint8_t>*, const Background*, const Superpixels*,
                  const MergeTree*, const ChosenObjects*, const Segmentation*, const Fusion*, const Objects*,
                  const Image<Space>*, const std::vector<LeftOut>*>;
 
-/// Called after each stage on the calling thread: the stage's name (as the function's), its result, its time.
+/// Called after each stage on the calling thread: name of the stage (its function's), result, time.
 using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;
 
-/// Which instruction set the kernels use. Never changes a result bit.
+/// The instruction set of the kernels. Never changes a result bit.
 enum class Target : std::uint8_t { best, scalar, sse4, avx2, avx512, neon };
 
 class Workers;  // persistent threads; parallel.cpp
 
-/// How the work is done: threads, instruction set, where images live, who watches. Never what comes out
-/// (tested law). Exec{} is one thread, the best target, images from the heap, nobody watching.
+/// How a frame is computed: threads, instruction set, memory of the images, observer. Never changes a result
+/// (tested). Exec{} is one thread, the best target, images from the heap, no observer.
 struct Exec {
   Target target = Target::best;
   Pool pool;
   Observer observe;
-  std::shared_ptr<Workers> workers;  // none = the calling thread alone
+  std::shared_ptr<Workers> workers;  // null = only the calling thread
 
-  /// `threads` ≥ 1 persistent threads, the calling one counted; 0 = one for each processor.
+  /// `threads` ≥ 1 persistent threads, including the calling one; 0 = one per processor.
   static Exec with_threads(int threads, Target target = Target::best);
   [[nodiscard]] int threads() const;
-  /// For a Later: unobserved, and where it is done at the same time, with a pool of its own.
+  /// The Exec of a Later: without an observer and, if the work is concurrent, with a pool of its own.
   [[nodiscard]] Exec beside() const;
 };
 

@@ -9,22 +9,23 @@
 #include <string>
 #include <string_view>
 
-/// The vocabulary of a config's fields() function. Each stage's header has, beside its config struct,
+/// The vocabulary of a config's fields() function. Each stage's header has, next to its config struct,
 ///
 ///     template <class V> void fields(LeftRightConfig& c, V&& v) {
 ///       v("max_diff", c.max_diff, "px", "largest left-right disagreement", off_or(0.0F, 64.0F));
 ///     }
 ///
-/// and everything else that knows about options (command line, config file, validation, reference page,
-/// tuning, Python) visits it. Field types: bool, int, float, an enum with choices(). A field that is read
-/// only under a condition says so behind its values:
+/// and all users of options (command line, config file, validation, reference page, tuning, Python) visit it.
+/// Field types: bool, int, float, an enum with choices(). A field that is read only under a condition names
+/// the condition after its values:
 ///
 ///       v("method", c.method, "", "which winner", kLeftRightMethods, unless("left_right.max_diff", "-1"));
 ///
-/// A member that fields() does not visit is no option: a constant of the method, or a fact of the input.
+/// A member that fields() does not visit is not an option but a constant of the method or a property of the
+/// input.
 namespace cairn {
 
-/// What values a number may take: [lowest, highest], or −1 where that switches the stage off.
+/// The allowed values of a number: [lowest, highest], and −1 if that switches the stage off.
 template <class T>
 struct Range {
   T lowest = std::numeric_limits<T>::lowest();
@@ -37,7 +38,7 @@ template <class T>
 constexpr Range<T> range(T lowest, T highest) {
   return {lowest, highest, false, false};
 }
-/// Like range(), and −1 switches the stage off.
+/// Like range(), but −1 switches the stage off.
 template <class T>
 constexpr Range<T> off_or(T lowest, T highest) {
   return {lowest, highest, true, false};
@@ -46,17 +47,17 @@ constexpr Range<int> odd_range(int lowest, int highest) {
   return {lowest, highest, false, true};
 }
 
-/// One name of an enum's value, as users write it.
+/// One value of an enum and its name in config files and on the command line.
 template <class E>
 struct Choice {
   std::string_view name;
   E value;
 };
-// Clang tells it from C++20's aggregates only from version 17 on.
+// Clang deduces aggregates, as C++20 has it, only from version 17 on.
 template <class E>
 Choice(std::string_view, E) -> Choice<E>;
 
-/// The name of a value; "?" for one that is none of the choices.
+/// The name of a value; "?" if it is not among the choices.
 template <class E, std::size_t N>
 std::string choice_name(E value, const std::array<Choice<E>, N>& choices) {
   for (const Choice<E>& choice : choices) {
@@ -65,10 +66,10 @@ std::string choice_name(E value, const std::array<Choice<E>, N>& choices) {
   return "?";
 }
 
-/// No further limit: for bool.
+/// No limit: for bool.
 struct Any {};
 
-/// An option is read only while another one has a value, or has another value than that, and is itself read.
+/// An option is read only while another option is read and has (`equal`) or has not a certain value.
 struct Condition {
   std::string_view option{};  // "match.method"; empty: always read
   std::string_view value{};   // as set() reads it

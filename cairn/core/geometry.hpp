@@ -15,7 +15,7 @@ struct Size {
   [[nodiscard]] constexpr std::int64_t area() const { return std::int64_t{width} * height; }
 };
 
-/// "640x480", as every message writes it.
+/// "640x480", the form used in messages.
 inline std::string text(Size size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
@@ -44,13 +44,13 @@ constexpr Rect united(Rect a, Rect b) {
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-/// The columns and rows that lie between two rectangles; 0 where they touch or overlap along that axis.
+/// The number of columns and rows between two rectangles; 0 if they touch or overlap along that axis.
 constexpr Size gap_between(Rect a, Rect b) {
   return {std::max({a.x - b.x - b.width, b.x - a.x - a.width, 0}),
           std::max({a.y - b.y - b.height, b.y - a.y - a.height, 0})};
 }
 
-/// A vector or position; unit and frame stand in the name of whoever holds one (position_in_camera_m).
+/// A vector or position; the name of the variable states unit and frame (position_in_camera_m).
 struct Vec3 {
   float x = 0;
   float y = 0;

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-/// Which of Highway's targets are compiled: what Target names, and Highway's stand-in for no vectors at all,
-/// which it wants to exist. Newer versions know ever more of them; none is compiled unasked. To be included
-/// before any header of Highway's.
+/// The Highway targets that are compiled: those of Target, and the two without vectors that Highway requires.
+/// Newer versions of Highway know more targets; those are not compiled. Include before any Highway header.
 #define HWY_DISABLED_TARGETS (~(HWY_SSE4 | HWY_AVX2 | HWY_AVX3 | HWY_NEON | HWY_EMU128 | HWY_SCALAR))

@@ -7,13 +7,13 @@
 
 namespace cairn {
 
-/// A region of one segmentation: 0 … regions.size()-1, so it indexes Segmentation::regions.
+/// A region of one segmentation: index into Segmentation::regions.
 enum class RegionId : std::int32_t {};
 
-/// An object of one frame: 1 = the nearest, counting up with distance; none = no object here.
+/// An object of one frame: 1 = the nearest, numbered by distance; none = no object.
 enum class ObjectId : std::int32_t { none = 0 };
 
-/// A number that is never negative, as containers count.
+/// A non-negative number as an index of a container.
 constexpr std::size_t slot(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }

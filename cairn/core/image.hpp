@@ -20,11 +20,11 @@ struct Rgb {
   friend constexpr bool operator==(Rgb, Rgb) = default;
 };
 
-/// Owns pixels. Move-only: a copy is always written out as clone(). Every row starts at a multiple of 64
-/// bytes, so that a vector load at a row's start never crosses a cache line. The buffer returns to the pool
-/// that it came from.
+/// A two-dimensional array that owns its pixels. Move-only; clone() makes a copy. Every row starts at a
+/// multiple of 64 bytes, so a vector load at the start of a row never crosses a cache line. The buffer
+/// returns to the pool that it came from.
 ///
-/// Fresh pixels are undefined; whoever makes an image writes every one.
+/// New pixels are undefined; the creator writes every one.
 template <class T>
 class Image {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -54,8 +54,8 @@ class Image {
 
   [[nodiscard]] View<T> view() & { return {data(), size_, stride_}; }
   [[nodiscard]] View<const T> view() const& { return {data(), size_, stride_}; }
-  View<T> view() && = delete;  // the pixels would be gone before the view is
-  // NOLINTBEGIN(google-explicit-constructor): an image that lives on may stand wherever a view is asked for
+  View<T> view() && = delete;  // the view would outlive its pixels
+  // NOLINTBEGIN(google-explicit-constructor): a named image converts to a view
   operator View<T>() & { return view(); }
   operator View<const T>() const& { return view(); }
   operator View<const T>() && = delete;

@@ -7,17 +7,17 @@
 
 namespace cairn {
 
-/// A value that is worked out beside the caller's own work, on another thread of `exec`; where there is none,
-/// when it is asked for. What the work reads must stay as it is meanwhile. `work` is called with an Exec to
-/// go by: unobserved, and with a pool of its own. Two at the same time need one each: give the second
-/// exec.beside().
+/// A value computed concurrently with the caller's own work, on another thread of `exec`; on a single thread,
+/// computed by get(). The inputs of `work` must not change meanwhile. `work` is called with an Exec of its
+/// own: without an observer, and with its own pool. Of two concurrent Later values, pass exec.beside() to the
+/// second.
 template <class T>
 class Later {
  public:
   template <class Work>
   Later(const Exec& exec, Work work)
       : work_(exec, [this, work = std::move(work), beside = exec.beside()] { value_ = work(beside); }) {}
-  /// Once. Throws what the work has thrown.
+  /// To be called once. Rethrows the exception of the work.
   T get() {
     work_.wait();
     return std::move(value_);
@@ -25,7 +25,7 @@ class Later {
 
  private:
   T value_{};
-  SideWork work_;  // the last, so that it is over before what it writes to is gone
+  SideWork work_;  // last member: destroyed first, so the work ends before value_ does
 };
 
 }  // namespace cairn

@@ -8,7 +8,7 @@
 
 namespace cairn {
 
-/// The candidate of least edit distance, for "did you mean …?"; empty where nothing comes close.
+/// The candidate of least edit distance, for "did you mean …?"; empty if no candidate is close.
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace cairn

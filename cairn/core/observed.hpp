@@ -8,8 +8,8 @@
 
 namespace cairn {
 
-/// Reports each stage's result to exec.observe: stage("match", match(...)) hands the value through. A stage's
-/// time runs from the end of the one before. Without an observer it does nothing.
+/// Reports the result of each stage to exec.observe: stage("match", match(...)) returns its argument. The
+/// time of a stage runs from the end of the stage before. Does nothing without an observer.
 class Observed {
  public:
   explicit Observed(const Exec& exec) : observe_(exec.observe) { restart(); }
@@ -19,7 +19,7 @@ class Observed {
     if (observe_) {
       const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start_;
       observe_(stage, Artifact(static_cast<const T*>(&value)), elapsed.count());
-      restart();  // the observer's own time is no stage's
+      restart();  // excludes the time of the observer
     }
     return value;
   }

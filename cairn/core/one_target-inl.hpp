@@ -5,7 +5,7 @@
 #ifdef CAIRN_KERNELS_USE_VECTORS
 #include <hwy/highway.h>
 #else
-// All that loops need: the switch. The vectors take a second and a half to compile.
+// Loops need only the target switch. The vector code takes a second and a half to compile.
 #include <hwy/base.h>
 #include <hwy/ops/set_macros-inl.h>
 #endif

@@ -9,27 +9,27 @@
 namespace cairn {
 
 /// Calls body(first, last) for consecutive ranges that together cover [0, count), on the threads of `exec`.
-/// Ranges hold at least `grain` elements (but the last). How the split falls must not change a result.
+/// Every range but the last holds at least `grain` elements. Results must not depend on the split.
 void parallel_for(const Exec& exec, int count, int grain,
                   const std::function<void(int first, int last)>& body);
 
-/// Work that is done beside the caller's own, on another thread of `exec`; where there is none, when it is
-/// waited for. It must not take images from the pool that the caller takes some from meanwhile: how many a
-/// frame needs would depend on who comes first. See Pool::beside().
+/// Work done concurrently with the caller's own, on another thread of `exec`; on a single thread, done by
+/// wait(). It must not allocate from the pool that the caller allocates from: the number of buffers per frame
+/// would depend on timing. See Pool::beside().
 class SideWork {
  public:
   SideWork(const Exec& exec, std::function<void()> work);
-  /// Waits, too, if nobody has. What has not begun by then never does.
+  /// Waits unless wait() was called. Work that has not begun by then is dropped.
   ~SideWork();
   SideWork(const SideWork&) = delete;
   SideWork& operator=(const SideWork&) = delete;
-  /// Once. Throws what the work has thrown.
+  /// To be called once. Rethrows the exception of the work.
   void wait();
 
  private:
   class Running;
-  std::function<void()> work_;        // that nobody has begun
-  std::unique_ptr<Running> running_;  // none where there is one thread
+  std::function<void()> work_;        // not yet begun
+  std::unique_ptr<Running> running_;  // null on a single thread
 };
 
 }  // namespace cairn

@@ -8,12 +8,12 @@
 
 namespace cairn {
 
-/// Keeps the buffers of images that have died, so that the next frame's images need no allocation.
-/// A handle: copies share one store. The store lives until the last handle and the last image of it are gone.
+/// A store of the buffers of destroyed images, so that the images of the next frame need no allocation. A
+/// handle: copies share one store, which lives until its last handle and last image are destroyed.
 /// Thread-safe.
 class Pool {
  public:
-  /// What an image holds: `bytes` at `data`, aligned to 64, and the store that it returns to (none = the
+  /// The memory of an image: `bytes` at `data`, aligned to 64, and the store that it returns to (null = the
   /// heap).
   class Buffer {
    public:
@@ -35,20 +35,21 @@ class Pool {
     std::shared_ptr<Store> store_;
   };
 
-  /// No store: every buffer comes from the heap and goes back to it.
+  /// No store: every buffer comes from the heap and returns to it.
   Pool() = default;
-  /// A store of its own, empty.
+  /// A new, empty store.
   static Pool make();
 
-  /// A store beside this one, always the same: for work that goes on at the same time, so that what either
-  /// finds does not depend on who takes first. Its numbers are part of this one's. No store: none either.
+  /// A second store for concurrent work, the same one on every call, so that the buffers found in either do
+  /// not depend on timing. Its counts are included in those of this pool. Without a store, the result has
+  /// none either.
   [[nodiscard]] Pool beside() const;
 
   /// A buffer of at least `bytes`, contents undefined.
   [[nodiscard]] Buffer take(std::size_t bytes) const;
-  /// How many buffers this store has asked the heap for so far; 0 for a pool without store.
+  /// Number of heap allocations of this store so far; 0 without a store.
   [[nodiscard]] std::int64_t heap_allocations() const;
-  /// Bytes that this store holds at present, lent out or free.
+  /// Bytes held by this store, in use or free.
   [[nodiscard]] std::int64_t bytes() const;
 
  private:

@@ -11,16 +11,16 @@
 
 namespace cairn {
 
-/// A pool's memory for the standard's containers (std::pmr::vector). Arrays of some hundred kilobytes from
-/// the heap go back to the system at the end of a frame, and getting them again page by page costs more than
-/// filling them. Small ones come from the heap. Sizes are rounded up to a power of two, as in Scratch.
+/// Memory of a pool for standard containers (std::pmr::vector). Heap arrays of some hundred kilobytes return
+/// to the system at the end of a frame, and faulting their pages in again costs more than filling them. Small
+/// arrays come from the heap. Sizes are rounded up to a power of two, as in Scratch.
 class PoolMemory final : public std::pmr::memory_resource {
  public:
   explicit PoolMemory(Pool pool) : pool_(std::move(pool)) {}
 
  private:
   static constexpr std::size_t kLeast = std::size_t{1} << 14U;
-  static constexpr std::size_t kHeader = 64;  // where the buffer itself is kept; leaves the data aligned
+  static constexpr std::size_t kHeader = 64;  // holds the Buffer; keeps the data aligned
   static_assert(sizeof(Pool::Buffer) <= kHeader);
 
   void* do_allocate(std::size_t bytes, std::size_t alignment) override {

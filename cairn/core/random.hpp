@@ -10,10 +10,10 @@ namespace cairn {
 /// Knuth's MMIX generator: the same numbers on every machine.
 class Random {
  public:
-  /// 0 … n − 1.
+  /// A number in 0 … n − 1.
   std::size_t below(std::size_t n) {
     state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<std::size_t>((state_ >> 33U) % n);  // the high bits are the good ones
+    return static_cast<std::size_t>((state_ >> 33U) % n);  // the high bits are the random ones
   }
 
  private:

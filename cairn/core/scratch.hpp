@@ -12,23 +12,23 @@
 
 namespace cairn {
 
-/// A flat array for working memory, aligned like an image's rows. Elements are undefined at first unless a
-/// value is given.
+/// A flat array for working memory, aligned like the rows of an image. Elements are undefined unless a value
+/// is given.
 template <class T>
 class Scratch {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
-  /// From a pool: at some thousand regions a graph's arrays are as large as images, and fresh memory from the
-  /// heap costs as much time as filling it. Sizes differ from frame to frame; rounding them up to a power of
-  /// two lets the pool give the same buffer again.
+  /// Memory from a pool: with some thousand regions, the arrays of a graph are as large as images, and new
+  /// heap memory costs as much time as filling it. Sizes differ from frame to frame; rounded up to a power of
+  /// two, the pool can reuse a buffer.
   Scratch(std::size_t size, const Pool& pool)
       : size_(size), buffer_(pool.take(std::bit_ceil(std::max<std::size_t>(size, 1024)) * sizeof(T))) {}
   Scratch(std::size_t size, T value, const Pool& pool) : Scratch(size, pool) {
     std::fill_n(data(), size_, value);
   }
-  /// Zeros, for one band of rows. From the heap, not from the pool: how many bands are at work at a time
-  /// depends on the threads, and what a pool holds shall not.
+  /// Zeros, for one band of rows. From the heap, not from the pool: the number of bands at work depends on
+  /// the threads, and the contents of a pool must not.
   explicit Scratch(int size)
       : size_(static_cast<std::size_t>(size)), buffer_(Pool().take(size_ * sizeof(T))) {
     std::fill_n(data(), size_, T{0});
@@ -49,7 +49,7 @@ class Scratch {
   Pool::Buffer buffer_;
 };
 
-/// A Scratch that grows: a list whose memory comes from a pool.
+/// A Scratch that grows: a list in the memory of a pool.
 template <class T>
 class ScratchList {
  public:
@@ -63,7 +63,7 @@ class ScratchList {
   [[nodiscard]] const T* begin() const { return array_.begin(); }
   [[nodiscard]] const T* end() const { return array_.begin() + size_; }
   void clear() { size_ = 0; }
-  /// Room for `count` more elements at end(); grown(n) then makes the first n of them part of the list.
+  /// Reserves `count` more elements at end(); grown(n) then appends the first n of them to the list.
   T* room_for(std::size_t count) {
     if (size_ + count > array_.size()) {
       Scratch<T> larger(2 * (size_ + count), pool_);

@@ -8,17 +8,16 @@
 
 namespace cairn {
 
-/// A rectified pair: a point of the left image at (x, y) stands in the right image at (x - d, y). Borrows its
-/// images.
+/// A rectified pair: the left pixel (x, y) corresponds to the right pixel (x − d, y). Borrows its images.
 class StereoPair {
  public:
-  /// Throws Error where the sizes differ or an image is empty. `left_rgb` (optional) is the colour of the
-  /// left image.
+  /// Throws Error if the sizes differ or an image is empty. `left_rgb` (optional) is the colour of the left
+  /// image.
   static StereoPair from(View<const Gray> left, View<const Gray> right, View<const Rgb> left_rgb = {});
 
   [[nodiscard]] View<const Gray> left() const { return left_; }
   [[nodiscard]] View<const Gray> right() const { return right_; }
-  /// Empty where the input had no colour.
+  /// Empty if the input had no colour.
   [[nodiscard]] View<const Rgb> left_rgb() const { return left_rgb_; }
   [[nodiscard]] Size size() const { return left_.size(); }
 
@@ -40,12 +39,12 @@ struct StereoRig {
 
   /// Throws Error (naming `source`) unless every number is finite and focal length and baseline are positive.
   void validate(const char* source = "rig") const;
-  /// The point that pixel (x, y) with this disparity shows, in the left camera's frame (x right, y down, z
-  /// forward); nullopt at or beyond infinity: where d + doffs ≤ 0, or z is more than a float holds.
+  /// The scene point at pixel (x, y) with this disparity, in the left camera's frame (x right, y down, z
+  /// forward); nullopt at or beyond infinity: d + doffs ≤ 0, or z exceeds the range of float.
   [[nodiscard]] std::optional<Vec3> point_in_camera_m(float x, float y, float disparity_px) const;
 };
 
-/// A point of the scene seen in both images, in px.
+/// A scene point seen in both images, in px.
 struct PointPair {
   float x_left = 0;
   float y_left = 0;
@@ -54,10 +53,9 @@ struct PointPair {
   friend bool operator==(const PointPair&, const PointPair&) = default;
 };
 
-/// What is known of the floor before any picture is taken: facts of how the rig is mounted, which stand in
-/// its calibration file.
+/// The floor as known before any image is taken: how the rig is mounted. Part of the calibration file.
 struct KnownGround {
-  std::vector<PointPair> points;         // on the floor: none, or four and more, not all on one line
+  std::vector<PointPair> points;         // on the floor: none, or at least four, not collinear
   std::optional<float> camera_height_m;  // of the left camera above the floor
   float camera_pitch_deg = 0;            // positive looks down
   float camera_roll_deg = 0;             // positive lowers the camera's right side

@@ -11,17 +11,17 @@ inline void add_rows(const T* from, const T* more, int count, T* CAIRN_RESTRICT 
   for (int x = 0; x < count; ++x) to[x] = static_cast<T>(from[x] + more[x]);
 }
 
-/// Sums of `window` numbers from each on, put together from blocks of 1, 2, 4, … numbers. The window is odd.
+/// Sums of `window` consecutive numbers, composed of blocks of 1, 2, 4, … numbers. The window is odd.
 template <class T>
 inline void sum_along(const T* columns, int width, int window, T* blocks, T* sums) {
-  T* const halves[] = {blocks, blocks + width + window};  // what is read and what is written must not overlap
+  T* const halves[] = {blocks, blocks + width + window};  // input and output must not overlap
   const T* block = columns;
   const T* sum = columns;
   int summed = 1;
   int length = width + window - 1;
   int half = 0;
   for (int size = 2; size <= window; size *= 2, half = 1 - half) {
-    length -= size / 2;  // of blocks that are whole
+    length -= size / 2;  // of complete blocks
     add_rows(block, block + size / 2, length, halves[half]);
     block = halves[half];
     if ((window & size) == 0) continue;

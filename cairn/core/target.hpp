@@ -9,20 +9,20 @@
 
 namespace cairn {
 
-/// The instruction sets that this build has kernels for, slowest first; Target::scalar is always among them.
+/// The instruction sets with kernels in this build, slowest first; always includes Target::scalar.
 std::vector<Target> compiled_targets();
-/// Those of them that this processor can run, slowest first.
+/// Those of compiled_targets() that this processor supports, slowest first.
 std::vector<Target> supported_targets();
-/// What the kernels run on: the last of supported_targets() for Target::best. A target that is not supported
-/// falls back to Target::scalar; whoever lets a user choose refuses it beforehand.
+/// The target of the kernels: the last of supported_targets() for Target::best. An unsupported target falls
+/// back to Target::scalar; a caller that takes the choice from a user refuses it beforehand.
 Target active_target(const Exec& exec);
 
-/// "scalar", "sse4" …, as users write it.
+/// "scalar", "sse4" …, as on the command line.
 std::string_view name(Target target);
-/// The target of this name ("best" among them); nullopt where there is none.
+/// The target of this name, "best" included; nullopt if there is none.
 std::optional<Target> target_named(std::string_view name);
-/// The target that a user asked for by name. Throws Error, which begins with `source` ("--target"), where
-/// there is none of this name, or where this build or this processor lacks it.
+/// The target chosen by a user. Throws Error beginning with `source` ("--target") if the name is unknown, or
+/// if this build or this processor lacks the target.
 Target wanted_target(std::string_view wanted, std::string_view source);
 
 }  // namespace cairn

@@ -9,8 +9,8 @@
 
 namespace cairn {
 
-/// A borrowed two-dimensional window onto pixels that somebody else owns: pointer, size, stride in elements.
-/// Passed by value. View<T> turns into View<const T> by itself.
+/// A borrowed two-dimensional window onto pixels with another owner: pointer, size, stride in elements.
+/// Passed by value. View<T> converts to View<const T>.
 template <class T>
 class View {
  public:
@@ -43,7 +43,7 @@ class View {
     assert(contains(x, y));
     return data_[y * stride_ + x];
   }
-  /// The part of this view that `rect` covers; `rect` must lie inside.
+  /// The part of this view covered by `rect`, which must lie inside.
   [[nodiscard]] constexpr View sub(Rect rect) const {
     assert(rect.x >= 0 && rect.y >= 0 && rect.x + rect.width <= size_.width &&
            rect.y + rect.height <= size_.height);
