@@ -12,16 +12,15 @@
 namespace cairn {
 
 struct EpipolarCorrectionConfig {
-  float max_rows = -1;  // rows, 0.5 … 8, −1 = off; the largest misalignment looked for: more for a shaky rig
+  float max_rows = -1;  // rows, 0.5 … 8, −1 = off; largest misalignment searched: more for a shaky rig
 };
 template <class V>
 void fields(EpipolarCorrectionConfig& c, V&& v) {
   v("max_rows", c.max_rows, "rows",
-    "largest misalignment of the right image's rows that is looked for and taken back (vibration)",
-    off_or(0.5F, 8.0F));
+    "largest vertical misalignment of the right image that is corrected (vibration)", off_or(0.5F, 8.0F));
 }
 
-/// What became of a frame's epipolar correction.
+/// The outcome of the epipolar correction of a frame.
 enum class EpipolarOutcome : std::uint8_t { off, few_points, no_agreement, aligned, corrected };
 inline constexpr std::array kEpipolarOutcomes{
     Choice<EpipolarOutcome>{"off", EpipolarOutcome::off},
@@ -30,41 +29,43 @@ inline constexpr std::array kEpipolarOutcomes{
     Choice<EpipolarOutcome>{"aligned", EpipolarOutcome::aligned},
     Choice<EpipolarOutcome>{"corrected", EpipolarOutcome::corrected}};
 
-/// How far the right image's rows are off: what the left image shows in row y stands in column x of the right
-/// one at row y + rows + rows_per_px·(x − (width − 1)/2). A vertical offset, and a roll by atan(rows_per_px).
+/// The row offset of the right image: a point in row y of the left image is at column x and row
+///     y + rows + rows_per_px·(x − (width − 1)/2)
+/// of the right one. A vertical offset, and a roll by atan(rows_per_px).
 struct EpipolarOffset {
-  float rows = 0;  // in the middle column
+  float rows = 0;  // at the centre column
   float rows_per_px = 0;
-  int points = 0;    // textured points that were found again in the right image
-  int agreeing = 0;  // those of them within half a row of this offset
+  int points = 0;    // textured points matched in the right image
+  int agreeing = 0;  // matched points within half a row of this offset
   EpipolarOutcome outcome = EpipolarOutcome::off;
 };
 
-/// Finds the frame's offset from a sparse set of textured points all over the image. They are looked for at
-/// half resolution, over all disparities of `range` and config.max_rows up and down, then placed between the
-/// pixels there and in the full images (Lucas & Kanade 1981; Baker & Matthews 2004). A line is laid through
-/// their rows by medians (Theil 1950, Sen 1968), then by least squares through those that agree with it. The
-/// roll is kept only where it is certain and matters; an offset that moves no column by kEpipolarLeastRows is
-/// `aligned`. Too few points, or less than half of them in agreement: no offset.
+/// Estimates the row offset of a frame from sparse textured points of the whole image. The points are matched
+/// at half resolution, over all disparities of `range` and ± config.max_rows rows, then refined to subpixel
+/// accuracy at half and full resolution (Lucas & Kanade 1981; Baker & Matthews 2004). A line is fitted to
+/// their row offsets by medians (Theil 1950, Sen 1968), then by least squares to the inliers. The roll is
+/// kept only if it is significant and matters; an offset below kEpipolarLeastRows in every column is
+/// `aligned`. Too few points, or fewer than half of them inliers: no offset.
 /// (docs/stages/epipolar_correction.md)
 EpipolarOffset find_epipolar_offset(const StereoPair& pair, const MatchConfig& range,
                                     const EpipolarCorrectionConfig& config, const Exec& exec);
 
-/// Rows; to move an image by less gains nothing, and blurs it.
+/// Rows. A smaller shift of the image has no benefit and blurs it.
 inline constexpr float kEpipolarLeastRows = 0.25F;
 
-/// The right image moved back by `offset`, so that its rows are the left one's. Column x takes, at every y,
-/// what stands at y + rows + rows_per_px·(x − (width − 1)/2), to 1/64 row, through the cubic of four rows
-/// (Keys 1981, a = −3/4: a sharp one), its weights in 1/64 with the second making up what rounding leaves.
-/// Rows beyond the border repeat it.
+/// The right image shifted by `offset`, so that its rows match those of the left image. The pixel in column
+/// x, row y is interpolated at row
+///     y + rows + rows_per_px·(x − (width − 1)/2)
+/// to 1/64 row, by the cubic through four rows (Keys 1981, a = −3/4, a sharp one) with weights in 1/64; the
+/// second weight absorbs the rounding. Rows beyond the border are replicated.
 Image<Gray> shift_rows(View<const Gray> right, const EpipolarOffset& offset, const Exec& exec);
 
 struct EpipolarCorrection {
   EpipolarOffset offset;
-  Image<Gray> right;  // moved; empty where the pair is to be matched as it is
+  Image<Gray> right;  // shifted; empty if the pair needs no correction
 };
 
-/// Both: compensates a small misalignment of the two cameras, as vibration makes them, before the matching.
+/// Estimates and corrects a small misalignment of the two cameras, as vibration causes it, before matching.
 EpipolarCorrection correct_epipolar(const StereoPair& pair, const MatchConfig& range,
                                     const EpipolarCorrectionConfig& config, const Exec& exec);
 

@@ -8,8 +8,8 @@ constexpr int round_up(int value, int step) {
   return (value + step - 1) / step * step;
 }
 
-/// Asks for the memory that `count` numbers from `at` on will be written to or read from. Must be inlined,
-/// and so must what calls it and does nothing else: compilers leave out calls that change nothing.
+/// Prefetches `count` numbers from `at` on, to be written or read. Must be inlined, and so must callers that
+/// do nothing else: compilers drop calls without effect.
 template <bool kWrites>
 struct Expect {
   template <class T>

@@ -8,8 +8,8 @@
 
 namespace cairn {
 
-/// What is laid through the costs of the winner and of its neighbours. parabola: for sums of squares and
-/// correlations, which are round at the bottom. equiangular: two lines of opposite slope, for sums of
+/// The curve fitted to the costs of the winner and its neighbours. parabola: for sums of squares and
+/// correlations, which are round at the minimum. equiangular: two lines of opposite slope, for sums of
 /// absolute values and of bits, which are pointed.
 enum class SubpixelMethod : std::uint8_t { parabola, equiangular };
 
@@ -18,22 +18,21 @@ inline constexpr std::array kSubpixelMethods{
     Choice<SubpixelMethod>{"equiangular", SubpixelMethod::equiangular}};
 
 struct SubpixelConfig {
-  bool enabled = true;                               // off: whole px
-  SubpixelMethod method = SubpixelMethod::parabola;  // as the costs are shaped: see above
+  bool enabled = true;                               // off: integer disparities
+  SubpixelMethod method = SubpixelMethod::parabola;  // according to the shape of the costs: see above
 };
 template <class V>
 void fields(SubpixelConfig& c, V&& v) {
-  v("enabled", c.enabled, "", "refine each winner by a curve through its cost and its neighbours'", Any{});
-  v("method", c.method, "", "the curve: round for squares, pointed for absolute differences and semi_global",
+  v("enabled", c.enabled, "", "interpolation of disparities between integer candidates", Any{});
+  v("method", c.method, "", "curve through the costs: equiangular for semi_global, sad and zsad",
     kSubpixelMethods, when("subpixel.enabled", "true"));
 }
 
-/// Where the curve through the costs a, m, c at best − 1, best, best + 1 is lowest:
+/// The minimum of the curve through the costs a, m, c at best − 1, best, best + 1:
 ///   parabola     best + (a − c) / (2·(a − 2m + c))
 ///   equiangular  best + (a − c) / (2·(max(a, c) − m))      (Shimizu & Okutomi 2001)
-/// The integer winner where a neighbour is
-/// missing, where the three are flat, or where refinement is off or Matches holds no neighbours. NaN where
-/// there is no match. (docs/stages/subpixel.md)
+/// The integer winner if a neighbour is missing, the three costs are equal, refinement is off, or Matches
+/// holds no neighbours. NaN if there is no match. (docs/stages/subpixel.md)
 Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config, const Exec& exec);
 
 }  // namespace cairn
