@@ -14,8 +14,7 @@ inline void mark_jumps(const float* here, const float* below, int width, float j
                        HolesAndJumps* CAIRN_RESTRICT marks) {
   const auto mark = [&](int x, int right) {
     const float d = here[x];
-    // NaN differs from nothing by more than anything. Both are compared always: a branch would keep the loop
-    // from becoming vector code.
+    // Comparisons with NaN are false. Both are always made: a branch would prevent vector code.
     const int along = std::abs(d - here[right]) > jump ? kIsJump : 0;
     const int down = std::abs(d - below[x]) > jump ? kIsJump : 0;
     return static_cast<HolesAndJumps>((d == d ? 0 : kHole) | along | down);
@@ -37,8 +36,8 @@ inline void sum_counts(const HolesAndJumps* columns, int width, int window, Hole
   sum_along(columns, width, window, blocks, sums);
 }
 
-/// 2^t for |t| ≤ kGreatestExponent, to 2·10⁻⁷ of it; in arithmetic that is the same everywhere, as no
-/// library's is.
+/// 2^t for |t| ≤ kGreatestExponent, with a relative error of 2·10⁻⁷; in arithmetic that is the same on every
+/// platform, unlike that of libraries.
 inline float power_of_two(float t) {
   constexpr int kOffset = 64;
   const int whole = static_cast<int>(t + kOffset) - kOffset;
@@ -48,12 +47,12 @@ inline float power_of_two(float t) {
   return std::bit_cast<float>((whole + 127) << 23) * fraction;
 }
 
-inline constexpr float kLeastMean = 1e-6F;  // keeps costs that are all 0 from dividing by it
+inline constexpr float kLeastMean = 1e-6F;  // avoids a division by 0 if all costs are 0
 inline constexpr float kGreatestExponent = 30.0F;
 
 inline float logistic(float log_odds) {
   constexpr float kLog2OfE = 1.44269504F;
-  // In this order of arguments NaN, which pixels without a match have, is held at the bound, too.
+  // In this order of arguments NaN, of pixels without a match, is clamped too.
   const float exponent = std::max(-kGreatestExponent, std::min(kGreatestExponent, -kLog2OfE * log_odds));
   return 1.0F / (1.0F + power_of_two(exponent));
 }

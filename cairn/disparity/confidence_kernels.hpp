@@ -6,25 +6,25 @@
 #include <cairn/disparity/confidence.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what estimate_confidence() does for each pixel of a row. Private to the
+/// The kernels of estimate_confidence(), per pixel of a row; one set per instruction set. Private to the
 /// library.
 namespace cairn::kernels {
 
-/// Holes (low byte) and jumps of the disparity (high byte), counted over some pixels.
+/// Number of holes (low byte) and of disparity jumps (high byte) in a set of pixels.
 using HolesAndJumps = std::uint16_t;
 
-/// What confidence is judged by in a row.
+/// The features of a row.
 struct ConfidenceRow {
   const float* cost;
   const float* runner_up;
   const float* mean_cost;
   const float* disparity_px;
-  const HolesAndJumps* around;  // each pixel
-  const float* inverse_area;    // 1 / the pixels that these were counted over
+  const HolesAndJumps* around;  // in the window of each pixel
+  const float* inverse_area;    // 1 / number of pixels in that window
 };
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct ConfidenceKernels {
   /// Marks each hole, and each disparity that differs by more than `jump` from the one to the right or below.
   /// The last pixel has no right neighbour.
@@ -40,9 +40,9 @@ struct ConfidenceKernels {
   void (*judge_confidence)(const ConfidenceRow& row, int width, const ConfidenceModel& model, float* out);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const ConfidenceKernels* confidence_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const ConfidenceKernels& confidence_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

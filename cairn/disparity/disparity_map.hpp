@@ -9,23 +9,22 @@
 
 namespace cairn {
 
-/// Disparity per left pixel, and for every pixel without one the reason. Hole ⇔ reject ≠ none ⇔ disparity is
-/// NaN.
+/// Disparity of each left pixel, and the reason for every hole. Hole ⇔ reject ≠ none ⇔ disparity is NaN.
 struct DisparityMap {
   Image<float> disparity_px;
   Image<Reject> reject;
 };
 
-/// Disparities beyond ±this bound are refused at the door: regions count in 1/16 px of 16 bits.
+/// Disparities beyond ±this limit are refused on input: regions use 16 bits in 1/16 px.
 inline constexpr float kMaxDisparity = 2047.0F;
 
-/// Unites the checks' verdicts: a pixel keeps every bit that it got, NaN adds Reject::border.
+/// Applies the verdicts of the checks: a pixel keeps every bit it received, NaN adds Reject::border.
 /// (docs/why_is_this_pixel_a_hole.md) All views have the size of `refined_px`.
 DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts,
                      const Exec& exec);
 
-/// A map from outside (depth camera, learned matcher): NaN and ±inf become holes with Reject::no_data.
-/// Throws Error where the map is empty, has no value at all, or one beyond ±kMaxDisparity.
+/// A map from outside (depth camera, learned matcher): NaN and ±inf become holes with Reject::no_data. Throws
+/// Error if the map is empty, has no finite value, or one beyond ±kMaxDisparity.
 DisparityMap external_disparity(View<const float> disparity_px, const Exec& exec);
 
 }  // namespace cairn

@@ -6,12 +6,12 @@
 #include <cairn/disparity/reject.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: how the verdicts on the pixels of a row are united. Private to the
+/// The kernels of combine(): the rejection bits of a row; one set per instruction set. Private to the
 /// library.
 namespace cairn::kernels {
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct DisparityMapKernels {
   /// Reject::border where there is no disparity (NaN).
   void (*mark_holes)(const float* disparity_px, int width, Reject* reject);
@@ -22,9 +22,9 @@ struct DisparityMapKernels {
   void (*reject_where)(const std::uint8_t* mask, int width, Reject why, Reject* verdict);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const DisparityMapKernels* disparity_map_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const DisparityMapKernels& disparity_map_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

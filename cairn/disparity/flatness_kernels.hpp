@@ -5,21 +5,20 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/disparity/reject.hpp>
 
-/// The seam to the instruction sets: what reject_flat() does for each pixel of a row. Private to the
-/// library.
+/// The kernels of reject_flat(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct FlatnessKernels {
   /// Reject::flat where (mean − cost) / mean is below `threshold`, or the mean not above 0.
   void (*compare_with_mean)(const float* cost, const float* mean, int width, float threshold,
                             Reject* verdict);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const FlatnessKernels* flatness_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const FlatnessKernels& flatness_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

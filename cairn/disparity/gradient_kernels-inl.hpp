@@ -23,7 +23,7 @@ inline void disparity_steepness(const std::int16_t* up, const std::int16_t* here
 inline void quantise(const float* disparity_px, int width, std::int16_t* CAIRN_RESTRICT out) {
   for (int x = 0; x < width; ++x) {
     const float d = disparity_px[x];
-    // 32767/16 is no limit in practice (kMaxDisparity); the clamp keeps the conversion defined, of NaN, too.
+    // 32767/16 is never reached (kMaxDisparity); the clamp keeps the conversion defined, for NaN too.
     const float wide = d * 16.0F;
     const float bounded = wide > -32767.0F ? wide : -32767.0F;
     const float sixteenths = bounded < 32767.0F ? bounded : 32767.0F;

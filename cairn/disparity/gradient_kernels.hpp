@@ -5,12 +5,12 @@
 #include <cairn/core/exec.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what quantised() and the gradient() of disparities do for each pixel of
-/// a row. Private to the library.
+/// The kernels of quantised() and of gradient() of disparities, per pixel of a row; one set per instruction
+/// set. Private to the library.
 namespace cairn::kernels {
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct DisparityGradientKernels {
   /// See gradient() in disparity/gradient.hpp.
   void (*disparity_steepness)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
@@ -19,9 +19,9 @@ struct DisparityGradientKernels {
   void (*quantise)(const float* disparity_px, int width, std::int16_t* out);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const DisparityGradientKernels* disparity_gradient_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const DisparityGradientKernels& disparity_gradient_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

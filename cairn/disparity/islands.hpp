@@ -13,10 +13,10 @@
 
 namespace cairn {
 
-/// The 4-connected islands of a picture's pixels. `rows(y)` says of row y which pixels there are and which
-/// belong together: row.is_pixel(x); row.follows(x), x − 1 is a pixel, too, and x belongs to it;
-/// row.joins(above, x), of two pixels, x belongs to that in the row above. Islands are numbered by their
-/// first pixels in raster order. Private to the library.
+/// The 4-connected components of an image. `rows(y)` describes row y: row.is_pixel(x) whether x belongs to
+/// any island; row.follows(x) whether x and x − 1 are such pixels and connected; row.joins(above, x) whether
+/// x is connected to the pixel above, both being such pixels. Islands are numbered by their first pixels in
+/// raster order. Private to the library.
 template <class Rows>
 class Islands {
  public:
@@ -35,7 +35,7 @@ class Islands {
         if (y > first) join_with_row_above(y);
       }
     });
-    // Blocks were joined inside themselves; what is left are the seams.
+    // Each block is joined internally; the seams between blocks remain.
     for (int y = 1; y < size.height; ++y) {
       if (starts_block[slot(y)] != 0) join_with_row_above(y);
     }
@@ -54,7 +54,7 @@ class Islands {
  private:
   static constexpr int kGrain = 64;  // rows
 
-  /// Pixels of one row that belong together, [begin, end).
+  /// A run of connected pixels in one row, [begin, end).
   struct Run {
     int begin;
     int end;
@@ -64,7 +64,7 @@ class Islands {
   [[nodiscard]] Run& run(int i) { return runs_[slot(i)]; }
   [[nodiscard]] const Run& run(int i) const { return runs_[slot(i)]; }
 
-  /// How many runs begin above each row, and above the end.
+  /// Number of runs above each row, and in all.
   [[nodiscard]] std::vector<int> count_runs(const Exec& exec) const {
     std::vector<int> begin(slot(size_.height) + 1);
     parallel_for(exec, size_.height, kGrain, [&](int first, int last) {
@@ -104,7 +104,7 @@ class Islands {
       for (int x = std::max(run(i).begin, run(j).begin); x < end; ++x) {
         if (!here.joins(above, x)) continue;
         sets_.unite(i, j);
-        break;  // once is enough for two runs
+        break;  // two runs need joining once only
       }
       if (run(i).end == end) {
         ++i;

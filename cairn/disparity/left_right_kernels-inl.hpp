@@ -5,7 +5,7 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-/// The right pixels that left ones are matched with, `none` where there is none.
+/// The matched right pixel of each left pixel, `none` without a match.
 inline void find_partners(const std::int16_t* best, int width, int none,
                           std::int32_t* CAIRN_RESTRICT partners) {
   const auto count = static_cast<std::uint32_t>(width);
@@ -16,7 +16,7 @@ inline void find_partners(const std::int16_t* best, int width, int none,
   }
 }
 
-/// `difference(x)`: between a left pixel's disparity and what it comes back to.
+/// `difference(x)`: between the disparity of a left pixel and that of its right partner.
 template <class Difference>
 inline void judge_differences(const std::int16_t* best, int width, int max_diff, Difference difference,
                               Reject* CAIRN_RESTRICT verdict) {
@@ -29,8 +29,8 @@ inline void judge_differences(const std::int16_t* best, int width, int max_diff,
 inline constexpr int kVotes =
     256;  // left pixels at a time: what is noted about them stays in the nearest cache
 
-/// What is decided pixel by pixel, because two may claim the same one, is nothing but the least of two
-/// numbers; those without a partner claim one beyond the row. So no time depends on what the picture shows.
+/// Two pixels may claim the same one, so this loop is scalar, but it is a minimum of two numbers only; pixels
+/// without a partner claim an entry beyond the row. So the time does not depend on the image content.
 inline void cast_votes(const std::int32_t* partners, const float* cost, int begin, int count,
                        Claim* CAIRN_RESTRICT least) {
   Claim own[kVotes];
@@ -54,7 +54,7 @@ inline void compare_with_votes(const std::int16_t* best, const float* cost, int 
     const int count = std::min(kVotes, width - x);
     std::int32_t claimants[kVotes];
     for (int i = 0; i < count; ++i) claimants[i] = claimant(claims[partners[x + i]]);
-    // Of pixels that claim the same one, disparities differ as much as places do.
+    // For pixels that claim the same one, disparities differ as much as positions.
     judge_differences(
         best + x, count, max_diff, [&](int i) { return x + i - claimants[i]; }, verdict + x);
   }

@@ -11,8 +11,8 @@
 
 namespace cairn {
 
-/// Why a pixel has no disparity: a bit set, since the per-pixel checks are independent and each leaves its
-/// own bit. In files and in Python the bits have these numbers, too: they stay as they are.
+/// Why a pixel has no disparity: a bit set, because the checks are independent and each sets its own bit.
+/// Files and Python use the same numbers: do not change them.
 enum class Reject : std::uint16_t {
   none = 0,
   border = 1,
@@ -25,32 +25,32 @@ enum class Reject : std::uint16_t {
   no_data = 128,
 };
 
-/// What is said of a reason, and how it is drawn.
+/// Name, text and colour of a reason.
 struct Reason {
   Reject bit = Reject::none;
-  std::string_view name;   // as users write it
+  std::string_view name;   // in files and options
   std::string_view label;  // in legends
   Rgb colour;
   std::string_view says;
 };
 
-/// All of them: legends, names, the browser page and Python have theirs from here. Where several bits are
-/// set, the first of these is drawn: what cannot be helped before what the matcher decided.
+/// All reasons, the source of legends, names, the browser page and Python. If several bits are set, the first
+/// of these is drawn: limits of the input before decisions of the matcher.
 // clang-format off
 inline constexpr std::array kReasons{
-    Reason{Reject::no_data, "no_data", "no data", {25, 25, 25}, "the external disparity map had no value here"},
-    Reason{Reject::border, "border", "border", {60, 60, 60}, "no candidate lay inside the right image"},
-    Reason{Reject::below_ground, "below_ground", "below ground", {205, 185, 255}, "under the floor: a reflection"},
+    Reason{Reject::no_data, "no_data", "no data", {25, 25, 25}, "no value in the external disparity map"},
+    Reason{Reject::border, "border", "border", {60, 60, 60}, "no candidate inside the right image"},
+    Reason{Reject::below_ground, "below_ground", "below ground", {205, 185, 255}, "below the floor: a reflection"},
     Reason{Reject::speckle, "speckle", "speckle", {255, 240, 200}, "a small island of disparity"},
-    Reason{Reject::no_texture, "no_texture", "no texture", {105, 105, 105}, "too little texture to match at all"},
+    Reason{Reject::no_texture, "no_texture", "no texture", {105, 105, 105}, "too little texture to match"},
     Reason{Reject::not_unique, "not_unique", "not unique", {150, 135, 135}, "another disparity fits nearly as well"},
-    Reason{Reject::flat, "flat", "flat", {125, 150, 140}, "every disparity fits equally badly or well"},
+    Reason{Reject::flat, "flat", "flat", {125, 150, 140}, "all disparities fit about equally well"},
     Reason{Reject::left_right, "left_right", "left-right", {205, 205, 205},
-           "followed back from the right image, the match does not return"},
+           "the match in the right image does not lead back"},
 };
 // clang-format on
 
-/// Their names, in the order of the bits.
+/// The names in the order of the bits.
 inline constexpr auto kRejects = [] {
   std::array<Choice<Reject>, kReasons.size()> all{};
   std::transform(kReasons.begin(), kReasons.end(), all.begin(), [](const Reason& r) {

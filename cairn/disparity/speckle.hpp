@@ -7,19 +7,20 @@
 namespace cairn {
 
 struct SpeckleConfig {
-  int size = 50;       // px, 0 … 1000000, −1 = off; more removes larger islands
-  float range = 1.0F;  // px of disparity, 0 … 64; less parts slanted surfaces into islands
+  int size = 50;       // px, 0 … 1000000, −1 = off; higher removes larger islands
+  float range = 1.0F;  // px of disparity, 0 … 64; lower splits slanted surfaces into islands
 };
 template <class V>
 void fields(SpeckleConfig& c, V&& v) {
-  v("size", c.size, "px", "islands of up to this many pixels are rejected (OpenCV's speckleWindowSize)",
+  v("size", c.size, "px", "largest disparity island that is rejected (OpenCV's speckleWindowSize)",
     off_or(0, 1000000));
-  v("range", c.range, "px", "largest step of disparity between neighbours of one island", range(0.0F, 64.0F),
+  v("range", c.range, "px", "largest disparity step between neighbours within an island", range(0.0F, 64.0F),
     unless("speckle.size", "-1"));
 }
 
-/// Rejects small islands: 4-connected pixels whose neighbours differ by at most `range`, `size` pixels or
-/// fewer → Reject::speckle. (docs/stages/speckle.md, beyond the paper; OpenCV's filterSpeckles)
+/// Rejects small islands: components of 4-connected pixels whose neighbours differ by at most `range`, of
+/// `size` pixels or fewer → Reject::speckle. (docs/stages/speckle.md, beyond the paper; OpenCV's
+/// filterSpeckles)
 DisparityMap reject_speckles(DisparityMap disparity, const SpeckleConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -9,20 +9,20 @@
 namespace cairn {
 
 struct TextureConfig {
-  int window_size = 9;     // px, odd, 3 … 31; as wide as the correlation window sees
+  int window_size = 9;     // px, odd, 3 … 31; as wide as the correlation window
   float threshold = 4.0F;  // grey levels², 0 … 65025, −1 = off; above the camera's noise
 };
 template <class V>
 void fields(TextureConfig& c, V&& v) {
-  v("window_size", c.window_size, "px", "side of the Moravec operator's window, odd", odd_range(3, 31),
+  v("window_size", c.window_size, "px", "side of the window of the Moravec operator", odd_range(3, 31),
     unless("texture.threshold", "-1"));
-  v("threshold", c.threshold, "grey levels²", "least mean squared difference to the most similar shift",
+  v("threshold", c.threshold, "grey levels²", "smallest mean squared difference to the most similar shift",
     off_or(0.0F, 65025.0F));
 }
 
-/// Marks pixels without enough texture: the Moravec operator, the least over the shifts s = (1,0), (0,1),
-/// (1,1), (1,−1) of the mean over the window of (I(q) − I(q+s))², below the threshold → Reject::no_texture.
-/// Pairs of which either pixel lies outside the image do not count; no pair at all → no texture.
+/// Marks pixels with too little texture by the Moravec operator: the minimum over the shifts s = (1,0),
+/// (0,1), (1,1), (1,−1) of the mean of (I(q) − I(q+s))² over the window is below the threshold →
+/// Reject::no_texture. Pairs with a pixel outside the image do not count; no pair at all → no texture.
 /// (docs/stages/texture.md; paper, "Moravec operator")
 Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config, const Exec& exec);
 

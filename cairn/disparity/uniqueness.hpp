@@ -8,11 +8,11 @@
 namespace cairn {
 
 struct UniquenessConfig {
-  float ratio = 10.0F;  // %, 0 … 100, −1 = off; more refuses more of what repeats
+  float ratio = 10.0F;  // %, 0 … 100, −1 = off; higher rejects more repetitive texture
 };
 template <class V>
 void fields(UniquenessConfig& c, V&& v) {
-  v("ratio", c.ratio, "%", "by how much the best cost must beat the runner-up (OpenCV's uniquenessRatio)",
+  v("ratio", c.ratio, "%", "margin of the best cost over the runner-up (OpenCV's uniquenessRatio)",
     off_or(0.0F, 100.0F));
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 inline void compare_with_runner_up(const float* cost, const float* runner_up, int width, float share,
                                    Reject* CAIRN_RESTRICT verdict) {
-  // kNoCost needs no case of its own: infinity, and NaN for a ratio of 100, are never less than anything.
+  // kNoCost needs no special case: infinity, and NaN for a ratio of 100, compare as not less.
   for (int x = 0; x < width; ++x)
     verdict[x] = runner_up[x] * share < cost[x] * 100.0F ? Reject::not_unique : Reject::none;
 }

@@ -6,12 +6,11 @@
 #include <cairn/disparity/reject.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what find_evidence() does for each pixel of a row. Private to the
-/// library.
+/// The kernels of find_evidence(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct EvidenceKernels {
   /// (1 6 1)/8 both ways, in 1/64 level. `column`: width + 2 samples, working memory.
   void (*smooth_lightly)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down,
@@ -25,9 +24,9 @@ struct EvidenceKernels {
   void (*agreed)(const float* const* rows, int width, float agreement, float* out);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const EvidenceKernels* evidence_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const EvidenceKernels& evidence_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

@@ -6,19 +6,19 @@
 
 namespace cairn {
 
-/// The farthest tap of a kernel from its centre.
+/// The largest radius of a kernel.
 inline constexpr int kMaxRadius = 15;
-/// What the weights of a kernel sum up to.
+/// The sum of the weights of a kernel.
 inline constexpr int kWeightSum = 256;
 
-/// One side of a symmetric kernel: weights[i] stands at +i and −i.
+/// Half of a symmetric kernel: weights[i] applies to +i and −i.
 struct Kernel {
   int radius = 0;
   std::array<int, kMaxRadius + 1> weights{kWeightSum};
 };
 
-/// Weights round(256·g(i)) for |i| ≤ ⌈3σ⌉ (kMaxRadius at most), g normalised to 1; the centre takes what is
-/// missing to 256. σ = 0: the centre alone.
+/// Weights round(256·g(i)) for |i| ≤ ⌈3σ⌉ (at most kMaxRadius), g normalised to 1; the centre absorbs the
+/// rounding, so the sum is 256. σ = 0: the centre only.
 Kernel gaussian(float sigma);
 
 }  // namespace cairn

@@ -59,7 +59,7 @@ inline void edges(const std::int16_t* up, const std::int16_t* here, const std::i
     squares[c] = square(c, c, c + std::min(channels, end));
     squares[end + c] = square(end + c, c + std::max(end - channels, 0), end + c);
   }
-  // The root of the largest square is the largest root, rounded or not.
+  // The root is monotonic, rounded or not.
   if (channels == 3) {
     for (int x = 0; x < width; ++x)
       squares[x] = std::max(std::max(squares[3 * x], squares[3 * x + 1]), squares[3 * x + 2]);
@@ -73,8 +73,7 @@ inline void edges(const std::int16_t* up, const std::int16_t* here, const std::i
 inline void steepness(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down, int width,
                       std::uint16_t* CAIRN_RESTRICT out) {
   over_neighbours(up, here, down, width, out, [](int, int u, int l, int r, int d) {
-    constexpr int kCap =
-        256 * 16;  // beyond it the root rounds to 255 anyhow, and floats hold the sum exactly
+    constexpr int kCap = 256 * 16;  // above it the root rounds to 255, and float holds the sum exactly
     const int square = std::min((r - l) * (r - l) + (d - u) * (d - u), kCap * kCap);
     const int root = static_cast<int>(std::sqrt(static_cast<float>(square)) * (1.0F / 16) + 0.5F);
     return static_cast<std::uint16_t>(std::min(root, 255));

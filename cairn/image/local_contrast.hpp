@@ -8,11 +8,10 @@ namespace cairn {
 
 inline constexpr int kContrastWindow = 13;  // px
 
-/// How much brighter each pixel is than its surroundings, in standard deviations of these: (s − mean) /
-/// sqrt(variance
-/// + 2), where s is the mean of the 3 × 3 pixels about it, and mean and variance are those of s in the window
-/// centred on it. Beyond the border the nearest pixel counts. Dimmed copies of a picture have the same
-/// contrast.
+/// The brightness of each pixel relative to its surroundings, in their standard deviations:
+///   (s − mean) / sqrt(variance + 2)
+/// s is the mean of 3 × 3 pixels; mean and variance are those of s in the window centred on the pixel. The
+/// border is replicated. A dimmed copy of an image has the same contrast.
 Image<float> local_contrast(View<const Gray> image, const Exec& exec);
 
 }  // namespace cairn

@@ -5,7 +5,7 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-/// For each pixel magnitude(centre, up, left, right, down); what is outside counts as the pixel itself.
+/// For each pixel magnitude(centre, up, left, right, down); the border is replicated.
 template <class Magnitude>
 inline void over_neighbours(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
                             int width, std::uint16_t* CAIRN_RESTRICT out, Magnitude magnitude) {

@@ -5,19 +5,18 @@
 #include <cairn/core/exec.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what filter_xsobel() does for each pixel of a row. Private to the
-/// library.
+/// The kernels of filter_xsobel(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
 struct PrefilterKernels {
-  /// Out of three rows of an image one of filter_xsobel(). `columns`: room for a row.
+  /// One row of filter_xsobel() from three rows of the image. Working memory: `columns`, one row.
   void (*filter_row)(const Gray* above, const Gray* here, const Gray* below, int width, int cap,
                      std::int16_t* columns, Gray* out);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const PrefilterKernels* prefilter_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const PrefilterKernels& prefilter_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

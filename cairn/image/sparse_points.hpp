@@ -9,34 +9,35 @@
 #include <optional>
 #include <vector>
 
-/// Points with much texture and where another image shows them, between its pixels. Internal to the library.
+/// Textured points and their subpixel matches in a second image. Internal to the library.
 namespace cairn::sparse {
 
-inline constexpr int kBlock = 4;            // side of the blocks that gradients are summed over
-inline constexpr int kWindow = 2 * kBlock;  // side of a point's window
+inline constexpr int kBlock = 4;            // side of the blocks over which gradients are summed
+inline constexpr int kWindow = 2 * kBlock;  // side of the window of a point
 inline constexpr int kWindowArea = kWindow * kWindow;
 
-/// The weights of the four pixels around a place at 0 ≤ t < 1 between the second and the third (Keys 1981).
+/// Cubic weights of four pixels for a position 0 ≤ t < 1 between the second and the third (Keys 1981).
 std::array<float, 4> cubic(float t);
 
-/// Half as wide and high, rounded down. Each pixel stands between four and weighs the rows around it, and the
-/// columns, one, three, three, one: what is too fine for half the pixels would pull sub-pixel positions.
+/// The image at half width and height, rounded down. Each output pixel weights the four nearest rows, and
+/// columns, by 1 3 3 1: finer detail would alias and bias sub-pixel positions.
 Image<Gray> halved(View<const Gray> image, const Exec& exec);
 
-/// Of each patch of the image the corner of the window that has most texture in its weaker direction (Shi &
-/// Tomasi 1994), if it is enough; raster order, at most `most` of them, all over the image. At least a pixel
-/// lies around each window.
+/// For each patch of the image, the top left corner of the window with the most texture in its weaker
+/// direction (Shi & Tomasi 1994), if above a threshold; in raster order, at most `most` points, spread over
+/// the image. Each window is at least one pixel away from the border.
 std::vector<Point> textured_points(View<const Gray> image, std::size_t most, const Exec& exec);
 
-/// Where a window's top left pixel comes to lie.
+/// The position of the top left pixel of a window.
 struct Place {
   float x = 0;
   float y = 0;
 };
 
-/// Where `right` shows the window of `left` whose top left pixel is `p`: the least squared difference near
-/// `start`, by Newton's steps (Lucas & Kanade 1981; Baker & Matthews 2004); nullopt where they lead away, or
-/// to what looks different. At least a pixel of `left` must lie around the window.
+/// The position in `right` of the window of `left` whose top left pixel is `p`: the minimum of the squared
+/// difference near `start`, by Newton steps (Lucas & Kanade 1981; Baker & Matthews 2004); nullopt if they
+/// diverge, or end at a dissimilar place. The window must be at least one pixel away from the border of
+/// `left`.
 std::optional<Place> refine(View<const Gray> left, Point p, View<const Gray> right, Place start);
 
 }  // namespace cairn::sparse

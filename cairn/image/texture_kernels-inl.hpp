@@ -7,7 +7,7 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-/// 16 bits hold the square of a difference of bytes, and multiply twice as many at once.
+/// 16 bits hold the square of a byte difference and double the number of lanes.
 inline std::uint16_t square(std::uint8_t p, std::uint8_t q, std::uint16_t most) {
   const auto difference = static_cast<std::int16_t>(p - q);
   return std::min(static_cast<std::uint16_t>(difference * difference), most);

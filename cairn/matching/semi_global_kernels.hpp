@@ -9,8 +9,8 @@
 #include <cairn/matching/memory.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: everything of match_semi_global() that runs per pixel. Private to the
-/// library.
+/// The kernels of match_semi_global(): everything that runs per pixel; one set per instruction set. Private
+/// to the library.
 namespace cairn::kernels {
 
 /// C of a box of nine pixels whose 24 bits all differ.
@@ -79,9 +79,9 @@ struct SemiGlobalKernels {
   void (*match_across)(const SemiGlobalTask& task, int first, int last);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const SemiGlobalKernels* semi_global_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const SemiGlobalKernels& semi_global_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

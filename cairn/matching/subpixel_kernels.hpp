@@ -6,8 +6,7 @@
 #include <cairn/matching/subpixel.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what refine_subpixel() does for each pixel of a row. Private to the
-/// library.
+/// The kernels of refine_subpixel(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
 /// One row of refine_subpixel(). Rows of images: whole vectors are read and written, beyond `width` in their
@@ -25,9 +24,9 @@ struct SubpixelKernels {
   void (*refine_row)(SubpixelMethod method, const RefinedRow& row);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const SubpixelKernels* subpixel_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const SubpixelKernels& subpixel_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The seam to the instruction sets: what watershed(), build_graph(), measure() and find_floor() do for each
-/// pixel of a row or value of a list. Private to the library.
+/// The kernels of watershed(), build_graph(), measure() and find_floor(), per pixel of a row or value of a
+/// list; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
 /// One bit for each of 64 pixels, the leftmost in the lowest bit.
@@ -95,9 +95,9 @@ struct LabelKernels {
   std::size_t (*find_marked)(const std::uint8_t* marks, std::size_t count, std::uint32_t* found);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const LabelKernels* label_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const LabelKernels& label_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

@@ -7,7 +7,7 @@
 #include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what reject_below_ground() and label_floor() do for each pixel of a row.
+/// The kernels of reject_below_ground() and label_floor(), per pixel of a row; one set per instruction set.
 /// Private to the library.
 namespace cairn::kernels {
 
@@ -18,8 +18,8 @@ struct FloorRow {
   float margin;
 };
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct FloorKernels {
   /// The disparities of row `y` that are below the floor; NaN elsewhere.
   void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px);
@@ -30,9 +30,9 @@ struct FloorKernels {
                       std::uint8_t* label);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const FloorKernels* floor_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const FloorKernels& floor_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

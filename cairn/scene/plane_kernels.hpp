@@ -6,8 +6,8 @@
 #include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
 
-/// The seam to the instruction sets: what the searches for planes do for each point of a sample, and for each
-/// pixel of a row. Private to the library.
+/// The kernels of the plane searches, per point of a sample and per pixel of a row; one set per instruction
+/// set. Private to the library.
 namespace cairn::kernels {
 
 /// Points, one array per coordinate.
@@ -37,8 +37,8 @@ struct PlaneCounts {
   int below = 0;  // farther away than that
 };
 
-/// Plain loops that compilers make vector code of; compiled once for each instruction set. None of them
-/// rounds in another order than it is written in, so that each gives the same bits.
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
 struct PlaneKernels {
   /// How many points lie nearer to the plane than `tolerance`.
   int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
@@ -63,9 +63,9 @@ struct PlaneKernels {
                                float infinity, float tolerance);
 };
 
-/// The functions of this build for `target`, nullptr where it has none. Never nullptr for Target::scalar.
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const PlaneKernels* plane_kernels(Target target);
-/// Those for the target that `exec` gets.
+/// The functions for the active target of `exec`.
 const PlaneKernels& plane_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels
