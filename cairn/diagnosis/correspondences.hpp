@@ -8,33 +8,33 @@
 
 namespace cairn {
 
-/// A point of the scene seen in both images, px, between the pixels.
+/// A scene point seen in both images, in px, with subpixel accuracy.
 struct Correspondence {
   float x_left = 0;
   float y_left = 0;
   float x_right = 0;
   float y_right = 0;
   [[nodiscard]] float disparity() const { return x_left - x_right; }
-  /// How much lower it stands in the right image.
+  /// How much lower the point is in the right image.
   [[nodiscard]] float rows() const { return y_right - y_left; }
 };
 
 struct Correspondences {
   std::vector<Correspondence> list;  // in raster order of the left image
-  int points = 0;                    // textured points of the left image that were looked for
+  int points = 0;                    // textured points of the left image, matched or not
   Size size;                         // of the images
 };
 
-/// How far from its own place a point is looked for: a share of the width to either side, since cameras may
-/// be swapped, and of the height up and down, since the pair need not be rectified.
+/// The search area around a point, as shares: of the width to either side, since the cameras may be swapped,
+/// and of the height up and down, since the pair may not be rectified.
 inline constexpr float kWidestDisparity = 0.4F;
 inline constexpr float kMostRowsOff = 0.125F;
 
-/// Sparse points of the left image found again anywhere in the right one: no calibration, no epipolar line
-/// and no sign of the disparity is taken for granted. Windows are correlated (zero mean, normalised) in
-/// images of at most 400 columns (one step finer where these show little texture); a match stays where no
-/// other place is nearly as much alike and where the search from the right image leads back, and is then
-/// placed between the pixels up to full resolution.
+/// Sparse points of the left image matched anywhere in the right one, without assuming a calibration,
+/// epipolar lines or the sign of the disparity. Windows are correlated (zero mean, normalised) in images of
+/// at most 400 columns (the next finer scale if these show little texture). A match is kept if no other place
+/// is nearly as similar and the search from the right image leads back to it; it is then refined to subpixel
+/// accuracy at full resolution.
 Correspondences find_correspondences(const StereoPair& pair, const Exec& exec);
 
 }  // namespace cairn

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-/// Statistics that a good part of false values cannot pull away. Internal to the diagnosis.
+/// Statistics that tolerate many false values. Internal to the diagnosis.
 namespace cairn {
 
-/// The value below which `share` of them lie, 0 … 1; NaN where there are none.
+/// The quantile at `share`, 0 … 1; NaN without values.
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   const auto last = static_cast<double>(values.size() - 1);
@@ -35,7 +35,7 @@ double predicted(const std::array<double, N>& parameters, const std::array<doubl
   return sum;
 }
 
-/// The symmetric, positive definite system m · x = b by Cholesky's decomposition.
+/// Solves the symmetric, positive definite system m · x = b by Cholesky decomposition.
 template <std::size_t N>
 std::array<double, N> solve_symmetric(std::array<std::array<double, N>, N> m, std::array<double, N> b) {
   for (std::size_t i = 0; i < N; ++i) {
@@ -56,10 +56,10 @@ std::array<double, N> solve_symmetric(std::array<std::array<double, N>, N> m, st
   return b;
 }
 
-/// The parameters that most equations agree with: squares weighed by Cauchy's function of their residual,
-/// over and over, first with a scale that hardly tells them apart, in the end with `scale`, the residual that
-/// halves an equation's weight. Terms should be of the order of 1; what the equations leave open stays near
-/// 0 by a little of Tikhonov's ridge. The first term is the constant.
+/// Fits the parameters to most of the equations by iteratively reweighted least squares with Cauchy weights.
+/// The scale shrinks from round to round down to `scale`, the residual that halves the weight of an equation.
+/// Terms should be of the order of 1; a small Tikhonov ridge keeps undetermined parameters near 0. The first
+/// term is the constant.
 template <std::size_t N>
 std::array<double, N> fit_robustly(std::span<const Equation<N>> equations, double scale) {
   std::array<double, N> parameters{};

@@ -6,17 +6,17 @@
 
 namespace cairn {
 
-/// How many pixels an edge takes from dark to bright.
+/// The width of edges from dark to bright, in pixels.
 struct Sharpness {
   static constexpr int kLeastEdges = 50;  // fewer leave edge_px 0
-  int edges = 0;                          // that were measured
-  float edge_px = 0;                      // a quarter of them are narrower
+  int edges = 0;                          // edges measured
+  float edge_px = 0;                      // lower quartile of their widths
 };
 
-/// Along the rows, every monotonic run of pixels that gains or loses a quarter of the image's contrast, and
-/// at least 12 grey levels, is an edge; its width is the whole step over the steepest one between neighbours:
-/// 1 for a step, 2.5 times the deviation of a Gaussian blur. Sharp pictures have soft shadows as well, so the
-/// sharpest quarter counts. 0 where there are fewer than 50 edges.
+/// An edge is a monotonic run of pixels along a row that spans a quarter of the image contrast and at least
+/// 12 grey levels. Its width is the whole step divided by the steepest step between neighbours: 1 for a step,
+/// 2.5 σ for a Gaussian blur of σ. Sharp images have soft shadows too, hence the lower quartile. 0 with fewer
+/// than 50 edges.
 Sharpness measure_sharpness(View<const Gray> image, float contrast);
 
 }  // namespace cairn

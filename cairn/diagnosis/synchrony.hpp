@@ -12,44 +12,43 @@
 
 namespace cairn {
 
-/// The place in a sequence from which on the right camera is late by another number of frames.
+/// The frame of a sequence from which the lag of the right camera differs.
 struct LagChange {
-  int from = 0;  // first frame after it; may be one too few or too many
+  int from = 0;  // first frame after the change, ± 1
   int before = 0;
   int after = 0;
-  double motion = 0;  // the correlation below, over both parts with a lag each
+  double motion = 0;  // Synchrony::motion over both parts, each with its lag
 };
 
-/// Whether the two cameras of a sequence took their pictures at the same moments.
+/// Whether the two cameras of a sequence took their images at the same time.
 struct Synchrony {
-  static constexpr int kLeastFrames = 8;  // fewer tell nothing
+  static constexpr int kLeastFrames = 8;  // fewer are inconclusive
   static constexpr int kMostLag = 2;
   static constexpr int kLags = 2 * kMostLag + 1;
   int frames = 0;
-  /// Where the left pictures change from one to the next, the right ones should change as well. For a right
-  /// camera that is −2 … 2 frames late, the correlation of the changes, by 16 bands of rows, over all frames;
-  /// 0 where nothing changes in time.
+  /// If the left images change from frame to frame, the right ones should too. For a right camera −2 … 2
+  /// frames late: the correlation of the changes, in 16 bands of rows, over all frames; 0 if nothing changes.
   std::array<double, kLags> motion{};
-  /// For the same lags, share of the textured points whose rows agree, over some frames; 0 where not tried.
+  /// For the same lags: share of the textured points with matching rows, over some frames; 0 if not tried.
   std::array<double, kLags> agreement{};
-  int left_repeats = 0;   // frames in which only the left picture is the one before once more
-  int right_repeats = 0;  // the same of the right one
-  /// Where two lags, one after the other, explain the changes clearly better than any one does.
+  int left_repeats = 0;   // frames in which only the left image repeats the one before
+  int right_repeats = 0;  // the same for the right image
+  /// Set if two lags, one after the other, explain the changes clearly better than one.
   std::optional<LagChange> change;
 
-  /// How many frames the right camera is late, as the numbers say; 0 without evidence. It is one lag for the
-  /// whole sequence: see `change` for one that sets in later.
+  /// The lag of the right camera in frames according to the measurements; 0 without evidence. One lag for the
+  /// whole sequence: see `change` for a lag that begins later.
   [[nodiscard]] int lag() const;
-  /// Whether the numbers tell one lag from another: false where too little moves, or too evenly.
+  /// Whether the measurements distinguish the lags: false if there is too little motion, or too even motion.
   [[nodiscard]] bool tells() const;
 };
 
-/// Of consecutive pairs of one size. Fewer than 8 frames: nothing is measured but repeats.
+/// Measures consecutive pairs of one size. Fewer than 8 frames: only repeats are measured.
 Synchrony measure_synchrony(std::span<const StereoPair> sequence, const Exec& exec);
 
-/// nullopt where the cameras run together, and for fewer than 8 frames, which are no sequence; a note where
-/// the sequence does not tell. `names` of the frames are for the sentence; without them they are counted from
-/// 0. The finding's frames are those out of step.
+/// nullopt if the cameras are synchronous, and for fewer than 8 frames; a note if the sequence is
+/// inconclusive. `names` of the frames are used in the sentence; without them frames are numbered from 0. The
+/// frames of the finding are those out of step.
 std::optional<Finding> diagnose(const Synchrony& synchrony, std::span<const std::string> names = {});
 
 }  // namespace cairn

@@ -8,13 +8,13 @@
 
 namespace cairn {
 
-/// How far a pair's disparities contradict themselves and the pictures: what can be said without any truth.
-/// Counts and a sum over the left image's pixels; frames add up. Shares are NaN where there is nothing to
-/// share.
+/// The self-consistency of a disparity map: how far left and right disparities and images agree, measured
+/// without ground truth. Counts and a sum over the pixels of the left image; frames can be added. Shares of
+/// nothing are NaN.
 struct Consistency {
   std::int64_t pixels = 0;
   std::int64_t matched = 0;    // with a disparity
-  std::int64_t confirmed = 0;  // of these, the right image's own winner agrees within kConfirmedPx
+  std::int64_t confirmed = 0;  // of these, agreeing with the winner of the right image within kConfirmedPx
   double photometric_sum =
       0;  // over the confirmed: |left − right warped to it| / kFarthestGrey, 1 at most each
 
@@ -22,41 +22,40 @@ struct Consistency {
   [[nodiscard]] double density() const;      // matched / pixels
   [[nodiscard]] double agreement() const;    // confirmed / matched
   [[nodiscard]] double photometric() const;  // mean over the confirmed, 0 … 1
-  /// What a pixel costs in the mean, 0 … 1: a hole kHoleCost, a disparity that is not confirmed 1, a
-  /// confirmed one its photometric difference. So a disparity pays only where it is more likely right than
+  /// Mean cost of a pixel, 0 … 1: kUnmatchedCost for a hole, 1 for a disparity that is not confirmed, the
+  /// photometric difference for a confirmed one. So a disparity pays only if it is more likely right than
   /// wrong.
   [[nodiscard]] double loss() const;
 };
 
 inline constexpr float kConfirmedPx = 1.0F;
-/// Less than the half that it would be were the confirmed ones all right; docs/tune.md says how it was
-/// chosen.
+/// Lower than one half, the value if all confirmed disparities were right; see docs/tune.md.
 inline constexpr double kUnmatchedCost = 0.25;
-/// Grey levels of difference from which on a pixel is explained no better.
+/// The grey level difference from which on a pixel counts as not explained.
 inline constexpr double kFarthestGrey = 16;
 
-/// `right` is the picture that was matched (after correct_epipolar(), where that moved it), `best_right`
-/// Matches::best_right: per right pixel the disparity that fits best out of all candidates, kNoMatch = none.
-/// All of one size. The right picture's grey levels are first given the mean and the deviation of the left's,
-/// so that unequal exposure is no difference, and interpolated between two pixels.
+/// `right` is the matched image (after correct_epipolar(), if it shifted the image), `best_right`
+/// Matches::best_right: the winning disparity of each right pixel over all candidates, kNoMatch = none. All
+/// of one size. The right image is first scaled to the mean and the deviation of the left one, so that
+/// unequal exposure does not count, and interpolated between pixels.
 Consistency consistency(View<const Gray> left, View<const Gray> right, View<const float> disparity_px,
                         View<const std::int16_t> best_right);
 
-/// How steady disparities are from one frame to the next, where the picture stands still.
+/// The temporal stability of disparities where the image does not change.
 struct Steadiness {
   std::int64_t pixels = 0;
-  std::int64_t still = 0;     // around these the picture is as it was
-  std::int64_t seen = 0;      // of these, with a disparity in one of the frames or in both
-  std::int64_t unsteady = 0;  // of these, with one in one frame only, or off by more than kConfirmedPx
+  std::int64_t still = 0;     // with unchanged surroundings
+  std::int64_t seen = 0;      // of these, with a disparity in at least one of the frames
+  std::int64_t unsteady = 0;  // of these, in one frame only, or differing by more than kConfirmedPx
 
   Steadiness& operator+=(const Steadiness& other);
-  [[nodiscard]] double unsteady_share() const;  // unsteady / seen; NaN where nothing is
-  /// Whether the two frames follow each other: most of the picture is as it was.
+  [[nodiscard]] double unsteady_share() const;  // unsteady / seen; NaN if seen is 0
+  /// Whether the two frames are consecutive: most of the image is unchanged.
   [[nodiscard]] bool follows() const { return 2 * still > pixels; }
 };
 
-/// A pixel is still where the grey levels of the 5x5 pixels around it (clipped at the image's border) differ
-/// by no more than kStillGrey in the mean. All of one size.
+/// A pixel is still if the mean grey level difference of the 5x5 pixels around it (clipped at the border of
+/// the image) is at most kStillGrey. All of one size.
 Steadiness steadiness(View<const Gray> left_before, View<const Gray> left,
                       View<const float> disparity_before_px, View<const float> disparity_px);
 inline constexpr int kStillGrey = 4;
