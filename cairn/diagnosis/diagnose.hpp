@@ -47,7 +47,7 @@ struct DiagnosisConfig {
 template <class V>
 void fields(DiagnosisConfig& c, V&& v) {
   v("least_points", c.least_points, "points", "fewest consistent points for any judgement", range(8, 500));
-  v("least_textured", c.least_textured, "points", "fewest textured points of a pair that should match",
+  v("least_textured", c.least_textured, "points", "number of textured points from which on images must match",
     range(8, 500));
   v("least_agreeing", c.least_agreeing, "%", "smallest share of matched points consistent with one geometry",
     range(0.0F, 100.0F));

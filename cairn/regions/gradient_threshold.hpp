@@ -8,8 +8,8 @@
 
 namespace cairn {
 
-/// Sets the gradient to 0 where it is below `threshold` (in its own units), so that a plain surface with
-/// noise on it is one plateau without lower border, and so one basin. 0 or less: nothing changes.
+/// Sets the gradient to 0 where it is below `threshold` (in its own units), so that a uniform surface with
+/// noise is one plateau without lower border, hence one basin. 0 or less: no effect.
 /// (docs/stages/intensity.md)
 void level_below(double threshold, Image<std::uint16_t>& gradient, const Exec& exec);
 

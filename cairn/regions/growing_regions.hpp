@@ -15,22 +15,22 @@
 
 namespace cairn {
 
-/// Ascending with the number, NaN last.
+/// Ordered like the values, NaN last.
 inline std::uint64_t ascending_bits(double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
   return bits ^
          (static_cast<std::uint64_t>(static_cast<std::int64_t>(bits) >> 63) | (std::uint64_t{1} << 63U));
 }
 
-/// A graph whose regions fuse. Private to the growing stages.
+/// A graph of regions that fuse. Private to the growing stages.
 ///
-/// Everything lies in flat arrays indexed by the graph's node numbers. A living region is the root of a
-/// union-find tree. Its neighbours are those of all its members, which form a chain, so a fusion joins two
-/// chains end to end and touches no list; numbers in the lists go stale and are led to their living region
-/// when they are read.
+/// All data is in flat arrays indexed by the node numbers of the graph. A living region is the root of a
+/// union-find tree. Its neighbours are those of all its members, which form a chain: a fusion joins two
+/// chains end to end and changes no list. Numbers in the lists become stale and are mapped to their living
+/// region when read.
 class GrowingRegions {
  public:
-  /// What Eq. (2) and (3) need to know of a region.
+  /// The data of a region for Eq. (2) and (3).
   struct Brief {
     double mean;
     std::int64_t sum;
@@ -71,19 +71,19 @@ class GrowingRegions {
   [[nodiscard]] Brief brief(std::int32_t region) const {
     return {means_[region], rests_[region].sum, rests_[region].valid_count};
   }
-  /// NaN where the region may not fuse by likeness: floor, or no valid pixel.
+  /// NaN if the region cannot fuse by similarity: floor, or no valid pixel.
   [[nodiscard]] double mean(std::int32_t region) const { return means_[region]; }
-  /// Its first pixel: different for any two living regions, ascending in raster order.
+  /// The first pixel: unique among living regions, ascending in raster order.
   [[nodiscard]] std::int32_t place(std::int32_t region) const { return places_[region]; }
   [[nodiscard]] std::int32_t valid_count(std::int32_t region) const { return rests_[region].valid_count; }
-  /// The sum of the squares of its values.
+  /// Sum of the squares of the values.
   [[nodiscard]] std::int64_t squares(std::int32_t region) const { return rests_[region].squares; }
   [[nodiscard]] std::int32_t pixel_count(std::int32_t region) const { return rests_[region].pixel_count; }
   [[nodiscard]] bool is_floor(std::int32_t region) const { return rests_[region].is_floor; }
   [[nodiscard]] bool is_alive(std::int32_t region) const { return sets_.is_root(region); }
 
-  /// Calls found(neighbour) for each living neighbour of `region`, for some of them more than once, and
-  /// perhaps for the region itself.
+  /// Calls found(neighbour) for each living neighbour of `region`, some of them repeatedly, and possibly for
+  /// the region itself.
   template <class Found>
   void for_each_neighbour(std::int32_t region, Found found) {
     for (std::int32_t member = region; member >= 0; member = rests_[member].next_member) {
@@ -91,7 +91,7 @@ class GrowingRegions {
     }
   }
 
-  /// Until the region has fused or show_mean() is called, its mean is NaN. Returns what it was.
+  /// Sets the mean to NaN until the region fuses or show_mean() is called. Returns the mean.
   double hide_mean(std::int32_t region) {
     return std::exchange(means_[region], std::numeric_limits<double>::quiet_NaN());
   }
@@ -100,13 +100,13 @@ class GrowingRegions {
     means_[region] = mean_of(rest.sum, rest.valid_count, rest.is_floor);
   }
 
-  /// From here on append_new_neighbours() names each region once.
+  /// From here on append_new_neighbours() returns each region once.
   void start_visit(std::int32_t region) {
     ++visit_;
     seen_[region] = visit_;
   }
-  /// Appends the living neighbours of `region` that this visit has not named yet. Without a branch: one in
-  /// two or three is known already, and nothing tells which.
+  /// Appends the living neighbours of `region` that this visit has not returned yet. Branch-free: one in two
+  /// or three is known already, unpredictably.
   void append_new_neighbours(std::int32_t region, ScratchList<std::int32_t>& found) {
     std::int32_t* const seen = seen_.data();
     for (std::int32_t member = region; member >= 0; member = rests_[member].next_member) {
@@ -137,8 +137,8 @@ class GrowingRegions {
     rest.last_member = absorbed.last_member;
   }
 
-  /// States anew which regions are beside `region`, so that later visits do not wade through its inner
-  /// borders. Calls neighbour_at(i) for i = 0 … count − 1.
+  /// Replaces the neighbours of `region`, so that later visits skip its inner borders. Calls neighbour_at(i)
+  /// for i = 0 … count − 1.
   template <class NeighbourAt>
   void set_neighbours(std::int32_t region, std::size_t count, NeighbourAt neighbour_at) {
     std::int32_t* const room = arcs_.room_for(count);
@@ -160,10 +160,10 @@ class GrowingRegions {
 
  private:
   struct Rest {
-    std::int32_t begin;  // of this member's neighbours in arcs_
+    std::int32_t begin;  // of the neighbours of this member in arcs_
     std::int32_t end;
     std::int32_t next_member;
-    std::int32_t last_member;  // this and what follows: kept up for living regions
+    std::int32_t last_member;  // from here on: valid for living regions
     std::int64_t sum;
     std::int64_t squares;
     std::int32_t valid_count;
@@ -179,17 +179,17 @@ class GrowingRegions {
                                         : static_cast<double>(sum) / static_cast<double>(valid_count);
   }
 
-  ScratchList<std::int32_t> arcs_;  // the graph's, and behind them those stated anew
-  // What a look at a neighbour needs lies in arrays of its own: short ones stay near the processor.
-  DisjointSets sets_;  // whose roots are the living regions
+  ScratchList<std::int32_t> arcs_;  // those of the graph, followed by replaced ones
+  // Separate arrays for what a look at a neighbour reads: short ones stay in cache.
+  DisjointSets sets_;  // the roots are the living regions
   Scratch<double> means_;
   Scratch<std::int32_t> places_;
-  Scratch<std::int32_t> seen_;  // the last visit that named it
+  Scratch<std::int32_t> seen_;  // the last visit that returned it
   Scratch<Rest> rests_;
   std::int32_t visit_ = 0;
 };
 
-/// Equations (1) to (3) for one visited region and many neighbours: what depends on the visited one is kept.
+/// Equations (1) to (3) for one visited region and many neighbours; caches what depends on the visited one.
 class Absorption {
  public:
   using Brief = GrowingRegions::Brief;
@@ -198,11 +198,11 @@ class Absorption {
     update(visited, squares);
   }
 
-  /// After a fusion.
+  /// To be called after a fusion.
   void update(const Brief& visited, std::int64_t squares) {
     sum_ = visited.sum;
     valid_count_ = visited.valid_count;
-    if (std::isnan(visited.mean)) return;  // mean_ stays NaN: is near to nothing
+    if (std::isnan(visited.mean)) return;  // mean_ stays NaN: never near
     const auto n = static_cast<double>(valid_count_);
     mean_ = visited.mean;
     const double variance = std::max(0.0, static_cast<double>(squares) / n - mean_ * mean_);
@@ -214,7 +214,7 @@ class Absorption {
   [[nodiscard]] bool is_near(double neighbour_mean) const {
     return std::abs(mean_ - neighbour_mean) <= criteria_.mean_difference_max;
   }
-  /// Eq. (2) and (3), for a neighbour that is_near().
+  /// Eq. (2) and (3), for a neighbour with is_near().
   [[nodiscard]] bool admits(const Brief& neighbour) const {
     const double new_mean = static_cast<double>(sum_ + neighbour.sum) /
                             static_cast<double>(std::int64_t{valid_count_} + neighbour.valid_count);
@@ -229,10 +229,10 @@ class Absorption {
   double sigma_ = 0;
 };
 
-/// Whether Eq. (1) holds for any neighbour. Most visits end with this.
+/// Whether Eq. (1) holds for any neighbour. It does not in most visits.
 bool has_near_neighbour(GrowingRegions& regions, std::int32_t region, const Absorption& absorption);
 
-/// fuse_small_regions() on regions that are growing already.
+/// fuse_small_regions() on growing regions.
 void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, const Exec& exec);
 
 }  // namespace cairn

@@ -10,7 +10,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Heights = hn::ScalableTag<std::uint16_t>;
 using Labels = hn::ScalableTag<std::int32_t>;
 
-/// Writes a mask's bits where those of pixel x belong.
+/// Writes the bits of a mask at the position of pixel x.
 template <class D, class M>
 HWY_INLINE void put_bits(D d, M mask, Word* words, int x) {
   static_assert(hn::MaxLanes(D()) % 8 == 0);
@@ -78,7 +78,7 @@ int find_runs(const RegionId* label, const RegionId* other, int width, std::int3
   return plain_labels::find_runs_from(x, runs, label, other, width, ends);
 }
 
-/// Appends the pairs of `found`; returns how many there are then.
+/// Appends the pairs of `found`; returns the new number of pairs.
 template <class D, class M>
 HWY_INLINE int put_pairs(D d, hn::Vec<D> p, hn::Vec<D> q, M found, LabelPairs pairs, int count) {
   hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
@@ -154,14 +154,14 @@ int touches_below(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRI
 using Sums = hn::ScalableTag<std::int64_t>;
 using SumsVec = hn::Vec<Sums>;
 
-/// Moves the lanes `step` up, zeros come in.
+/// Moves the lanes `step` up and fills with zeros.
 HWY_INLINE SumsVec slid_up(Sums d, SumsVec v, std::size_t step) {
   HWY_ALIGN std::int64_t from[hn::MaxLanes(Sums())];
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) from[i] = static_cast<std::int64_t>(i < step ? i : i - step);
   return hn::IfThenZeroElse(hn::FirstN(d, step), hn::TableLookupLanes(v, hn::SetTableIndices(d, from)));
 }
 
-/// In each lane what it and those before hold, and `before`.
+/// The prefix sums of the lanes, plus `before`.
 HWY_INLINE SumsVec running_sums(Sums d, SumsVec v, SumsVec before) {
   for (std::size_t step = 1; step < hn::Lanes(d); step *= 2) v = hn::Add(v, slid_up(d, v, step));
   return hn::Add(v, before);
@@ -265,7 +265,7 @@ int keep_known(const float* row, const float* by, int first, int last, float* HW
     keep(hn::LoadU(d, row + x), hn::Eq(known, known));
   }
   if (x == last) return count;
-  // The last ones, with what is before them.
+  // The last vector overlaps the one before.
   const auto known = hn::LoadU(d, by + last - step);
   const auto is_before = hn::FirstN(d, static_cast<std::size_t>(step - (last - x)));
   keep(hn::LoadU(d, row + last - step), hn::AndNot(is_before, hn::Eq(known, known)));
@@ -276,7 +276,7 @@ FloatRange find_range(const float* HWY_RESTRICT values, std::size_t count) {
   const Floats d;
   const std::size_t step = hn::Lanes(d);
   if (count < step) return plain_labels::find_range(values, count);
-  auto least = hn::LoadU(d, values + count - step);  // first, so that no rest is left
+  auto least = hn::LoadU(d, values + count - step);  // the last vector first: covers the remainder
   auto most = least;
   for (std::size_t i = 0; i + step <= count; i += step) {
     const auto v = hn::LoadU(d, values + i);
@@ -286,7 +286,7 @@ FloatRange find_range(const float* HWY_RESTRICT values, std::size_t count) {
   return {hn::GetLane(hn::MinOfLanes(d, least)), hn::GetLane(hn::MaxOfLanes(d, most))};
 }
 
-/// buckets.bucket() of several values.
+/// buckets.bucket() for several values.
 template <class D>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> bucket(D d, hn::Vec<D> values, const Buckets& buckets) {
   const hn::RebindToSigned<D> di;

@@ -9,7 +9,7 @@
 
 namespace cairn::kernels::plain_labels {
 
-/// counts[byte][i]: how many of the bits 0 … i of the byte are set.
+/// counts[byte][i]: number of set bits among bits 0 … i of the byte.
 inline constexpr auto kBitCounts = [] {
   std::array<std::array<std::uint8_t, 8>, 256> counts{};
   for (std::size_t byte = 0; byte < counts.size(); ++byte) {
@@ -58,9 +58,9 @@ inline void count_up(const Word* bits, int width, std::int32_t first, RegionId* 
   }
 }
 
-// The loops below have no branch that depends on a label: no processor can foretell where labels change.
+// The loops below have no branch on a label: label changes are unpredictable.
 
-/// find_runs() from pixel `x` on, `runs` of them found already.
+/// find_runs() from pixel `x` on, after `runs` runs.
 inline int find_runs_from(int x, int runs, const RegionId* label, const RegionId* other, int width,
                           std::int32_t* ends) {
   for (; x + 1 < width; ++x) {
@@ -80,7 +80,7 @@ inline void put_pair(LabelPairs pairs, int at, RegionId p, RegionId q) {
   pairs.b[at] = std::max(number(p), number(q));
 }
 
-/// differing() from pixel `x` on, `count` of them found already.
+/// differing() from pixel `x` on, after `count` pixels.
 inline int differing_from(int x, int count, const RegionId* row, const RegionId* other, int width,
                           std::int32_t* pixels, LabelPairs pairs) {
   for (; x < width; ++x) {
@@ -96,8 +96,8 @@ inline int differing(const RegionId* row, const RegionId* other, int width, std:
   return differing_from(0, 0, row, other, width, pixels, pairs);
 }
 
-/// touches_beside() for the pixels first … last − 1 and their left neighbours, `count` pairs found already.
-/// A border that goes straight or aslant through rows is met in its first row only.
+/// touches_beside() for the pixels first … last − 1 and their left neighbours, after `count` pairs. A
+/// vertical or diagonal border is reported in its first row only.
 inline int touches_beside_in(int first, int last, int count, const RegionId* above, const RegionId* row,
                              int width, LabelPairs pairs) {
   for (int x = first; x < last; ++x) {
@@ -116,8 +116,8 @@ inline int touches_beside(const RegionId* above, const RegionId* row, int width,
   return touches_beside_in(1, width, 0, above, row, width, pairs);
 }
 
-/// touches_below() for the pixels first … last − 1. Where both labels stand in a column beside, they are side
-/// by side, too, or were met there.
+/// touches_below() for the pixels first … last − 1. If both labels are in an adjacent column, they are also
+/// next to each other, or were reported there.
 inline int touches_below_in(int first, int last, int count, const RegionId* above, const RegionId* row,
                             int width, LabelPairs pairs) {
   for (int x = first; x < last; ++x) {
@@ -186,7 +186,7 @@ inline void sum_colours(const Rgb* colours, int width, std::uint64_t* up_to) {
   sum_colours_from(0, colours, width, up_to);
 }
 
-// Written is each value, and overwritten where it does not count: they come irregularly.
+// Every value is written, and overwritten if it does not count: the pattern is irregular.
 
 inline int keep_known(const float* row, const float* by, int first, int last, float* kept) {
   int found = 0;
@@ -219,7 +219,7 @@ inline void number_buckets(const float* values, std::size_t count, const Buckets
   for (std::size_t i = 0; i < count; ++i) numbers[i] = buckets.bucket(values[i]);
 }
 
-/// find_marked() from `i` on, `count_found` of them found already.
+/// find_marked() from `i` on, after `count_found` indices.
 inline std::size_t find_marked_from(std::size_t i, std::size_t count_found, const std::uint8_t* marks,
                                     std::size_t count, std::uint32_t* found) {
   for (; i < count; ++i) {

@@ -8,7 +8,7 @@
 
 namespace cairn {
 
-/// An area given in per cent of the image, as pixels, rounded up.
+/// An area in per cent of the image, in pixels, rounded up.
 inline std::int64_t pixels_in(float percent, Size image) {
   return static_cast<std::int64_t>(
       std::ceil(static_cast<double>(percent) * static_cast<double>(image.area()) / 100.0));

@@ -12,26 +12,26 @@
 
 namespace cairn {
 
-/// A set of connected pixels. Mean and variance over its valid pixels (holes never count in a statistic).
+/// A set of connected pixels. Mean and variance over the valid pixels (holes never count).
 struct Region {
   int pixel_count = 0;
-  int valid_count = 0;  // pixels that carry a value; mean and variance are 0 where there is none
+  int valid_count = 0;  // pixels with a value; without any, mean and variance are 0
   Rect box;
   double mean = 0;
-  double variance = 0;         // of the population
+  double variance = 0;         // population variance
   bool is_floor = false;       // the one floor region of a disparity segmentation
-  bool is_background = false;  // all that is no object
+  bool is_background = false;  // everything but the objects
 };
 
-/// The result of a segmentation: every pixel's region, 0 … regions.size()−1 in raster order of their first
-/// pixel.
+/// The result of a segmentation: the region of each pixel, 0 … regions.size()−1 in raster order of their
+/// first pixels.
 struct Segmentation {
   Image<RegionId> labels;
   std::vector<Region> regions;
 };
 
-/// Regions and which of them touch (4-neighbourhood), while they grow together.
-/// Sums are integers, so the statistics do not depend on the order in which pixels and regions were added.
+/// Regions and their adjacency (4-neighbourhood), for region growing. Sums are integers, so the statistics do
+/// not depend on the order of additions.
 struct RegionGraph {
   struct Node {
     std::int64_t pixel_count = 0;
@@ -65,16 +65,16 @@ struct RegionGraph {
   std::vector<std::int32_t> arcs;
 };
 
-/// Counts and links the regions of `labels` (ids 0 … count−1). `values`: what the statistics are of; kHole16
-/// = no value. `floor` (may be empty): non-zero pixels are floor; a region is floor when it has a floor pixel
-/// (the caller splits basins along the floor first).
+/// Builds the graph of the regions of `labels` (ids 0 … count−1). `values`: the input of the statistics;
+/// kHole16 = no value. `floor` (may be empty): non-zero pixels are floor; a region with a floor pixel is
+/// floor (the caller splits basins along the floor first).
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const std::int16_t> values,
                         View<const std::uint8_t> floor, const Exec& exec);
 
-/// The same of grey levels: every pixel has a value, and there is no floor.
+/// The same for grey levels: every pixel has a value, and there is no floor.
 RegionGraph build_graph(View<const RegionId> labels, int count, View<const Gray> values, const Exec& exec);
 
-/// Which region every old one ended in. merged_into[i] = the surviving id, itself where it survived.
+/// The outcome of region growing: merged_into[i] = the surviving id, i itself if it survived.
 using Merges = std::vector<std::int32_t>;
 
 /// Renumbers the survivors in raster order of their first pixel and writes labels and statistics.

@@ -13,8 +13,7 @@
 
 namespace cairn {
 
-/// A stretch of one label in a row: the pixels first … last − 1. What is known of the label is fetched once
-/// for all of them.
+/// A run of one label in a row: the pixels first … last − 1. The data of the label is fetched once per run.
 struct Run {
   RegionId label{};
   int y = 0;
@@ -24,7 +23,7 @@ struct Run {
   [[nodiscard]] Rect box() const { return {first, y, length(), 1}; }
 };
 
-/// The box of a region whose runs are added in raster order.
+/// The bounding box of a region whose runs are added in raster order.
 struct Extent {
   int left = std::numeric_limits<int>::max();
   int right = 0;
@@ -56,8 +55,8 @@ void for_each_run(View<const RegionId> labels, const Exec& exec, Found found) {
   }
 }
 
-/// Colours of runs, summed; the grey three times where there is no colour (`rgb` empty). For runs in raster
-/// order: what stands left of each pixel is summed once for a row.
+/// Colour sums over runs; grey, three times, without colour (`rgb` empty). For runs in raster order: prefix
+/// sums are computed once per row.
 class ColourSums {
  public:
   ColourSums(View<const Gray> gray, View<const Rgb> rgb)

@@ -8,9 +8,8 @@
 
 namespace cairn {
 
-/// Regions of like disparity, nearest first: gradient → watershed → build_graph → grow_near_to_far. Floor
-/// pixels
-/// (`floor` non-zero; may be empty) are one region of their own, Region::is_floor. Means in px.
+/// Regions of similar disparity: gradient → watershed → build_graph → grow_near_to_far, nearest first. Floor
+/// pixels (`floor` non-zero; may be empty) are one separate region, Region::is_floor. Means in px.
 /// (docs/stages/disparity.md; paper, "Disparity segmentation")
 Segmentation segment_disparity(const DisparityMap& disparity, View<const std::uint8_t> floor,
                                const DisparityConfig& config, const Exec& exec);

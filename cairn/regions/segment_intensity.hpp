@@ -8,7 +8,7 @@
 
 namespace cairn {
 
-/// Regions of like intensity: gradient → watershed → build_graph → grow_statistical.
+/// Regions of similar intensity: gradient → watershed → build_graph → grow_statistical.
 /// (docs/stages/intensity.md; paper, "Intensity segmentation")
 Segmentation segment_intensity(View<const Gray> image, const IntensityConfig& config, const Exec& exec);
 

@@ -13,11 +13,11 @@ struct Basins {
   int count = 0;
 };
 
-/// Watershed by steepest descent, 4-connected, no ridge lines: every pixel belongs to a basin.
-/// A pixel flows to its lowest neighbour if that is lower than itself (ties: the first in the order up, left,
-/// right, down). A plateau's pixels without a lower neighbour flow to the plateau neighbour whose
-/// breadth-first distance to the plateau's lower border is one less (ties: the same order); a plateau without
-/// lower border is one basin. (docs/stages/intensity.md; paper [3])
+/// Watershed by steepest descent, 4-connected, without ridge lines: every pixel belongs to a basin. A pixel
+/// drains to its lowest neighbour if that is lower (ties: the first in the order up, left, right, down). On a
+/// plateau, a pixel without lower neighbour drains to the plateau neighbour whose breadth-first distance to
+/// the lower border of the plateau is one less (ties: the same order); a plateau without lower border is one
+/// basin. (docs/stages/intensity.md; paper [3])
 Basins watershed(View<const std::uint16_t> gradient, const Exec& exec);
 
 }  // namespace cairn
