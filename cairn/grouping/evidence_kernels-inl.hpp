@@ -42,7 +42,7 @@ inline void agreed(const float* const* rows, int width, float agreement, float* 
       return near(row[x - 2]) + near(row[x - 1]) + near(row[x]) + near(row[x + 1]) + near(row[x + 2]);
     };
     const int count = near_in(r0) + near_in(r1) + near_in(r2) + near_in(r3) + near_in(r4);
-    out[x] = count > 3 ? d : std::numeric_limits<float>::quiet_NaN();  // the pixel itself is met, too
+    out[x] = count > 3 ? d : std::numeric_limits<float>::quiet_NaN();  // count includes the pixel itself
   }
 }
 

@@ -12,15 +12,15 @@ namespace cairn::kernels {
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct EvidenceKernels {
-  /// (1 6 1)/8 both ways, in 1/64 level. `column`: width + 2 samples, working memory.
+  /// Smooths by (1 6 1)/8 along both axes, in 1/64 level. Working memory: `column`, width + 2 samples.
   void (*smooth_lightly)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down,
                          int width, std::int16_t* column, std::int16_t* out);
-  /// The disparities of valid pixels whose difference across is above `least` and above half of that down;
-  /// NaN elsewhere.
+  /// The disparities of valid pixels whose horizontal difference exceeds `least` and half of the vertical
+  /// one; NaN elsewhere.
   void (*textured)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
                    const Reject* reject, const float* disparity_px, int width, int least, float* out);
-  /// Keeps those of rows[2] to which at least three others of the 5×5 neighbours are as near as `agreement`;
-  /// NaN elsewhere. All rows go on for two NaN at either end.
+  /// Keeps the values of rows[2] with at least three other values of the 5×5 neighbourhood within
+  /// `agreement`; NaN elsewhere. All rows are padded by two NaN at either end.
   void (*agreed)(const float* const* rows, int width, float agreement, float* out);
 };
 

@@ -8,20 +8,20 @@
 
 namespace cairn {
 
-/// A sum of small decision trees, fitted by gradient boosting (Friedman 2001): what stands in the leaves that
-/// a case comes to is added up. Its numbers were fitted by fitting/fit.py; comparisons and one sum in a fixed
-/// order give the same bits everywhere.
+/// A sum of small decision trees, fitted by gradient boosting (Friedman 2001): the output is the sum of the
+/// leaves that a sample reaches. The numbers were fitted by fitting/fit.py; comparisons and one sum in a
+/// fixed order give the same bits on every platform.
 struct FittedTrees {
   struct Node {
     std::int16_t feature;  // −1 = a leaf
-    std::int16_t below;    // the node to go to where the feature is less than `value`; else the one after it
-    float value;           // of a leaf: what it adds
+    std::int16_t below;    // child for feature < `value`; the other child is the next node
+    float value;           // threshold; the output of a leaf
   };
   float base = 0;
   std::span<const std::int16_t> roots;
   std::span<const Node> nodes;
 
-  /// The logarithm of the odds.
+  /// The log-odds.
   [[nodiscard]] float operator()(std::span<const float> features) const {
     float sum = base;
     for (const std::int16_t root : roots) {
@@ -34,9 +34,9 @@ struct FittedTrees {
   }
 };
 
-/// The logarithm of the odds that two neighbouring regions show one thing: of merge_features().
+/// The log-odds that two neighbouring regions belong to one object, from merge_features().
 extern const FittedTrees kSameThing;
-/// … that a region is a whole object and not more: of object_features().
+/// The log-odds that a region is exactly one whole object, from object_features().
 extern const FittedTrees kWholeObject;
 
 }  // namespace cairn

@@ -7,39 +7,39 @@
 #include <span>
 #include <string_view>
 
-/// The numbers that the fitted trees look at. None depends on the image's size, the focal length or the
-/// baseline but through px of disparity, which is what a matcher's errors are measured in.
+/// The features of the fitted trees. None depends on the image size, the focal length or the baseline except
+/// through px of disparity, the unit of matching errors.
 namespace cairn {
 
-/// In a feature's place where nothing is known.
+/// The value of an unknown feature.
 inline constexpr float kUnknown = -999.0F;
 
-/// A least-squares plane of disparity, px; level where a region is small.
+/// A least-squares plane of disparity, px; fronto-parallel for small regions.
 struct FittedPlane {
   bool any = false;
-  double a = 0, b = 0;         // px a px
-  double d = 0, x = 0, y = 0;  // through this point; x and y from the image's centre
-  double squares = 0;          // sum of the squared distances from it, and what its levelling costs
+  double a = 0, b = 0;         // px per px
+  double d = 0, x = 0, y = 0;  // a point of the plane; x and y from the image centre
+  double squares = 0;          // sum of squared residuals, including the cost of levelling
   [[nodiscard]] double at(double px, double py) const { return d + a * (px - x) + b * (py - y); }
 };
 /// `width`: of the image.
 FittedPlane fit_plane(const PlaneMoments& moments, int width);
 
-/// Of a region: the two planes through all its disparities and through its evidence, and how far its colours
-/// are from those of the floor and of the background.
+/// Of a region: the planes through all its disparities and through its textured ones, and the distances of
+/// its colours from those of the floor and of the background.
 struct RegionFits {
   FittedPlane matched, textured;
   double to_floor = kUnknown, to_background = kUnknown;  // χ², 0 … 6
 };
 
-/// The colours of the superpixels that lie on the ground, or in the background, for the most part.
+/// The colours of the superpixels mostly on the ground, or in the background.
 struct SceneColours {
   std::int64_t area = 0;  // px
   Histogram histogram{};
   void add(const RegionCues& region);
 };
 
-/// What all regions of a frame share.
+/// Statistics shared by all regions of a frame.
 struct FrameCues {
   int width = 0;
   int height = 0;
@@ -60,39 +60,39 @@ inline constexpr std::size_t kObjectFeatures = 76;
 using MergeFeatures = std::array<float, kMergeFeatures>;
 using ObjectFeatures = std::array<float, kObjectFeatures>;
 
-/// One end of a contact.
+/// One side of a contact.
 struct RegionSide {
   const RegionCues& cues;
   const RegionFits& fits;
 };
 
-/// Of two regions that touch: what tells whether they show one thing. `a`, `b`: those of the contact.
+/// The features for whether two touching regions belong to one object. `a`, `b`: as in the contact.
 MergeFeatures merge_features(const RegionSide& a, const RegionSide& b, const ContactCues& contact,
                              const FrameCues& frame);
 
-/// A neighbour as a region sees it.
+/// A neighbour of a region.
 struct Neighbour {
   RegionSide side;
   const ContactCues& contact;
-  bool turned;       // the contact's a is the neighbour
+  bool turned;       // a of the contact is the neighbour
   float same_thing;  // kSameThing of the two
 };
 
-/// How a region came to be; of a superpixel: {20, 20, 1}.
+/// The merge history of a region; of a superpixel: {20, 20, 1}.
 struct Origin {
-  float same_thing = 0;        // kSameThing of its two parts, when they fused
-  float least_same_thing = 0;  // … and the least of all fusions in it
+  float same_thing = 0;        // kSameThing of its two parts when merged
+  float least_same_thing = 0;  // the minimum over all merges in it
   float larger_part = 1;       // share of its area
 };
 
-/// Of a region: what tells whether it is a whole object. The last two, which only the fusion that ends the
-/// region tells, are unknown: see tell_end().
+/// The features for whether a region is a whole object. The last two are unknown until the region itself is
+/// merged: see tell_end().
 ObjectFeatures object_features(const RegionSide& region, std::span<const Neighbour> neighbours,
                                const Origin& origin, const FrameCues& frame);
-/// Fills them in: the region's share of what it became a part of, and kSameThing of that fusion.
+/// Sets these two: the share of the region in its parent, and kSameThing of that merge.
 void tell_end(ObjectFeatures& features, float share, float same_thing);
 
-/// The names of the features, in their order.
+/// The names of the features, in order.
 std::vector<std::string_view> merge_feature_names();
 std::vector<std::string_view> object_feature_names();
 

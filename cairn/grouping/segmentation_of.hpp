@@ -9,8 +9,7 @@
 
 namespace cairn {
 
-/// Labels as a segmentation of `count` regions. value(x, y): what their statistics are of; NaN does not
-/// count.
+/// Labels as a segmentation of `count` regions. value(x, y): the input of the statistics; NaN does not count.
 template <class Value>
 Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, Value value) {
   Segmentation result{std::move(labels), std::vector<Region>(count)};

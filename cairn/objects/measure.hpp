@@ -13,53 +13,52 @@
 namespace cairn {
 
 struct ObjectsConfig {
-  float min_area = 0.1F;   // % of the image, 0 … 100; less finds smaller objects, and more that are none
-  float max_area = 30.0F;  // % of the image, 0 … 100; more for objects close to the camera
-  float min_confidence = 0.0F;  // 0 … 1; more: fewer objects, of which more are right
+  float min_area = 0.1F;        // % of the image, 0 … 100; lower finds smaller objects, and more false ones
+  float max_area = 30.0F;       // % of the image, 0 … 100; higher for objects close to the camera
+  float min_confidence = 0.0F;  // 0 … 1; higher: fewer objects, more of them correct
 };
 template <class V>
 void fields(ObjectsConfig& c, V&& v) {
-  v("min_area", c.min_area, "% of the image", "smaller regions are no objects", range(0.0F, 100.0F));
-  v("max_area", c.max_area, "% of the image", "larger regions are background", range(0.0F, 100.0F),
+  v("min_area", c.min_area, "% of the image", "smallest area of an object", range(0.0F, 100.0F));
+  v("max_area", c.max_area, "% of the image", "largest area of an object", range(0.0F, 100.0F),
     when("fusion.method", "overlap"));
-  v("min_confidence", c.min_confidence, "", "regions less likely than this to be an object are none",
-    range(0.0F, 1.0F));
+  v("min_confidence", c.min_confidence, "", "smallest confidence of an object", range(0.0F, 1.0F));
 }
 
-/// From `low` to `high`, which may be infinite.
+/// From `low` to `high`; may be infinite.
 struct Interval {
   float low = 0;
   float high = 0;
 };
 
-/// A box about what is seen of an object, upright on the floor and turned as it is. In the floor's frame (x
+/// An upright box on the floor around the visible part of an object, aligned with it, in the floor frame (x
 /// forward, y left, z up from the floor below the camera): see floor_frame().
 struct FloorBox {
   Vec3 centre_in_floor_m;
-  Vec3 size_m;        // along its longer side, along its shorter one, up
+  Vec3 size_m;        // longer side, shorter side, height
   float yaw_rad = 0;  // −π/2 < yaw ≤ π/2: of the longer side, counter-clockwise from x as seen from above
-  /// Of the centre, m²: xx, xy, xz, yy, yz, zz in the floor's frame.
+  /// Covariance of the centre, m²: xx, xy, xz, yy, yz, zz in the floor frame.
   std::array<float, 6> centre_covariance_m2{};
 };
 
-/// Something that stands or hangs in front of the background.
+/// An object in front of the background.
 struct Object {
   ObjectId id = ObjectId::none;
   Rect box_px;
   int pixel_count = 0;
   float disparity_px = 0;  // median of its valid pixels (even number: mean of the middle two)
-  float valid_share = 0;   // 0 … 1: pixels of the mask that have a disparity
-  Rgb mean_colour;         // of the mask, rounded; grey where the input had no colour
-  float edge_share = 0;    // 0 … 1: of its outline, where the picture shows an edge
-  float cut_share = 0;     // 0 … 1: of its outline, what lies at the image's border
-  float confidence = 0;    // 0 … 1: how likely it covers a true object by more than half (IoU ≥ 0.5)
+  float valid_share = 0;   // 0 … 1: share of the mask with a disparity
+  Rgb mean_colour;         // of the mask, rounded; grey if the input had no colour
+  float edge_share = 0;    // 0 … 1: share of the outline on image edges
+  float cut_share = 0;     // 0 … 1: share of the outline at the image border
+  float confidence = 0;    // 0 … 1: probability that it matches a true object (IoU ≥ 0.5)
 
-  // By locate(). What is in metres needs a rig, and a disparity before infinity.
+  // Set by locate(). Metres need a rig and a finite depth.
   float disparity_sigma_px = 0;              // standard deviation of disparity_px
-  std::optional<Vec3> position_in_camera_m;  // in the middle of its main part, at the depth of disparity_px
-  std::optional<Interval> depth_interval_m;  // 95 %: where the z of its position lies
-  std::optional<Vec3> extent_in_camera_m;    // of its main part, without wild points
-  std::optional<FloorBox> box_on_floor;      // needs a ground, too
+  std::optional<Vec3> position_in_camera_m;  // centre of the main part, at the depth of disparity_px
+  std::optional<Interval> depth_interval_m;  // 95 % interval of the z of its position
+  std::optional<Vec3> extent_in_camera_m;    // of the main part, without outliers
+  std::optional<FloorBox> box_on_floor;      // also needs a ground
 };
 
 /// The objects of a frame. labels: ObjectId per pixel, none = no object. list[i].id = i + 1, nearest first
@@ -69,22 +68,21 @@ struct Objects {
   std::vector<Object> list;
 };
 
-/// Turns candidates into objects, but for where they are, which locate() says: regions 0 …
-/// is_background.size()−1 that divide the image among them, fused ones or groups. No objects are: what is
-/// known to be background, such as the floor; what covers more than max_area of the image or touches three of
-/// its borders (background); what is smaller than min_area; what has no valid pixel; what would have a
-/// confidence below min_confidence (beyond the paper).
+/// Makes objects of candidates, without their position, which locate() adds. The candidates are regions 0 …
+/// is_background.size()−1 that partition the image: fused regions or groups. Excluded are: known background,
+/// such as the floor; regions that cover more than max_area of the image or touch three of its borders
+/// (background); regions smaller than min_area; regions without valid pixel; regions with a confidence below
+/// min_confidence (beyond the paper).
 ///
 /// Confidence is a logistic function of the logarithm of the mask's share of the image, of edge_share and of
-/// cut_share; below a valid_share of one half it falls with that, too: what has no disparity is a guess. Its
-/// four numbers were fitted on objects found with the default preset; see docs/stages/objects.md.
-/// `noise_sigma`: of the left image; a step that stands out of it is an edge.
+/// cut_share; a valid_share below one half also lowers it. Its four numbers were fitted to objects of the
+/// default preset; see docs/stages/objects.md. `noise_sigma`: of the left image; edges are steps above it.
 Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
                 const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
                 float noise_sigma, const ObjectsConfig& config, const Exec& exec);
 
-/// The same of regions that were chosen to be objects: region i is one with the confidence scores[i], however
-/// large it is and wherever it lies, unless that is 0 or the region has no valid pixel.
+/// The same for chosen regions: region i is an object of confidence scores[i], whatever its size and
+/// position, unless that is 0 or the region has no valid pixel.
 Objects measure(View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
                 View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma, const Exec& exec);
 

@@ -11,8 +11,8 @@ namespace cairn::kernels {
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct PointKernels {
-  /// rig.point_in_camera_m() of the pixels first … last − 1 of row y, one array per axis, of which the same
-  /// pixels are written; NaN where there is no disparity, and at infinity and beyond.
+  /// rig.point_in_camera_m() for the pixels first … last − 1 of row y, one output array per axis, indexed
+  /// alike; NaN in holes, and at or beyond infinity.
   void (*points_in_camera)(const StereoRig& rig, int y, int first, int last, const float* disparity_px,
                            float* x_m, float* y_m, float* z_m);
 };

@@ -9,8 +9,8 @@
 
 namespace cairn {
 
-/// The values of the ranks `low` ≤ `high` < values.size() in ascending order, 0 being the least. No value is
-/// NaN. Leaves `values` in any order. Private to the library.
+/// The values at the ranks `low` ≤ `high` < values.size() in ascending order, rank 0 = the minimum. No value
+/// is NaN. Permutes `values`. Private to the library.
 std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low, std::size_t high,
                                         const Exec& exec);
 

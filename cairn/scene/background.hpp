@@ -9,38 +9,39 @@
 namespace cairn {
 
 struct BackgroundConfig {
-  int max_walls = 3;  // 0 … 8; 0 outdoors, where only the floor bounds the scene
-  // No options, constants:
-  float tolerance = 2.3F;         // ‰ of the width; how far a disparity may lie from the wall it supports
-  float min_share = 1.5F;         // % of the evidence; least support of a wall
-  float min_share_square = 0.4F;  // % of the evidence; the same of a wall square on the first one
-  float max_behind = 33.0F;       // % of the support; most evidence that may lie behind a wall
+  int max_walls = 3;  // 0 … 8; 0 outdoors, without walls
+  // Constants, not options:
+  float tolerance = 2.3F;  // ‰ of the width; largest distance of a disparity from a wall that it supports
+  float min_share = 1.5F;  // % of the textured disparities; smallest support of a wall
+  float min_share_square =
+      0.4F;                  // % of the textured disparities; the same for a wall perpendicular to the first
+  float max_behind = 33.0F;  // % of the support; most textured disparities behind a wall
 };
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
-  v("max_walls", c.max_walls, "", "how many walls are looked for besides the floor", range(0, 8),
+  v("max_walls", c.max_walls, "", "largest number of walls to fit; 0 outdoors", range(0, 8),
     when("fusion.method", "hierarchy"));
 }
 
-/// How far a disparity may lie from a wall that it supports, px.
+/// The largest distance of a disparity from a wall that it supports, px.
 inline float wall_tolerance_px(const BackgroundConfig& config, Size image) {
   return config.tolerance * 0.001F * static_cast<float>(image.width);
 }
 
 /// The planes that bound the scene from behind: the floor, if there is one, and walls. A room seen from
-/// inside is convex, so a pixel's background is the nearest of them, and nothing but reflections lies behind
-/// it.
+/// inside is convex, so the background of a pixel is the nearest of these planes, and only reflections are
+/// behind it.
 struct Background {
   std::vector<GroundPlane> planes;
-  bool has_floor = false;  // it is the first of them
-  /// At least 0: infinitely far away is behind everything.
+  bool has_floor = false;  // the floor is the first plane
+  /// At least 0, the disparity at infinity.
   [[nodiscard]] float disparity_px(float x, float y) const;
 };
 
-/// Finds walls: planes upright on the floor, through much of the evidence that stands before the background
-/// found so far, with hardly any evidence behind them; that tells a wall from a box's side. Deterministic.
-/// Without a ground the planes may lean as they like. `evidence_px` as find_evidence() gives it. (beyond the
-/// paper)
+/// Fits walls: planes perpendicular to the floor, supported by many textured disparities in front of the
+/// background found so far, with hardly any behind them; the latter distinguishes a wall from the side of a
+/// box. Deterministic. Without a ground, planes of any orientation. `evidence_px` as returned by
+/// find_evidence(). (beyond the paper)
 Background fit_background(View<const float> evidence_px, const Ground& ground,
                           const std::optional<StereoRig>& rig, const BackgroundConfig& config,
                           const Exec& exec);

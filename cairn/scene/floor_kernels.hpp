@@ -11,7 +11,7 @@
 /// Private to the library.
 namespace cairn::kernels {
 
-/// What a row is judged by to be floor, or below it.
+/// The floor along a row.
 struct FloorRow {
   GroundPlane plane;
   float infinity;  // a point at infinity has disparity −infinity
@@ -23,7 +23,7 @@ struct FloorRow {
 struct FloorKernels {
   /// The disparities of row `y` that are below the floor; NaN elsewhere.
   void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px);
-  /// Rejects the disparities of a row that have a mark as below the ground.
+  /// Rejects the marked disparities of a row as below the ground.
   void (*reject_marked)(const Reject* marks, int width, float* disparity_px, Reject* reject);
   /// label_floor() for the pixels of row `y`.
   void (*label_floor)(const FloorRow& floor, int y, int width, const float* disparity_px,

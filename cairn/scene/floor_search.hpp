@@ -6,10 +6,10 @@
 
 namespace cairn {
 
-/// The floor of a disparity map, when there is one: the plane that rises towards the camera on which the most
-/// disparities lie and under which the fewest do. See docs/stages/ground.md for the reasoning.
-/// Where there is none such, a plane is the floor if the picture below it looks like the mirror image of what
-/// is above; `left` is not asked where it is empty. Same result for any number of threads; nothing random.
+/// Searches for the floor in a disparity map: the plane, rising towards the camera, with most disparities on it
+/// and fewest below it. See docs/stages/ground.md for the reasoning. If there is none, a plane is accepted as
+/// floor if the image below it resembles the mirror image of what is above; skipped if `left` is empty.
+/// Deterministic for any number of threads.
 Ground find_floor(View<const float> disparity_px, View<const Gray> left, const std::optional<StereoRig>& rig,
                   const Exec& exec);
 

@@ -19,22 +19,21 @@ inline constexpr std::array kGroundSources{Choice<GroundSource>{"off", GroundSou
 
 struct GroundConfig {
   GroundSource source = GroundSource::automatic;  // points, pose: for a rig that does not move
-  float margin = 1.0F;      // px of disparity, 0 … 64; more for an uneven floor or inexact matches
-  bool label_floor = true;  // off: the floor is a surface like others
-  KnownGround known;        // no option: what the rig's calibration says, for the sources points and pose
+  float margin = 1.0F;      // px of disparity, 0 … 64; higher for an uneven floor or inexact matches
+  bool label_floor = true;  // off: the floor is an ordinary surface
+  KnownGround known;        // not an option: from the calibration, for points and pose
 };
 template <class V>
 void fields(GroundConfig& c, V&& v) {
-  v("source", c.source, "",
-    "where the floor comes from: fitted to each frame, the calibration's points or pose, nowhere",
+  v("source", c.source, "", "floor fitted per frame, from points or pose of the calibration, or off",
     kGroundSources);
   constexpr Condition kGround = unless("ground.source", "off");
-  v("margin", c.margin, "px", "how far a disparity may lie from the floor's and still be floor",
-    range(0.0F, 64.0F), kGround);
-  v("label_floor", c.label_floor, "", "label matches on the floor; the floor is no object", Any{}, kGround);
+  v("margin", c.margin, "px", "largest distance of floor pixels from the floor plane", range(0.0F, 64.0F),
+    kGround);
+  v("label_floor", c.label_floor, "", "exclusion of floor pixels from objects", Any{}, kGround);
 }
 
-/// The floor as the left image's disparity: d = a·x + b·y + c, pixels in px. (docs/stages/ground.md)
+/// The floor in the left image as disparity: d = a·x + b·y + c, pixels in px. (docs/stages/ground.md)
 struct GroundPlane {
   float a = 0;
   float b = 0;
@@ -42,7 +41,7 @@ struct GroundPlane {
   [[nodiscard]] float disparity_px(float x, float y) const { return a * x + b * y + c; }
 };
 
-/// Why there is no ground.
+/// The reason for a missing ground.
 enum class Refusal : std::uint8_t { none, off, no_rig, too_few_matches, no_plane, implausible };
 inline constexpr std::array kRefusals{
     Choice<Refusal>{"none", Refusal::none},
@@ -55,49 +54,48 @@ inline constexpr std::array kRefusals{
 
 struct Ground {
   std::optional<GroundPlane> plane;
-  float support =
-      0;  // 0 … 1: share of the valid pixels under the horizon that lie on the plane (given grounds: 1)
-  float residual_px = 0;  // root mean square distance of the supporting evidence from the plane
+  float support = 0;  // 0 … 1: share of the valid pixels below the horizon on the plane (given grounds: 1)
+  float residual_px = 0;  // root mean square distance of the supporting pixels from the plane
   Refusal refusal = Refusal::none;
 };
 
-/// Finds the floor. automatic: a robust plane fit to the disparity map, deterministic, refused with a reason
-/// when no plane has enough support. points: the plane of least squares through the pairs (RANSAC beyond
-/// four). pose: from height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper)
+/// Finds the floor. automatic: robust plane fit to the disparity map, deterministic, refused with a reason if
+/// no plane has enough support. points: least-squares plane through the pairs (RANSAC above four). pose: from
+/// height, pitch and roll; needs a rig and a height. (docs/stages/ground.md; paper)
 Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec);
 
-/// The same from bare disparities, NaN for holes: from those alone that deserve trust, for instance. `left`,
-/// if given, also shows the floor that mirrors so well that there are hardly any disparities of its own.
+/// The same from bare disparities, NaN = hole, for example from trusted ones only. `left`, if given, also
+/// allows a floor that mirrors so well that it has hardly any disparities of its own.
 Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec, View<const Gray> left = {});
 
-/// The plane through hand-given pairs. Throws Error for fewer than four, or where all lie on one line.
-/// Called by validate(Config), so that fit_ground cannot fail.
+/// The plane through manually picked pairs. Throws Error for fewer than four, or collinear ones. Called by
+/// validate(Config), so fit_ground cannot fail.
 Ground ground_from_points(const std::vector<PointPair>& points);
 
-/// Throws Error where `source` is points or pose and `known` does not say it, or not soundly.
+/// Throws Error if `source` is points or pose and `known` lacks the data or has invalid data.
 void validate(const GroundConfig& config, bool has_rig);
 
-/// `ground` itself, or where it was refused for want of evidence a ground fitted to all disparities: a plain
-/// floor has no texture that would vouch for it.
+/// `ground`, or, if that was refused for lack of support, a ground fitted to all disparities: a floor without
+/// texture has no textured disparities.
 Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
                      const GroundConfig& config, const Exec& exec);
 
-/// Rejects matches under the floor, which are reflections: d < d_ground − margin → Reject::below_ground. A
-/// surface seen past the floor's edge stays: at least 2 % of the image, of steps of at most 0.2 px.
-/// Nothing is above the horizon (d_ground + doffs ≤ 0 where a rig tells doffs, else d_ground ≤ 0). No ground:
-/// nothing happens. (docs/stages/ground.md; paper)
+/// Rejects matches below the floor, which are reflections: d < d_ground − margin → Reject::below_ground. A
+/// surface seen beyond the edge of the floor is kept: at least 2 % of the image, with steps of at most 0.2
+/// px. Only pixels below the horizon are checked (d_ground + doffs > 0 with a rig, else d_ground > 0).
+/// Without a ground, no effect. (docs/stages/ground.md; paper)
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const std::optional<StereoRig>& rig, const GroundConfig& config,
                                  const Exec& exec);
 
-/// The disparities of what is seen, px: where a match was rejected as below the ground, what is seen is the
-/// ground, which mirrors it. Holes else. `disparity` as reject_below_ground() leaves it.
+/// The disparities of the visible surfaces, px: the ground where a match was rejected as below the ground,
+/// since the ground mirrors it. Holes elsewhere. `disparity` as returned by reject_below_ground().
 Image<float> floor_under_reflections(const DisparityMap& disparity, const Ground& ground, const Exec& exec);
 
-/// 255 where |d − d_ground| ≤ margin under the horizon, else 0. Empty where there is no ground or label_floor
-/// is off.
+/// 255 for pixels below the horizon with |d − d_ground| ≤ margin, else 0. Empty without a ground or if
+/// label_floor is off.
 Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& ground,
                                 const std::optional<StereoRig>& rig, const GroundConfig& config,
                                 const Exec& exec);

@@ -8,8 +8,8 @@
 
 namespace cairn {
 
-/// Least squares of d = a·x + b·y + c, point by point. Coordinates count from an origin amid the points, so
-/// that the sums do not cancel.
+/// Least-squares fit of d = a·x + b·y + c, point by point. Coordinates are relative to an origin amid the
+/// points, which avoids cancellation in the sums.
 class PlaneFit {
  public:
   PlaneFit(double origin_x, double origin_y) : origin_x_(origin_x), origin_y_(origin_y) {}
@@ -28,7 +28,7 @@ class PlaneFit {
     yd_ += y * d;
   }
 
-  /// nullopt where the points lie on a line, or nearly so: narrower than a pixel.
+  /// nullopt if the points are (nearly) collinear: narrower than a pixel.
   [[nodiscard]] std::optional<GroundPlane> solve() const {
     if (n_ < 3) return std::nullopt;
     const double mean_x = x_ / n_;
@@ -37,7 +37,7 @@ class PlaneFit {
     const double var_y = yy_ / n_ - mean_y * mean_y;
     const double cov_xy = xy_ / n_ - mean_x * mean_y;
     const double determinant = var_x * var_y - cov_xy * cov_xy;
-    // The determinant is the product of the variances along the cloud and across it, their sum bounds the
+    // The determinant is the product of the variances along and across the cloud; their sum bounds the
     // former.
     constexpr double kLeastVariance = 0.25;
     if (!(determinant >= kLeastVariance * (var_x + var_y)) || !(determinant > 0)) return std::nullopt;

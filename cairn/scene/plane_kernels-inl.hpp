@@ -5,7 +5,7 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-/// Of how many points judge(points, i, the plane's disparity there) holds.
+/// The number of points for which judge(points, i, the plane's disparity there) holds.
 template <class Judge>
 inline int count_where(const PointArrays& points, const GroundPlane& plane, Judge judge) {
   const GroundPlane p = plane;
@@ -97,8 +97,7 @@ inline PlaneCounts count_support(const float* disparity_px, int y, int width, co
   PlaneCounts counts;
   for (int x = 0; x < width; ++x) {
     const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
-    const float distance =
-        std::abs(disparity_px[x] - floor);  // NaN for a hole, which no comparison holds for
+    const float distance = std::abs(disparity_px[x] - floor);  // NaN for a hole, which fails every comparison
     const int visible = floor + infinity > 0 ? 1 : 0;
     counts.all += distance >= 0 ? visible : 0;
     counts.on += distance <= tolerance ? visible : 0;

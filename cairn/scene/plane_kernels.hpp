@@ -29,36 +29,36 @@ struct PlaneSums {
   std::uint64_t yy = 0;
 };
 
-/// How many points lie where to a plane, of those that are seen below its horizon.
+/// Numbers of points by their distance to a plane, among those below its horizon.
 struct PlaneCounts {
   int all = 0;
   int on = 0;     // within the tolerance
-  int near = 0;   // within twice of it
-  int below = 0;  // farther away than that
+  int near = 0;   // within twice the tolerance
+  int below = 0;  // below the plane by more than that
 };
 
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct PlaneKernels {
-  /// How many points lie nearer to the plane than `tolerance`.
+  /// Number of points closer to the plane than `tolerance`.
   int (*count_on)(const PointArrays& points, const GroundPlane& plane, float tolerance);
-  /// How many points lie farther than `tolerance` behind the plane and the background.
+  /// Number of points more than `tolerance` behind the plane and the background.
   int (*count_beyond)(const PointArrays& points, const GroundPlane& plane, float tolerance);
-  /// How many points lie nearer to the plane than `tolerance` where it stands before the background.
+  /// Number of points closer to the plane than `tolerance` where it is in front of the background.
   int (*count_on_before)(const PointArrays& points, const GroundPlane& plane, float tolerance);
-  /// Sums over the points that lie nearer to the plane than `tolerance`; x and y are whole numbers. d_on[i] =
-  /// the disparity of these points, 0 of all others.
+  /// Sums over the points closer to the plane than `tolerance`; x and y are integers. d_on[i] = the disparity
+  /// of such a point, else 0.
   PlaneSums (*sum_on)(const PointArrays& points, const GroundPlane& plane, float tolerance, float* d_on);
-  /// behind[i] = the plane's disparity at point i, where that is more.
+  /// behind[i] = max(behind[i], the plane's disparity at point i).
   void (*put_behind)(const PointArrays& points, const GroundPlane& plane, float* behind);
-  /// marks[i] = 1 where least ≤ the point's distance above the plane ≤ most, in px of disparity; else 0.
+  /// marks[i] = 1 if the distance of the point above the plane is in least … most, px of disparity; else 0.
   void (*mark_between)(const PointArrays& points, const GroundPlane& plane, float least, float most,
                        std::uint8_t* marks);
-  /// A point at infinity has the disparity −infinity. `points.behind` is not looked at.
+  /// A point at infinity has the disparity −infinity. Ignores `points.behind`.
   PlaneCounts (*count_about)(const PointArrays& points, const GroundPlane& plane, float infinity,
                              float tolerance);
-  /// How many pixels of row `y` lie where to a plane, of those that are seen below its horizon: `all` of
-  /// those with a disparity, and `on`. A point at infinity has the disparity −infinity.
+  /// Numbers of pixels of row `y` below the horizon of a plane: `all` with a disparity, and `on`. A point at
+  /// infinity has the disparity −infinity.
   PlaneCounts (*count_support)(const float* disparity_px, int y, int width, const GroundPlane& plane,
                                float infinity, float tolerance);
 };

@@ -10,18 +10,18 @@
 
 namespace cairn {
 
-/// How far the right pixel of a pair picked by hand may lie from where the plane puts it, px.
+/// The largest distance of a picked right pixel from its position by the plane, px.
 inline constexpr double kPairTolerance = 2.0;
 
 struct PairsPlane {
   GroundPlane plane;
-  std::vector<PointPair> pairs;  // those that it goes through
+  std::vector<PointPair> pairs;  // the inliers
 };
 
-/// The plane of least squares through the largest set of pairs that agree with one within kPairTolerance
-/// (RANSAC; Fischler and Bolles 1981); through all where they are four or fewer. Deterministic: all triples
-/// are tried where they are few, else a fixed pseudo-random choice of them. Among sets of equal size it
-/// prefers the one whose disparities lie closest to their plane. nullopt where the pairs lie on a line.
+/// The least-squares plane of the largest set of pairs that agree with one plane within kPairTolerance
+/// (RANSAC; Fischler and Bolles 1981); of all pairs if there are four or fewer. Deterministic: tries all
+/// triples if there are few, else a fixed pseudo-random choice. Of sets of equal size the one with the
+/// smallest residuals wins. nullopt if the pairs are collinear.
 std::optional<PairsPlane> plane_through(std::span<const PointPair> pairs);
 
 }  // namespace cairn
