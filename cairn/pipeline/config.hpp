@@ -26,16 +26,18 @@
 
 namespace cairn {
 
-/// What is computed: one section per stage. A default-constructed Config is the preset `default`.
+/// The configuration of the method, one section per stage. A default-constructed Config is the preset
+/// `default`.
 struct Config {
   EpipolarCorrectionConfig epipolar_correction{.max_rows = 4.0F};
   MatchConfig match{.method = MatchMethod::semi_global};
   SemiGlobalConfig semi_global;
   SubpixelConfig subpixel{.method = SubpixelMethod::equiangular};
   LeftRightConfig left_right{.max_diff = 2.0F};
-  UniquenessConfig uniqueness{.ratio =
-                                  -1.0F};  // the three are the window's checks: semi-global sums are smooth,
-  FlatnessConfig flatness{.threshold = -1.0F};  // and evidence asks for texture itself
+  // The next three checks are for windows: semi-global costs are smooth, and textured disparities are selected
+  // by texture anyway.
+  UniquenessConfig uniqueness{.ratio = -1.0F};
+  FlatnessConfig flatness{.threshold = -1.0F};
   TextureConfig texture{.threshold = -1.0F};
   GroundConfig ground;
   SpeckleConfig speckle;
@@ -48,9 +50,9 @@ struct Config {
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
   SpaceConfig space;
 
-  /// Only what the paper describes; the thresholds are ours, fitted by fitting/search_paper.cpp.
+  /// The method of the paper; the thresholds are ours, fitted by fitting/search_paper.cpp.
   static Config paper();
-  /// The presets by name: "default", "paper". Throws Error naming the known ones.
+  /// A preset by name: "default", "paper". Throws Error naming the known ones.
   static Config preset(std::string_view name);
 };
 
@@ -77,40 +79,40 @@ void for_each_section(C& c, F&& visit) {
   visit("space", c.space);
 }
 
-/// One option as the reference page, the command line and bindings present it.
+/// One option, for the reference page, the command line and bindings.
 struct OptionInfo {
   std::string name;    // "match.window_size"
   std::string type;    // "int", "float", "bool", "choice"
-  std::string value;   // as set() would read it
+  std::string value;   // as accepted by set()
   std::string unit;    // may be empty
   std::string domain;  // "3 … 31, odd", "−1 = off, 0 … 64", "sad|ssd|…"
   std::string help;
-  std::string needs;   // "match.method=window", "speckle.size!=-1": read only while so; empty: always
-  bool active = true;  // whether `config` reads it: what it needs is so, and is itself read
+  std::string
+      needs;  // "match.method=window", "speckle.size!=-1": its condition; empty: always read
+  bool active = true;  // whether `config` reads it: `needs` holds, and its option is itself read
 };
 
 /// Every option of `config`, in order.
 std::vector<OptionInfo> options(const Config& config);
-/// Those of them that it reads.
+/// The options that `config` reads.
 std::vector<OptionInfo> active_options(const Config& config);
-/// Sets one option from its text. Throws Error: unknown name (names the nearest known one), one that is gone
-/// (says where it went), not of its type, out of range (names the range). Sets an option that is not read as
-/// well, since what it needs may be set later: who has set all asks require_active().
+/// Sets one option from its text. Throws Error: unknown name (suggests the nearest known one), removed option
+/// (names its replacement), wrong type, out of range (states the range). Also sets options that are not read,
+/// since their condition may be set later: call require_active() after the last set().
 void set(Config& config, std::string_view name, std::string_view value);
-/// Throws Error where `config` does not read the option, in one line that says what to set first. With
-/// `sections` only what options of these sections ask for counts: for a stage by itself.
+/// Throws Error if `config` does not read the option, stating what to set first. With `sections`, only
+/// conditions on options of these sections count: for a single stage.
 void require_active(const Config& config, std::string_view name,
                     const std::vector<std::string>& sections = {});
-/// The reasons for which this configuration can refuse a pixel, or one of a map from elsewhere.
+/// The reasons for which this configuration can reject a pixel, of a pair or of an external disparity map.
 Reject reasons_in_force(const Config& config, bool external_disparity = false);
 /// The names of the presets.
 std::vector<std::string> preset_names();
-/// Throws Error where a value lies outside its range, where match.maps leaves out what the method needs, or
-/// where the ground's source is something that is not known (fewer than four points, points on a line, no
-/// height of the camera).
+/// Throws Error if a value is out of range, match.maps omits a map that the method needs, or the source of
+/// the ground is not available (fewer than four points, collinear points, no camera height).
 void validate(const Config& config);
-/// The same, and against an image: the window, or 3x3 pixels, must fit, a disparity must be possible, a pose
-/// needs a rig.
+/// The same, and for an image size: the window, or 3x3 pixels, must fit, some disparity must be possible, a
+/// pose needs a rig.
 void validate(const Config& config, Size image, bool has_rig);
 
 }  // namespace cairn

@@ -7,8 +7,7 @@
 
 namespace cairn {
 
-/// What a frame is made of: a pair or, without a right image, a left image and its disparities from
-/// elsewhere.
+/// The input of a frame: a pair or, without a right image, a left image and external disparities.
 struct Given {
   View<const Gray> left;
   View<const Rgb> left_rgb;
@@ -16,16 +15,16 @@ struct Given {
   DisparityMap disparity;
 };
 
-/// Disparities that every check has passed, what they were judged by, and the ground.
+/// Checked disparities, the data for the checks, and the ground.
 struct MatchedScene {
-  Matches matches;           // empty where the disparities come from elsewhere
+  Matches matches;           // empty for external disparities
   float noise_sigma = 0;     // grey levels
-  Image<float> evidence_px;  // fusion.method=hierarchy: what texture vouches for, see find_evidence()
+  Image<float> evidence_px;  // fusion.method=hierarchy: textured disparities, see find_evidence()
   SceneDisparity found;      // its confidence is empty
 };
 
-/// Both methods begin with this. Takes the disparities of `given` where there is nothing to match. Private to
-/// the library.
+/// The common first half of both methods. Moves the disparities out of `given` if there is nothing to match.
+/// Private to the library.
 MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                          const Exec& exec, Observed& stage);
 

@@ -5,15 +5,15 @@
 #include <cairn/grouping/region_cues.hpp>
 #include <cairn/pipeline/matched_scene.hpp>
 
-/// The methods, a page each; segment() chooses. Private to the library.
+/// The methods, one source file each; segment() selects. Private to the library.
 namespace cairn {
 
-/// fusion.method=overlap, paper.cpp: the picture and its disparities are segmented apart, and united where
-/// they overlap.
+/// fusion.method=overlap, paper.cpp: image and disparities are segmented separately, and united where they
+/// overlap.
 Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const Config& config,
                          const Exec& exec);
 
-/// What the tree of regions is grown from.
+/// The input of the merge tree.
 struct SuperpixelScene {
   MatchedScene scene;
   Image<float> seen_px;  // floor_under_reflections()
@@ -24,25 +24,25 @@ struct SuperpixelScene {
             scene.found.ground, background,     scene.noise_sigma};
   }
 };
-/// The first half of segment_by_hierarchy(). What is fitted is fitted to this.
+/// The first half of segment_by_hierarchy(), and the input of fitting.
 SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                           const Exec& exec, Observed& stage);
 
-/// Every region that may be an object, and what they were grown from.
+/// Every candidate region, and what they were grown from.
 struct GrownScene {
   SuperpixelScene cut;
   MergeTree tree;
   Image<float> confidence;  // estimate_confidence()
 };
-/// segment_by_hierarchy() as far as to the tree …
+/// segment_by_hierarchy() up to the tree …
 GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                       const Exec& exec, Observed& stage);
-/// … and from the choice among its regions on, which may know more than one frame shows.
+/// … and from the choice of regions on, which may use more than one frame.
 Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given,
                const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage);
 
-/// fusion.method=hierarchy, hierarchy.cpp: superpixels fuse by every cue to a tree of regions, of which those
-/// that are likeliest whole objects are chosen.
+/// fusion.method=hierarchy, hierarchy.cpp: superpixels are merged by all cues into a tree of regions, of
+/// which those most likely to be whole objects are chosen.
 Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
                            const Exec& exec);
 

@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <vector>
 
-/// Walks the options of any configuration that has for_each_section(). Private to the library.
+/// Iterates over the options of any configuration with for_each_section(). Private to the library.
 namespace cairn::option_walk {
 
 // ---- text of values and domains ----
@@ -100,7 +100,7 @@ bool parse_number(std::string_view text, Number& value) {
 template <class T>
 void check(const std::string& option, T value, const Range<T>& range) {
   const bool off = range.minus_one_is_off && value == T{-1};
-  const bool inside = value >= range.lowest && value <= range.highest;  // NaN is not
+  const bool inside = value >= range.lowest && value <= range.highest;  // false for NaN
   bool parity = true;
   if constexpr (std::is_integral_v<T>) parity = !range.odd_only || value % 2 == 1;
   if (!off && !(inside && parity)) refuse(option, write(value), describe(range));
@@ -157,7 +157,7 @@ void for_each_option(C& config, F&& visit) {
 
 // ---- which options are read ----
 
-/// What decides it: an option's value, and under which condition it is read itself.
+/// An option, its value, and the condition under which it is read.
 struct Read {
   std::string option;
   std::string value;
@@ -167,7 +167,7 @@ struct Read {
 template <class C>
 std::vector<Read> reads_of(const C& config) {
   std::vector<Read> all;
-  C copy = config;  // fields() takes its struct by reference to non-const
+  C copy = config;  // fields() takes a non-const reference
   for_each_option(copy, [&](std::string name, const auto& value, std::string_view, std::string_view,
                             const auto& domain, const Condition& condition) {
     all.push_back({std::move(name), write(value, domain), condition});
@@ -183,8 +183,8 @@ inline std::string_view section_of(std::string_view option) {
   return option.substr(0, option.find('.'));
 }
 
-/// The condition that keeps the option from being read, the one to be met first; nullptr where none does.
-/// Conditions upon options outside of `sections` are passed over (none: no section is outside).
+/// The first unmet condition that keeps the option from being read; nullptr if there is none. Conditions on
+/// options outside of `sections` are ignored (empty: none are outside).
 inline const Condition* unmet(const std::vector<Read>& all, const Read& option,
                               const std::vector<std::string>& sections) {
   const Condition& condition = option.condition;
@@ -202,13 +202,13 @@ inline std::string describe(const Condition& condition) {
   return std::string(condition.option) + (condition.equal ? "=" : "!=") + std::string(condition.value);
 }
 
-// ---- what config.hpp offers, of any configuration ----
+// ---- config.hpp, for any configuration ----
 
 template <class C>
 std::vector<OptionInfo> options_of(const C& config) {
   std::vector<OptionInfo> all;
   const std::vector<Read> reads = reads_of(config);
-  C copy = config;  // fields() takes its struct by reference to non-const
+  C copy = config;  // fields() takes a non-const reference
   for_each_option(copy, [&](std::string name, const auto& value, std::string_view unit, std::string_view help,
                             const auto& domain, const Condition& condition) {
     const bool active = unmet(reads, reads[all.size()], {}) == nullptr;
@@ -229,7 +229,7 @@ void require_active_of(const C& config, std::string_view name, const std::vector
               find(reads, condition->option).value + "; set " + wanted + " first");
 }
 
-/// Whether there is an option of this name, which then has the value.
+/// Sets the option of this name; false if there is none.
 template <class C>
 bool set_known(C& config, std::string_view name, std::string_view value) {
   bool found = false;

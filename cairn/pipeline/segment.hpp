@@ -8,49 +8,49 @@
 
 namespace cairn {
 
-/// Disparity with everything that speaks against it: matching and every check, ground and speckle included.
+/// Disparity with the reason of every hole: after matching and all checks, ground and speckle included.
 struct SceneDisparity {
   DisparityMap disparity;
   Ground ground;
-  Image<std::uint8_t> floor;  // 255 = floor; empty where there is none
-  EpipolarOffset epipolar{};  // how far the right image's rows were off
-  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
+  Image<std::uint8_t> floor;  // 255 = floor; empty without a ground
+  EpipolarOffset epipolar{};  // row offset of the right image
+  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty without matching
 };
 
-/// All that is known of one pair. What the other method makes is empty.
+/// The results of one pair. Results of the other method are empty.
 struct Frame {
   DisparityMap disparity;
   Ground ground;
-  Image<std::uint8_t> floor;  // 255 = floor; empty where there is none; of hierarchy where `space` says so
-  // With fusion.method=overlap: the left picture's regions, the disparities', and what unites them.
+  Image<std::uint8_t> floor;  // 255 = floor; empty without a ground; with hierarchy, the floor of `space`
+  // With fusion.method=overlap: the regions of the left image, those of the disparities, and their fusion.
   Segmentation by_intensity;
   Segmentation by_disparity;
   Fusion fusion;
-  // With fusion.method=hierarchy: the pieces of the left picture with their grey levels, and the regions that
-  // were chosen to be objects (region 0 = all else) with their disparities.
+  // With fusion.method=hierarchy: the superpixels with their grey levels, and the regions chosen as objects
+  // (region 0 = the rest) with their disparities.
   Segmentation superpixels;
   Segmentation groups;
   Objects objects;
-  // What a robot may hit, object or not.
+  // Obstacles for a robot, whether objects or not.
   Image<Space> space;             // obstacle, floor or unknown
-  std::vector<LeftOut> left_out;  // obstacles that are no objects, nearest first, and why
+  std::vector<LeftOut> left_out;  // obstacles that are not objects, nearest first, and why
   EpipolarOffset epipolar{};
-  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty where nothing was matched
+  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty without matching
 };
 
-/// What the options ask of an object in an image of this size, for choose_objects().
+/// The limits of an object in an image of this size, for choose_objects().
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image);
 
-/// The method's first half: a pair in, checked disparities out. Throws Error where validate() does.
+/// The first half of the method: from a pair to checked disparities. Throws Error like validate().
 SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                   const Config& config, const Exec& exec);
 
-/// The whole method. Throws Error where validate() does; past that it cannot fail.
+/// The whole method. Throws Error like validate(); it has no other failures.
 Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
               const Exec& exec);
 
-/// The method on a disparity map from elsewhere (depth camera, learned matcher): see external_disparity().
-/// Throws Error where sizes differ.
+/// The method on an external disparity map (depth camera, learned matcher): see external_disparity(). Throws
+/// Error if sizes differ.
 Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
               const std::optional<StereoRig>& rig, const Config& config, const Exec& exec);
 

@@ -7,16 +7,17 @@
 
 namespace cairn {
 
-/// The method for video: holds what the frames of one camera share, above all the pool of image buffers, so
-/// that from the second frame on no image is allocated (as long as the frames before it have died). The only
-/// class of the library with state, and none of it reaches a result: every call returns what segment() would.
+/// The method for video: keeps what the frames of one camera share, above all the pool of image buffers, so
+/// that from the second frame on no image is allocated (once earlier frames have been destroyed). The only
+/// class of the library with state; the state never changes a result: every call returns the result of
+/// segment().
 class Segmenter {
  public:
-  /// Throws Error where validate(config) or the rig's own validate() does. Buffers come from a pool of its
-  /// own, whatever exec.pool is.
+  /// Throws Error like validate(config) or the validate() of the rig. Buffers come from its own pool, not
+  /// from exec.pool.
   explicit Segmenter(Config config, std::optional<StereoRig> rig = std::nullopt, Exec exec = {});
 
-  /// Throws Error where the configuration does not suit the pair's size.
+  /// Throws Error if the configuration does not suit the size of the pair.
   [[nodiscard]] Frame segment(const StereoPair& pair) const;
 
   [[nodiscard]] const Config& config() const { return config_; }

@@ -9,26 +9,26 @@
 #include <optional>
 #include <vector>
 
-/// What a frame's loss is, by what is known of it.
+/// The loss of a frame, according to its ground truth.
 namespace cairn {
 
-/// True objects are known: their capped E (Eq. 5) over the number of scored ones. E alone does not see what
-/// is found where nothing is, so each object of ours that is wrong (IoU < 0.5 with every true one, not mostly
-/// don't-care) is a fault; none where the truth is partial.
+/// With true objects: their capped E (Eq. 5) over the number of scored objects. E ignores false objects, so
+/// each wrong found object (IoU < 0.5 with every true one, not mostly don't-care) is a fault; none if the
+/// truth is partial.
 Loss loss_of(const FrameObjects& frame);
 
-/// True disparities are known: pixels off by more than 1 px, and kHoleCost for each without a disparity, over
-/// those with truth.
+/// With true disparities: the number of pixels off by more than 1 px, plus kHoleCost per hole, over the
+/// pixels with truth.
 Loss loss_of(const DisparityErrors& errors);
 inline constexpr double kHoleCost = 0.5;
 
-/// Nothing is known: Consistency::loss(), and kUnsteadyWeight times the unsteady share against the frame
-/// before, where there is one; one frame is one thing.
+/// Without truth: Consistency::loss(), plus kUnsteadyWeight times the unsteady share relative to the previous
+/// frame, if there is one; a frame counts once.
 Loss loss_of(const Consistency& frame, const std::optional<Steadiness>& since_last);
 inline constexpr double kUnsteadyWeight = 0.5;
 
 /// Which of `count` frames are held out: `share` of them, rounded, at least one and not all (of one frame,
-/// none). In a sequence they are its end, since neighbours show the same; otherwise they are drawn by `seed`.
+/// none). In a sequence, its end, since neighbouring frames are alike; otherwise a choice by `seed`.
 std::vector<bool> held_out(int count, double share, bool sequence, std::uint32_t seed);
 
 }  // namespace cairn

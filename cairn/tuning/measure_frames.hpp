@@ -11,55 +11,55 @@
 #include <string>
 #include <vector>
 
-/// Frames in memory, and what settings do on them.
+/// Frames in memory, and the loss of settings on them.
 namespace cairn {
 
-/// What is made as small as can be: the paper's E, bad disparities, or contradictions where nothing is known.
+/// The quantity to minimise: the paper's E, bad disparities, or, without truth, self-inconsistency.
 enum class TuningGoal : std::uint8_t { objects, disparities, consistency };
 
-/// A frame to tune on, with what is known of it. Borrows its images, all of one size.
+/// A frame to tune on, with its ground truth. Borrows its images, all of one size.
 struct TuningFrame {
-  std::string name;  // frames of one name show the same scene
+  std::string name;  // frames with the same name show the same scene
   StereoPair pair;
   std::optional<StereoRig> rig;
-  Config config;                      // with what the frame's calibration says
-  bool follows = false;               // the frame before it shows nearly the same: shows_the_same()
-  View<const TruthId> objects{};      // empty where not known, or not asked for
+  Config config;                      // including the calibration of the frame
+  bool follows = false;               // nearly equal to the frame before: shows_the_same()
+  View<const TruthId> objects{};      // empty if unknown, or unwanted
   bool partial = false;               // not every object is labelled
-  View<const float> truth_px{};       // NaN = not known
-  View<const std::uint8_t> hidden{};  // not 0 = not seen by the right camera
+  View<const float> truth_px{};       // NaN = unknown
+  View<const std::uint8_t> hidden{};  // non-zero = not seen by the right camera
 };
 
-/// Whether most of the left picture is as it was in the frame before.
+/// Whether most of the left image is unchanged since the frame before.
 bool shows_the_same(View<const Gray> before, View<const Gray> now);
 
-/// E where an object is known anywhere, else disparities where those are, else consistency.
+/// E if any frame has true objects, else disparities if any frame has true ones, else consistency.
 TuningGoal goal_of(const std::vector<TuningFrame>& frames);
 
-/// What a frame's pair came to when it was last matched: most options change only what comes after.
+/// The last matching result of a frame: most options only affect later stages.
 struct MatchedOnce {
-  std::string settings;  // all that it depends on; empty: not matched yet
+  std::string settings;  // the settings that it depends on; empty: not matched yet
   DisparityMap disparity{};
 };
 
-/// What settings do on one frame.
+/// The result of settings on one frame.
 struct FrameMeasure {
   Loss loss;
   std::optional<FrameObjects> objects{};
   std::optional<DisparityErrors> disparity{};
   std::optional<Consistency> consistency{};
-  std::optional<Steadiness> since_last{};  // where the frame before it is among those measured
+  std::optional<Steadiness> since_last{};  // if the frame before is measured too
 };
 
 struct MeasureOptions {
   TuningGoal goal = TuningGoal::objects;
   int threads = 1;
   Target target = Target::best;
-  std::function<bool()> stop;  // asked between frames, on any thread
+  std::function<bool()> stop;  // called between frames, on any thread
 };
 
-/// The frames that `chosen` marks, in order; nullopt where stop() said so before all were done. Settings that
-/// contradict each other lose infinitely. `matched` has an entry for each frame, and saves time only.
+/// Measures the frames marked in `chosen`, in order; nullopt if stop() returned true before the last.
+/// Contradictory settings have infinite loss. `matched` has an entry per frame; it only saves time.
 std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<TuningFrame>& frames,
                                                         const std::vector<bool>& chosen,
                                                         const std::vector<Setting>& settings,
