@@ -7,18 +7,18 @@
 
 namespace cairn {
 
-/// What it costs to give each row one column of its own.
+/// The costs of assigning a column to each row.
 struct CostTable {
   static constexpr std::int64_t kForbidden = -1;
   int rows = 0;
   int columns = 0;
-  std::vector<std::int64_t> costs;  // row by row: 0 … 2³¹, or kForbidden
-  std::int64_t alone = 0;           // ≥ 0: of a row and a column that are left alone, half for each; even
+  std::vector<std::int64_t> costs;  // row-major: 0 … 2³¹, or kForbidden
+  std::int64_t alone = 0;  // ≥ 0, even: of an unassigned row and an unassigned column, half for each
 };
 
-/// For each row its column, or −1: the assignment of the least total cost. Of several, the one whose first
-/// row has the lowest column (−1 counts as the highest), then the second, and so on. Private to the library.
-/// (Kuhn 1955; the slow twin, all of them, is in tests/unit/association_test.cpp.)
+/// For each row its column, or −1: the assignment of lowest total cost. Of several, the one whose first row
+/// has the lowest column (−1 counts as the highest), then the second, and so on. Private to the library.
+/// (Kuhn 1955; the exhaustive slow twin is in tests/unit/association_test.cpp.)
 std::vector<int> assign(const CostTable& table);
 
 }  // namespace cairn

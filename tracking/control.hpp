@@ -15,7 +15,7 @@ enum class ControlMethod : std::uint8_t { off, watch };
 inline constexpr std::array kControlMethods{Choice{"off", ControlMethod::off},
                                             Choice{"watch", ControlMethod::watch}};
 
-/// Whether other values of options are tried during a sequence.
+/// The trial of other option values during a sequence.
 struct ControlConfig {
   ControlMethod method = ControlMethod::off;
   int window = 10;       // frames
@@ -26,23 +26,22 @@ struct ControlConfig {
 template <class V>
 void fields(ControlConfig& c, V&& v) {
   const auto on = unless("control.method", "off");
-  v("method", c.method, "", "whether steadier values of options are looked for and reported",
-    kControlMethods);
-  v("window", c.window, "frames", "on which two settings are compared at least", range(3, 1000), on);
-  v("hold", c.hold, "frames", "between two reports at least", range(1, 10000), on);
-  v("budget", c.budget, "", "share of frames that are segmented a second time", range(0.0F, 1.0F), on);
-  v("lead", c.lead, "%", "by which a setting must be steadier to be better", range(0.0F, 100.0F), on);
+  v("method", c.method, "", "search for steadier option values during a sequence", kControlMethods);
+  v("window", c.window, "frames", "smallest number of frames to compare two settings on", range(3, 1000), on);
+  v("hold", c.hold, "frames", "smallest number of frames between two reports", range(1, 10000), on);
+  v("budget", c.budget, "", "share of frames segmented a second time", range(0.0F, 1.0F), on);
+  v("lead", c.lead, "%", "smallest gain in steadiness that is reported", range(0.0F, 100.0F), on);
 }
 
-/// One option's other value.
+/// Another value of one option.
 struct Arm {
   std::string option;
   std::string value;
   friend bool operator==(const Arm&, const Arm&) = default;
 };
 
-/// What may be tried beside `config`: `step` times the value of options that matter, and its `step`th part,
-/// or the other choice. None that has no effect or lies out of its range. Always in the same order.
+/// The alternatives to `config`: `step` times and 1/`step` times the value of relevant options, or the other
+/// choice. Excludes values without effect or out of range. Always in the same order.
 std::vector<Arm> arms_of(const Config& config, Size image, float step = 2);
 
 /// The steadiness of an arm and of the present setting on the same frames. See steadiness().
@@ -52,20 +51,20 @@ struct ArmScore {
   std::vector<float> of_present;
 };
 
-/// By how much the arm is steadier, as a share of the present's mean: the mean, and its lower end at 95 %,
-/// one-sided, of paired differences; −1 below two frames.
+/// The relative gain in steadiness of the arm over the present setting: the mean, and its one-sided lower 95
+/// % bound from paired differences; −1 below two frames.
 struct Lead {
   double mean = -1;
   double low = -1;
 };
 Lead lead_of(const ArmScore& score);
 
-/// What a round of successive halving (Jamieson and Talwalkar 2016) leaves: at most half of the arms, those
-/// that lead most, and none whose lead is less than half of `lead`. Ties: the earlier one.
+/// The survivors of a round of successive halving (Jamieson and Talwalkar 2016): at most half of the arms,
+/// those with the highest lead, and none with a lead below half of `lead`. Ties: the earlier one.
 std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent);
 
-/// Whether the arm is to be reported: compared on `window` frames or more, its lead is at least `lead`, and
-/// more than 0 for sure.
+/// Whether to report the arm: compared on at least `window` frames, with a lead of at least `lead` that is
+/// significantly above 0.
 bool is_better(const ArmScore& score, const ControlConfig& config);
 
 }  // namespace cairn

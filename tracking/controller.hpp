@@ -7,21 +7,20 @@
 
 namespace cairn {
 
-/// A value with which objects are steadier.
+/// An option value that makes objects steadier.
 struct ControlEvent {
   Arm arm;
-  std::string before;  // the option's value
-  double lead = 0;     // a share
+  std::string before;  // the value of the option
+  double lead = 0;     // share
 };
 
-/// Looks for better options while a Follower works: beside it, single options' other values are tried on some
-/// of the same frames. Counts frames, never time: the same frames make the same choices.
-/// (docs/stages/reliability.md)
+/// Searches for better options next to a Follower: tries other values of single options on some of the same
+/// frames. Counts frames, never time: the same frames give the same choices. (docs/stages/reliability.md)
 class Controller {
  public:
   Controller(const FollowConfig& config, std::optional<StereoRig> rig, Exec exec = {});
 
-  /// To be called with each frame after `follower.next()` has made `step` of it.
+  /// To be called after `follower.next()` has returned `step` for the frame.
   std::optional<ControlEvent> next(const StereoPair& pair, const Step& step);
 
  private:
@@ -34,13 +33,13 @@ class Controller {
   Exec exec_;
   std::vector<ArmScore> round_;
   std::size_t at_ = 0;  // in round_
-  int samples_ = 0;     // frames of a block, by which a round compares
+  int samples_ = 0;     // frames per block of a round
   std::optional<Follower> candidate_;
-  int left_ = 0;       // frames of the block at hand
-  double credit_ = 0;  // frames that may be segmented a second time
+  int left_ = 0;       // frames left in the current block
+  double credit_ = 0;  // frames that may still be segmented a second time
   int since_report_;
-  std::string last_option_;  // that helped
-  float step_ = 2;           // of numbers
+  std::string last_option_;  // the last one that helped
+  float step_ = 2;           // factor for numbers
   std::vector<Arm> reported_;
 };
 

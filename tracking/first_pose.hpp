@@ -9,12 +9,12 @@
 
 namespace cairn {
 
-/// Where the first frame's camera is in the map's frame, which lies on the floor below it: x forward, y left,
-/// z up (ROS REP 103). Without a floor its origin is the camera, whose view is then taken for level.
+/// The pose of the first camera in the map frame, whose origin is on the floor below it: x forward, y left, z
+/// up (ROS REP 103). Without a floor the origin is the camera, whose view is assumed to be level.
 Pose first_pose(const Ground& ground, const std::optional<StereoRig>& rig);
 
-/// The rotation from a camera that looks level in the same direction (x right, y down, z forward) to this
-/// one. `map_from_camera`: z of the map is up.
+/// The rotation from a level camera with the same heading (x right, y down, z forward) to this one.
+/// `map_from_camera`: z of the map is up.
 Pose camera_from_level(const Pose& map_from_camera);
 
 }  // namespace cairn

@@ -12,7 +12,7 @@
 
 namespace cairn {
 
-/// What is computed of a sequence: one section per stage, and all that segment() has.
+/// The configuration of a sequence: one section per stage, and everything in segment().
 struct FollowConfig {
   Config segmentation;
   OdometryConfig odometry;
@@ -36,14 +36,14 @@ void for_each_section(C& c, F&& visit) {
   visit("control", c.control);
 }
 
-/// As of Config, see <cairn/pipeline/config.hpp>.
+/// Like those of Config, see <cairn/pipeline/config.hpp>.
 std::vector<OptionInfo> options(const FollowConfig& config);
 void set(FollowConfig& config, std::string_view name, std::string_view value);
 void require_active(const FollowConfig& config, std::string_view name);
-/// Whether the option is one of a sequence, and not of segment().
+/// Whether the option belongs to sequences, not to segment().
 bool is_of_following(std::string_view option);
-/// Throws Error where validate(config.segmentation) does, where a value lies outside its range, or where two
-/// do not go together.
+/// Throws Error if validate(config.segmentation) does, a value is out of range, or two values are
+/// incompatible.
 void validate(const FollowConfig& config);
 
 }  // namespace cairn

@@ -11,45 +11,44 @@
 
 namespace cairn {
 
-/// All that is known after one frame of a sequence.
+/// The results of one frame of a sequence.
 struct Step {
   int index = 0;  // from 0
   Stamp stamp;
   Frame frame;
-  Image<TrackId> ids;  // frame.objects.labels by track; none where no track is
+  Image<TrackId> ids;  // track of each pixel, from frame.objects.labels; none = no track
   Motion motion;
   Pose map_from_camera;
   Covariance6 pose_covariance{};
-  bool is_lost = false;  // the camera's place is not known
+  bool is_lost = false;  // the pose of the camera is unknown
   Tracks tracks;
   Reliability reliability;
 };
 
-/// Follows the camera and the objects through a sequence: the page that calls the stages in order. The map's
-/// frame has its origin on the floor below the first frame's camera, x forward, y left, z up (ROS REP 103);
-/// without a floor at the camera, whose view is then taken for level.
+/// Tracks camera and objects through a sequence by calling the stages in order. The origin of the map frame
+/// is on the floor below the first camera, x forward, y left, z up (ROS REP 103); without a floor it is at
+/// the camera, whose view is assumed to be level.
 class Follower {
  public:
-  /// Throws Error where validate(config) or the rig's own validate() does. Without a rig there are ids, but
-  /// no metres and no motion. objects.min_confidence is not read: tracking.low_confidence takes its place.
+  /// Throws Error if validate(config) or the validate() of the rig does. Without a rig there are ids, but no
+  /// metres and no motion. objects.min_confidence is ignored: tracking.low_confidence replaces it.
   explicit Follower(FollowConfig config, std::optional<StereoRig> rig = std::nullopt, Exec exec = {});
 
-  /// The next frame. Throws Error where its size differs from the first one's, where its stamp is not later
-  /// than the one before, or where the configuration does not suit its size. `prior`: since the frame before.
-  /// `map_from_camera`: where the camera is, of a robot that knows; it is taken as it is, and no motion is
-  /// estimated. `scan`: a laser's, of this moment.
+  /// The next frame. Throws Error if its size differs from the first one's, its stamp is not later than the
+  /// one before, or the configuration does not suit its size. `prior`: the motion since the frame before.
+  /// `map_from_camera`: the pose of the camera if the robot knows it; used unchanged, without motion
+  /// estimation. `scan`: of a laser at this time.
   Step next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior = std::nullopt,
             const std::optional<Pose>& map_from_camera = std::nullopt, const LaserScan* scan = nullptr);
 
-  /// A pause lies between the frame before and the next one (see source.max_gap): how the camera and the
-  /// things moved meanwhile is not known. All tracks are lost until they are seen again, those that were not
-  /// sure yet end, and where the camera does not find its keyframe again its place is known to 1 m and 30°
-  /// only.
+  /// Announces a gap before the next frame (see source.max_gap), during which the motion of camera and
+  /// objects is unknown. All tracks are lost until seen again, tentative ones end, and unless the camera
+  /// finds its keyframe again, its position has a standard deviation of 1 m and 30°.
   void forget();
 
   [[nodiscard]] const FollowConfig& config() const { return config_; }
-  /// From the next frame on; what is known stays known. Throws Error where validate(config) does, and changes
-  /// nothing then.
+  /// Sets the configuration from the next frame on; the state is kept. Throws Error if validate(config) does,
+  /// without any change.
   void set_config(FollowConfig config);
 
  private:

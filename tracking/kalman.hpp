@@ -7,13 +7,13 @@
 /// The two filters of a track (Kalman 1960). Private to the library.
 namespace cairn {
 
-/// A thing that stands: its position wanders by static_noise·√dt.
+/// A static object: its position wanders by static_noise·√dt.
 Filter3 predicted(const Filter3& filter, double dt_s, double static_noise);
-/// A thing that moves: its acceleration is constant within a step, independent from step to step, with the
+/// A moving object: its acceleration is constant within a step and independent from step to step, with the
 /// standard deviation `acceleration_noise` (Bar-Shalom 2001, section 6.3.2).
 Filter6 predicted(const Filter6& filter, double dt_s, double acceleration_noise);
 
-/// How well a measured position fits to a predicted one, of which the covariance is `expected_m2`.
+/// The fit of a measured position to a predicted one with covariance `expected_m2`.
 struct Innovation {
   double d2 = 0;              // Mahalanobis distance, squared
   double log_widening = 0;    // ln(|expected + measured| / |measured|) ≥ 0
@@ -21,28 +21,28 @@ struct Innovation {
 };
 Innovation innovation(Point3 expected_m, const Covariance3& expected_m2, Point3 measured_m,
                       const Covariance3& measured_m2);
-/// The upper left block: of the position.
+/// The upper left block: the covariance of the position.
 Covariance3 of_position(const Filter6& filter);
 
 Filter3 updated(const Filter3& filter, Point3 measured_m, const Covariance3& measured_m2);
 Filter6 updated(const Filter6& filter, Point3 measured_m, const Covariance3& measured_m2);
 
-/// Of a point of the camera's frame in the map: R·C·Rᵀ + J·P·Jᵀ. `pose_covariance`: of the camera's
-/// translation and of its rotation about itself, both along the map's axes.
+/// The covariance of a point of the camera frame in the map: R·C·Rᵀ + J·P·Jᵀ. `pose_covariance`: of the
+/// translation of the camera and of its rotation about itself, both along the axes of the map.
 Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, const Pose& map_from_camera,
                    const Covariance6& pose_covariance);
 
-/// Of a thing that is seen from another side than before: only its near side is measured, the middle of which
-/// is taken to lie a quarter of its extent before its own. `covariance` with what that may shift it.
+/// The covariance of an object seen from a new side: only its near side is measured, whose centre is assumed
+/// to be a quarter of its extent in front of its own. `covariance` plus the effect of this shift.
 Covariance3 seen_anew(Covariance3 covariance_m2, Vec3 extent_m, Point3 thing_m, Point3 seen_from_m,
                       Point3 camera_m);
 
-/// A straight motion through places (least squares, constant weights).
+/// A linear motion through positions (least squares, constant weights).
 struct Drift {
   Point3 velocity_m_s;
-  double sigma_m_s = 0;  // of the speed, along the velocity, if the places' errors are independent
+  double sigma_m_s = 0;  // of the speed, along the velocity, for independent position errors
 };
-/// Of three places or more, not all of one stamp.
+/// From three or more places, not all with the same stamp.
 Drift drift_of(const std::vector<Place>& places);
 
 }  // namespace cairn

@@ -9,16 +9,16 @@
 
 namespace cairn {
 
-/// A corner of a keyframe that was followed to the present image.
+/// A corner of a keyframe tracked into the present image.
 struct FollowedCorner {
   Point3 in_key_m;
-  double x_px = 0;  // where it is now
+  double x_px = 0;  // present position
   double y_px = 0;
-  double disparity_px = 0;  // now; NaN where it has none
+  double disparity_px = 0;  // present disparity; NaN = none
 };
 
-/// Where a motion is already known from elsewhere: ξ of now_from_key · expected⁻¹ has this information, 0 of
-/// what is not known.
+/// A motion known from another sensor: the information of ξ of now_from_key · expected⁻¹, 0 for unknown
+/// components.
 struct MotionTerm {
   Pose now_from_key;
   Covariance6 information{};
@@ -26,16 +26,16 @@ struct MotionTerm {
 
 struct MotionFit {
   Pose now_from_key;
-  Covariance6 covariance{};  // of ξ, true motion = exp(ξ) · now_from_key: in the frame of the camera now
+  Covariance6 covariance{};  // of ξ, true motion = exp(ξ) · now_from_key: in the present camera frame
   MotionRefusal refusal = MotionRefusal::none;  // none, few_points, few_inliers or degenerate
   std::vector<std::uint8_t> is_inlier;          // of each corner
   int inliers = 0;
   double chi2_per_dof = 0;
 };
 
-/// The motion that most of the corners agree with. Hypotheses: `start`, then AP3P (Ke and Roumeliotis, CVPR
-/// 2017) in RANSAC with a fixed seed; refined over (x, y, disparity) by Gauss-Newton with Huber's weights,
-/// where each corner's depth in the keyframe is uncertain, too.
+/// The motion with the most inlier corners. Hypotheses: `start`, then AP3P (Ke and Roumeliotis, CVPR 2017) in
+/// RANSAC with a fixed seed; refined over (x, y, disparity) by Gauss-Newton with Huber weights, taking the
+/// depth uncertainty of each corner in the keyframe into account.
 MotionFit fit_motion(const std::vector<FollowedCorner>& corners, const StereoRig& rig, const Pose& start,
                      const std::optional<MotionTerm>& term, const OdometryConfig& config);
 

@@ -18,13 +18,13 @@ inline constexpr std::array kOdometryMethods{Choice{"off", OdometryMethod::off},
                                              Choice{"frame", OdometryMethod::frame},
                                              Choice{"keyframe", OdometryMethod::keyframe}};
 
-/// How the camera's own motion is estimated.
+/// The estimation of the camera motion.
 struct OdometryConfig {
   OdometryMethod method = OdometryMethod::keyframe;
   int max_features = 300;
   float quality_level = 0.01F;
   float min_distance = 8.0F;    // px
-  float min_confidence = 0.5F;  // of a corner's disparity
+  float min_confidence = 0.5F;  // of the disparity of a corner
   int win_size = 11;            // px
   int max_level = 3;
   float fb_max_error = 0.5F;        // px
@@ -40,34 +40,35 @@ struct OdometryConfig {
 template <class V>
 void fields(OdometryConfig& c, V&& v) {
   const auto on = unless("odometry.method", "off");
-  v("method", c.method, "", "motion against the last keyframe, against the frame before, or none",
+  v("method", c.method, "", "reference of the motion: last keyframe, previous frame, or off",
     kOdometryMethods);
-  v("max_features", c.max_features, "", "corners of a keyframe", range(30, 2000), on);
-  v("quality_level", c.quality_level, "", "a corner's strength, as a share of the strongest one's",
+  v("max_features", c.max_features, "", "largest number of corners of a keyframe", range(30, 2000), on);
+  v("quality_level", c.quality_level, "", "smallest strength of a corner, relative to the strongest",
     range(0.0001F, 0.5F), on);
-  v("min_distance", c.min_distance, "px", "between corners", range(2.0F, 50.0F), on);
-  v("min_confidence", c.min_confidence, "", "corners whose disparity is less sure are left out",
+  v("min_distance", c.min_distance, "px", "smallest distance between corners", range(2.0F, 50.0F), on);
+  v("min_confidence", c.min_confidence, "", "smallest confidence of the disparity of a corner",
     range(0.0F, 1.0F), on);
-  v("win_size", c.win_size, "px", "window by which a corner is followed", odd_range(5, 41), on);
-  v("max_level", c.max_level, "", "pyramid levels above the picture by which a corner is followed",
+  v("win_size", c.win_size, "px", "side of the window for tracking a corner", odd_range(5, 41), on);
+  v("max_level", c.max_level, "", "number of pyramid levels above the image for tracking corners",
     range(0, 5), on);
-  v("fb_max_error", c.fb_max_error, "px", "a corner that is followed back may miss itself by this",
+  v("fb_max_error", c.fb_max_error, "px", "largest forward-backward error of a tracked corner",
     off_or(0.1F, 5.0F), on);
-  v("reprojection_error", c.reprojection_error, "px",
-    "a corner that a motion misses by more speaks against it", range(0.3F, 10.0F), on);
-  v("iterations", c.iterations, "", "motions tried at most", range(20, 5000), on);
-  v("confidence", c.confidence, "", "that the right motion is among those tried", range(0.9F, 0.9999F), on);
-  v("min_inliers", c.min_inliers, "", "fewer corners tell no motion", range(6, 200), on);
-  v("keyframe_inliers", c.keyframe_inliers, "", "a smaller share of a keyframe's corners asks for a new one",
+  v("reprojection_error", c.reprojection_error, "px", "largest reprojection error of an inlier corner",
+    range(0.3F, 10.0F), on);
+  v("iterations", c.iterations, "", "largest number of RANSAC hypotheses", range(20, 5000), on);
+  v("confidence", c.confidence, "", "probability that RANSAC draws a correct hypothesis",
+    range(0.9F, 0.9999F), on);
+  v("min_inliers", c.min_inliers, "", "smallest number of inlier corners for a motion", range(6, 200), on);
+  v("keyframe_inliers", c.keyframe_inliers, "", "share of inlier corners below which a new keyframe starts",
     range(0.2F, 0.95F), when("odometry.method", "keyframe"));
-  v("max_depth_baselines", c.max_depth_baselines, "baselines", "farther corners tell rotation only",
-    off_or(5.0F, 1000.0F), on);
+  v("max_depth_baselines", c.max_depth_baselines, "baselines",
+    "depth beyond which corners only constrain the rotation", off_or(5.0F, 1000.0F), on);
   v("sigma_disparity", c.sigma_disparity, "px", "standard deviation of a disparity", range(0.05F, 3.0F), on);
-  v("sigma_pixel", c.sigma_pixel, "px", "standard deviation of a followed corner's place", range(0.05F, 3.0F),
-    on);
+  v("sigma_pixel", c.sigma_pixel, "px", "standard deviation of the position of a tracked corner",
+    range(0.05F, 3.0F), on);
 }
 
-/// Why a frame has no motion of its own.
+/// Why the motion of a frame is not estimated from its image.
 enum class MotionRefusal : std::uint8_t {
   none,
   off,
@@ -88,58 +89,58 @@ inline constexpr std::array kMotionRefusals{
 
 enum class PriorKind : std::uint8_t { wheels, gyroscope };
 
-/// What another sensor says of the camera's motion since the frame before: points of the camera's frame then
-/// go to its frame now by `now_from_before`. Of a gyroscope only the rotation counts.
+/// The camera motion since the frame before from another sensor: `now_from_before` maps points of the earlier
+/// camera frame to the present one. Of a gyroscope only the rotation is used.
 struct MotionPrior {
   PriorKind kind = PriorKind::wheels;
   Pose now_from_before;
   Covariance6 covariance{};
 };
 
-/// The motion that one frame shows.
+/// The motion of one frame.
 struct Motion {
-  Pose now_from_before;      // of the frame before, with the refusal's stand-in where it was refused
-  Covariance6 covariance{};  // of the camera's pose against the keyframe, in the frame of the camera now
+  Pose now_from_before;      // from the frame before; a substitute if it was refused
+  Covariance6 covariance{};  // of the camera pose relative to the keyframe, in the present camera frame
   MotionRefusal refusal = MotionRefusal::none;
   bool is_new_keyframe = false;
-  // What is seen from here on is tied to what was seen before by a guess alone: the place is known to 1 m and
-  // 30° (standard deviations, each axis), and a map may be asked where this is.
+  // From here on, poses relate to earlier ones by a guess only: the pose has standard deviations of 1 m and
+  // 30° per axis, and a map may be consulted.
   bool is_new_segment = false;
   int followed = 0;  // corners
   int inliers = 0;
   float chi2_per_dof = 0;
-  float inlier_share = 0;  // of the corners that were followed
+  float inlier_share = 0;  // of the tracked corners
 };
 
-struct Keyframe;  // odometry.cpp's own: corners with their points, and the image's pyramid
+struct Keyframe;  // private to odometry.cpp: corners with their points, and the image pyramid
 
-/// A keyframe and where it was taken. Covariances of poses in the map: translation = the position's error,
-/// rotation = the attitude's, both along the map's axes.
+/// A keyframe and its pose. Covariances of poses in the map: translation = position error, rotation =
+/// attitude error, both along the axes of the map.
 struct PlacedKeyframe {
-  std::shared_ptr<const Keyframe> frame;  // none: not there
+  std::shared_ptr<const Keyframe> frame;  // null: absent
   Pose map_from_key;
   Covariance6 covariance{};  // of map_from_key
-  int inliers = 0;           // when it was first followed; 0 before
+  int inliers = 0;           // when it was first tracked; 0 before
 };
 
-/// All that odometry remembers. A value: copying is cheap, and what is shared never changes.
+/// The state of odometry. A value: copying is cheap, and shared data never changes.
 struct OdometryState {
-  PlacedKeyframe key;                    // none before the first frame that has corners
-  PlacedKeyframe spare;                  // of the frame before where that was refused: the next try
-  std::shared_ptr<const Keyframe> seen;  // the frame before, at a small size, however dark it was
+  PlacedKeyframe key;                    // absent before the first frame with corners
+  PlacedKeyframe spare;                  // the frame before, if that was refused: the next attempt
+  std::shared_ptr<const Keyframe> seen;  // the frame before, at a small size, even if dark
   bool has_begun = false;
   Pose map_from_camera;             // of the frame before
   Covariance6 covariance{};         // of map_from_camera; grows
-  Covariance6 covariance_to_key{};  // of the frame before against `key`, in the frame of the camera then
+  Covariance6 covariance_to_key{};  // of the frame before relative to `key`, in the camera frame then
   Pose last_step;                   // now_from_before of the frame before
   int refused_in_a_row = 0;
   bool is_after_gap = false;  // see after_gap()
-  int slipping = 0;           // frames in a row that stood still while the wheels said otherwise
-  bool is_guessed = false;    // a frame since `key` was seen last moved by no sensor
-  // After more than five refusals without wheels: the pose is not known until `key` is seen again, or until
-  // three frames in a row show the same, which begin a new segment.
+  int slipping = 0;           // consecutive frames without motion while the wheels turned
+  bool is_guessed = false;    // true if a frame since `key` was last seen had no motion from any sensor
+  // After more than five refusals without wheels: the pose is unknown until `key` is seen again, or until
+  // three consecutive frames are consistent, which begin a new segment.
   bool lost = false;
-  int coherent_in_a_row = 0;  // while lost: frames whose motion against the frame before was found
+  int coherent_in_a_row = 0;  // while lost: frames with a motion relative to the frame before
 };
 
 struct OdometryStep {
@@ -147,17 +148,16 @@ struct OdometryStep {
   Motion motion;
 };
 
-/// The first frame's state: `map_from_camera` is where the run begins.
+/// The state before the first frame: `map_from_camera` is the start of the run.
 OdometryState begin_odometry(const Pose& map_from_camera);
 
-/// A pause lies between the frame before and the next one: nobody knows how the camera went on meanwhile.
-/// Where the keyframe is not found again and no wheels tell, the place is known to 1 m and 30° (standard
-/// deviations, each axis) from then on.
+/// Announces a gap before the next frame, during which the camera motion is unknown. Unless the keyframe is
+/// found again or wheels report, the pose then has standard deviations of 1 m and 30° per axis.
 OdometryState after_gap(OdometryState state);
 
-/// The camera's motion up to this frame, and what is to be remembered for the next one. `confidence`: of the
-/// disparities, may be empty; `moving`: 255 on what moves by itself, may be empty. Corners are Shi and
-/// Tomasi's (1994), followed by pyramidal Lucas-Kanade (Bouguet 2000) from the keyframe; hypotheses by
+/// Estimates the camera motion up to this frame, and returns the state for the next one. `confidence`: of the
+/// disparities, may be empty; `moving`: 255 on moving objects, may be empty. Corners by Shi and Tomasi
+/// (1994), tracked by pyramidal Lucas-Kanade (Bouguet 2000) from the keyframe; hypotheses by
 /// perspective-3-points in RANSAC with a fixed seed; refined by Gauss-Newton over (u, v, d).
 /// (docs/stages/odometry.md)
 OdometryStep advance_odometry(const OdometryState& state, View<const Gray> left,

@@ -9,20 +9,20 @@
 
 namespace cairn {
 
-/// When a frame was taken, in nanoseconds from whatever moment its source counts from.
+/// The time of a frame, in nanoseconds since the epoch of its source.
 struct Stamp {
   std::int64_t ns = 0;
   friend constexpr auto operator<=>(Stamp, Stamp) = default;
 };
-/// From the earlier to the later, in s.
+/// The time from the earlier to the later stamp, in s.
 constexpr double seconds_between(Stamp earlier, Stamp later) {
   return static_cast<double>(later.ns - earlier.ns) * 1e-9;
 }
 
-/// "1700000000.123456789": in s with all nine digits, exact, as the files of trajectories write it.
+/// "1700000000.123456789": in s with all nine digits, exact, as in trajectory files.
 std::string seconds_text(Stamp stamp);
 
-/// A position or direction in double precision; unit and frame stand in the name of whoever holds one.
+/// A position or direction in double precision; the name of the variable states unit and frame.
 struct Point3 {
   double x = 0;
   double y = 0;
@@ -37,15 +37,15 @@ constexpr double dot(Point3 a, Point3 b) {
 }
 double length(Point3 a);
 
-/// Row by row: of a position in m², symmetric.
+/// Row-major: covariance of a position in m², symmetric.
 using Covariance3 = std::array<double, 9>;
-/// Row by row: of a rigid motion, translation (m) before rotation (rad), symmetric.
+/// Row-major: covariance of a rigid motion, translation (m) before rotation (rad), symmetric.
 using Covariance6 = std::array<double, 36>;
 
-/// A rigid motion, named for the frames that it joins: `map_from_camera` takes points of the camera's frame
-/// to the map's.
+/// A rigid motion, named for the frames that it relates: `map_from_camera` maps points of the camera frame to
+/// the map frame.
 struct Pose {
-  std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row, orthonormal
+  std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major, orthonormal
   Point3 translation_m;
 
   /// The point in the other frame.
@@ -56,10 +56,10 @@ struct Pose {
 /// First b, then a: (a * b)(p) = a(b(p)).
 Pose operator*(const Pose& a, const Pose& b);
 Pose inverse(const Pose& pose);
-/// R·C·Rᵀ: a covariance of positions in the frame that the pose leads to.
+/// R·C·Rᵀ: a covariance of positions in the target frame of the pose.
 Covariance3 rotated(const Pose& pose, const Covariance3& covariance);
 
-/// The rotation as a unit quaternion x, y, z, w with w ≥ 0, as the files of trajectories write it.
+/// The rotation as a unit quaternion x, y, z, w with w ≥ 0, as in trajectory files.
 std::array<double, 4> quaternion(const Pose& pose);
 /// The pose of a translation and a quaternion of any length but 0 (x, y, z, w).
 Pose pose_of(Point3 translation_m, const std::array<double, 4>& quaternion);

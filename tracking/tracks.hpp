@@ -12,7 +12,7 @@
 
 namespace cairn {
 
-/// A thing over time: an id is never used twice in a run; none = no track.
+/// An object over time: an id is never reused in a run; none = no track.
 enum class TrackId : std::int64_t { none = 0 };
 constexpr std::int64_t number(TrackId id) {
   return static_cast<std::int64_t>(id);
@@ -32,50 +32,48 @@ struct TrackingConfig {
 };
 template <class V>
 void fields(TrackingConfig& c, V&& v) {
-  v("gate", c.gate, "χ²", "an object that is farther from where a track is expected is not that track's",
+  v("gate", c.gate, "χ²", "largest squared Mahalanobis distance between an object and its track",
     range(1.0F, 100.0F));
-  v("min_hits", c.min_hits, "frames",
-    "of five in a row in which a thing must be seen before its track counts", range(1, 30));
-  v("max_age", c.max_age, "frames", "in which a track may be missed, though in view, before it ends",
-    range(1, 300));
-  v("max_hidden", c.max_hidden, "s", "that a track may be hidden or out of view before it ends",
+  v("min_hits", c.min_hits, "frames", "detections within five frames that confirm a track", range(1, 30));
+  v("max_age", c.max_age, "frames", "largest number of misses in view before a track ends", range(1, 300));
+  v("max_hidden", c.max_hidden, "s", "longest time out of view or occluded before a track ends",
     range(0.0F, 3600.0F));
-  v("high_confidence", c.high_confidence, "", "objects at least this sure are matched first and found tracks",
+  v("high_confidence", c.high_confidence, "",
+    "smallest confidence of objects that are matched first and start tracks", range(0.0F, 1.0F));
+  v("low_confidence", c.low_confidence, "", "smallest confidence of objects used for tracking",
     range(0.0F, 1.0F));
-  v("low_confidence", c.low_confidence, "", "objects less sure than this are not looked at",
+  v("static_noise", c.static_noise, "m/√s", "random walk of the position of a static object",
     range(0.0F, 1.0F));
-  v("static_noise", c.static_noise, "m/√s", "how far a thing that stands may seem to wander",
-    range(0.0F, 1.0F));
-  v("acceleration_noise", c.acceleration_noise, "m/s²", "how quickly a moving thing may change its speed",
-    range(0.01F, 20.0F));
-  v("min_speed", c.min_speed, "m/s", "slower things stand still", range(0.0F, 5.0F));
-  v("appearance_weight", c.appearance_weight, "", "how much colours count beside place and size",
+  v("acceleration_noise", c.acceleration_noise, "m/s²",
+    "standard deviation of the acceleration of a moving object", range(0.01F, 20.0F));
+  v("min_speed", c.min_speed, "m/s", "smallest speed of a moving object", range(0.0F, 5.0F));
+  v("appearance_weight", c.appearance_weight, "", "weight of colours relative to position and size",
     range(0.0F, 10.0F));
 }
 
-/// Colours in CIE L*a*b*: 8 bins of lightness, then 8×8 of a and b; each part sums up to 1. Of a grey picture
-/// the second part is one bin.
+/// Colours in CIE L*a*b*: 8 bins of lightness, then 8×8 of a and b; each part sums to 1. For a grey image the
+/// second part is one bin.
 using ColourHistogram = std::array<float, 72>;
-/// Bhattacharyya's coefficient, mean of both parts, 0 … 1: 1 = alike.
+/// Bhattacharyya coefficient, mean of both parts, 0 … 1: 1 = equal.
 float likeness(const ColourHistogram& a, const ColourHistogram& b);
 
-/// One object of one frame as tracking sees it.
+/// One object of one frame, as input of tracking.
 struct Sighting {
   ObjectId object = ObjectId::none;
-  bool has_place = false;  // in metres: position, covariance, extent and height are known
+  bool has_place = false;  // whether position, covariance, extent and height are known, in metres
   Point3 position_in_camera_m;
   Covariance3 covariance_in_camera_m2{};
   Vec3 extent_m;                  // see Object::extent_in_camera_m
-  float height_over_floor_m = 0;  // of its position; 0 without a floor
+  float height_over_floor_m = 0;  // of the position; 0 without a floor
   ColourHistogram look{};
   float confidence = 0;
   int pixel_count = 0;
   Rect box_px;
-  bool is_cut = false;  // touches the picture's border
+  bool is_cut = false;  // touches the image border
 };
 
-/// The objects of a frame that are at least low_confidence sure, by ObjectId. Without a rig, none has a
-/// place. (docs/stages/tracking.md)
+/// The objects of a frame with at least low_confidence, by ObjectId. Without a rig, none has a position.
+/// (docs/stages/tracking.md)
 std::vector<Sighting> sight(const Frame& frame, View<const Gray> left, View<const Rgb> left_rgb,
                             const std::optional<StereoRig>& rig, const TrackingConfig& config);
 
@@ -85,7 +83,7 @@ inline constexpr std::array kTrackStates{
     Choice{"occluded", TrackState::occluded},   Choice{"out_of_view", TrackState::out_of_view},
     Choice{"lost", TrackState::lost},           Choice{"dead", TrackState::dead}};
 
-/// A Kalman filter's estimate: of a position, or of a position and a velocity.
+/// The state of a Kalman filter: of a position, or of a position and a velocity.
 struct Filter3 {
   Point3 position_m;
   Covariance3 covariance_m2{};
@@ -96,7 +94,7 @@ struct Filter6 {
   Covariance6 covariance{};  // position before velocity
 };
 
-/// Where and when a thing was measured.
+/// A measured position and its stamp.
 struct Place {
   Stamp stamp;
   Point3 position_m;
@@ -107,11 +105,11 @@ struct Track {
   TrackId id = TrackId::none;
   TrackState state = TrackState::tentative;
   bool is_moving = false;
-  ObjectId object = ObjectId::none;  // in this frame; none: not seen
-  std::vector<ObjectId> parts;       // further objects of this frame that are pieces of the same thing
-  bool is_joined = false;            // this frame shows it as one object with another track: no position
-  bool has_place = false;            // in metres
-  // In the map's frame; of the filter that its label chooses.
+  ObjectId object = ObjectId::none;  // in this frame; none = not seen
+  std::vector<ObjectId> parts;       // further objects of this frame that are parts of the same object
+  bool is_joined = false;            // merged with another track in this frame: no position
+  bool has_place = false;            // whether it has a position, in metres
+  // In the map frame; from the filter selected by the label.
   Point3 position_m;
   Covariance3 covariance_m2{};
   Point3 velocity_m_s;
@@ -119,48 +117,49 @@ struct Track {
   float height_over_floor_m = 0;
   ColourHistogram look{};
   float confidence = 0;  // 0 … 1: smoothed
-  int hits = 0;          // frames in which it was seen
-  int misses = 0;        // since it was seen last: frames in which it should have been
+  int hits = 0;          // frames with a detection
+  int misses = 0;        // frames since the last detection in which it should have been visible
   Stamp first;
   Stamp last;        // seen
-  float doubt = 1;   // 0 … 1: that all who sighted it were wrong, were they independent
-  int in_parts = 0;  // frames in a row in which it was seen in pieces
-  // What the two labels are decided by.
+  float doubt = 1;   // 0 … 1: probability that all detections were false, if independent
+  int in_parts = 0;  // consecutive frames in which it was detected in parts
+  // The data that decides between the two labels.
   Filter3 as_static;
   Filter6 as_moving;
-  // Page's sum (1954) of how much likelier each sighting is under the other label; 0 while it is not.
+  // Page's sum (1954) of the log-likelihood ratios in favour of the other label; never below 0.
   float against_label = 0;
-  std::vector<Place> places;  // of the sightings since that sum was 0, oldest first
-  std::uint32_t recent = 0;   // bit k: seen k frames ago
-  bool is_cut = false;        // by the picture's border, when it was seen last
-  Covariance3 measured_m2{};  // of the last sighting
-  Point3 seen_from_m;         // where the camera was then
+  std::vector<Place> places;  // of the detections since that sum was 0, oldest first
+  std::uint32_t recent = 0;   // bit k: detected k frames ago
+  bool is_cut = false;        // by the image border, at the last detection
+  Covariance3 measured_m2{};  // of the last detection
+  Point3 seen_from_m;         // camera position at the last detection
 };
 
 struct Tracks {
   std::vector<Track> list;  // by id, rising
   std::int64_t next = 1;
-  Stamp stamp;  // of the frame that they are as of
-  // More than half of the confirmed tracks, and two at least, began to move at once: rather the camera's
-  // motion is wrong. No label was changed.
+  Stamp stamp;  // of the last frame
+  // More than half of the confirmed tracks, at least two, began to move at once, so the camera motion is
+  // probably wrong. No label was changed.
   bool odometry_suspect = false;
 };
 
-/// Which object covers which track's predicted mask, counted in pixels.
+/// Overlaps of objects with the predicted masks of tracks, in pixels.
 struct Overlaps {
-  std::vector<TrackId> tracks;  // the rows, as Tracks::list
-  std::vector<float> in_view;   // 0 … 1: share of each track's remembered points that lie in the picture
-  std::vector<int> area;        // px that they cover there, if nothing hid them
-  std::vector<int> predicted;   // px of each track's predicted mask: not hidden by another's
-  std::vector<int> nearer;      // of these: hidden by something nearer than predicted, by 3 σ
-  std::vector<int> common;      // tracks × objects, row by row; column 0 is ObjectId 1
+  std::vector<TrackId> tracks;  // the rows, in the order of Tracks::list
+  std::vector<float> in_view;   // 0 … 1: share of the remembered points of each track inside the image
+  std::vector<int> area;        // px covered by them, ignoring occlusion
+  std::vector<int>
+      predicted;            // px of the predicted mask of each track, without parts occluded by other tracks
+  std::vector<int> nearer;  // of these: occluded by something nearer than predicted, by 3 σ
+  std::vector<int> common;  // tracks × objects, row-major; column 0 is ObjectId 1
   int objects = 0;
   [[nodiscard]] int at(std::size_t track, ObjectId object) const {
     return common[track * static_cast<std::size_t>(objects) + static_cast<std::size_t>(object) - 1];
   }
 };
 
-/// The objects that cover at least half of the predicted masks of two or more confirmed tracks, rising.
+/// The objects that cover at least half of the predicted masks of two or more confirmed tracks, ascending.
 std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overlaps);
 
 struct Match {
@@ -168,16 +167,16 @@ struct Match {
   ObjectId object = ObjectId::none;
 };
 
-/// Which sighting is which track: minimum cost (Kuhn 1955) over place, size, look and overlap, in two rounds,
-/// the surer objects first (Zhang et al. 2022, "ByteTrack"). Ties: the lower track, then the lower object.
-/// A track that is seen in pieces has several matches, the one that counts first. By track, rising.
+/// Assigns objects to tracks: minimum cost (Kuhn 1955) over position, size, appearance and overlap, in two
+/// rounds, objects of high confidence first (Zhang et al. 2022, "ByteTrack"). Ties: the lower track, then the
+/// lower object. A track detected in parts has several matches, the main one first. By track, ascending.
 /// (docs/stages/tracking.md)
 std::vector<Match> associate(const Tracks& tracks, const std::vector<Sighting>& sightings,
                              const Overlaps& overlaps, const Pose& map_from_camera,
                              const Covariance6& pose_covariance, Stamp now, const TrackingConfig& config);
 
-/// What the tracks are after this frame: matched ones updated, others predicted and aged, new ones founded,
-/// dead ones gone. `is_lost`: the camera's place is not known, all are predicted and none is updated.
+/// The tracks after this frame: matched ones updated, others predicted and aged, new ones started, dead ones
+/// removed. `is_lost`: the camera pose is unknown; all tracks are predicted and none is updated.
 Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
                       const std::vector<Match>& matches, const Overlaps& overlaps,
                       const Pose& map_from_camera, const Covariance6& pose_covariance, bool is_lost,

@@ -11,7 +11,7 @@ namespace cairn {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// The matrix whose product with a vector is v × that.
+/// The cross product matrix: skew(v)·w = v × w.
 inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

@@ -11,8 +11,8 @@
 
 namespace cairn {
 
-/// What was seen of the tracks when each was seen last: where its pixels are in the map. Nothing else of past
-/// pictures is remembered.
+/// The remembered points of the tracks from their last detections, in the map. Nothing else of past images is
+/// kept.
 struct SeenPoint {
   Point3 in_map_m;
   float disparity_px = 0;
@@ -21,35 +21,34 @@ struct Remembered {
   struct Mask {
     TrackId track = TrackId::none;
     Stamp seen;
-    std::vector<SeenPoint> points;  // one for each pixel of its mask that has a disparity
+    std::vector<SeenPoint> points;  // one for each pixel of its mask with a disparity
   };
-  std::vector<Mask> masks;  // by track, rising
+  std::vector<Mask> masks;  // by track, ascending
 };
 
-/// The tracks as they should show now.
+/// The predicted appearance of the tracks.
 struct Warped {
   struct Mask {
     TrackId track = TrackId::none;
-    float in_view = 0;  // 0 … 1: share of its points that lie in the picture
-    int area = 0;       // px that they cover there, hidden or not
+    float in_view = 0;  // 0 … 1: share of its points inside the image
+    int area = 0;       // px covered by them, occluded or not
   };
-  std::vector<Mask> masks;    // by track, rising
-  Image<TrackId> ids;         // none = no track is expected here
-  Image<float> disparity_px;  // NaN where ids is none
+  std::vector<Mask> masks;    // by track, ascending
+  Image<TrackId> ids;         // none = no track expected
+  Image<float> disparity_px;  // NaN if ids is none
 };
 
-/// What is remembered, moved to where the camera is now, and each moving track by its own motion: the nearer
-/// one wins, gaps of one pixel are closed. (docs/stages/tracking.md)
+/// Moves the remembered points to the present camera, those of a moving track also by its motion: the nearer
+/// point wins, gaps of one pixel are closed. (docs/stages/tracking.md)
 Warped warp(const Remembered& remembered, const Tracks& tracks, const Pose& map_from_camera, Stamp now,
             const StereoRig& rig, Size image, const Exec& exec);
 
-/// The masks of this frame's tracks in place of older ones of the same tracks; those of tracks that are no
-/// more go.
+/// Replaces the masks of tracks detected in this frame; removes those of ended tracks.
 Remembered remember(Remembered before, const Tracks& tracks, const Objects& objects,
                     const DisparityMap& disparity, const Pose& map_from_camera, Stamp now,
                     const StereoRig& rig);
 
-/// What the present frame shows where tracks are expected.
+/// The overlaps of the objects of the present frame with the predicted tracks.
 Overlaps overlaps_of(const Warped& warped, const Tracks& tracks, const Objects& objects,
                      const DisparityMap& disparity);
 

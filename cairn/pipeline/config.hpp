@@ -87,8 +87,7 @@ struct OptionInfo {
   std::string unit;    // may be empty
   std::string domain;  // "3 … 31, odd", "−1 = off, 0 … 64", "sad|ssd|…"
   std::string help;
-  std::string
-      needs;  // "match.method=window", "speckle.size!=-1": its condition; empty: always read
+  std::string needs;   // "match.method=window", "speckle.size!=-1": its condition; empty: always read
   bool active = true;  // whether `config` reads it: `needs` holds, and its option is itself read
 };
 
