@@ -7,7 +7,7 @@
 
 #include "landmarks.hpp"
 
-/// What the library's own sources share; not installed.
+/// Shared by the sources of this library; not installed.
 namespace cairn::landmarks {
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -39,23 +39,24 @@ inline std::array<double, 16> rows_of(const Matrix4& m) {
 /// A rotation about z by `yaw_rad`, then a translation.
 Pose turned(double yaw_rad, Point3 translation_m);
 
-/// A position in the map, as it is in the odometry's frame: uncertain by itself and by where that frame lies.
+/// A position in the map of something in the odometry frame: uncertain by itself and by the pose of that
+/// frame.
 struct Placed {
   Eigen::Vector3d position_m;
   Matrix3 covariance_m2;
 };
 Placed place(const Candidate& candidate, const Located& located);
 
-/// One landmark and where it is seen, both in the map.
+/// One landmark and its observed position, both in the map.
 struct Pull {
   Placed seen;
   Placed known;
 };
-/// `located` moved and turned about the camera so that what is seen lies where it is known to be, as far as
-/// the covariances say; a rotation about z and a translation. (Gauss-Newton, Huber weights)
+/// `located` rotated about the camera and translated so that observed positions match the known ones as well
+/// as their covariances demand; a rotation about z and a translation. (Gauss-Newton, Huber weights)
 Located corrected(const Located& located, const std::vector<Pull>& pulls);
 
-/// The candidate that a landmark would be.
+/// The landmark as a candidate for recognition.
 Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours);
 
 }  // namespace cairn::landmarks

@@ -8,15 +8,15 @@
 
 namespace cairn {
 
-/// GeoJSON's features in metres of the map's frame, not degrees, which "frame_id" and "units" say: landmarks
-/// as polygons (their footprint: a circle of their mean width), the runs' paths as lines.
+/// GeoJSON features in metres of the map frame, not degrees, as "frame_id" and "units" state: landmarks as
+/// polygons (footprint: a circle of the mean width), the paths of the runs as lines.
 std::string as_geojson(const MapFile& file);
-/// g2o's text: keyframes (VERTEX_SE3:QUAT), landmarks (VERTEX_TRACKXYZ, ids from 1000000 on), edges between
-/// successive keyframes of a run, and from keyframes to what they saw.
+/// g2o text: keyframes (VERTEX_SE3:QUAT), landmarks (VERTEX_TRACKXYZ, ids from 1000000), edges between
+/// successive keyframes of a run, and from keyframes to observed landmarks.
 std::string as_g2o(const MapFile& file);
-/// Keyframes of one run (0: of the last one that has any) as `t x y z qx qy qz qw` lines.
+/// The keyframes of one run (0: of the last one with keyframes) as `t x y z qx qy qz qw` lines.
 std::string as_tum(const MapFile& file, std::int64_t run = 0);
-/// Landmarks, a line each, with a header.
+/// One line per landmark, with a header.
 std::string as_csv(const LandmarkMap& map);
 
 }  // namespace cairn

@@ -12,8 +12,8 @@
 namespace cairn {
 
 enum class MapMode : std::uint8_t {
-  read_only,  // the file must be there; several readers beside one writer
-  update      // made where it is not there; one writer at a time
+  read_only,  // the file must exist; several readers next to one writer
+  update      // created if absent; one writer at a time
 };
 
 enum class RunState : std::uint8_t { running, done, aborted };
@@ -26,11 +26,11 @@ struct MapRun {
   Stamp began;
   Stamp ended;
   int frames = 0;
-  std::optional<Pose> map_from_odom;  // as it was last; none: not known where
+  std::optional<Pose> map_from_odom;  // the last one; none = unknown
   RunState state = RunState::running;
 };
 
-/// A keyframe's pose.
+/// The pose of a keyframe.
 struct MapPose {
   std::int64_t run = 0;
   Stamp stamp;
@@ -38,7 +38,7 @@ struct MapPose {
   Covariance6 covariance{};  // stored in single precision
 };
 
-/// A landmark as one frame saw it.
+/// A landmark as observed in one frame.
 struct MapObservation {
   std::int64_t run = 0;
   Stamp stamp;
@@ -55,46 +55,44 @@ struct MapEvent {
 };
 
 /// A map in one SQLite file; docs/formats.md has its schema. Every member throws Error with one line that
-/// names the file: absent, no map, damaged, of a newer cairn, of another rig, read-only, in use, no space
-/// left. What a transaction had not ended is not in the file; what was committed stays whole whatever
-/// happens.
+/// names the file: absent, not a map, damaged, of a newer cairn, of another rig, read-only, in use, no space
+/// left. Uncommitted transactions are not in the file; committed data survives any crash.
 class MapFile {
  public:
-  /// `rig`: whose baseline the map's must be; asked of a file that knows one, remembered by one that does
-  /// not.
+  /// `rig`: its baseline must be that of the map, if the map has one; otherwise the map stores it.
   static MapFile open(const std::filesystem::path& path, MapMode mode,
                       const std::optional<StereoRig>& rig = std::nullopt);
   MapFile(MapFile&&) noexcept;
   MapFile& operator=(MapFile&&) noexcept;
   MapFile(const MapFile&) = delete;
   MapFile& operator=(const MapFile&) = delete;
-  /// Ends what is open without a word; a run that was not ended is found `aborted` by the next who writes.
+  /// Closes silently; a run that was not ended is marked `aborted` by the next writer.
   ~MapFile();
 
-  /// What the file held when its last transaction was committed.
+  /// The contents as of the last commit.
   [[nodiscard]] LandmarkMap load() const;
   [[nodiscard]] std::vector<MapRun> runs() const;
   [[nodiscard]] std::vector<MapPose> poses() const;
   [[nodiscard]] std::vector<MapObservation> observations() const;
   [[nodiscard]] std::vector<MapEvent> events() const;
-  /// A name of this map and of its copies.
+  /// The identity of this map and of its copies.
   [[nodiscard]] std::string map_id() const;
   [[nodiscard]] std::optional<StereoRig> rig() const;
-  /// What is wrong inside, one line each; none: sound.
+  /// Inconsistencies, one line each; empty if sound.
   [[nodiscard]] std::vector<std::string> check() const;
 
-  /// From here on, write() belongs to this run.
+  /// Begins the run that following calls of write() belong to.
   std::int64_t begin_run(const std::string& source, Stamp began);
-  /// One frame: its pose where it is a keyframe, its events, what was seen where it is not is_guessed().
-  /// Committed every 30 frames or 1 s of stamps.
+  /// Stores one frame: its pose if it is a keyframe, its events, its observations unless is_guessed().
+  /// Commits every 30 frames or 1 s of stamps.
   void write(const LandmarkFrame& frame, const Landmarked& step);
-  /// `map`: as it is at the end.
+  /// `map`: its final state.
   void end_run(RunState state, const LandmarkMap& map);
 
-  /// A copy with all that is committed, runs and events included. Throws Error where `path` is there already.
+  /// A copy of all committed data, runs and events included. Throws Error if `path` exists.
   void copy_to(const std::filesystem::path& path) const;
 
-  /// The whole map in place of what is there: after forget() or merge().
+  /// Replaces the whole map: after forget() or merge().
   void replace(const LandmarkMap& map);
 
  private:
@@ -103,7 +101,7 @@ class MapFile {
   std::unique_ptr<Store> store_;
 };
 
-/// Without a landmark, all that was said of it included. Throws Error where there is none.
+/// The map without a landmark and all its data. Throws Error if it does not exist.
 LandmarkMap forget(LandmarkMap map, LandmarkId id);
 
 }  // namespace cairn
