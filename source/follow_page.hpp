@@ -11,13 +11,13 @@
 #include "../page/html_page.hpp"
 #include "../tracking/follower.hpp"
 
-/// The player: a sequence's tracks as one page for the browser, which needs nothing but itself. Layout, style
-/// and script are page/follow.html and what lies beside it. (docs/looking_at_results.md, "The player")
+/// The player: the tracks of a sequence as one self-contained page for the browser. Layout, style and script
+/// are page/follow.html and the files next to it. (docs/looking_at_results.md, "The player")
 namespace cairn::io {
 
-/// A step as text. `facts`: its line of tracks.jsonl without the masks, and where a track's name is drawn;
-/// `maps`: the left picture as JPEG, and for each pixel 0 or 1 + the place in `facts`' list of the track that
-/// it belongs to, without loss. `milliseconds`: what the frame took; none is left out.
+/// A step as text. `facts`: its line of tracks.jsonl without masks, and the label position of each track;
+/// `maps`: the left image as JPEG, and for each pixel 0 or 1 + the index of its track in the list of `facts`,
+/// lossless. `milliseconds`: the time of the frame.
 EncodedFrame encode_step(const Step& step, const std::string& name, View<const Gray> left,
                          View<const Rgb> left_rgb, std::optional<double> milliseconds = std::nullopt,
                          const Landmarked& marked = {});
@@ -25,21 +25,21 @@ EncodedFrame encode_step(const Step& step, const std::string& name, View<const G
 struct FollowPageHead {
   std::string title;  // the source
   Size image;
-  std::optional<StereoRig> rig;  // none: no metres, no view from above
+  std::optional<StereoRig> rig;  // nullopt: no metres, no top view
 };
 
-/// A page that grows with the sequence: what is added goes to a temporary file, so that memory does not grow.
+/// A page that grows with the sequence: data goes to a temporary file, so memory does not grow.
 class FollowPage {
  public:
-  /// Throws Error (names the file) where it cannot be written.
+  /// Throws Error (names the file) if it cannot be written.
   FollowPage(const std::filesystem::path& file, FollowPageHead head);
 
-  /// The next frame. Throws Error as the constructor does.
+  /// The next frame. Throws Error like the constructor.
   void add(const EncodedFrame& step);
   /// A line of events.jsonl, of any frame.
   void add_event(const std::string& line);
-  /// The page takes its name, whole, with the landmarks as they are at the end. Without this call no page is
-  /// left, and one that is there stays. Throws Error as the constructor does.
+  /// Writes the page under its final name, with the final landmarks. Without this call no page is written,
+  /// and an existing one stays. Throws Error like the constructor.
   void finish(const LandmarkMap& map = {});
 
  private:

@@ -9,7 +9,7 @@
 
 #include "sequence.hpp"
 
-/// Which files a source has, before any image is decoded; internal to source.
+/// Lists the files of a source before any image is decoded; internal to source.
 namespace cairn::io {
 
 struct ListedFrame {
@@ -17,34 +17,34 @@ struct ListedFrame {
   std::size_t index = 0;
   std::filesystem::path left;
   std::filesystem::path right;
-  std::optional<std::filesystem::path> calib;  // its own
+  std::optional<std::filesystem::path> calib;  // of this frame
   Stamp stamp;
 };
 
 struct FrameList {
-  std::vector<ListedFrame> frames;             // stamps rise
-  std::optional<std::filesystem::path> calib;  // of all
+  std::vector<ListedFrame> frames;             // stamps ascend
+  std::optional<std::filesystem::path> calib;  // of all frames
   bool grey_cameras = false;                   // KITTI's cameras 0 and 1
-  bool is_raw = false;                         // the images want rectifying
+  bool is_raw = false;                         // the images need rectification
   std::string stamps_from;
   std::vector<SourceRemark> remarks;
 };
 
-/// The frames of a folder, only those of options.frames. Throws Error.
+/// The frames of a folder within options.frames. Throws Error.
 FrameList list_folder(const std::filesystem::path& folder, const SourceOptions& options);
-/// Those of two folders of images, or of two patterns such as left_%04d.png.
+/// The frames of two folders of images, or of two patterns such as left_%04d.png.
 FrameList list_two(const std::string& left, const std::string& right, const SourceOptions& options);
 
-/// Whether the name's number is left open: left_%04d.png.
+/// Whether the name is a pattern: left_%04d.png.
 bool is_pattern(const std::string& name);
 
-/// Counts one more frame of which this is to be said.
+/// Counts one more frame with this remark.
 void remark(std::vector<SourceRemark>& remarks, const SourceRemark& of_one);
 
-/// Whether `index` is one of the range.
+/// Whether `index` is in the range.
 bool is_in(const FrameRange& range, std::size_t index);
 
-/// The words for stamps that come from a rate, and the stamp of a frame.
+/// The description of stamps from a rate, and the stamp of a frame.
 double rate_of(const SourceOptions& options);
 std::string rate_text(double rate_hz);
 Stamp stamp_at(std::size_t index, double rate_hz);

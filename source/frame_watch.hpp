@@ -14,38 +14,40 @@
 
 #include "sequence.hpp"
 
-/// What every kind of source does with its frames; internal to source.
+/// Frame handling common to all sources; internal to source.
 namespace cairn::io {
 
-/// The calibration of a whole source.
+/// The calibration of a source.
 struct SourceCalibration {
-  std::filesystem::path path;  // empty where there is none
+  std::filesystem::path path;  // empty if there is none
   Calibration says;
-  std::shared_ptr<const Rectifier> rectifier;  // where the images are raw
+  std::shared_ptr<const Rectifier> rectifier;  // for raw images
 
-  /// The rectified pair where the images are raw, else the pair itself. Throws Error where the calibration
-  /// was made for another size.
+  /// The rectified pair for raw images, else the pair itself. Throws Error if the calibration was made for
+  /// another size.
   [[nodiscard]] PicturePair rectified(PicturePair pair, const Pool& pool) const;
 
-  /// Once the images' size is known: the search range of raw ones; else throws Error where the file was made
-  /// for another size, or its range is wider than the images.
+  /// Checks the calibration once the image size is known: sets the search range for raw images; else throws
+  /// Error if the file was made for another size, or its range exceeds the image width.
   void suit(Size image);
-  /// Of images that are taken for rectified, where the file describes raw cameras. `first`: its name.
+  /// A remark if the file describes raw cameras but the images are assumed to be rectified. `first`: name of
+  /// the first frame.
   [[nodiscard]] std::optional<SourceRemark> remark_on_raw(const std::string& first) const;
 };
-/// `found`: beside the images; options.calib goes before. Throws Error, also where raw images have none.
+/// `found`: next to the images; options.calib takes precedence. Throws Error, also for raw images without a
+/// calibration.
 SourceCalibration open_calibration(const SourceOptions& options,
                                    const std::optional<std::filesystem::path>& found, bool grey_cameras,
                                    bool is_raw);
 
-/// Looks at every frame that a source gives, in order.
+/// Checks every frame of a source, in order.
 class FrameWatch {
  public:
   explicit FrameWatch(double max_gap_s) : max_gap_s_(max_gap_s) {}
 
-  /// Sets after_gap, and has a remark on a camera that stands still while the other does not. Throws Error
-  /// where the size is not the first frame's or the stamp not later than the one before. `file`: for
-  /// messages.
+  /// Sets after_gap, and adds a remark on a camera that repeats its image while the other does not. Throws
+  /// Error if the size differs from the first frame or the stamp is not later than the one before. `file`:
+  /// for messages.
   void see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks);
   [[nodiscard]] Size image_size() const { return size_; }
 

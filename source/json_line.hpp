@@ -13,35 +13,34 @@
 
 #include "../tracking/pose.hpp"
 
-/// Values out of JSON that others wrote: each is checked for its type and range before it becomes a number.
+/// Access to JSON from outside: type and range of each value are checked.
 namespace cairn::io {
 
-/// None where the text is no JSON. Throws Error where it nests deeper than any file of ours: what walks it
-/// recurses.
+/// nullopt if the text is not JSON. Throws Error for excessive nesting, since readers recurse.
 std::optional<nlohmann::json> parsed_json(const std::string& text);
 
-/// A value as a message shows it: cut where it is long.
+/// A value for messages: truncated if long.
 std::string shown(const nlohmann::json& value);
 
-/// An object of keys and values. All throw Error (the key, what was found, what was expected) without a
-/// file's name. A key with null is as good as missing.
+/// An object of keys and values. All members throw Error (key, found, expected) without the name of a file. A
+/// null value counts as missing.
 class JsonLine {
  public:
   static constexpr std::int64_t kMostNumber = std::numeric_limits<std::int64_t>::max();
-  static constexpr double kFarthest = 1e9;  // m, m², m/s: no honest number is larger
+  static constexpr double kFarthest = 1e9;  // m, m², m/s: no valid number is larger
 
   explicit JsonLine(const nlohmann::json& object);
 
-  /// Null where it is missing.
+  /// Null if missing.
   [[nodiscard]] const nlohmann::json& at(const char* key) const;
   [[noreturn]] void refuse(const char* key, const std::string& expected) const;
   [[nodiscard]] std::optional<std::int64_t> maybe_integer(const char* key, std::int64_t least,
                                                           std::int64_t most) const;
   [[nodiscard]] std::int64_t integer(const char* key, std::int64_t least, std::int64_t most) const;
   [[nodiscard]] std::string text(const char* key) const;
-  /// False where it is missing.
+  /// False if missing.
   [[nodiscard]] bool flag(const char* key) const;
-  /// None also where one of the numbers is null: it was not finite.
+  /// nullopt also if one of the numbers is null: it was not finite.
   template <std::size_t n>
   [[nodiscard]] std::optional<std::array<double, n>> maybe_numbers(const char* key) const {
     std::array<double, n> numbers{};

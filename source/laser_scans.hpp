@@ -11,15 +11,15 @@
 
 namespace cairn::io {
 
-/// Reads scans of a laser from a table: a first line `stamp,angle_min,angle_increment,r0,…`, then a line a
-/// scan: its stamp (t_s in place of stamp: in s; see parse_stamp()), angles in rad from straight ahead to the
-/// left, ranges in m, empty, nan, inf or 0 where nothing was hit. The laser is taken to be where the left
-/// camera is, unless a comment `# laser_in_level_camera_m: x y z` says where (x right, y down along gravity,
-/// z forward). Throws Error (file, line, what was found): no such columns, a field that is no number, no
-/// range, stamps that do not rise, angles beyond a full turn.
+/// Reads laser scans from a table: a header line `stamp,angle_min,angle_increment,r0,…`, then one line per
+/// scan: its stamp (t_s instead of stamp: in s; see parse_stamp()), angles in rad from straight ahead
+/// counter-clockwise, ranges in m; empty, nan, inf or 0 without an echo. The laser is assumed to be at the
+/// left camera unless a comment `# laser_in_level_camera_m: x y z` gives its position (x right, y down along
+/// gravity, z forward). Throws Error (file, line, what was found): missing columns, a field that is not a
+/// number, no range, stamps that do not ascend, angles beyond a full turn.
 std::vector<LaserScan> load_scans(const std::filesystem::path& path);
 
-/// The scan nearest to a moment, none where it is more than 50 ms off.
+/// The scan nearest to a time; nullptr if it is more than 50 ms off.
 const LaserScan* scan_at(const std::vector<LaserScan>& scans, Stamp moment);
 
 }  // namespace cairn::io

@@ -4,25 +4,24 @@
 
 #include <string>
 
-/// Parts of source that are heavy to load lie in modules of their own, which are loaded when they are first
-/// wanted. Internal to source.
+/// Heavy parts of source are modules, loaded on first use. Internal to source.
 namespace cairn::io {
 
-/// What there is to say of a module: file names and words for messages.
+/// A module: file names and words for messages.
 struct ModuleNames {
   const char* file;     // "cairn-video.so"
   const char* entry;    // the function in it
   const char* what;     // "videos need"
-  const char* library;  // "OpenCV's videoio (libopencv-videoio)": what it links
+  const char* library;  // "OpenCV's videoio (libopencv-videoio)": its dependency
   const char* package;  // "package cairn-video; it is built where libopencv-videoio-dev is"
 };
 
-/// Every module has a function of this name that gives its version, so that none of another build is taken.
+/// Every module has a function of this name that returns its version, so that modules of other builds are
+/// refused.
 inline constexpr const char* kModuleVersion = "cairn_module_version";
 using ModuleVersion = const char* (*)();
 
-/// The module's entry; the module stays loaded until the end. Throws Error, for which `source` is what the
-/// user asked for.
+/// The entry of the module, which stays loaded until exit. Throws Error naming `source`, the user's input.
 void* module_entry(const ModuleNames& names, const std::string& source);
 
 }  // namespace cairn::io

@@ -11,13 +11,13 @@
 /// Recordings (MCAP) as sequences; internal to source.
 namespace cairn::io {
 
-/// The stereo pair of a recording: images of two topics, raw or compressed, paired by the stamps of their
-/// headers. Its calibration: options.calib, else what cairn recorded beside the images, else camera_info.
+/// The stereo pair of a recording: images of two topics, raw or compressed, paired by their header stamps.
+/// Calibration: options.calib, else the one recorded by cairn, else camera_info.
 std::unique_ptr<Sequence> open_mcap(const std::filesystem::path& file, const SourceOptions& options,
                                     const Pool& pool);
 
-/// The recording in a folder of `ros2 bag`, which has a metadata.yaml beside it; none in any other folder.
-/// Throws Error where there are several parts, or none in MCAP.
+/// The recording in a folder of `ros2 bag`, which has a metadata.yaml; nullopt for other folders. Throws
+/// Error for several parts, or none in MCAP.
 std::optional<std::filesystem::path> recording_in(const std::filesystem::path& folder);
 
 }  // namespace cairn::io

@@ -9,21 +9,21 @@
 
 #include "../ros/mcap.hpp"
 
-/// Which topics of a recording are a stereo pair; internal to source.
+/// The stereo topics of a recording; internal to source.
 namespace cairn::io {
 
 struct StereoTopics {
   ros::McapChannel left;
   ros::McapChannel right;
-  std::optional<std::uint16_t> left_grey;  // the grey of left images whose colours do not say it
+  std::optional<std::uint16_t> left_grey;  // the grey of left images if not derivable from colours
   std::optional<std::uint16_t> left_info;
   std::optional<std::uint16_t> right_info;
-  bool is_raw = false;  // by its name
+  bool is_raw = false;  // by the topic name
 };
 
-/// Found by type and name ("left" and "right", "infra1" and "infra2", "cam0" and "cam1"): rectified images
-/// before raw ones, whole ones before compressed ones, coloured ones before grey ones. `wanted`:
-/// "LEFT,RIGHT", or empty. `file`: for messages. Throws Error where there is no pair, or more than one.
+/// Finds the pair by type and name ("left" and "right", "infra1" and "infra2", "cam0" and "cam1"): rectified
+/// before raw images, uncompressed before compressed ones, colour before grey. `wanted`: "LEFT,RIGHT", or
+/// empty. `file`: for messages. Throws Error if there is no pair, or more than one.
 StereoTopics find_stereo_topics(const std::map<std::uint16_t, ros::McapChannel>& channels,
                                 const std::string& wanted, const std::string& file);
 

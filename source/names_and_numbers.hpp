@@ -10,11 +10,10 @@
 #include <string_view>
 #include <system_error>
 
-/// Names of files, and numbers in them; internal to source.
+/// File names and numbers in them; internal to source.
 namespace cairn::io {
 
-/// The number that the whole text is; none where it is empty, has more than a number, or one that is too
-/// large.
+/// The number that is the whole text; nullopt if it is empty, has other characters, or is too large.
 template <class Number>
 std::optional<Number> whole(std::string_view text) {
   Number number{};
@@ -23,15 +22,15 @@ std::optional<Number> whole(std::string_view text) {
   return number;
 }
 
-/// "000012": the name of a frame that has only a number.
+/// "000012": the name of a numbered frame.
 std::string number_text(std::size_t index);
 
 bool is_digit(char c);
 
-/// 9 before 10, whether or not the numbers are padded with zeros; ties by bytes.
+/// 9 before 10, zero-padded or not; ties by bytes.
 bool in_natural_order(const std::string& a, const std::string& b);
 
-/// Whether it is one that can be looked at.
+/// Whether `path` is an accessible folder.
 bool is_folder(const std::filesystem::path& path);
 
 }  // namespace cairn::io

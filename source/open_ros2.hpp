@@ -7,8 +7,8 @@
 
 #include "sequence.hpp"
 
-/// Cameras that publish on ROS 2's topics, by a module that has Cyclone DDS (dds/); built without it
-/// (CAIRN_DDS=OFF) it throws an Error that says so. Internal to source.
+/// Cameras on ROS 2 topics, through a module with Cyclone DDS (dds/); a build without it (CAIRN_DDS=OFF)
+/// throws Error. Internal to source.
 namespace cairn::io {
 
 /// "ros2:/stereo": the topics /stereo/left/image_rect and so on.

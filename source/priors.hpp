@@ -13,57 +13,58 @@
 
 #include "sequence.hpp"
 
-/// What other sensors say of the camera's motion, read from files. (docs/sequences.md, "Priors")
+/// Camera motion from other sensors, read from files. (docs/sequences.md, "Priors")
 namespace cairn::io {
 
-/// A file of odometry or of an IMU, as motions between any two moments that it covers.
+/// A file of odometry or of an IMU, as the motion between any two times that it covers.
 class MotionPriors {
  public:
   virtual ~MotionPriors() = default;
   MotionPriors(const MotionPriors&) = delete;
   MotionPriors& operator=(const MotionPriors&) = delete;
 
-  /// The camera's motion from `before` to `now`. None where the file does not cover both, has a gap of more
-  /// than 0.2 s between them, or holds numbers there that are none or cannot be. `camera_from_level`: the
-  /// rotation from a camera that looks level (x right, y down along gravity, z forward) to the real one;
-  /// wheels move in the former's plane. A camera that looks down by 12 degrees and is taken for level has a
-  /// prior that is wrong by a fifth of the way.
+  /// The camera motion from `before` to `now`. nullopt if the file does not cover both, has a gap of more
+  /// than 0.2 s between them, or contains invalid or implausible numbers there. `camera_from_level`: the
+  /// rotation from a level camera (x right, y down along gravity, z forward) to the real one; wheels move in
+  /// the level plane. For a camera that looks down by 12 degrees, assuming a level one makes the prior wrong
+  /// by a fifth of the path.
   [[nodiscard]] virtual std::optional<MotionPrior> between(Stamp before, Stamp now,
                                                            const Pose& camera_from_level = {}) const = 0;
   [[nodiscard]] virtual PriorKind kind() const = 0;
-  /// What the file covers.
+  /// The time range of the file.
   [[nodiscard]] virtual Stamp first() const = 0;
   [[nodiscard]] virtual Stamp last() const = 0;
-  /// What was found and assumed, in one line: "speeds of wheels, 100 rows at 5 Hz".
+  /// Contents and assumptions, in one line: "speeds of wheels, 100 rows at 5 Hz".
   [[nodiscard]] virtual std::string description() const = 0;
 
  protected:
   MotionPriors() = default;
 };
 
-/// The rotation camera_from_level of a camera that looks down by `pitch_deg` and whose right side is lowered
-/// by `roll_deg`; see KnownGround.
+/// The rotation camera_from_level of a camera that is pitched down by `pitch_deg` and rolled to the right by
+/// `roll_deg`; see KnownGround.
 Pose camera_from_level(double pitch_deg, double roll_deg);
 
 /// Reads odometry, its form recognised by content: a table with the columns t_s, v_m_per_s, omega_rad_per_s
-/// (speed ahead and turn rate to the left, each the mean since the row before); TUM's lines
-/// `t x y z qx qy qz qw`; KITTI's lines of 12 numbers, which need stamps: times.txt or stamps.txt beside the
-/// file or in `source_folder`. Poses are those of the left rectified camera (x right, y down, z forward), or
-/// of a robot (x forward, y left, z up) whose centre the camera is taken to be, where the file's name or a
-/// comment in it has the word base_link or base_footprint. Throws Error (file, line, what was found): no such
-/// form, stamps that do not rise or are in another unit, speeds of more than 20 m/s (60 m/s between poses),
-/// which are mm, rates of more than 20 rad/s, which are degrees.
+/// (forward speed and counter-clockwise turn rate, each the mean since the row before); TUM lines `t x y z qx
+/// qy qz qw`; KITTI lines of 12 numbers, which need stamps: times.txt or stamps.txt next to the file or in
+/// `source_folder`. Poses are those of the left rectified camera (x right, y down, z forward), or, if the
+/// file name or a comment in it contains base_link or base_footprint, of a robot (x forward, y left, z up)
+/// with the camera at its centre. Throws Error (file, line, what was found): unknown form, stamps that do not
+/// ascend or are in another unit, speeds above 20 m/s (60 m/s between poses), which are mm, rates above 20
+/// rad/s, which are degrees.
 std::unique_ptr<MotionPriors> load_odometry(const std::filesystem::path& path,
                                             const std::filesystem::path& source_folder = {});
 
-/// Reads an IMU's gyroscope from a table as EuRoC has it: ns, three rates in rad/s about its axes, and
-/// accelerations, which are not used. `camera_from_imu`: the rotation from its axes to the rectified left
-/// camera's. What it shows at rest in its first half second is taken off as its bias.
-/// Throws Error as load_odometry() does.
+/// Reads the gyroscope of an IMU from a table in the form of EuRoC: ns, three rates in rad/s about its axes,
+/// and accelerations, which are ignored. `camera_from_imu`: the rotation from its axes to the rectified left
+/// camera. If it is at rest in the first half second, the mean is subtracted as its bias. Throws Error like
+/// load_odometry().
 std::unique_ptr<MotionPriors> load_imu(const std::filesystem::path& path, const Pose& camera_from_imu = {});
 
-/// How an IMU is mounted, from the sensor.yaml beside its file and that of cam0 (EuRoC), and how that camera
-/// was rectified; none where they are not there: its axes are then taken for the camera's. Throws Error.
+/// The mounting of an IMU, from the sensor.yaml next to its file and that of cam0 (EuRoC), and the
+/// rectification of that camera; nullopt if absent: the axes are then assumed to be those of the camera.
+/// Throws Error.
 std::optional<Pose> mounting_of_imu(const std::filesystem::path& path, const Rectifier* rectifier);
 
 }  // namespace cairn::io

@@ -17,8 +17,8 @@
 
 namespace cairn::io {
 
-/// Files of what is known of a sequence beside its images. Of odometry, imu and poses one at most; all are in
-/// metres, so the source needs a rig.
+/// Data files of other sensors for a sequence. At most one of odometry, imu and poses; all are in metres, so
+/// the source needs a rig.
 struct CompanionFiles {
   std::optional<std::filesystem::path> odometry;
   std::optional<std::filesystem::path> imu;
@@ -26,34 +26,34 @@ struct CompanionFiles {
   std::optional<std::filesystem::path> scan;
   std::optional<std::filesystem::path> map;
   bool is_map_read_only = false;
-  std::optional<Pose> start;  // in the map; none: to be found out
+  std::optional<Pose> start;  // in the map; nullopt: to be found by landmarks
 };
 
-/// The odometry's or the gyroscope's motions, whichever is named; none where neither is. `source_name`: what
-/// open_sequence() was given. Throws Error as load_odometry() and load_imu() do.
+/// The motion priors from odometry or gyroscope, whichever is given; null without either. `source_name`: the
+/// argument of open_sequence(). Throws Error like load_odometry() and load_imu().
 std::unique_ptr<MotionPriors> open_priors(const std::optional<std::filesystem::path>& odometry,
                                           const std::optional<std::filesystem::path>& imu,
                                           const std::string& source_name, const Sequence& source);
 
-/// Follows a source frame by frame, with what is known beside it and what its landmarks say: what `cairn
-/// follow` and Python's cairn.follow() both do.
+/// Follows a source frame by frame, with data of other sensors and landmarks: the common part of `cairn
+/// follow` and Python's cairn.follow().
 class SequenceRun {
  public:
-  /// Opens the files; a map's run begins with the first frame. Throws Error as the readers, MapFile::open()
-  /// and Follower do, and where the poses have no stamps. `source` must outlive it.
+  /// Opens the files; the run of a map begins with the first frame. Throws Error like the readers,
+  /// MapFile::open() and Follower, and for poses without stamps. `source` must outlive it.
   SequenceRun(const Sequence& source, std::string source_name, const CompanionFiles& files,
               FollowConfig config, Exec exec);
 
-  /// The next frame of the source. Throws Error as Follower::next() and MapFile::write() do, and where the
-  /// known poses have none within 5 ms of its stamp.
+  /// The next frame of the source. Throws Error like Follower::next() and MapFile::write(), and if the known
+  /// poses have none within 5 ms of its stamp.
   Step next(const SequenceFrame& frame);
 
-  /// What the landmarks make of the last frame; empty without a rig.
+  /// The landmarks of the last frame; empty without a rig.
   [[nodiscard]] const Landmarked& marked() const { return marked_; }
   [[nodiscard]] const FollowConfig& config() const { return follower_.config(); }
-  /// As of Follower.
+  /// Like Follower::set_config().
   void set_config(FollowConfig config) { follower_.set_config(std::move(config)); }
-  /// Ends the run in the map. Nothing where there is no map, none is written, or no frame came.
+  /// Ends the run in the map. No effect without a writable map or any frame.
   void close(RunState state);
 
  private:
@@ -66,7 +66,7 @@ class SequenceRun {
   std::vector<TimedPose> poses_;
   std::string poses_name_;
   std::vector<LaserScan> scans_;
-  std::optional<MapFile> map_;  // closed: none
+  std::optional<MapFile> map_;  // nullopt when closed
   bool is_map_read_only_ = false;
   std::optional<Pose> start_;
   bool has_begun_ = false;

@@ -8,24 +8,24 @@
 #include <string_view>
 #include <vector>
 
-/// Tables of numbers as text, line by line; internal to source.
+/// Reading of numeric tables as text, line by line; internal to source.
 namespace cairn::io {
 
-/// No honest log is longer: an hour of an IMU at 1 kHz has half of it.
+/// A generous limit: an hour of an IMU at 1 kHz has half of it.
 inline constexpr std::size_t kMostLogBytes = std::size_t{1} << 30;
 
 struct TextLine {
   std::size_t number = 0;  // from 1
   std::string_view text;
 };
-/// The lines that are neither empty nor comments (#), without blanks at their ends; views of `text`.
+/// The lines that are neither empty nor comments (#), trimmed; views of `text`.
 std::vector<TextLine> lines_of(std::string_view text);
 
-/// The fields between commas, semicolons or blanks. Two commas in a row have an empty field between them.
+/// The fields between commas, semicolons or blanks. Consecutive commas have an empty field between them.
 std::vector<std::string_view> fields_of(std::string_view line);
 
-/// A number; NaN for an empty field, "nan" and what is too large. Throws Error where the field is none,
-/// naming the file and the line.
+/// A number; NaN for an empty field, "nan" and overflow. Throws Error naming file and line if the field is
+/// invalid.
 double number_in(std::string_view field, const std::filesystem::path& path, std::size_t line);
 
 /// "FILE:LINE".
@@ -34,7 +34,7 @@ std::string place(const std::filesystem::path& path, std::size_t line);
 /// printf's format for one number.
 std::string text_of(const char* format, double value);
 
-/// At most 40 characters of it, quoted.
+/// At most 40 characters, quoted.
 std::string quoted(std::string_view text);
 
 }  // namespace cairn::io

@@ -14,7 +14,7 @@
 #include "../tracking/pose.hpp"
 #include "../tracking/tracks.hpp"
 
-/// What `cairn follow` wrote, read again. (docs/formats.md, "A sequence's result out")
+/// Reading of the output of `cairn follow`. (docs/formats.md, "A sequence's result out")
 namespace cairn::io {
 
 /// A track in one frame of a tracks.jsonl.
@@ -22,11 +22,11 @@ struct TrackRecord {
   TrackId id = TrackId::none;
   TrackState state = TrackState::confirmed;
   bool is_moving = false;
-  std::optional<Point3> position_m;  // in the map; none without a rig
+  std::optional<Point3> position_m;  // in the map; nullopt without a rig
   std::optional<Covariance3> covariance_m2;
   std::optional<std::int64_t> landmark;
-  std::optional<Rle> mask;    // where it is seen in this frame
-  bool is_dont_care = false;  // of MOTS' class 10: neither right nor wrong
+  std::optional<Rle> mask;    // if detected in this frame
+  bool is_dont_care = false;  // class 10 of MOTS: neither right nor wrong
 };
 
 struct TrackFrame {
@@ -34,23 +34,23 @@ struct TrackFrame {
   std::int64_t index = 0;
   std::string name;
   Stamp stamp;
-  std::optional<Pose> map_from_camera;  // none where the place is not known
+  std::optional<Pose> map_from_camera;  // nullopt if the pose is unknown
   std::string refusal;                  // of the motion: "none", "few_points", …
-  std::vector<TrackRecord> tracks;      // ids differ
+  std::vector<TrackRecord> tracks;      // ids are unique
 };
 
 struct TrackFile {
-  std::vector<TrackFrame> frames;  // index and stamp rise, names differ
-  bool is_cut_off = false;         // the last line had no end, and was left out
+  std::vector<TrackFrame> frames;  // index and stamp ascend, names are unique
+  bool is_cut_off = false;         // the last line was incomplete, and was skipped
 };
 
-/// Throws Error (names file and line) where a line is none of the form, a number is not finite, no whole one
-/// or out of its range, or frames, names or ids come twice. Keys that are not known are passed over.
+/// Throws Error (names file and line) if a line is malformed, a number is not finite, not an integer or out
+/// of range, or frames, names or ids are repeated. Unknown keys are ignored.
 TrackFile load_tracks(const std::filesystem::path& path);
 
-/// Masks in the text form of MOTS (Voigtlaender et al. 2019), a line each: "frame id class height width rle".
-/// One frame for each number up to the last, named by it; those without a line are empty. Stamps and poses
-/// are not known.
+/// Masks in the text form of MOTS (Voigtlaender et al. 2019), one line each: "frame id class height width
+/// rle". One frame per number up to the last, named by it; frames without a line are empty. Stamps and poses
+/// are unknown.
 TrackFile load_mots(const std::filesystem::path& path);
 
 /// A line of events.jsonl.
@@ -62,11 +62,11 @@ struct ChangeRecord {
   std::optional<Point3> from_m;
   std::optional<Point3> to_m;
 };
-/// As load_tracks(). A file that is not there has no events.
+/// Like load_tracks(). A missing file has no events.
 std::vector<ChangeRecord> load_changes(const std::filesystem::path& path);
 
-/// The masks of a frame as one label image of this size. Throws Error (begins with `where`) where a mask has
-/// another size, is malformed, or has a pixel of another one.
+/// The masks of a frame as one label image of this size. Throws Error (begins with `where`) if a mask has
+/// another size, is malformed, or overlaps another.
 Image<TrackId> track_labels(const std::vector<TrackRecord>& tracks, Size size, const std::string& where);
 
 }  // namespace cairn::io

@@ -14,13 +14,13 @@
 
 #include "track_files.hpp"
 
-/// The truth of a sequence. (docs/formats.md, "The truth of a sequence")
+/// The ground truth of a sequence. (docs/formats.md, "The truth of a sequence")
 namespace cairn::io {
 
 /// An object of a scene.json.
 struct TruePlace {
-  std::optional<Point3> visible_in_camera_m;  // centre of what is seen of it
-  std::optional<Point3> in_world_m;           // its own centre
+  std::optional<Point3> visible_in_camera_m;  // centre of the visible part
+  std::optional<Point3> in_world_m;           // centre of the object
 };
 
 struct TrueFrame {
@@ -33,9 +33,9 @@ struct TrueFrame {
   std::vector<TrackRecord> masks;  // of a MOTS text
 };
 
-/// Of an events.json: what somebody did to an object.
+/// An entry of an events.json: a change that a person made to an object.
 struct TrueEvent {
-  std::int64_t id = 0;  // the object's
+  std::int64_t id = 0;  // of the object
   bool is_in_view = false;
   std::int64_t first_frame = 0;
   std::int64_t last_frame = 0;
@@ -44,18 +44,18 @@ struct TrueEvent {
 };
 
 struct TrueSequence {
-  std::vector<TrueFrame> frames;  // all that there are, by name or number
-  bool has_events = false;        // an events.json was there
+  std::vector<TrueFrame> frames;  // all frames, by name or number
+  bool has_events = false;        // an events.json exists
   std::vector<TrueEvent> events;
-  bool is_numbered = false;  // of a MOTS text: frames are known by their number alone
+  bool is_numbered = false;  // from a MOTS text: frames are known by number only
 };
 
-/// A folder with a sub-folder for each frame (objects.png, and perhaps pose.txt, scene.json, partial) and
-/// perhaps events.json, or a MOTS text. Throws Error (names the file) where there is no frame, or a file is
+/// Reads a folder with a sub-folder per frame (objects.png, optionally pose.txt, scene.json, partial) and
+/// optionally events.json, or a MOTS text. Throws Error (names the file) if there is no frame, or a file is
 /// malformed.
 TrueSequence load_truth(const std::filesystem::path& path);
 
-/// The ids of a frame. Throws Error where the file cannot be read, or masks overlap or differ in size.
+/// The ids of a frame. Throws Error if the file cannot be read, or masks overlap or differ in size.
 Image<TruthId> load_true_labels(const TrueFrame& frame);
 
 }  // namespace cairn::io

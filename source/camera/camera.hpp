@@ -13,17 +13,17 @@
 #include "../../io/image_files.hpp"
 #include "../../tracking/pose.hpp"
 
-/// What a device or a pipeline gives; how it is kept open and what becomes of its images is the same for all.
-/// Internal to source.
+/// The interface to a device or a pipeline; reconnection and image handling are common to all. Internal to
+/// source.
 namespace cairn::io {
 
 struct CameraImage {
-  Picture left;       // or the only one
-  Image<Gray> right;  // empty where the camera has one image only
+  Picture left;       // or the only image
+  Image<Gray> right;  // empty for a camera with one image only
   Stamp stamp;        // by the steady clock
   std::chrono::steady_clock::time_point arrived;
-  std::uint64_t dropped = 0;  // frames lost since the image before, as far as the camera knows
-  bool is_after_gap = false;  // the first one after the camera was lost
+  std::uint64_t dropped = 0;  // frames lost since the image before, if the camera reports them
+  bool is_after_gap = false;  // the first image after the camera was lost
 };
 
 /// One connection to a camera.
@@ -34,15 +34,16 @@ class Camera {
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
 
-  /// The next image; none within the time. Throws Error where the connection is lost: why, in one line.
+  /// The next image; nullopt after the timeout. Throws Error with the reason, in one line, if the connection
+  /// is lost.
   virtual std::optional<CameraImage> next(std::chrono::milliseconds timeout) = 0;
-  /// It will give no further image, and has lost nothing.
+  /// Whether the source has ended regularly, without further images.
   [[nodiscard]] virtual bool has_ended() const { return false; }
-  /// What is to be said of how it was opened: "fps: found 25, asked for 30".
+  /// Remarks on the settings in effect: "fps: found 25, expected 30".
   [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
-/// Opens the camera, for the first time or once more. Throws Error: why it cannot, in one line.
+/// Opens the camera, also again after a loss. Throws Error with the reason, in one line.
 using CameraMaker = std::function<std::unique_ptr<Camera>()>;
 
 }  // namespace cairn::io

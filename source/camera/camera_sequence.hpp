@@ -12,15 +12,15 @@
 
 namespace cairn::io {
 
-/// What a source of cameras is called.
+/// The names of a camera source.
 struct CameraNames {
   std::string source;  // for messages: "v4l2:/dev/video0"
   std::string name;    // Sequence::name(): "video0"
   std::string stamps_from;
 };
 
-/// One camera that gives both images, or a left and a right one, as a sequence: the newest pair is delivered.
-/// Throws Error where they cannot be opened, or no pair comes within options.open_timeout_s.
+/// One camera with both images, or a left and a right camera, as a sequence: delivers the newest pair. Throws
+/// Error if they cannot be opened, or no pair arrives within options.open_timeout_s.
 std::unique_ptr<Sequence> camera_sequence(CameraNames names, std::vector<CameraMaker> cameras,
                                           const SourceOptions& options, const Pool& pool,
                                           CameraTimes times = {});

@@ -9,7 +9,7 @@
 
 #include "../../io/image_files.hpp"
 
-/// Images as cameras have them in memory, and as the rest of cairn wants them. Internal to source.
+/// Images in the memory layout of cameras, and their conversion. Internal to source.
 namespace cairn::io {
 
 /// One channel: the sample of pixel (x, y) is at data[(y >> shift_y) * row + (x >> shift_x) * step].
@@ -21,10 +21,10 @@ struct Samples {
   int shift_y = 0;
 };
 
-/// How luminance and colour differences make a colour.
+/// The conversion of luminance and chrominance to RGB.
 enum class YuvCoding : std::uint8_t { bt601, bt601_full, bt709, bt709_full };
 
-/// An image that somebody else holds: grey, luminance with colour differences, or red, green and blue.
+/// A borrowed image: grey, luminance with chrominance, or red, green and blue.
 struct FrameBytes {
   Size size;
   enum class Kind : std::uint8_t { grey, yuv, rgb } kind = Kind::grey;
@@ -34,14 +34,14 @@ struct FrameBytes {
   YuvCoding coding = YuvCoding::bt601;
 };
 
-// The forms that cameras have; `stride`: bytes from row to row.
+// The pixel formats of cameras; `stride`: bytes between rows.
 FrameBytes grey_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride);
 FrameBytes yuyv_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, YuvCoding coding);
-/// `step`: bytes from pixel to pixel; red, green and blue lie at these offsets.
+/// `step`: bytes between pixels; red, green and blue are at these offsets.
 FrameBytes rgb_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, int step, int red, int green,
                      int blue);
 
-/// Where the two images of a frame lie.
+/// The arrangement of the two images in a frame.
 enum class Layout : std::uint8_t {
   one,           // there is only one
   side_by_side,  // left and right half
@@ -54,10 +54,10 @@ struct TwoFrames {
   FrameBytes left;
   FrameBytes right;
 };
-/// Both halves. Throws Error (in words without a source's name) where a side is odd.
+/// Both halves. Throws Error (without the name of a source) if a side is odd.
 TwoFrames halves_of(const FrameBytes& bytes, Layout layout);
 
-/// Grey: the very samples of grey and luminance, of colours as grey_of() has it. Colours where `with_colour`
+/// Grey: the unchanged grey or luminance samples, of colours as in grey_of(). With colour if `with_colour`
 /// and the frame has any.
 Picture picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool);
 

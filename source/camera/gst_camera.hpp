@@ -8,26 +8,25 @@
 #include "camera.hpp"
 #include "frame_bytes.hpp"
 
-/// Pipelines of GStreamer, by a module (camera/gst_module.cpp). Internal to source.
+/// GStreamer pipelines, through a module (camera/gst_module.cpp). Internal to source.
 namespace cairn::io {
 
 struct GstRequest {
-  std::string pipeline;  // as gst-launch-1.0 takes it, without the sink
-  std::string location;  // of its element "cairn_source"; empty: it has none
+  std::string pipeline;  // for gst-launch-1.0, without the sink
+  std::string location;  // of the element "cairn_source"; empty if there is none
   Layout layout = Layout::side_by_side;
   bool with_colour = true;    // of the left image
-  bool must_not_end = false;  // its end is a loss
+  bool must_not_end = false;  // its end counts as a loss
   Pool pool;
 };
 
-/// Throws Error where the pipeline cannot be made or started. Built without GStreamer, by the one that says
-/// so.
+/// Throws Error if the pipeline cannot be created or started, or in a build without GStreamer.
 std::unique_ptr<Camera> open_gst(const GstRequest& request);
-/// The same in this very program or module.
+/// The same within this program or module.
 std::unique_ptr<Camera> make_gst_camera(const GstRequest& request);
 
 inline constexpr const char* kGstEntry = "cairn_open_gst";
-/// The module's function of that name: the caller owns what it returns. Throws Error.
+/// The function of that name in the module: the caller owns the result. Throws Error.
 using GstEntry = Camera* (*)(const GstRequest&);
 
 }  // namespace cairn::io

@@ -11,7 +11,7 @@
 #include "kept_camera.hpp"
 #include "v4l2_camera.hpp"
 
-/// Sources that are cameras, by their names. (docs/cameras.md) Internal to source.
+/// Camera sources by name. (docs/cameras.md) Internal to source.
 namespace cairn::io {
 
 /// "v4l2:", "gst:", "rtsp://" and "rtsps://".
@@ -20,7 +20,7 @@ bool is_camera(std::string_view source);
 std::unique_ptr<Sequence> open_camera(const std::string& source, const SourceOptions& options,
                                       const Pool& pool);
 
-// Parts of it, for tests:
+// Parts of open_camera(), for tests:
 
 /// "v4l2:/dev/video0,w=2560,h=720": one request, or one for each of two devices. Throws Error.
 std::vector<V4l2Request> parse_v4l2(const std::string& source, const SourceOptions& options);

@@ -11,8 +11,7 @@
 
 namespace cairn::io {
 
-/// Pairs the images of two cameras as they come, each with the other's nearest. Not for more than one thread
-/// at a time.
+/// Pairs the images of two cameras by nearest stamp as they arrive. Not thread-safe.
 class StampPairer {
  public:
   explicit StampPairer(double max_skew_ms) : max_skew_ns_(max_skew_ms * 1e6) {}
@@ -21,22 +20,22 @@ class StampPairer {
     CameraImage left;
     CameraImage right;
   };
-  /// `side`: 0 is left. A pair where this image completes one.
+  /// `side`: 0 = left. Returns the pair that this image completes, if any.
   std::optional<Pair> push(int side, CameraImage&& image);
 
-  /// Images that got no partner.
+  /// Number of images without a partner.
   [[nodiscard]] std::uint64_t unpaired(int side) const { return unpaired_[index(side)]; }
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
 
-  /// Right stamp less left one, over the pairs.
+  /// Right stamp minus left stamp, over the pairs.
   struct Skew {
     double least_ms = 0;
     double most_ms = 0;
-    double drift_ppm = 0;  // how much slower the right camera's pace is; over the pairs since the last jump
-    double drift_over_s = 0;  // that long; the drift is worth little before some 10 s
+    double drift_ppm = 0;     // relative slowness of the right clock, over the pairs since the last jump
+    double drift_over_s = 0;  // duration of that; the drift is unreliable below some 10 s
   };
   [[nodiscard]] Skew skew() const;
-  /// The smallest distance of two images that were not paired, in ms; none where there was no such.
+  /// The smallest distance of two images that were not paired, in ms; nullopt without any.
   [[nodiscard]] std::optional<double> nearest_unpaired_ms() const { return nearest_unpaired_ms_; }
 
  private:
@@ -51,7 +50,7 @@ class StampPairer {
   std::uint64_t pairs_ = 0;
   std::optional<double> nearest_unpaired_ms_;
   Skew extent_;
-  // Sums for the line through the skews, times from the first pair of it.
+  // Sums for the line fit to the skews, times since its first pair.
   struct Line {
     Stamp begin;
     double count = 0, time = 0, time2 = 0, skew = 0, time_skew = 0, last_time = 0, last_skew = 0;

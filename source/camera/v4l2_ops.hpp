@@ -7,8 +7,7 @@
 
 namespace cairn::io {
 
-/// What the kernel does for us, so that tests can do it instead. As the system calls of these names: -1 and
-/// errno where they fail.
+/// The system calls of V4L2, replaceable in tests. Like the calls of these names: -1 and errno on failure.
 class V4l2Ops {
  public:
   V4l2Ops() = default;
@@ -19,14 +18,14 @@ class V4l2Ops {
   virtual int open(const char* path) = 0;
   virtual int close(int fd) = 0;
   virtual int ioctl(int fd, unsigned long request, void* argument) = 0;
-  /// Null where it fails.
+  /// Null on failure.
   virtual void* map(int fd, std::size_t bytes, std::int64_t offset) = 0;
   virtual int unmap(void* start, std::size_t bytes) = 0;
-  /// 1: there is a frame or an error to be fetched; 0: the time is over.
+  /// 1: a frame or an error is available; 0: timeout.
   virtual int poll(int fd, int timeout_ms) = 0;
 };
 
-/// The kernel itself.
+/// The operating system.
 V4l2Ops& system_v4l2();
 
 }  // namespace cairn::io

@@ -6,7 +6,7 @@
 
 namespace cairn::io {
 
-/// A name and password have no place in messages and files: "rtsp://***@host/".
+/// Hides name and password in messages and files: "rtsp://***@host/".
 std::string without_password(std::string text);
 
 }  // namespace cairn::io

@@ -10,18 +10,18 @@
 
 #include "../../ros/cdr.hpp"
 
-/// A type of Cyclone DDS whose values are bytes in CDR: ros/cdr.hpp is the one encoder, and what it made goes
-/// out without another copy. Keyless, as all messages of ROS 2 are.
+/// A Cyclone DDS type whose values are CDR bytes: ros/cdr.hpp is the only encoder, and its output is sent
+/// without another copy. Keyless, like all ROS 2 messages.
 namespace cairn::dds {
 
-/// `name` as DDS has it: "sensor_msgs::msg::dds_::Image_". The caller owns one reference, which
+/// `name` as in DDS: "sensor_msgs::msg::dds_::Image_". The caller owns one reference, which
 /// dds_create_topic_sertype() takes over.
 ddsi_sertype* make_cdr_type(const std::string& name);
 
 /// A value of that type with one reference, which dds_writecdr() takes over.
 ddsi_serdata* make_cdr_data(const ddsi_sertype* type, ros::Bytes bytes);
 
-/// The bytes of a value that dds_takecdr() gave, header included; valid as long as it.
+/// The bytes of a value from dds_takecdr(), header included; valid as long as the value.
 std::span<const std::uint8_t> bytes_of(const ddsi_serdata* data);
 
 }  // namespace cairn::dds

@@ -7,10 +7,10 @@
 #include "../load_module.hpp"
 #include "../sequence.hpp"
 
-/// What the libraries and the module for ROS 2's topics say to each other. All are made by one build.
+/// The interface between the libraries and the module for ROS 2 topics. All belong to one build.
 namespace cairn::dds {
 
-/// `entry`: what of the module is wanted.
+/// `entry`: the function wanted from the module.
 constexpr io::ModuleNames dds_module(const char* entry) {
   return {"cairn-dds.so", entry, "topics of ROS 2 need", "Cyclone DDS (libddsc0debian)",
           "package cairn-ros2; it is built where cyclonedds-dev is"};
@@ -22,7 +22,7 @@ struct Ros2Request {
   Pool pool;
 };
 inline constexpr const char* kRos2Entry = "cairn_open_ros2";
-/// The function of that name: the caller owns what it returns. Throws Error.
+/// The function of that name: the caller owns the result. Throws Error.
 using Ros2Entry = io::Sequence* (*)(const Ros2Request&);
 
 }  // namespace cairn::dds

@@ -13,15 +13,15 @@
 
 namespace cairn::dds {
 
-/// Finds left and right of one moment among two streams that each come in order: by equal stamps, else the
-/// nearest that is there and no more than `max_skew_ns` away.
+/// Pairs left and right values of two streams in order: by equal stamps, else the nearest one available
+/// within `max_skew_ns`.
 template <class T>
 class Pairing {
  public:
   explicit Pairing(std::int64_t max_skew_ns) : max_skew_ns_(max_skew_ns) {}
 
-  /// `side`: 0 left, 1 right. What is older than a pair's other half is given up and counted. A stamp that
-  /// is not later than the one before on its side begins both anew: the clock was set back.
+  /// `side`: 0 left, 1 right. Values older than a pair's other half are dropped and counted. A stamp that is
+  /// not later than the one before on its side resets both: the clock was set back.
   std::optional<std::pair<T, T>> add(std::size_t side, Stamp stamp, T value) {
     auto& own = waiting_[side];
     auto& other = waiting_[1 - side];

@@ -15,14 +15,14 @@
 
 #include "../../ros/cdr.hpp"
 
-/// Topics of ROS 2, spoken by Cyclone DDS without any part of ROS. (docs/ros2.md)
+/// ROS 2 topics through Cyclone DDS, without any part of ROS. (docs/ros2.md)
 namespace cairn::dds {
 
-/// A handle of Cyclone's (dds_entity_t); deletes what it names.
+/// An owning handle of Cyclone (dds_entity_t).
 class Entity {
  public:
   Entity() = default;
-  /// Throws Error, which begins with `what`, where Cyclone gave a failure instead of a handle.
+  /// Throws Error beginning with `what` if the handle is a Cyclone error code.
   Entity(std::int32_t handle, const std::string& what);
   ~Entity() { reset(); }
   Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
@@ -36,20 +36,20 @@ class Entity {
   std::int32_t handle_ = 0;
 };
 
-/// Which domain, and how it is set up: what ROS 2 nodes read from their environment.
+/// The domain and its configuration, from the environment variables of ROS 2 nodes.
 struct DomainSettings {
   std::uint32_t id = 0;  // ROS_DOMAIN_ID
-  /// Cyclone's configuration; empty: its own, with CYCLONEDDS_URI. What CYCLONEDDS_URI says goes before what
-  /// ROS_LOCALHOST_ONLY and ROS_AUTOMATIC_DISCOVERY_RANGE say.
+  /// The Cyclone configuration; empty: its default, with CYCLONEDDS_URI. CYCLONEDDS_URI overrides
+  /// ROS_LOCALHOST_ONLY and ROS_AUTOMATIC_DISCOVERY_RANGE.
   std::string configuration;
 };
-/// Throws Error where a variable holds what it cannot.
+/// Throws Error if a variable has an invalid value.
 DomainSettings domain_of_environment();
 
-/// One member of a domain; the sockets are open as long as there is one.
+/// A member of a domain; sockets are open while one exists.
 class Participant {
  public:
-  /// Throws Error where no network interface can be used, or the settings are refused.
+  /// Throws Error if no network interface is usable, or the settings are refused.
   explicit Participant(const DomainSettings& settings = domain_of_environment());
   [[nodiscard]] std::int32_t handle() const { return participant_.handle(); }
   [[nodiscard]] std::uint32_t domain() const { return id_; }
@@ -60,24 +60,24 @@ class Participant {
   Entity participant_;
 };
 
-/// "cairn" → "/cairn", "/robot/stereo" as it is. Throws Error, naming `option`, where ROS has no such name.
+/// "cairn" → "/cairn", "/robot/stereo" unchanged. Throws Error naming `option` for an invalid ROS name.
 std::string checked_name(const std::string& name, const std::string& option);
 /// "sensor_msgs/msg/Image" → "sensor_msgs::msg::dds_::Image_".
 std::string dds_type_name(std::string_view ros_type);
-/// The hash of a type's description that nodes from Iron on compare (REP 2016), "RIHS01_…"; empty where it is
-/// not known here.
+/// The hash of the type description that nodes compare since Iron (REP 2016), "RIHS01_…"; empty if unknown
+/// here.
 std::string_view type_hash(std::string_view ros_type);
 
-/// RELIABLE, VOLATILE, KEEP_LAST 5: fits readers of every reliability.
+/// RELIABLE, VOLATILE, KEEP_LAST 5: compatible with readers of any reliability.
 class BytesWriter {
  public:
-  /// `topic` as ROS has it: "/cairn/objects". Throws Error.
+  /// `topic` as in ROS: "/cairn/objects". Throws Error.
   BytesWriter(const Participant& participant, const std::string& topic, std::string_view ros_type);
-  /// Whether anybody listens, in this process or another.
+  /// Whether there is a subscriber, in this process or another.
   [[nodiscard]] bool has_reader() const;
-  /// False where readers were too slow to take it for 0.1 s.
+  /// False if readers were too slow to accept it for 0.1 s.
   bool write(ros::Bytes message);
-  /// Until all readers have what was written; false where that is not so in time.
+  /// Waits until all readers have received everything written; false on timeout.
   bool wait_for_readers(std::chrono::nanoseconds timeout) const;
 
  private:
@@ -86,7 +86,8 @@ class BytesWriter {
   const void* type_ = nullptr;
 };
 
-/// BEST_EFFORT, VOLATILE, KEEP_LAST 2: fits writers of every reliability. Or RELIABLE with a longer history.
+/// BEST_EFFORT, VOLATILE, KEEP_LAST 2: compatible with writers of any reliability. Or RELIABLE with a longer
+/// history.
 struct ReaderQos {
   bool reliable = false;
   int depth = 2;
@@ -96,9 +97,9 @@ class BytesReader {
   /// Throws Error.
   BytesReader(const Participant& participant, const std::string& topic, std::string_view ros_type,
               ReaderQos qos = {});
-  /// The next message; none where there is none now.
+  /// The next message; nullopt if there is none now.
   std::optional<ros::Bytes> take();
-  /// Messages that were sent and never came, or were replaced before they were taken.
+  /// Messages that were sent but not received, or replaced before they were taken.
   [[nodiscard]] std::uint64_t lost() const;
   [[nodiscard]] bool has_writer() const;
   [[nodiscard]] std::int32_t handle() const { return reader_.handle(); }
@@ -112,7 +113,7 @@ class BytesReader {
 class ReaderWait {
  public:
   ReaderWait(const Participant& participant, const std::vector<const BytesReader*>& readers);
-  /// False where nothing came in time.
+  /// False on timeout.
   bool wait(std::chrono::nanoseconds timeout) const;
 
  private:
@@ -133,7 +134,7 @@ class Reader : public BytesReader {
  public:
   Reader(const Participant& participant, const std::string& topic, ReaderQos qos = {})
       : BytesReader(participant, topic, M::kType, qos) {}
-  /// Throws Error where the bytes are no such message.
+  /// Throws Error if the bytes are not such a message.
   std::optional<M> take() {
     const std::optional<ros::Bytes> bytes = BytesReader::take();
     if (!bytes) return std::nullopt;

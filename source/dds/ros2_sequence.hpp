@@ -10,8 +10,8 @@
 namespace cairn::dds {
 
 /// "ros2:/stereo": /stereo/left/image_rect and /stereo/right/image_rect, with the rig of
-/// /stereo/left/camera_info and /stereo/right/camera_info, unless options.calib says it; with
-/// options.rectify the topics are image_raw. Waits for the first pair. Throws Error where none comes within
+/// /stereo/left/camera_info and /stereo/right/camera_info unless options.calib is given; with options.rectify
+/// the topics are image_raw. Waits for the first pair. Throws Error if none arrives within
 /// options.open_timeout_s.
 std::unique_ptr<io::Sequence> ros2_sequence(const std::string& source, const io::SourceOptions& options,
                                             const Pool& pool);

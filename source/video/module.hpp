@@ -7,7 +7,7 @@
 
 #include "../sequence.hpp"
 
-/// What the library and its module for videos say to each other. Both are made by one build.
+/// The interface between the library and its video module. Both belong to one build.
 namespace cairn::io {
 
 struct VideoRequest {
@@ -17,7 +17,7 @@ struct VideoRequest {
   Pool pool;
 };
 inline constexpr const char* kVideoEntry = "cairn_open_video";
-/// The function of that name: the caller owns what it returns. Throws Error.
+/// The function of that name: the caller owns the result. Throws Error.
 using VideoEntry = Sequence* (*)(const VideoRequest&);
 
 }  // namespace cairn::io
