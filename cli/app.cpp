@@ -17,12 +17,13 @@ std::string examples_text(const Command& command) {
 CommandLine declare_command_line() {
   CommandLine line;
   line.app = std::make_unique<CLI::App>(
-      "cairn: objects from a rectified stereo pair, with a reason for every pixel that was refused", "cairn");
+      "cairn: objects from a rectified stereo pair, with a reason for every rejected pixel", "cairn");
   line.app->set_version_flag("--version", std::string("cairn ") + CAIRN_VERSION);
   line.app->require_subcommand(0, 1);
   line.app->footer(
-      "cairn help COMMAND tells more of each, with examples.\n"
-      "Exit codes: 0 done, 1 the work failed, 2 bad usage, file or option (one line on stderr).");
+      "cairn help COMMAND describes each command, with examples.\n"
+      "Exit codes: 0 success, 1 the work failed, 2 bad usage, file or option (one line on "
+      "stderr).");
   for (const Command& command : kCommands) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.help);
     sub->footer("");  // not the parent's

@@ -35,7 +35,7 @@ struct BatchOptions {
 const std::string& run_folder(const BatchOptions& options) {
   if (options.paths.size() == 1) return options.paths.front();
   throw Error(options.action + ": found " + std::to_string(options.paths.size()) +
-              " folders, expected one, which cairn batch plan -o wrote");
+              " folders, expected one, written by cairn batch plan -o");
 }
 
 std::string count_of(std::size_t count, const char* thing) {
@@ -49,7 +49,7 @@ std::string duration_text(double seconds) {
 }
 
 int plan(const BatchOptions& options) {
-  if (options.output.empty()) throw Error("-o: is missing, expected the folder for the run");
+  if (options.output.empty()) throw Error("-o: missing, expected the folder for the run");
   BatchInputs inputs = options.inputs;
   inputs.paths = options.paths;
   const Pool pool = Pool::make();
@@ -76,7 +76,7 @@ class RowMaker {
         reader_({"default", run.config().string(), {}}, exec_),
         kept_(options.keep ? run.folder / "frames" : fs::path()) {
     if (run.sequences.empty()) return;
-    if (options.keep) throw Error("--keep: is of runs without --tracks");
+    if (options.keep) throw Error("--keep: the run has --tracks, expected a run without");
     tracks_.emplace(ConfigOptions{"default", run.config().string(), {}}, exec_);
   }
 
@@ -166,7 +166,7 @@ int status(const BatchOptions& options) {
 }
 
 int merge(const BatchOptions& options) {
-  if (options.output.empty()) throw Error("-o: is missing, expected the file for the rows");
+  if (options.output.empty()) throw Error("-o: missing, expected the file for the rows");
   const batch::Run run = batch::open_run(run_folder(options));
   batch::check_unchanged(run);
   const std::vector<batch::MissingFrames> missing = batch::missing_frames(run);
@@ -185,7 +185,7 @@ int merge(const BatchOptions& options) {
   constexpr int kIncomplete = 3;
   if (missing_count > 0 && !options.partial) {
     std::cerr << "cairn: " << missing_count << " of " << count_of(run.frames, "frame")
-              << " are missing, nothing is written (--partial: the others are)\n";
+              << " are missing, nothing is written (--partial writes the others)\n";
     return kIncomplete;
   }
   std::optional<batch::ZstdPacker> packer;
@@ -211,47 +211,46 @@ int act(const BatchOptions& options) {
 Work declare_batch(CLI::App& app) {
   auto options = std::make_shared<BatchOptions>();
   app.add_option("ACTION", options->action,
-                 "plan: list the frames of all inputs; work: find the objects of one shard's frames; status: "
-                 "how far the run is; merge: the rows of all shards as one file")
+                 "plan: list the frames of all inputs; work: process one shard; status: show progress; "
+                 "merge: write the rows of all shards to one file")
       ->required()
       ->check(CLI::IsMember({"plan", "work", "status", "merge"}).name(""))
       ->type_name("");
   app.add_option("PATH", options->paths,
-                 "of plan: inputs, each a folder of frames, a sequence, a video or LEFT,RIGHT; else the run")
+                 "plan: inputs (folder of frames, sequence, video or LEFT,RIGHT); others: folder of the "
+                 "run")
       ->required()
       ->type_name("");
   app.add_option("-o,--output", options->output,
-                 "of plan: new folder for the run; of merge: file for the rows, packed where it ends in .zst")
+                 "plan: new folder for the run; merge: file for the rows, compressed if .zst")
       ->type_name("PATH");
-  app.add_option("--calib", options->inputs.calib, "of plan: calibration; default: that beside the images")
+  app.add_option("--calib", options->inputs.calib, "plan: calibration; default: the one next to the images")
       ->type_name("FILE");
-  app.add_flag("--rectify", options->inputs.rectify,
-               "of plan: the images are raw, --calib says how to rectify them");
-  app.add_option("--layout", options->inputs.layout, "of plan: of videos: side_by_side or top_bottom")
+  app.add_flag("--rectify", options->inputs.rectify, "plan: rectification of raw images by --calib");
+  app.add_option("--layout", options->inputs.layout, "plan: layout of videos: side_by_side or top_bottom")
       ->type_name("NAME");
   app.add_option("--frames", options->inputs.frames,
-                 "of plan: only these of each input: FIRST:END or FIRST:END:STEP, or a number of first ones")
+                 "plan: frames of each input: FIRST:END, FIRST:END:STEP, or the number of first frames")
       ->type_name("A:B:STEP");
   app.add_flag("--tracks", options->inputs.tracks,
-               "of plan: follow each input as cairn follow does; a shard has whole inputs");
+               "plan: tracking as in cairn follow; shards then hold whole inputs");
   add_config_options(app, options->config);
   app.add_option("--shard", options->shard,
-                 "of work: the K-th of N parts of the run, K from 1; default: the task of a Slurm array, "
-                 "else 1/1")
+                 "work: part K of N, from 1; default: the Slurm array task, else 1/1")
       ->type_name("K/N");
   app.add_flag("--keep", options->keep,
-               "of work: also write each frame's result as cairn segment -o does, into RUN/frames");
-  app.add_flag("--partial", options->partial, "of merge: write what is there though frames are missing");
+               "work: results of each frame in RUN/frames, as from cairn segment -o");
+  app.add_flag("--partial", options->partial, "merge: output even if frames are missing");
   add_exec_options(app, options->exec);
   app.footer(
-      "A frame that cannot be used has a row with `error`; that is no failure of the work.\n"
-      "work may be killed and called again at any moment, any number of times: the rows are the same.\n"
-      "Exit codes: as of all commands, and 3 of merge where frames are missing.");
+      "An unusable frame gets a row with `error`; the work does not fail.\n"
+      "work may be killed and restarted at any time: the rows are the same.\n"
+      "Exit codes: as for all commands, and 3 from merge if frames are missing.");
   return [options, &app] {
     const auto of = [&](std::string_view action, const std::vector<const char*>& names) {
       for (const char* name : names) {
         if (options->action != action && app.count(name) > 0)
-          throw Error(std::string(name) + ": is of cairn batch " + std::string(action) + ", found " +
+          throw Error(std::string(name) + ": only for cairn batch " + std::string(action) + ", found " +
                       options->action);
       }
     };
@@ -259,7 +258,7 @@ Work declare_batch(CLI::App& app) {
     of("work", {"--shard", "--keep", "--threads", "--target"});
     of("merge", {"--partial"});
     if (!options->output.empty() && (options->action == "work" || options->action == "status"))
-      throw Error("-o: is of cairn batch plan and merge, found " + options->action);
+      throw Error("-o: only for cairn batch plan and merge, found " + options->action);
     return act(*options);
   };
 }

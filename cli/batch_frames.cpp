@@ -238,16 +238,17 @@ BatchReader::BatchReader(ConfigOptions config, const Exec& exec)
 void BatchReader::check(const PlannedFrame& frame) {
   const fs::path folder = folder_of(frame);
   if (!is_there(folder)) {
-    throw Error(folder.string() + ": is not there on this machine, and was when the run was planned: frame " +
-                frame.name + " is in it");
+    throw Error(folder.string() +
+                ": not found on this machine, but existed when the run was planned: frame " + frame.name +
+                " needs it");
   }
   const std::string calib = text_at(frame, "calib");
   if (calib.empty()) return;
   std::string& sum = calibrations_[calib];
   if (sum.empty()) sum = io::sha256(io::read_file(calib, io::kMostTextBytes));
   if (sum != text_at(frame, "calib_sha256"))
-    throw Error(calib + ": was changed since the run was planned, expected the calibration of frame " +
-                frame.name + " as it was, or a new plan");
+    throw Error(calib + ": changed since the run was planned, expected the calibration of frame " +
+                frame.name + " unchanged, or a new plan");
 }
 
 BatchFrame BatchReader::read(const PlannedFrame& frame) {

@@ -93,10 +93,10 @@ std::string named(const std::vector<std::string>& names) {
 }
 
 std::string too_few(const Sightings& sightings, const CalibrateOptions& options) {
-  return "--board " + options.board + ": all of its inner corners are seen in " +
+  return "--board " + options.board + ": all inner corners are visible in " +
          std::to_string(sightings.list.size()) + " of " + std::to_string(sightings.pairs()) +
          " pairs, expected at least " + std::to_string(io::kLeastSightings) +
-         ", better fifteen; a board of 10x7 squares has 9x6 inner corners";
+         ", preferably fifteen; a board of 10x7 squares has 9x6 inner corners";
 }
 
 /// Words against a side that is most likely in other units; "" for a good one.
@@ -149,13 +149,12 @@ int calibrate(const CalibrateOptions& options) {
 
 Work declare_calibrate(CLI::App& app) {
   auto options = std::make_shared<CalibrateOptions>();
-  app.add_option(
-         "FOLDER", options->folder,
-         "pairs of pictures of a checkerboard: left01.jpg and right01.jpg ..., left/ and right/, or a "
-         "folder for each pair")
+  app.add_option("FOLDER", options->folder,
+                 "image pairs of a checkerboard: left01.jpg and right01.jpg ..., left/ and right/, or one "
+                 "folder per pair")
       ->required()
       ->type_name("");
-  app.add_option("--board", options->board, "inner corners of the board, columns x rows: 9x6")
+  app.add_option("--board", options->board, "inner corners of the board, columns x rows, e.g. 9x6")
       ->required()
       ->type_name("CxR");
   app.add_option("--square", options->square_m, "side of a square in metres")
@@ -163,10 +162,10 @@ Work declare_calibrate(CLI::App& app) {
       ->check(CLI::Validator(judge_side, ""))
       ->type_name("METRES");
   app.add_option("-o,--output", options->output,
-                 "OpenCV YAML with both cameras (M1 D1 M2 D2 R T) and what rectifies them (R1 R2 P1 P2)")
+                 "OpenCV YAML with both cameras (M1 D1 M2 D2 R T) and their rectification (R1 R2 P1 P2)")
       ->type_name("FILE")
       ->capture_default_str();
-  app.footer("docs/use_your_own_camera.md leads from here to objects.");
+  app.footer("docs/use_your_own_camera.md describes the way from here to objects.");
   return [options] { return calibrate(*options); };
 }
 

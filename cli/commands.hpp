@@ -47,11 +47,11 @@ inline constexpr std::array kCommands{
             "cairn follow sequence/ --html -o result\n"
             "cairn follow sequence/ --map room.db --set tracking.min_hits=2\n",
             declare_follow},
-    Command{"live", "find and follow objects in what a camera sees, or in a recording as it was",
+    Command{"live", "find and follow objects in live camera images, or in a recording at its own pace",
             "cairn live sequence/ --pace 0 --json-lines\n"
             "cairn live sequence/ --every-frame --no-tracks --set objects.min_confidence=0.6\n",
             declare_live},
-    Command{"batch", "work on an archive in shards, on one machine or on many",
+    Command{"batch", "process an archive in shards, on one machine or on many",
             "cairn batch plan frames/ -o run\n"
             "cairn batch work run --shard 1/2\n"
             "cairn batch work run --shard 2/2\n"
@@ -62,23 +62,23 @@ inline constexpr std::array kCommands{
             "cairn disparity left.png right.png -o disparity.pfm --view disparity.png\n"
             "cairn disparity left.png right.png --calib calib.txt --ply cloud.ply\n",
             declare_disparity},
-    Command{"evaluate", "compare results with the truth",
+    Command{"evaluate", "compare results with the ground truth",
             "cairn evaluate results truth\n"
             "cairn evaluate results truth --html scores --json scores.json\n",
             declare_evaluate},
-    Command{"bench", "time each stage on a stereo pair, with OpenCV's matchers beside it",
+    Command{"bench", "time each stage on a stereo pair, next to OpenCV's matchers",
             "cairn bench left.png right.png --frames 5\n"
             "cairn bench --size 320x240 --frames 5 --preset paper\n",
             declare_bench},
-    Command{"tune", "search the options that do best on your own frames",
+    Command{"tune", "search for the options that do best on your own frames",
             "cairn tune frames/ --truth --budget 5s -o tuned.yaml\n", declare_tune},
-    Command{"doctor", "tell what is wrong with a rig: order, rows, synchrony, range, exposure, focus",
+    Command{"doctor", "find the faults of a rig: order, rows, synchrony, range, exposure, focus",
             "cairn doctor left.png right.png --calib calib.txt\n"
             "cairn doctor frames/ --strict --json doctor.json\n",
             declare_doctor},
-    Command{"calibrate", "find both raw cameras from pictures of a checkerboard",
+    Command{"calibrate", "calibrate both raw cameras from images of a checkerboard",
             "cairn calibrate boards/ --board 9x6 --square 0.025 -o calib.yaml\n", declare_calibrate},
-    Command{"rectify", "turn raw pictures into those of a rectified pair",
+    Command{"rectify", "rectify raw image pairs",
             "cairn rectify left.png right.png --calib calib.yaml --nearest 0.5 -o pair\n", declare_rectify},
     Command{"odometry", "estimate the camera's motion through a sequence, without objects",
             "cairn odometry sequence/ -o poses.tum\n"
@@ -86,7 +86,7 @@ inline constexpr std::array kCommands{
             declare_odometry},
     Command{"record", "write any sequence as a folder of frames, rectified and with stamps",
             "cairn record sequence/ --frames 1:4 -o recorded\n", declare_record},
-    Command{"map", "look at a map of landmarks, compare, merge and export it",
+    Command{"map", "show, compare, merge and export maps of landmarks",
             "cairn map show room.db\n"
             "cairn map check room.db\n"
             "cairn map export room.db --form geojson -o room.geojson\n"

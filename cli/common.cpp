@@ -24,9 +24,8 @@ namespace fs = std::filesystem;
 // ---- options ----
 
 void add_config_options(CLI::App& app, ConfigOptions& options) {
-  app.add_option("--preset", options.preset, "start from this preset: default or paper")
-      ->capture_default_str();
-  app.add_option("--config", options.file, "YAML file with options, as `cairn config` prints them")
+  app.add_option("--preset", options.preset, "preset to start from: default or paper")->capture_default_str();
+  app.add_option("--config", options.file, "YAML file of options, in the form of `cairn config`")
       ->type_name("FILE");
   app.add_option("--set", options.sets, "one option, e.g. match.window_size=9; may be repeated")
       ->type_name("NAME=VALUE")
@@ -80,7 +79,7 @@ ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrat
 
 void add_exec_options(CLI::App& app, ExecOptions& options) {
   constexpr int kMostThreads = 1024;
-  app.add_option("--threads", options.threads, "number of threads; 0 = one for each processor")
+  app.add_option("--threads", options.threads, "number of threads; 0 = one per processor")
       ->check(CLI::Range(0, kMostThreads).name(""))
       ->type_name("N")
       ->capture_default_str();
@@ -106,13 +105,13 @@ Exec make_exec(const ExecOptions& options) {
 
 void add_input_options(CLI::App& app, InputOptions& options) {
   app.add_option("LEFT", options.left,
-                 "left picture of a rectified pair, or a folder with left.png and right.png")
+                 "left image of a rectified pair, or a folder with left.png and right.png")
       ->required()
       ->type_name("");
-  app.add_option("RIGHT", options.right, "right picture; not with a folder")->type_name("");
+  app.add_option("RIGHT", options.right, "right image; not with a folder")->type_name("");
   app.add_option("--calib", options.calib,
-                 "calibration; default: calib.txt beside the left picture, else ../gt/calib.txt, else none: "
-                 "no metres")
+                 "calibration; default: calib.txt next to the left image, else ../gt/calib.txt, else "
+                 "none: no metres")
       ->type_name("FILE");
   add_config_options(app, options.config);
 }
@@ -201,13 +200,13 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   }
   if (options.right.empty() && options.disparity.empty() && fs::exists(options.left, ignored)) {
     if (is_recording(options.left)) {
-      throw Error(options.left + ": is a recording, expected pictures (cairn record " + options.left +
-                  " -o DIR makes a folder of frames of it; cairn follow and cairn live read it as it is)");
+      throw Error(options.left + ": is a recording, expected images (cairn record " + options.left +
+                  " -o DIR converts it to a folder of frames; cairn follow and cairn live read it directly)");
     }
-    throw Error(options.left + ": a left picture alone, expected the right one as well");
+    throw Error(options.left + ": found a left image, but no right image");
   }
   if (options.right.empty() && options.disparity.empty()) {
-    throw Error(options.left + ": is not there, expected a file or a folder");
+    throw Error(options.left + ": no such file or folder");
   }
   std::vector<io::FrameFiles> frames{frame_of_files(options)};
   if (!options.disparity.empty()) check_maps(frames, options);
@@ -216,7 +215,7 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
 
 const fs::path& right_of(const io::FrameFiles& files) {
   if (files.right) return *files.right;
-  throw Error(files.left.string() + ": there is no right picture" +
+  throw Error(files.left.string() + ": no right image" +
               (files.expected_right.empty() ? "" : ", expected " + files.expected_right.string()));
 }
 
@@ -279,8 +278,8 @@ Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
 std::string remark_on_calibration(const LoadedFrame& loaded) {
   if (!loaded.raw_calibration) return {};
   return "cairn: " + loaded.raw_calibration->string() +
-         ": describes raw cameras and their distortion; nothing is rectified here, so the pictures must be "
-         "(cairn rectify makes them, with a calib.txt of theirs)\n";
+         ": describes raw cameras and their distortion; images are not rectified here and must be "
+         "(cairn rectify does, and writes their calib.txt)\n";
 }
 
 Stopwatch::Stopwatch(Exec& exec) : exec_(exec) {
@@ -364,7 +363,7 @@ std::string Table::text() const {
 }
 
 void LeftOut::add(const std::string& frame, const std::string& why) {
-  std::string line = "cairn: frame " + frame + " is left out: " + why;
+  std::string line = "cairn: frame " + frame + " is skipped: " + why;
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::cerr << line << "\n";
   frames_.push_back(frame);
@@ -373,7 +372,7 @@ void LeftOut::add(const std::string& frame, const std::string& why) {
 int LeftOut::exit_code(std::size_t frames_in_all) const {
   if (frames_.empty()) return 0;
   std::cout.flush();
-  std::cerr << "cairn: " << frames_.size() << " of " << frames_in_all << " frames left out\n";
+  std::cerr << "cairn: " << frames_.size() << " of " << frames_in_all << " frames skipped\n";
   return 2;
 }
 

@@ -38,17 +38,11 @@ std::string markdown(const std::vector<OptionInfo>& options) {
 Work declare_config(CLI::App& app) {
   auto show = std::make_shared<ShowOptions>();
   add_config_options(app, show->config);
-  app.add_flag(
-      "--markdown", show->markdown,
-      "a table of all options for the reference page, those without effect as well, instead of YAML that "
-      "--config reads");
-  app.add_flag(
-         "--changed", show->changed,
-         "only the preset's name and the options that differ from it, so that all others keep following "
-         "the calibration and later versions")
+  app.add_flag("--markdown", show->markdown,
+               "table of all options, including those without effect, instead of YAML");
+  app.add_flag("--changed", show->changed, "only the preset and the options that differ from it")
       ->excludes("--markdown");
-  app.add_flag("--sequence", show->sequence,
-               "the options that `cairn follow` reads beside those of a frame, instead of these")
+  app.add_flag("--sequence", show->sequence, "only the options that `cairn follow` adds for sequences")
       ->excludes("--changed");
   return [show] {
     if (show->sequence) {

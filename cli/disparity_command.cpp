@@ -29,10 +29,10 @@ struct DisparityOptions {
 void check_output(const std::string& output, const MatchConfig& config) {
   const std::string extension = std::filesystem::path(output).extension().string();
   if (extension != ".png" && extension != ".pfm") {
-    throw Error(output + ": a disparity map is written as .png or .pfm");
+    throw Error(output + ": unknown format of a disparity map, expected .png or .pfm");
   }
   if (extension == ".png" && !io::png_can_hold(config.min_disparity, config.num_disparities)) {
-    throw Error(output + ": 16-bit PNG holds disparities from 0 to below 256, the search range is " +
+    throw Error(output + ": 16-bit PNG holds disparities from 0 to below 256, found the search range " +
                 std::to_string(config.min_disparity) + " to " +
                 std::to_string(config.min_disparity + config.num_disparities - 1) + "; write a .pfm");
   }
@@ -40,15 +40,15 @@ void check_output(const std::string& output, const MatchConfig& config) {
 
 void check_png(const std::string& output, const char* what) {
   if (std::filesystem::path(output).extension().string() != ".png") {
-    throw Error(output + ": " + what + " is written as .png");
+    throw Error(output + ": unknown format of " + what + ", expected .png");
   }
 }
 
 void check_ply(const std::string& output, const LoadedFrame& frame) {
   if (std::filesystem::path(output).extension().string() != ".ply") {
-    throw Error(output + ": a point cloud is written as .ply");
+    throw Error(output + ": unknown format of a point cloud, expected .ply");
   }
-  if (!frame.rig) throw Error("--ply: a point cloud is in metres; give a calibration with --calib");
+  if (!frame.rig) throw Error("--ply: found no calibration, expected --calib (a point cloud is in metres)");
 }
 
 std::string describe(const SceneDisparity& scene, const LoadedFrame& loaded, double milliseconds,
@@ -85,7 +85,7 @@ int estimate(const DisparityOptions& options) {
   std::cerr << remark_on_calibration(loaded);
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
   if (!options.confidence.empty()) check_png(options.confidence, "the confidence");
-  if (!options.view.empty()) check_png(options.view, "the picture of the disparity");
+  if (!options.view.empty()) check_png(options.view, "the view");
   if (!options.ply.empty()) check_ply(options.ply, loaded);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(
@@ -112,15 +112,15 @@ Work declare_disparity(CLI::App& app) {
   add_input_options(app, options->input);
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
-                 "file.png: 16 bits, disparity x 256, 0 = hole; file.pfm: float, inf = hole")
+                 "disparity: file.png (16 bits, disparity x 256, 0 = hole) or file.pfm (float, inf = hole)")
       ->type_name("FILE");
   app.add_option("--confidence", options->confidence,
-                 "file.png: 8 bits, how likely each disparity is within 1 px x 255, 0 = hole")
+                 "file.png: confidence of each disparity x 255 (8 bits), 0 = hole")
       ->type_name("FILE");
   app.add_option("--view", options->view,
-                 "file.png: the disparity in colours to look at, holes in those of their reasons, a legend")
+                 "file.png: disparity in colours, holes coloured by reason, with a legend")
       ->type_name("FILE");
-  app.add_option("--ply", options->ply, "file.ply: coloured points in metres; needs a calibration")
+  app.add_option("--ply", options->ply, "file.ply: coloured point cloud in metres; needs a calibration")
       ->type_name("FILE");
   return [options] { return estimate(*options); };
 }

@@ -58,7 +58,7 @@ std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examine
     examined.size = left;
     examined.findings.push_back({FindingKind::sizes, Severity::broken,
                                  static_cast<double>(right.area()) / static_cast<double>(left.area()),
-                                 "the left picture is " + text(left) + ", the right one " + text(right)});
+                                 "the left image is " + text(left) + ", the right one " + text(right)});
     return std::nullopt;
   }
 }
@@ -81,7 +81,7 @@ io::Calibration calibration_or_find(const io::FrameFiles& files, const std::stri
     examined.findings.push_back({FindingKind::calibration, Severity::broken,
                                  static_cast<double>(calibration.image_size->width),
                                  "the calibration is of " + text(*calibration.image_size) +
-                                     " pictures, these are " + text(*examined.size)});
+                                     " images, these are " + text(*examined.size)});
     calibration.rig.reset();
   }
   return calibration;
@@ -103,11 +103,10 @@ void examine_rectification(Examined& examined) {
   examined.findings.push_back(
       {FindingKind::raw_calibration, is_unknown ? Severity::note : Severity::warning,
        static_cast<double>(std::abs(measured.offset_rows)),
-       is_unknown
-           ? "the file describes the cameras' distortion, and whether the pictures were rectified with it "
-             "cannot be seen"
-           : "the file describes the cameras' distortion, and the pictures do not seem to be rectified "
-             "with it"});
+       is_unknown ? "the file describes the distortion of the cameras; whether the images were rectified "
+                    "with it cannot be determined"
+                  : "the file describes the distortion of the cameras, and the images do not seem to be "
+                    "rectified with it"});
 }
 
 Examined examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
@@ -229,7 +228,7 @@ void explain_rows(Diagnosis& diagnosis) {
     if (finding.kind != FindingKind::rectification && finding.kind != FindingKind::rows) continue;
     if (!std::all_of(finding.frames.begin(), finding.frames.end(), is_out_of_step)) continue;
     finding.severity = Severity::note;
-    finding.says += "; these pairs are out of step, which alone can do that";
+    finding.says += "; these pairs are out of step, which alone can cause this";
   }
 }
 
@@ -280,7 +279,7 @@ Diagnosis examine_all(const DoctorOptions& options) {
       findings.push_back(diagnosis.pairs.back().findings);
     }
   }
-  if (diagnosis.pairs.empty()) throw Error(options.input.left + ": not one of its pairs can be used");
+  if (diagnosis.pairs.empty()) throw Error(options.input.left + ": none of its pairs can be used");
   diagnosis.findings = united(findings);
   const auto add = [&](const std::optional<Finding>& finding) {
     if (!finding) return;
@@ -323,19 +322,19 @@ struct Number {
 constexpr std::array kNumbers{
     Number{"textured_points", "textured points", "%.0f",
            [](const PairMeasures& m) { return double(m.textured_points); }},
-    Number{"found_points", "found in both pictures", "%.0f",
+    Number{"found_points", "found in both images", "%.0f",
            [](const PairMeasures& m) { return double(m.rows.points); }},
     Number{"agreeing_percent", "agree on one geometry, %", "%.0f",
            [](const PairMeasures& m) { return 100 * m.rows.agreeing_share(); }},
-    Number{"offset_rows", "right picture lower, rows", "%+.2f",
+    Number{"offset_rows", "right image lower, rows", "%+.2f",
            [](const PairMeasures& m) { return double(m.rows.offset_rows); }},
-    Number{"roll_degrees", "right picture turned, degrees", "%+.3f",
+    Number{"roll_degrees", "right image rotated, degrees", "%+.3f",
            [](const PairMeasures& m) { return kDegrees * std::atan(double(m.rows.rows_per_px)); }},
-    Number{"left_over_rows", "left over, rows", "%.2f",
+    Number{"left_over_rows", "remaining, rows", "%.2f",
            [](const PairMeasures& m) { return double(m.rows.left_over_rows); }},
     Number{"furthest_px", "disparity, 1 % below, px", "%.1f",
            [](const PairMeasures& m) { return m.disparity_px(0.01); }},
-    Number{"median_px", "disparity, middle, px", "%.1f",
+    Number{"median_px", "disparity, median, px", "%.1f",
            [](const PairMeasures& m) { return m.disparity_px(0.5); }},
     Number{"nearest_px", "disparity, 1 % above, px", "%.1f",
            [](const PairMeasures& m) { return m.disparity_px(0.99); }},
@@ -463,7 +462,7 @@ std::vector<Omission> omissions(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.pairs.size(); ++i) {
     for (const NotChecked& one : diagnosis.pairs[i].not_checked) add(one, i);
     if (!diagnosis.pairs[i].measures)
-      add({"everything but the sizes", "the two pictures differ in size", false}, i);
+      add({"everything but the sizes", "the two images differ in size", false}, i);
   }
   const auto frames = diagnosis.sequence ? diagnosis.sequence->synchrony.frames : 1;
   if (diagnosis.pairs_in_all == 1 || frames < Synchrony::kLeastFrames) {
@@ -622,28 +621,26 @@ Work declare_doctor(CLI::App& app) {
   auto options = std::make_shared<DoctorOptions>();
   add_input_options(app, options->input);
   add_exec_options(app, options->exec);
-  app.add_option("--frames", options->frames, "how many pairs of a folder are measured, spread evenly")
+  app.add_option("--frames", options->frames, "number of pairs of a folder to measure, spread evenly")
       ->check(CLI::Range(1, 100000).name(""))
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--json", options->json, "also write findings and measurements into this file, as JSON")
-      ->type_name("FILE");
-  app.add_flag("--strict", options->strict, "exit with 1 for a warning, too");
+  app.add_option("--json", options->json, "JSON file for findings and measurements")->type_name("FILE");
+  app.add_flag("--strict", options->strict, "exit code 1 for warnings too");
   app.add_flag_callback(
          "--explain",
          [] {
            std::cout << explanation();
            throw CLI::Success();
          },
-         "print every finding with its number and remedy, and every limit, and do nothing else")
+         "list of all findings with measured quantity and remedy, and of all limits")
       ->trigger_on_parse();
   app.footer(
-      "Says what is wrong with the rig: each finding with what was measured and what to do.\n"
-      "The last line is the verdict; above it stand what was measured, the findings, and what could not be "
-      "checked and why.\n"
-      "Exit codes: 0 nothing is broken, 1 something is (with --strict: or is a warning), 2 bad usage, file "
-      "or "
-      "option.\n"
+      "Lists the faults of the rig, each with the measured value and the remedy.\n"
+      "The last line is the verdict; above it are the measurements, the findings, and the "
+      "checks that were not possible, with the reason.\n"
+      "Exit codes: 0 nothing is broken, 1 something is (with --strict: or a warning), 2 bad "
+      "usage, file or option.\n"
       "docs/doctor.md explains each finding.");
   return [options] { return examine_and_tell(*options); };
 }

@@ -146,8 +146,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
   }
   if (result.disparity && truth.disparity) score_disparity(result, truth, options.skip_left, score);
   if (!score.objects && !score.all) {
-    throw Error(truth.folder.string() + ": has the truth of nothing that the result " + result.name +
-                " holds");
+    throw Error(truth.folder.string() + ": has no truth for the result " + result.name + " holds");
   }
   if (options.wants_times() && result.json) score.times = load_times(*result.json);
   if (options.html) score.page = encode_frame(result, truth);
@@ -208,8 +207,7 @@ Scores score_all(const std::string& run, const EvaluateOptions& options) {
   });
   if (results.empty()) {
     const std::string& name = scores.without_truth.front();
-    throw Error((fs::path(options.truth) / name).string() + ": no such folder, but there is a result " +
-                name);
+    throw Error((fs::path(options.truth) / name).string() + ": no such folder, but found a result " + name);
   }
   scores.results = results.size();
   for (const ResultFiles& result : results) {
@@ -220,7 +218,7 @@ Scores score_all(const std::string& run, const EvaluateOptions& options) {
       scores.left_out.add(result.name, error.what());
     }
   }
-  if (scores.frames.empty()) throw Error(run + ": not one of its results can be scored");
+  if (scores.frames.empty()) throw Error(run + ": none of its results can be scored");
   for (const auto& entry : fs::directory_iterator(options.truth)) {
     const std::string name = entry.path().filename().string();
     if (!seen.contains(name) && name != "gt" && has_truth(entry.path()))
@@ -352,7 +350,7 @@ std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOp
     all += "precision           not known: the truth is partial\n";
   }
   all += "E                   mean " + percent(s.mean_error) + "   median " + percent(s.median_error) +
-         "   (counted as 200 % at most; " + std::to_string(s.missed) + " reach that)\n";
+         "   (capped at 200 %; " + std::to_string(s.missed) + " reach that)\n";
   all += "IoU                 mean " + text_of("%.3f", s.mean_iou) + "\n";
   all += "boundary F          mean " + text_of("%.3f", s.mean_boundary_f) + "   of those found " +
          text_of("%.3f", s.mean_boundary_f_found) + "   (within " + tolerance + " px)\n";
@@ -378,7 +376,7 @@ std::string disparity_block(const char* title, const DisparityErrors& e, const s
   };
   all += "  density           " + percent(e.density()) + " of " + std::to_string(e.known) + " pixels\n";
   bad("  of the matched    ", [&](std::size_t t) { return e.bad_of_matched(t); });
-  bad("  holes count, too  ", [&](std::size_t t) { return e.bad_of_known(t); });
+  bad("  with holes        ", [&](std::size_t t) { return e.bad_of_known(t); });
   all += "  off by            mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
          text_of("%.3f px", e.root_mean_square_px()) + "   within 1 px RMS " +
          text_of("%.3f px", e.sigma_px()) + "\n";
@@ -721,8 +719,8 @@ std::string frames_that_differ(const std::vector<Run>& runs) {
 int compare(const EvaluateOptions& options) {
   for (const auto& [asked, name] : {std::pair{options.json, "--json"}, {options.html, "--html"}}) {
     if (asked) {
-      throw Error(std::string(name) + " " + *asked + ": is of one run, found " +
-                  std::to_string(options.results.size()) + "; --csv takes several");
+      throw Error(std::string(name) + " " + *asked + ": needs one run, found " +
+                  std::to_string(options.results.size()) + "; --csv accepts several");
     }
   }
   std::vector<Run> runs;
@@ -747,9 +745,9 @@ std::optional<int> evaluate_over_time(const EvaluateOptions& options) {
   };
   const bool trajectories =
       !options.sequence && std::all_of(options.results.begin(), options.results.end(), is_trajectory);
-  if (options.tentative && !options.sequence) throw Error("--tentative: is read with --sequence alone");
+  if (options.tentative && !options.sequence) throw Error("--tentative: needs --sequence");
   if (!options.sequence && !trajectories) return std::nullopt;
-  if (options.html) throw Error("--html " + *options.html + ": is of single frames, found a sequence");
+  if (options.html) throw Error("--html " + *options.html + ": needs single frames, found a sequence");
   const EvaluateSequenceOptions over_time{options.results,   options.truth, options.objects.min_area,
                                           options.tentative, options.json,  options.csv};
   return trajectories ? evaluate_trajectory(over_time) : evaluate_sequence(over_time);
@@ -760,7 +758,7 @@ int evaluate(EvaluateOptions& options) {
   options.truth = options.results.back();
   options.results.pop_back();
   if (options.results.empty())
-    throw Error("TRUTH: found none behind " + options.truth + ", expected RESULT and then TRUTH");
+    throw Error("TRUTH: found none after " + options.truth + ", expected RESULT and then TRUTH");
   if (const std::optional<int> code = evaluate_over_time(options)) return *code;
   if (options.results.size() > 1) return compare(options);
   std::vector<Run> runs;
@@ -783,42 +781,39 @@ int evaluate(EvaluateOptions& options) {
 
 Work declare_evaluate(CLI::App& app) {
   auto options = std::make_shared<EvaluateOptions>();
-  app.add_option(
-         "RESULT", options->folders,
-         "one RESULT or more, which are put side by side, then TRUTH. RESULT: what cairn segment -o wrote, "
-         "one frame's folder or a folder of them; TRUTH: folder with objects.png and/or disp_left.png (or "
-         "../gt beside it), a folder of such folders, or KITTI's. Or trajectories: files of poses in "
-         "TUM's, KITTI's or EuRoC's form; TRUTH may be a folder of frames with pose.txt")
+  app.add_option("RESULT", options->folders,
+                 "one or more RESULT to compare, then TRUTH. RESULT: output of cairn segment -o, one "
+                 "frame or a folder of frames; TRUTH: folder with objects.png and/or disp_left.png (or "
+                 "../gt next to it), a folder of such folders, or KITTI's. Or trajectories: pose files in "
+                 "the form of TUM, KITTI or EuRoC; TRUTH may be a folder of frames with pose.txt")
       ->required()
       ->type_name("");
-  app.add_option("--min-area", options->objects.min_area, "px; smaller true objects are not scored")
+  app.add_option("--min-area", options->objects.min_area, "smallest true object that is scored, px")
       ->check(CLI::Range(1, 1 << 30).name(""))
       ->type_name("PX")
       ->capture_default_str();
   app.add_option("--boundary-tolerance", options->objects.boundary_tolerance,
-                 "% of the image's diagonal that boundaries may lie apart; at least 1 px")
+                 "largest boundary distance of a match, % of the image diagonal, at least 1 px")
       ->check(CLI::Range(0.0F, 10.0F).name(""))
       ->type_name("PERCENT")
       ->capture_default_str();
-  app.add_option("--skip-left", options->skip_left, "leave out the left N columns of disparities")
+  app.add_option("--skip-left", options->skip_left, "number of columns skipped at the left of disparities")
       ->check(CLI::Range(0, 1 << 20).name(""))
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--sequence", options->sequence,
-               "RESULT is of cairn follow, or MOTS text; TRUTH its folder of frames, or MOTS text");
-  app.add_flag("--tentative", options->tentative, "with --sequence: count unconfirmed tracks, too");
-  app.add_option("--json", options->json, "also write the whole evaluation into this file, as JSON")
-      ->type_name("FILE");
-  app.add_option("--html", options->html,
-                 "also write evaluation.html into this folder: one page, to look at in a browser")
+               "RESULT from cairn follow or MOTS text; TRUTH: its folder of frames or MOTS text");
+  app.add_flag("--tentative", options->tentative, "unconfirmed tracks included; needs --sequence");
+  app.add_option("--json", options->json, "JSON file for the whole evaluation")->type_name("FILE");
+  app.add_option("--html", options->html, "folder for evaluation.html, a page for the browser")
       ->type_name("DIR");
-  app.add_option("--csv", options->csv, "also write one row for each run into this file")->type_name("FILE");
+  app.add_option("--csv", options->csv, "CSV file with one row per run")->type_name("FILE");
   app.footer(
-      "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true objects found "
-      "with\n"
-      "IoU >= 0.5, objects of ours, those of them with IoU >= 0.5, phantoms, and disparity where both "
-      "cameras see.\n"
-      "docs/evaluation.md defines each word.");
+      "Columns of the table: E of each true object by its id (Eq. 5, 1/IoU - 1, in %), true "
+      "objects found with\n"
+      "IoU >= 0.5, found objects, those of them with IoU >= 0.5, phantoms, and disparity of "
+      "pixels seen by both cameras.\n"
+      "docs/evaluation.md defines the terms.");
   return [options] { return evaluate(*options); };
 }
 

@@ -338,8 +338,8 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
 
 int evaluate_sequence(const EvaluateSequenceOptions& options) {
   if (options.json && options.results.size() > 1)
-    throw Error("--json " + *options.json + ": is of one run, found " +
-                std::to_string(options.results.size()) + "; --csv takes several");
+    throw Error("--json " + *options.json + ": needs one run, found " +
+                std::to_string(options.results.size()) + "; --csv accepts several");
   const io::TrueSequence truth = io::load_truth(options.truth);
   std::vector<SequenceScores> runs;
   for (const std::string& result : options.results)
@@ -364,8 +364,8 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
 
 int evaluate_trajectory(const EvaluateSequenceOptions& options) {
   if (options.json && options.results.size() > 1)
-    throw Error("--json " + *options.json + ": is of one run, found " +
-                std::to_string(options.results.size()) + "; --csv takes several");
+    throw Error("--json " + *options.json + ": needs one run, found " +
+                std::to_string(options.results.size()) + "; --csv accepts several");
   const io::Trajectory truth = io::load_trajectory(options.truth);
   std::vector<std::pair<std::string, Json>> summaries;
   std::string text;

@@ -44,7 +44,7 @@ void PassingFindings::tell() const {
   }
   if (doubtful_ == 0) return;
   std::cerr << "cairn: note: " << doubtful_
-            << " more frames have next to no rows or disparities in common; cairn "
+            << " more frames have hardly any common rows or disparities; cairn "
             << "doctor measures them\n";
 }
 

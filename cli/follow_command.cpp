@@ -182,10 +182,10 @@ std::optional<fs::path> named(const std::string& file) {
 io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& source) {
   refuse_two_priors(options.odometry, options.imu);
   if (!options.poses.empty() && !(options.odometry.empty() && options.imu.empty()))
-    throw Error("--poses: tells the motion itself; not with --odometry or --imu");
-  if (options.map_read_only && options.map.empty()) throw Error("--read-only: is of --map FILE.db");
+    throw Error("--poses: already gives the motion, expected neither --odometry nor --imu");
+  if (options.map_read_only && options.map.empty()) throw Error("--read-only: needs --map FILE.db");
   const std::optional<Pose> start = start_in_map(options.start);
-  if (start && options.map.empty()) throw Error("--start: is a place in --map FILE.db");
+  if (start && options.map.empty()) throw Error("--start: needs --map FILE.db");
   if (!source.rig()) {
     for (const auto& [given, name] : {std::pair{!options.map.empty(), "--map"},
                                       {!options.odometry.empty(), "--odometry"},
@@ -193,7 +193,7 @@ io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& 
                                       {!options.scan.empty(), "--scan"},
                                       {!options.poses.empty(), "--poses"}}) {
       if (given)
-        throw Error(std::string(name) + ": is in metres, and " + source.name() +
+        throw Error(std::string(name) + ": needs metres, but " + source.name() +
                     " has no calibration with a baseline; give one with --calib");
     }
   }
@@ -211,7 +211,7 @@ void check_output(const FollowOptions& options) {
   for (const auto& [wanted, name] :
        {std::pair{options.frames_out, "--frames-out"}, {options.html, "--html"}}) {
     if (wanted && options.output.empty())
-      throw Error(std::string(name) + ": needs -o DIR, the folder to write into");
+      throw Error(std::string(name) + ": needs -o DIR, the folder for output");
   }
   std::error_code ignored;
   if (options.output.empty() || !fs::is_directory(options.source.source, ignored)) return;
@@ -219,7 +219,7 @@ void check_output(const FollowOptions& options) {
   const std::string into = fs::weakly_canonical(options.output, ignored).string() + "/";
   if (into.starts_with(from) || into + "/" == from)
     throw Error("-o " + options.output +
-                ": lies in the source, whose frames it would be taken for; give another folder");
+                ": is inside the source and would be read as frames, expected another folder");
 }
 
 Json event_json(const LandmarkEvent& event, const Landmarked& marked, int frame) {
@@ -246,8 +246,8 @@ Json control_json(const ControlEvent& event, const Step& step) {
 }
 
 std::string control_line(const ControlEvent& event) {
-  return "steadier would be " + event.arm.option + "=" + event.arm.value + " (is " + event.before + "), by " +
-         percent(event.lead);
+  return "steadier setting: " + event.arm.option + "=" + event.arm.value + " (now " + event.before +
+         "), by " + percent(event.lead);
 }
 
 Json unreliable_json(const Step& step) {
@@ -371,9 +371,8 @@ int follow(const FollowOptions& options) {
                          io::FollowPageHead{source->name(), source->image_size(), source->rig()});
   }
   if (!source->rig()) {
-    std::cerr
-        << "cairn: " << source->name()
-        << ": no calibration with a baseline, so there are ids in the picture, but no metres and no motion\n";
+    std::cerr << "cairn: " << source->name()
+              << ": no calibration with a baseline: tracks in the image only, without metres and motion\n";
   }
   const EndsBySignal ends(*source);
   catch_interrupts();
@@ -403,34 +402,29 @@ Work declare_follow(CLI::App& app) {
   auto options = std::make_shared<FollowOptions>();
   add_source_options(app, options->source);
   app.add_option("--odometry", options->odometry,
-                 "what wheels say of the motion: a table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM "
-                 "or KITTI")
+                 "wheel odometry: table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM or KITTI")
       ->type_name("FILE");
-  app.add_option("--imu", options->imu, "a gyroscope's rates, as EuRoC has them")->type_name("FILE");
-  app.add_option("--poses", options->poses,
-                 "the camera's poses, of a robot that knows them (TUM); no motion is estimated")
+  app.add_option("--imu", options->imu, "gyroscope rates in the form of EuRoC")->type_name("FILE");
+  app.add_option("--poses", options->poses, "known camera poses (TUM), used instead of motion estimation")
       ->type_name("FILE");
   app.add_option("--scan", options->scan,
-                 "a laser's scans, to judge the disparities by: a table of stamp, angle_min, "
-                 "angle_increment, r0, ...")
+                 "laser scans to check disparities: table of stamp, angle_min, angle_increment, r0, ...")
       ->type_name("FILE");
-  app.add_option("--map", options->map,
-                 "map of landmarks to recognise and to add to; made where it is not there")
+  app.add_option("--map", options->map, "map of landmarks to use and extend; created if absent")
       ->type_name("FILE.db");
-  app.add_flag("--read-only", options->map_read_only, "the map stays as it is");
+  app.add_flag("--read-only", options->map_read_only, "no changes to the map");
   app.add_option("--start", options->start,
-                 "where in the map the run begins, in m and degrees to the left; else it is found out")
+                 "start pose in the map, m and degrees counter-clockwise; default: found by landmarks")
       ->type_name("X,Y,DEG");
   add_config_options(app, options->config);
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
-                 "folder for tracks.jsonl, poses.tum, tracks.mots.txt, events.jsonl, summary.json")
+                 "output folder for tracks.jsonl, poses.tum, tracks.mots.txt, events.jsonl, summary.json")
       ->type_name("DIR");
-  app.add_flag("--frames-out", options->frames_out, "a folder for each frame, with tracks.png");
-  app.add_flag("--html", options->html,
-               "also write follow.html into DIR: a page that plays the run, to look at in a browser");
+  app.add_flag("--frames-out", options->frames_out, "one folder per frame, with tracks.png");
+  app.add_flag("--html", options->html, "follow.html in DIR: a page for the browser that plays the run");
   app.add_flag("--json-lines", options->json_lines,
-               "print each frame's line of tracks.jsonl instead of a summary");
+               "lines of tracks.jsonl on standard output instead of a summary");
   return [options] { return follow(*options); };
 }
 

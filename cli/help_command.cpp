@@ -22,7 +22,7 @@ std::string unknown_command(const std::string& name) {
 
 Work declare_help(CLI::App& app) {
   auto name = std::make_shared<std::string>();
-  app.add_option("COMMAND", *name, "one of cairn's commands; without it, all are listed")->type_name("");
+  app.add_option("COMMAND", *name, "command to describe; default: list of all commands")->type_name("");
   return [name] {
     const CommandLine line =
         declare_command_line();  // one where no command was chosen: CLI11 shows that one's

@@ -79,7 +79,7 @@ std::string JsonLines::summary() const {
   const std::lock_guard lock(mutex_);
   return skipped_ == 0
              ? ""
-             : "stdout: " + std::to_string(skipped_) + " lines left out, because they were read too slowly";
+             : "stdout: " + std::to_string(skipped_) + " lines dropped, because they were read too slowly";
 }
 
 bool JsonLines::is_closed() const {

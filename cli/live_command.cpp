@@ -46,7 +46,7 @@ class StatusLine : public live::Sink {
     const double age = std::chrono::duration<double, std::milli>(frame->done - frame->arrived).count();
     const std::string words =
         frame->pair->name + ": " + std::to_string(frame->step.frame.objects.list.size()) + " objects, " +
-        text_of("%.1f Hz, ", frame->rate_hz) + text_of("%.0f ms from picture to objects", age) +
+        text_of("%.1f Hz, ", frame->rate_hz) + text_of("%.0f ms from image to objects", age) +
         (frame->source.is_connected ? "" : ", NOT CONNECTED: " + frame->source.trouble);
     progress_.bar(0, words);
   }
@@ -68,21 +68,21 @@ void check(const LiveCommandOptions& options) {
   if (!(options.duration_s >= 0 && options.duration_s <= 1e9))
     refuse("--duration", options.duration_s, "s, 0 ... 1e9 (0: until the source ends)");
   if (options.no_tracks && !options.map.empty())
-    throw Error("--map: found --no-tracks as well, and without tracks there are no landmarks");
-  if (options.map_read_only && options.map.empty()) throw Error("--read-only: is of --map FILE.db");
+    throw Error("--map: found --no-tracks as well, but landmarks need tracks");
+  if (options.map_read_only && options.map.empty()) throw Error("--read-only: needs --map FILE.db");
 }
 
 std::string summary_text(const live::LiveSummary& summary) {
   std::string text = std::to_string(summary.frames) + " frames in " + text_of("%.1f s", summary.seconds);
   if (summary.frames > 0) {
     text += ", " + text_of("%.1f Hz", static_cast<double>(summary.frames) / summary.seconds) +
-            "; from picture to objects " + text_of("%.1f ms", summary.p50_ms) + " (p99 " +
+            "; from image to objects " + text_of("%.1f ms", summary.p50_ms) + " (p99 " +
             text_of("%.1f", summary.p99_ms) + ", at most " + text_of("%.1f", summary.max_ms) + ")";
   }
   text += "\n";
   const auto& [at_source, replaced, too_old] = summary.drops;
   if (at_source + replaced + too_old > 0) {
-    text += "not worked on: " + std::to_string(replaced) + " because a newer pair was there, " +
+    text += "not processed: " + std::to_string(replaced) + " replaced by a newer pair, " +
             std::to_string(too_old) + " too old, " + std::to_string(at_source) + " lost at the source\n";
   }
   return text;
@@ -157,25 +157,25 @@ int live_command(LiveCommandOptions options) {
 Work declare_live(CLI::App& app) {
   auto options = std::make_shared<LiveCommandOptions>();
   add_source_options(app, options->source);
-  app.add_option("--map", options->map, "map of landmarks to recognise and to add to")->type_name("FILE.db");
-  app.add_flag("--read-only", options->map_read_only, "the map stays as it is");
-  app.add_flag("--no-tracks", options->no_tracks, "each frame by itself, as cairn segment has it");
+  app.add_option("--map", options->map, "map of landmarks to use and extend")->type_name("FILE.db");
+  app.add_flag("--read-only", options->map_read_only, "no changes to the map");
+  app.add_flag("--no-tracks", options->no_tracks, "single frames without tracking, as in cairn segment");
   app.add_flag("--every-frame", options->every_frame,
-               "drop none, however long it takes; else a newer pair replaces the one that waits");
+               "processing of every frame; default: a newer pair replaces a waiting one");
   app.add_option("--max-age", options->max_age_ms,
-                 "drop pairs of a camera that are older when their turn comes; 0: never")
+                 "largest age of a camera pair before it is dropped; 0: no limit")
       ->type_name("MS")
       ->capture_default_str();
-  app.add_option("--pace", options->pace, "files are played so many times as fast; 0: as fast as it goes")
+  app.add_option("--pace", options->pace, "playback speed of files; 0: as fast as possible")
       ->type_name("TIMES")
       ->capture_default_str();
-  app.add_flag("--loop", options->loop, "files begin again at their end");
-  app.add_option("--duration", options->duration_s, "end after so long; 0: with the source")
+  app.add_flag("--loop", options->loop, "endless repetition of files");
+  app.add_option("--duration", options->duration_s, "duration of the run; 0: until the source ends")
       ->type_name("S")
       ->capture_default_str();
   add_config_options(app, options->config);
   add_exec_options(app, options->exec);
-  app.add_flag("--json-lines", options->json_lines, "print each frame as a line of JSON");
+  app.add_flag("--json-lines", options->json_lines, "one line of JSON per frame on standard output");
   add_record_options(app, options->record);
   add_view_options(app, options->view);
   add_ros2_options(app, options->ros2);

@@ -17,10 +17,10 @@ namespace cairn::cli {
 namespace fs = std::filesystem;
 
 void add_record_options(CLI::App& app, LiveRecordOptions& options) {
-  app.add_option("--record", options.file, "new recording (MCAP) of images and objects; SOURCE may be one")
+  app.add_option("--record", options.file, "new recording (MCAP) of images and objects, usable as SOURCE")
       ->type_name("FILE.mcap");
   app.add_option("--record-what", options.what,
-                 "list of input, objects, disparity, masks, clouds, grid, or all")
+                 "contents: list of input, objects, disparity, masks, clouds, grid, or all")
       ->type_name("LIST")
       ->capture_default_str();
 }
@@ -47,20 +47,19 @@ RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options
   if (!text) return;
   std::string pattern = (fs::temp_directory_path() / "recorded-config-XXXXXX").string();
   const int file = ::mkstemp(pattern.data());
-  if (file < 0) throw Error(pattern + ": cannot be written, expected a temporary folder with room");
+  if (file < 0) throw Error(pattern + ": cannot be written, expected free space in the temporary folder");
   ::close(file);
   file_ = pattern;
   std::ofstream copy(file_, std::ios::binary);
   copy << *text;
   copy.close();
-  if (!copy) throw Error(file_ + ": cannot be written, expected a temporary folder with room");
+  if (!copy) throw Error(file_ + ": cannot be written, expected free space in the temporary folder");
   options.file = file_;
 }
 
 std::string RecordedConfig::notice() const {
   if (file_.empty()) return {};
-  return "cairn: " + source_ +
-         ": the options that it was recorded with are used (--preset default: others)\n";
+  return "cairn: " + source_ + ": using the options of the recording (--preset default: others)\n";
 }
 
 std::string RecordedConfig::named(std::string message) const {

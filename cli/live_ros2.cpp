@@ -8,21 +8,20 @@
 namespace cairn::cli {
 
 void add_ros2_options(CLI::App& app, Ros2CommandOptions& options) {
-  options.is_wanted = app.add_option("--ros2", options.name_space,
-                                     "publish on topics of ROS 2 below this name (default: cairn)")
-                          ->type_name("NAME")
-                          ->expected(0, 1);
+  options.is_wanted =
+      app.add_option("--ros2", options.name_space, "namespace of published ROS 2 topics (default: cairn)")
+          ->type_name("NAME")
+          ->expected(0, 1);
   app.add_option("--ros2-frame", options.frame, "frame_id of the left camera (default: cairn_camera)")
       ->type_name("NAME");
-  app.add_option("--ros2-holes", options.holes,
-                 "pixels without a disparity: nan (default) or ros, which is min_disparity - 1")
+  app.add_option("--ros2-holes", options.holes, "value of holes: nan (default) or ros (min_disparity - 1)")
       ->type_name("NAME");
 }
 
 std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const io::Sequence& source) {
   if (options.is_wanted->count() == 0) {
-    if (!options.frame.empty()) throw Error("--ros2-frame: is of --ros2");
-    if (!options.holes.empty()) throw Error("--ros2-holes: is of --ros2");
+    if (!options.frame.empty()) throw Error("--ros2-frame: needs --ros2");
+    if (!options.holes.empty()) throw Error("--ros2-holes: needs --ros2");
     return nullptr;
   }
   if (!options.holes.empty() && options.holes != "nan" && options.holes != "ros")

@@ -47,22 +47,24 @@ void add_view_options(CLI::App& app, ViewInput& input) {
            input.is_wanted = true;
            input.address = address;
          },
-         "show the run in a browser, and to Foxglove, at this address (default: 127.0.0.1:8765)")
+         "address of the view for browsers and Foxglove (default: 127.0.0.1:8765)")
       ->type_name("[ADDRESS:PORT]")
       ->expected(0, 1)
       ->run_callback_for_default();
-  app.add_flag("--tunable", input.options.tunable, "viewers may change options, pause and record");
+  app.add_flag("--tunable", input.options.tunable,
+               "permission for viewers to change options, pause and record");
   app.add_option("--view-token", input.options.token,
-                 "what a viewer must know (default: a random one; 16 to 128 letters, digits, - and _)")
+                 "access token: 16 to 128 letters, digits, - and _ (default: random)")
       ->type_name("TOKEN");
   app.add_option("--view-origin", input.options.origins,
-                 "a page from elsewhere that may connect, such as https://app.foxglove.dev")
+                 "other web origin that may connect, e.g. https://app.foxglove.dev")
       ->type_name("URL");
-  app.add_option("--tls-cert", input.options.tls_cert, "certificate of an encrypted view, with its chain")
+  app.add_option("--tls-cert", input.options.tls_cert, "TLS certificate of the view, with its chain")
       ->type_name("FILE.pem");
-  app.add_option("--tls-key", input.options.tls_key, "its private key")->type_name("FILE.pem");
+  app.add_option("--tls-key", input.options.tls_key, "private key of the TLS certificate")
+      ->type_name("FILE.pem");
   app.add_flag("--insecure", input.options.insecure,
-               "let an address that the network reaches be viewed without encryption");
+               "unencrypted view on an address reachable from the network");
 }
 
 void check(const ViewInput& input) {
@@ -73,7 +75,7 @@ void check(const ViewInput& input) {
         std::pair{!options.origins.empty(), "--view-origin"},
         std::pair{!options.tls_cert.empty(), "--tls-cert"}, std::pair{!options.tls_key.empty(), "--tls-key"},
         std::pair{options.insecure, "--insecure"}}) {
-    if (is_given) throw Error(std::string(name) + ": found no --view, which it is of");
+    if (is_given) throw Error(std::string(name) + ": needs --view");
   }
 }
 

@@ -81,7 +81,7 @@ int guarded(int argc, const char* const* argv) {
   try {
     const int code = run(argc, argv);
     std::cout.flush();
-    if (!std::cout) return complain("standard output: cannot be written to", kFailed);
+    if (!std::cout) return complain("standard output: cannot be written", kFailed);
     return code;
   } catch (const Error& error) {
     return complain(error.what(), kBadUsage);

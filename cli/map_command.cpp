@@ -7,25 +7,23 @@ namespace cairn::cli {
 
 Work declare_map(CLI::App& app) {
   auto options = std::make_shared<MapOptions>();
-  app.add_option(
-         "ACTION", options->action,
-         "show: landmarks, runs and events; check: whether the file is sound; export: in another form; "
-         "diff: what OTHER has changed; merge: both in one file; forget: without some landmarks")
+  app.add_option("ACTION", options->action,
+                 "show: list landmarks, runs and events; check: verify the file; export: convert; diff: "
+                 "compare with OTHER; merge: combine with OTHER; forget: remove landmarks")
       ->required()
       ->check(CLI::IsMember({"show", "check", "export", "diff", "merge", "forget"}).name(""))
       ->type_name("");
-  app.add_option("FILE", options->file, "map of landmarks, as `cairn follow --map` writes it")
+  app.add_option("FILE", options->file, "map of landmarks from `cairn follow --map`")
       ->required()
       ->type_name("");
-  app.add_option("OTHER", options->other, "second map, of diff and merge")->type_name("");
-  app.add_option("--form", options->form, "of export: geojson, g2o, tum or csv (default: geojson)")
+  app.add_option("OTHER", options->other, "diff, merge: second map")->type_name("");
+  app.add_option("--form", options->form, "export: geojson, g2o, tum or csv (default: geojson)")
       ->check(CLI::IsMember({"geojson", "g2o", "tum", "csv"}).name(""))
       ->type_name("FORM");
-  app.add_option("--run", options->run, "of export --form tum: the run (default: the last one)")
-      ->type_name("N");
-  app.add_option("--id", options->ids, "of forget: landmarks to forget")->type_name("N");
-  app.add_flag("--gone", options->gone, "of forget: all landmarks that are gone");
-  app.add_option("-o,--output", options->output, "file for export (default: stdout) and merge")
+  app.add_option("--run", options->run, "export --form tum: run (default: the last one)")->type_name("N");
+  app.add_option("--id", options->ids, "forget: ids of the landmarks")->type_name("N");
+  app.add_flag("--gone", options->gone, "forget: all landmarks marked as gone");
+  app.add_option("-o,--output", options->output, "export (default: stdout), merge: output file")
       ->type_name("FILE");
   return [options] { return work_on_map(*options); };
 }

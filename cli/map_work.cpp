@@ -96,14 +96,14 @@ Merged merged_of(const MapFile& file, const MapFile& other, const MapOptions& op
   Merged merged = are_copies(file, other) ? merge_copies(file.load(), other.load(), LandmarksConfig{})
                                           : merge(file.load(), other.load(), std::nullopt, LandmarksConfig{});
   if (!merged.map_from_other)
-    throw Error(options.other + ": no place in " + options.file + " is like it (" +
+    throw Error(options.other + ": no place in " + options.file + " resembles it (" +
                 choice_name(merged.refusal, kRecognitionRefusals) + "), expected " +
                 std::to_string(LandmarksConfig{}.relocation_pairs) + " landmarks of both");
   return merged;
 }
 
 const std::string& second_of(const MapOptions& options) {
-  if (options.other.empty()) throw Error("map " + options.action + ": no second map given");
+  if (options.other.empty()) throw Error("map " + options.action + ": found no second map, expected OTHER");
   return options.other;
 }
 
@@ -161,8 +161,8 @@ int diff(const MapOptions& options) {
 int merge_files(const MapOptions& options) {
   const MapFile file = MapFile::open(options.file, MapMode::read_only);
   const MapFile other = MapFile::open(second_of(options), MapMode::read_only);
-  if (options.output.empty()) throw Error("map merge: no -o FILE given");
-  if (fs::exists(options.output)) throw Error("-o " + options.output + ": is there already");
+  if (options.output.empty()) throw Error("map merge: needs -o FILE");
+  if (fs::exists(options.output)) throw Error("-o " + options.output + ": already exists");
   const Merged merged = merged_of(file, other, options);
   const fs::path part = options.output + ".part";
   std::error_code unimportant;
@@ -181,7 +181,7 @@ int merge_files(const MapOptions& options) {
 }
 
 int forget_some(const MapOptions& options) {
-  if (options.ids.empty() && !options.gone) throw Error("map forget: neither --id N nor --gone given");
+  if (options.ids.empty() && !options.gone) throw Error("map forget: needs --id N or --gone");
   MapFile file = MapFile::open(options.file, MapMode::update);
   LandmarkMap map = file.load();
   const std::size_t before = map.list.size();
@@ -202,7 +202,7 @@ int forget_some(const MapOptions& options) {
 int work_on_map(const MapOptions& options) {
   const bool takes_two = options.action == "diff" || options.action == "merge";
   if (!takes_two && !options.other.empty())
-    throw Error("map " + options.action + ": takes one map, found a second, " + options.other);
+    throw Error("map " + options.action + ": expected one map, found a second, " + options.other);
   if (options.action == "show") return show(options);
   if (options.action == "check") return check(options);
   if (options.action == "export") return write_out(options);

@@ -37,7 +37,7 @@ struct OdometryOptions {
 FollowConfig resolve_odometry(const OdometryOptions& options, const io::Sequence& source) {
   FollowConfig config = resolve_follow(options.config, source.disparities(), source.ground());
   if (config.odometry.method == OdometryMethod::off)
-    throw Error("option odometry.method: is off, expected keyframe or frame: nothing else is done here");
+    throw Error("option odometry.method: found off, expected keyframe or frame");
   return config;
 }
 
@@ -81,14 +81,14 @@ std::string summary(const Run& run, const io::MotionPriors* priors) {
   if (!run.milliseconds.empty()) {
     std::vector<double> sorted = run.milliseconds;
     std::sort(sorted.begin(), sorted.end());
-    all += ", " + text_of("%.1f ms", sorted[sorted.size() / 2]) + " a frame without the matching";
+    all += ", " + text_of("%.1f ms", sorted[sorted.size() / 2]) + " per frame without matching";
   }
   all += "\n";
   if (priors != nullptr)
     all += "prior: " + priors->description() + ", used for " + std::to_string(run.with_prior) + " frames\n";
   for (const auto& [reason, count] : run.refusals)
     all += "refused: " + std::to_string(count) + " " + reason + "\n";
-  if (run.lost > 0) all += "lost: " + std::to_string(run.lost) + " frames, whose place is not known\n";
+  if (run.lost > 0) all += "lost: " + std::to_string(run.lost) + " frames, pose unknown\n";
   return all;
 }
 
@@ -106,7 +106,7 @@ int estimate(const OdometryOptions& options) {
   const FollowConfig config = resolve_odometry(options, *source);
   if (!source->rig())
     throw Error(io::without_password(options.input.source) +
-                ": has no calibration, and so no metres; give one with --calib");
+                ": has no calibration, expected --calib (poses are in metres)");
   const StereoRig rig = *source->rig();
   const std::unique_ptr<io::MotionPriors> priors = load_priors(options, *source);
 
@@ -154,24 +154,22 @@ int estimate(const OdometryOptions& options) {
 Work declare_odometry(CLI::App& app) {
   auto options = std::make_shared<OdometryOptions>();
   add_source_options(app, options->input);
-  app.add_option("--odometry", options->wheels,
-                 "what the wheels say: t_s,v_m_per_s,omega_rad_per_s, or poses")
+  app.add_option("--odometry", options->wheels, "wheel odometry: t_s,v_m_per_s,omega_rad_per_s, or poses")
       ->type_name("FILE");
-  app.add_option("--imu", options->imu, "a gyroscope's rates, as EuRoC's data.csv has them")
-      ->type_name("FILE");
-  app.add_option("--form", options->form, "of the poses: tum, kitti or euroc")
+  app.add_option("--imu", options->imu, "gyroscope rates in the form of EuRoC's data.csv")->type_name("FILE");
+  app.add_option("--form", options->form, "form of the poses: tum, kitti or euroc")
       ->type_name("NAME")
       ->capture_default_str();
   add_config_options(app, options->config);
   add_exec_options(app, options->exec);
-  app.add_option("-o,--output", options->output, "file for the poses; otherwise they are printed")
+  app.add_option("-o,--output", options->output, "file for the poses; default: standard output")
       ->type_name("FILE");
   app.footer(
-      "A pose is map_from_camera of the left camera (x right, y down, z forward); the map's origin is on "
-      "the\n"
-      "floor below the first frame's camera, x forward, y left, z up. Frames that are lost have no line, "
-      "but\n"
-      "with --form kitti. docs/stages/odometry.md tells how it works and how far it may be trusted.");
+      "A pose is map_from_camera of the left camera (x right, y down, z forward); the origin "
+      "of the map is on the\n"
+      "floor below the first camera, x forward, y left, z up. Lost frames have no line, except "
+      "with --form kitti.\n"
+      "docs/stages/odometry.md describes the method and its limits.");
   return [options] { return estimate(*options); };
 }
 

@@ -27,10 +27,10 @@ void check_empty(const fs::path& folder) {
   std::error_code unknown;
   if (!fs::exists(folder, unknown)) return;
   if (!fs::is_directory(folder, unknown))
-    throw Error(folder.string() + ": is no folder, expected a new or an empty one");
+    throw Error(folder.string() + ": is not a folder, expected a new or an empty one");
   if (!fs::is_empty(folder, unknown))
     throw Error(folder.string() +
-                ": is not empty, expected a new folder: frames of two recordings would mix");
+                ": is not empty, expected a new folder (frames of two recordings would mix)");
 }
 
 std::string number_text(std::size_t number) {
@@ -105,12 +105,13 @@ Work declare_record(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
   add_source_options(app, options->input);
   app.add_option("-o,--output", options->output,
-                 "new folder for 000000/left.png, right.png and calib.txt, and so on, and for stamps.txt")
+                 "new folder for 000000/left.png, right.png, calib.txt and so on, and stamps.txt")
       ->required()
       ->type_name("DIR");
   app.footer(
-      "Exit code 3: the source ended early, 2: frames could not be read; what was recorded is whole.\n"
-      "docs/sequences.md tells what a source may be.");
+      "Exit code 3: the source ended early, 2: frames could not be read; the frames recorded "
+      "are complete.\n"
+      "docs/sequences.md lists the sources.");
   return [options] { return record(*options); };
 }
 

@@ -62,26 +62,22 @@ int rectify(const RectifyOptions& options) {
 Work declare_rectify(CLI::App& app) {
   auto options = std::make_shared<RectifyOptions>();
   options->input.cameras = io::Cameras::raw;
-  app.add_option(
-         "LEFT", options->input.left,
-         "left picture as the camera took it, or a folder with left.png and right.png, or a folder of "
-         "such folders")
+  app.add_option("LEFT", options->input.left,
+                 "raw left image, or a folder with left.png and right.png, or a folder of such folders")
       ->required()
       ->type_name("");
-  app.add_option("RIGHT", options->input.right, "right picture; not with a folder")->type_name("");
-  app.add_option(
-         "--calib", options->input.calib,
-         "what cairn calibrate wrote; or OpenCV YAML or XML with M1 D1 M2 D2 R T, ROS camera_info, or "
-         "EuRoC's cam0/sensor.yaml")
+  app.add_option("RIGHT", options->input.right, "right image; not with a folder")->type_name("");
+  app.add_option("--calib", options->input.calib,
+                 "output of cairn calibrate; or OpenCV YAML or XML with M1 D1 M2 D2 R T, ROS camera_info, "
+                 "or EuRoC's cam0/sensor.yaml")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", options->output,
-                 "folder for left.png, right.png and calib.txt; several pairs get a folder each in it")
+                 "folder for left.png, right.png and calib.txt; several pairs: a sub-folder each")
       ->required()
       ->type_name("DIR");
   app.add_option("--nearest", options->nearest_m,
-                 "nearest distance of interest, m; with focal length and baseline it gives the ndisp in "
-                 "calib.txt (default: 5 baselines)")
+                 "nearest distance of interest, m; determines ndisp in calib.txt (default: 5 baselines)")
       ->check(CLI::Range(0.01, 1e4).name(""))
       ->type_name("M");
   return [options] { return rectify(*options); };

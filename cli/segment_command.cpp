@@ -59,7 +59,7 @@ std::string interval_text(const std::optional<Interval>& i) {
 std::string left_out_text(const std::vector<cairn::LeftOut>& left_out) {
   if (left_out.empty()) return {};
   std::string text = std::to_string(left_out.size()) +
-                     (left_out.size() == 1 ? " obstacle is no object:" : " obstacles are no objects:");
+                     (left_out.size() == 1 ? " obstacle is not an object:" : " obstacles are not objects:");
   const char* between = " ";
   for (const auto& reason : kLeftOutReasons) {
     const auto count = std::count_if(left_out.begin(), left_out.end(),
@@ -153,7 +153,7 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
 }
 
 std::string no_metres(const std::string& flag, const io::FrameFiles& files) {
-  return flag + ": what it writes is in metres, and " + files.left.string() +
+  return flag + ": needs metres, but " + files.left.string() +
          " has no calibration with a baseline; give one with --calib";
 }
 
@@ -196,8 +196,8 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
                      {.point_cloud = options.ply, .depth = options.depth, .grid = options.grid});
     if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
       report.note = "cairn: " + (folder / "disparity.pfm").string() +
-                    ": written instead of disparity.png, since 16 bits cannot hold disparities below 0 or "
-                    "from 256 on\n";
+                    ": written instead of disparity.png, which cannot hold disparities below 0 or from 256 "
+                    "on\n";
     }
   }
   if (options.html) report.frame = encode(files.name, loaded, frame, provenance);
@@ -232,7 +232,7 @@ void require_output(const SegmentOptions& options) {
                                     {options.depth, "--depth"},
                                     {options.grid, "--grid"},
                                     {options.html, "--html"}}) {
-    if (asked) throw Error(std::string(name) + ": needs -o DIR, the folder to write into");
+    if (asked) throw Error(std::string(name) + ": needs -o DIR, the folder for output");
   }
 }
 
@@ -305,8 +305,8 @@ std::vector<std::string> words_of(const std::string& list) {
 /// Before any work: what every preset must be and have for a run of its own.
 void check_presets(const std::vector<SegmentOptions>& runs, const SegmentOptions& all) {
   const std::string list = "--preset " + all.input.config.preset;
-  if (all.output.empty()) throw Error(list + ": needs -o DIR, the folder in which each gets one of its own");
-  if (all.json) throw Error("--json: is of one preset, found " + list);
+  if (all.output.empty()) throw Error(list + ": needs -o DIR, with a sub-folder for each preset");
+  if (all.json) throw Error("--json: needs one preset, found " + list);
   const auto refuse = [](const std::string& where, const std::string& what) {
     throw Error(where + ": " + what);
   };
@@ -316,7 +316,7 @@ void check_presets(const std::vector<SegmentOptions>& runs, const SegmentOptions
     if (!seen.insert(name).second) refuse(list, "has " + name + " twice");
     const std::string from_file = resolve(run.input.config).preset;
     if (from_file != name)
-      refuse(run.input.config.file, "says preset: " + from_file + ", expected none beside several");
+      refuse(run.input.config.file, "says preset: " + from_file + ", expected none with several presets");
   }
 }
 
@@ -354,32 +354,28 @@ Work declare_segment(CLI::App& app) {
   add_input_options(app, options->input);
   app.get_option("--preset")
       ->description(
-          "start from this preset: default or paper; or from each of several: paper,default, with a folder "
-          "of "
-          "its name in DIR");
+          "preset to start from: default or paper; or a list, e.g. paper,default, each with its "
+          "sub-folder of DIR");
   app.add_option("--disparity", options->input.disparity,
-                 "disparity map (.png, .pfm, .npy) to use instead of matching, or a folder of maps named "
-                 "like the frames; RIGHT may be left out")
+                 "disparity map (.png, .pfm, .npy) instead of matching, or a folder of maps named like "
+                 "the frames; RIGHT is optional")
       ->type_name("PATH");
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
-                 "folder for objects.json and its maps and pictures; docs/formats.md names them")
+                 "output folder for objects.json, maps and images (docs/formats.md)")
       ->type_name("DIR");
-  app.add_flag("--json", options->json, "print the content of objects.json instead of a table");
-  app.add_flag(
-      "--ply", options->ply,
-      "also write cloud.ply: the coloured points in metres, each with its object; needs a calibration");
+  app.add_flag("--json", options->json, "objects.json on standard output instead of a table");
+  app.add_flag("--ply", options->ply,
+               "cloud.ply in DIR: coloured points in metres with their objects; needs a calibration");
   app.add_flag("--depth", options->depth,
-               "also write depth.png (16 bits, mm, 0 = none) and depth.npy (m); needs a calibration");
+               "depth.png (16 bits, mm, 0 = none) and depth.npy (m) in DIR; needs a calibration");
   app.add_flag("--grid", options->grid,
-               "also write grid.pgm and grid.yaml: the obstacles on the floor as a map for ROS; needs a "
-               "calibration, and a floor that was found");
-  app.add_flag("--html", options->html,
-               "also write segment.html into DIR: one page of all frames, to look at in a browser");
+               "grid.pgm and grid.yaml in DIR: obstacle map for ROS; needs a calibration and a floor");
+  app.add_flag("--html", options->html, "segment.html in DIR: a page of all frames for the browser");
   app.footer(
-      "LEFT may also be a folder of such folders: each is a frame, and its result goes to a folder of its "
-      "name in DIR.\n"
-      "A frame whose files cannot be used is left out with a line on stderr; the exit code is 2 then.");
+      "LEFT may also be a folder of such folders, one per frame; each result goes to a "
+      "sub-folder of DIR of the same name.\n"
+      "Unusable frames are skipped with a line on stderr; the exit code is then 2.");
   return [options] { return segment_by_presets(*options); };
 }
 

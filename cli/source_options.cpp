@@ -33,39 +33,40 @@ EndsBySignal::~EndsBySignal() {
 }
 
 void add_source_options(CLI::App& app, SourceInput& input) {
-  app.add_option(
-         "SOURCE", input.source,
-         "folder of frames, of KITTI's or EuRoC's; a video; a recording (MCAP); LEFT,RIGHT: two folders, two "
-         "videos, or two patterns such as left_%04d.png,right_%04d.png; or a camera: v4l2:/dev/video0, "
-         "gst:'PIPELINE', rtsp://... (docs/cameras.md), ros2:/NAME (docs/ros2.md)")
+  app.add_option("SOURCE", input.source,
+                 "folder of frames, or of KITTI or EuRoC; video; recording (MCAP); LEFT,RIGHT: two "
+                 "folders, two videos, or two patterns such as left_%04d.png,right_%04d.png; camera: "
+                 "v4l2:/dev/video0, gst:'PIPELINE', rtsp://... (docs/cameras.md), ros2:/NAME "
+                 "(docs/ros2.md)")
       ->required()
       ->type_name("");
   app.add_option("--calib", input.options.calib,
-                 "calibration; default: that of the first frame, else of the folder, else none: no metres")
+                 "calibration; default: of the first frame, else of the folder, else none: no metres")
       ->type_name("FILE");
   app.add_flag("--rectify", input.options.rectify,
-               "the images are raw: rectify them by --calib FILE of the raw cameras (always so of EuRoC's)");
-  app.add_option("--layout", input.options.layout, "of one video or camera: side_by_side or top_bottom")
+               "rectification of raw images by the --calib of the raw cameras (EuRoC: always)");
+  app.add_option("--layout", input.options.layout,
+                 "layout of a single video or camera: side_by_side or top_bottom")
       ->type_name("NAME");
   app.add_option("--topics", input.options.topics,
-                 "of a recording (MCAP) with several stereo pairs: its topics of images")
+                 "image topics of a recording (MCAP) with several stereo pairs")
       ->type_name("LEFT,RIGHT");
-  app.add_option(
-         "--rate", input.options.rate_hz,
-         "frames per second where there are no stamps, and instead of a video's (default: the source's "
-         "own, else 10)")
+  app.add_option("--rate", input.options.rate_hz,
+                 "frames per second, overriding a video's and replacing missing stamps (default: of the "
+                 "source, else 10)")
       ->type_name("HZ");
   app.add_option("--frames", input.frames,
-                 "only these: FIRST:END or FIRST:END:STEP, or a number of first ones")
+                 "frames to read: FIRST:END, FIRST:END:STEP, or the number of first frames")
       ->type_name("A:B:STEP");
-  app.add_option("--max-gap", input.options.max_gap_s, "longer pauses part a sequence")
+  app.add_option("--max-gap", input.options.max_gap_s, "longest pause within a sequence")
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--max-skew", input.options.max_skew_ms,
-                 "between left and right of one pair, where each camera has stamps of its own")
+                 "largest stamp difference of a pair if each camera has its own stamps")
       ->type_name("MS")
       ->capture_default_str();
-  app.add_option("--open-timeout", input.options.open_timeout_s, "of cameras: until the first pair comes")
+  app.add_option("--open-timeout", input.options.open_timeout_s,
+                 "longest wait for the first pair of a camera")
       ->type_name("S")
       ->capture_default_str();
 }
@@ -89,7 +90,7 @@ std::string remarks_text(const io::Sequence& sequence) {
     text += "cairn: " + sequence.name() + ": " + remark.what;
     if (remark.count > 0) {
       text += ": " + std::to_string(remark.count) + (remark.count == 1 ? " frame" : " frames") +
-              (remark.is_left_out ? " left out" : "") + ", the first is " + remark.first;
+              (remark.is_left_out ? " skipped" : "") + ", the first is " + remark.first;
     }
     text += "\n";
   }

@@ -98,9 +98,9 @@ Task read_task(const TuneOptions& options) {
 void require_writable(const std::string& file) {
   const fs::path folder = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
   std::error_code ignored;
-  if (fs::is_directory(file, ignored)) throw Error(file + ": is a folder, expected the name of a file");
+  if (fs::is_directory(file, ignored)) throw Error(file + ": is a folder, expected a file name");
   if (!fs::is_directory(folder, ignored))
-    throw Error(file + ": cannot be written, there is no folder " + folder.string());
+    throw Error(file + ": cannot be written, no such folder: " + folder.string());
   if (access(folder.c_str(), W_OK) != 0)
     throw Error(file + ": cannot be written, the folder " + folder.string() + " is write-protected");
 }
@@ -148,7 +148,7 @@ Tuning tune_task(const Task& task, const TuneOptions& options, Seconds budget) {
                          progress.bar(now.share, words(now, options.budget));
                        }});
   if (tuned.before.empty())
-    throw std::runtime_error("stopped before the first evaluation was done; nothing is written");
+    throw std::runtime_error("stopped before the first evaluation ended; nothing is written");
   return tuned;
 }
 
@@ -171,7 +171,7 @@ std::vector<Figure> object_figures(const Measures& measures) {
   return {{"median_error", "E, median", s.median_error},
           {"recall_50", "found, IoU >= 0.5", s.recall_50()},
           {"precision_50", "precision", s.precision_50()},
-          {"phantoms_per_frame", "phantoms a frame", s.phantoms_per_frame(), false}};
+          {"phantoms_per_frame", "phantoms per frame", s.phantoms_per_frame(), false}};
 }
 
 std::vector<Figure> disparity_figures(const Measures& measures) {
@@ -180,7 +180,7 @@ std::vector<Figure> disparity_figures(const Measures& measures) {
     if (m.disparity) all += *m.disparity;
   }
   if (all.known == 0) return {};
-  return {{"bad_1_of_known", "bad-1, holes too", all.bad_of_known(1)},
+  return {{"bad_1_of_known", "bad-1 with holes", all.bad_of_known(1)},
           {"bad_1_of_matched", "bad-1 of the matched", all.bad_of_matched(1)},
           {"density", "density", all.density()}};
 }
@@ -227,7 +227,7 @@ std::string figure_table(const Tuning& tuned) {
 
 std::string gain_text(const Gain& gain) {
   const auto points = [](double value) { return cli::text_of("%+.1f", 100 * value); };
-  if (std::isnan(gain.mean)) return "not known";
+  if (std::isnan(gain.mean)) return "unknown";
   if (std::isnan(gain.low)) return points(gain.mean) + " points, one frame";
   return points(gain.mean) + " points (95 %: " + points(gain.low) + " ... " + points(gain.high) + ")";
 }
@@ -237,8 +237,8 @@ std::string luck(const Tuning& tuned) {
   const Gain own = gain_of(losses_of(tuned.before), losses_of(tuned.after));
   std::string all = "gain, tuned on:  " + gain_text(own) + "\n";
   if (tuned.held_out_before.empty()) {
-    return all + "gain, held out:  no frames were held out (fewer than " + std::to_string(kEnough) +
-           ", or --holdout 0): how much of it is luck is not known\n";
+    return all + "gain, held out:  no frames held out (fewer than " + std::to_string(kEnough) +
+           ", or --holdout 0): the share of luck is unknown\n";
   }
   const Gain fair = gain_of(losses_of(tuned.held_out_before), losses_of(tuned.held_out_after));
   all += "gain, held out:  " + gain_text(fair);
@@ -268,11 +268,11 @@ std::string plural(std::size_t count, const std::string& word) {
 std::string end_words(TuneEnd end) {
   switch (end) {
     case TuneEnd::converged:
-      return "nothing near the best is better";
+      return "no neighbour of the best is better";
     case TuneEnd::evaluations:
-      return "as many as asked for";
+      return "limit of evaluations reached";
     case TuneEnd::time:
-      return "the time was up";
+      return "time limit reached";
     case TuneEnd::interrupted:
       return "interrupted";
   }
@@ -293,7 +293,7 @@ std::string summary(const Task& task, const Tuning& tuned) {
          cli::text_of("%.1f s", tuned.seconds) + ": " + end_words(tuned.end) + "\n";
   if (!tuned.not_judged.empty()) {
     all +=
-        "not tuned, since nothing here judges objects: " + plural(tuned.not_judged.size(), "option") + "\n";
+        "not tuned, because objects are not judged here: " + plural(tuned.not_judged.size(), "option") + "\n";
   }
   return all;
 }
@@ -305,7 +305,7 @@ Config tuned_config(const Task& task, const Tuning& tuned) {
 std::string config_file(const Task& task, const Tuning& tuned) {
   const auto figure = [](const Measures& measures) { return percent(mean_loss(losses_of(measures))); };
   std::string head = "# Written by cairn tune: " + goal_word(tuned.goal) + " " + figure(tuned.before);
-  head += tuned.kept_because.empty() ? " before, " + figure(tuned.after) + " after" : ", kept as it was";
+  head += tuned.kept_because.empty() ? " before, " + figure(tuned.after) + " after" : ", unchanged";
   head += ", on " + plural(tuned.before.size(), "frame") + ".\n";
   std::vector<std::string> also;
   constexpr const char* kDisparities = "match.num_disparities";
@@ -367,8 +367,8 @@ std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions
 }
 
 int tune_over_time(const TuneOptions& options, Seconds budget) {
-  if (options.truth) throw Error("--truth: is of single frames; --sequence goes by steadiness alone");
-  if (!options.json.empty()) throw Error("--json: is not written with --sequence");
+  if (options.truth) throw Error("--truth: needs single frames; --sequence only uses steadiness");
+  if (!options.json.empty()) throw Error("--json: not available with --sequence");
   if (options.folders.size() != 1)
     throw Error("--sequence: found " + std::to_string(options.folders.size()) + " sources, expected one");
   catch_interrupts();
@@ -391,8 +391,7 @@ int tune_folder(const TuneOptions& options) {
   std::cout << summary(task, tuned) << "\n" << figure_table(tuned) << "\n" << luck(tuned) << "\n";
   const std::string changes = change_table(tuned.search);
   if (!changes.empty()) std::cout << changes << "\n";
-  if (!tuned.kept_because.empty())
-    std::cout << "The options stay as they were: " << tuned.kept_because << ".\n";
+  if (!tuned.kept_because.empty()) std::cout << "The options are unchanged: " << tuned.kept_because << ".\n";
   std::cout << "wrote " << options.output << ", for --config\n";
   return 0;
 }
@@ -402,56 +401,52 @@ int tune_folder(const TuneOptions& options) {
 Work declare_tune(CLI::App& app) {
   auto options = std::make_shared<TuneOptions>();
   app.add_option("FOLDER", options->folders,
-                 "folder of frames, each a folder with left.png and right.png; or several such folders")
+                 "one or more folders of frames, each a folder with left.png and right.png")
       ->required()
       ->type_name("");
   app.add_flag("--truth", options->truth,
-               "make the paper's E small: the frames' folders hold objects.png (or else disp_left.png: bad "
-               "disparities)");
+               "minimise the paper's E against objects.png of the frames (or bad disparities against "
+               "disp_left.png)");
   app.add_flag("--sequence", options->sequence,
-               "FOLDER is a source of cairn follow; make its objects steady over time: many, sure and where "
-               "they are expected");
-  app.add_option(
-         "--options", options->patterns,
-         "what may be changed: names or beginnings, e.g. match.*,superpixels.*; default: a sensible choice")
+               "FOLDER is a source of cairn follow; maximise the steadiness of its objects over time");
+  app.add_option("--options", options->patterns,
+                 "options to tune: names or prefixes, e.g. match.*,superpixels.*; default: a sensible "
+                 "choice")
       ->type_name("NAMES")
       ->delimiter(',')
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("--budget", options->budget, "time to search, e.g. 60s, 5m, 1h")
+  app.add_option("--budget", options->budget, "time limit of the search, e.g. 60s, 5m, 1h")
       ->type_name("TIME")
       ->capture_default_str();
-  app.add_option(
-         "--evaluations", options->evaluations,
-         "end after this many as well, for a result that does not depend on the machine's speed; 0 = no "
-         "limit")
+  app.add_option("--evaluations", options->evaluations,
+                 "largest number of evaluations, for reproducible results; 0 = no limit")
       ->check(CLI::Range(0, 1 << 30).name(""))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--holdout", options->holdout,
-                 "share of the frames that only judge the result; default: 0.25 from 8 frames on, else 0")
+                 "share of frames held out for validation; default: 0.25 from 8 frames on, else 0")
       ->check(CLI::Range(0.0, 0.9).name(""))
       ->type_name("SHARE");
-  app.add_option("--seed", options->seed, "which frames are held out, and in which order options are tried")
+  app.add_option("--seed", options->seed, "seed for the choice of held out frames and the order of options")
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--calib", options->input.calib,
-                 "calibration of all frames; default: each frame's own, else ../gt/calib.txt, else none")
+                 "calibration of all frames; default: of each frame, else ../gt/calib.txt, else none")
       ->type_name("FILE");
   add_config_options(app, options->input.config);
   add_exec_options(app, options->exec);
-  app.add_option("-o,--output", options->output, "the tuned options, as --config reads them")
+  app.add_option("-o,--output", options->output, "file for the tuned options, for --config")
       ->type_name("FILE")
       ->capture_default_str();
-  app.add_option("--json", options->json, "also write what was measured into this file, as JSON")
-      ->type_name("FILE");
+  app.add_option("--json", options->json, "JSON file for the measurements")->type_name("FILE");
   app.footer(
-      "Without --truth it makes small what contradicts itself: disparities that the right image does not "
-      "confirm,\n"
-      "holes, unlike grey levels, and what flickers where a sequence stands still; the objects are not "
-      "judged.\n"
-      "The search starts from --preset, --config and --set. Ctrl-C ends it and keeps the best so far.\n"
-      "docs/tune.md says what is measured and what to expect.");
+      "Without --truth it minimises self-inconsistency: left-right disagreement, holes, grey "
+      "level differences,\n"
+      "and flicker in static parts of a sequence; objects are not judged.\n"
+      "The search starts from --preset, --config and --set. Ctrl-C ends it and keeps the best "
+      "so far.\n"
+      "docs/tune.md describes the measure and what to expect.");
   return [options] { return tune_folder(*options); };
 }
 

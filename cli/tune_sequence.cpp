@@ -57,7 +57,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   }
   if (frames.size() < kFewestFrames)
     throw Error(options.source + ": has " + std::to_string(frames.size()) + " frames, expected " +
-                std::to_string(kFewestFrames) + " or more to tell what is steady");
+                std::to_string(kFewestFrames) + " or more to judge steadiness");
   const double share = options.holdout.value_or(0.25);
   const std::size_t count = frames.size() - 1;  // the first frame has none before it
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
@@ -90,7 +90,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
                start.segmentation);
   const std::vector<Setting> from = settings_of(start.segmentation, options_tried);
   const std::optional<Steady> before = run(from);
-  if (!before) throw Error(options.source + ": stopped before the first run was done; nothing is written");
+  if (!before) throw Error(options.source + ": stopped before the first run ended; nothing is written");
   const double reference = before->mean(0, tuned_on);
   Steady best = *before;
   Steady latest = *before;
@@ -139,9 +139,9 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
     std::cout << "  " << kept[i].option << ": " << found.start[i].value << " -> " << kept[i].value << "\n";
   }
   if (is_luck)
-    std::cout << "The options stay as they were: what was found is worse on the frames held out.\n";
+    std::cout << "The options are unchanged: the best found is worse on the frames held out.\n";
   else if (kept == found.start)
-    std::cout << "The options stay as they were: nothing that was tried is clearly steadier.\n";
+    std::cout << "The options are unchanged: no other setting is clearly steadier.\n";
   io::write_file(options.output, "# Written by cairn tune --sequence: steadiness " + text(reference) +
                                      " before, " + text(is_luck ? reference : best.mean(0, tuned_on)) +
                                      " after.\n" +

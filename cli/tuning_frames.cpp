@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 template <class T>
 void require_size(const Image<T>& truth, const fs::path& file, const LoadedFrame& frame) {
   if (truth.size() != frame.left.gray.size()) {
-    throw Error(file.string() + ": the truth is " + text(truth.size()) + ", the pictures are " +
+    throw Error(file.string() + ": the truth is " + text(truth.size()) + ", the images are " +
                 text(frame.left.gray.size()));
   }
 }
