@@ -8,17 +8,17 @@
 
 namespace cairn::io {
 
-/// Writes a whole file or nothing: the bytes go to a temporary name in the same folder, which then takes the
-/// final name. Whoever reads `path` meanwhile sees the old file or the new one, never a part; after a failure
-/// no trace is left. A symbolic link is followed; a device (/dev/null, /dev/stdout) is written directly.
-/// Throws Error (names `path` and the system's reason).
+/// Writes a file atomically: the bytes go to a temporary file in the same folder, which is then renamed.
+/// Concurrent readers of `path` see the old file or the new one; a failure leaves no trace. Symbolic links
+/// are followed; devices (/dev/null, /dev/stdout) are written directly. Throws Error (names `path` and the
+/// system's reason).
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// The same of a file that is written bit by bit: it has its final name when finish() has returned. One that
-/// is not finished leaves no trace.
+/// The same for a file written in pieces: it gets its final name in finish(). An unfinished file leaves no
+/// trace.
 class GrowingFile {
  public:
-  /// Throws Error as write_file() does.
+  /// Throws Error like write_file().
   explicit GrowingFile(const std::filesystem::path& path);
   GrowingFile(GrowingFile&&) noexcept;
   GrowingFile& operator=(GrowingFile&&) noexcept;
@@ -32,7 +32,7 @@ class GrowingFile {
   std::unique_ptr<State> state_;
 };
 
-/// Makes a folder with all its parents; fine where it is there already. Throws Error.
+/// Creates a folder with all its parents, unless it exists. Throws Error.
 void make_folder(const std::filesystem::path& path);
 
 }  // namespace cairn::io

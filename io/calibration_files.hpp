@@ -11,22 +11,21 @@
 
 namespace cairn::io {
 
-/// What a calibration file says of a rectified pair. Files may leave things out.
+/// The contents of a calibration file of a rectified pair. All parts are optional.
 struct Calibration {
-  std::optional<StereoRig> rig;  // nothing where the file has no focal length or no baseline: no metres then
-  std::optional<Size> image_size;      // of the pictures that it was made for
+  std::optional<StereoRig> rig;        // nullopt without focal length or baseline: no metres then
+  std::optional<Size> image_size;      // of the images that it was made for
   std::optional<int> num_disparities;  // `ndisp`: the default of match.num_disparities
-  KnownGround ground{};  // `ground_points`, `camera_height`, …: what Config::ground.known takes
-  /// The file describes the lenses of the raw cameras as well: `rig` fits pictures that were rectified with
-  /// it.
+  KnownGround ground{};                // `ground_points`, `camera_height`, …: for Config::ground.known
+  /// The file also describes the lenses of the raw cameras: `rig` is valid for images rectified with it.
   bool of_raw_cameras = false;
 };
 
-/// A calibration that can be read but cannot be true: a focal length or baseline that is not positive.
+/// A calibration that is readable but impossible: a focal length or baseline that is not positive.
 class ImpossibleCalibration : public Error {
  public:
   ImpossibleCalibration(const std::string& says, double value) : Error(says), value_(value) {}
-  /// The number that cannot be.
+  /// The impossible number.
   [[nodiscard]] double value() const { return value_; }
 
  private:
@@ -36,32 +35,32 @@ class ImpossibleCalibration : public Error {
 /// Reads a calibration, its form recognised by content (docs/formats.md shows each): our own YAML, Middlebury
 /// calib.txt, KITTI calib_cam_to_cam.txt and calib.txt, OpenCV FileStorage YAML/XML/JSON with P1 and P2 or Q,
 /// ROS camera_info YAML (either file of the pair, one file with both, or their folder), key=value lines. Each
-/// may also say how the rig is mounted: ground_points, camera_height, camera_pitch, camera_roll.
-/// Throws Error (one line: file, what was found, what was expected): missing, no known form, a number that is
-/// none or out of range, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive.
-/// Of KITTI's four cameras the colour pair counts, unless `grey_cameras`.
+/// may also contain the mounting of the rig: ground_points, camera_height, camera_pitch, camera_roll. Throws
+/// Error (one line: file, what was found, what was expected): missing, unknown form, a number that is invalid
+/// or out of range, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive. Of the
+/// four KITTI cameras, reads the colour pair unless `grey_cameras`.
 Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
-/// The same of a file's content, which `name` stands for in messages.
+/// The same for the content of a file, named `name` in messages.
 Calibration parse_calibration(std::string_view text, const std::filesystem::path& name,
                               bool grey_cameras = false);
 
-/// Writes a rectified pair's calibration as key=value lines, whole or not at all; `num_disparities` as ndisp,
-/// and how the rig is mounted. Throws Error.
+/// Atomically writes the calibration of a rectified pair as key=value lines; `num_disparities` as ndisp, and
+/// the mounting of the rig. Throws Error.
 void save_calibration(const std::filesystem::path& path, const StereoRig& rig, Size image,
                       std::optional<int> num_disparities = std::nullopt, const KnownGround& ground = {});
-/// What that file holds.
+/// The text of that file.
 std::string calibration_text(const StereoRig& rig, Size image, std::optional<int> num_disparities,
                              const KnownGround& ground);
 
-/// The number of disparities that reaches down to `nearest_m` (0: five baselines, a fifth of the focal length
-/// in disparities): a multiple of 16, but no more than the pictures' width.
+/// The number of disparities for a nearest distance of `nearest_m` (0: five baselines, i.e. a fifth of the
+/// focal length): a multiple of 16, at most the image width.
 int disparities_down_to(double nearest_m, const StereoRig& rig, int width);
 
-/// Throws Error where the calibration was made for pictures of another size.
+/// Throws Error if the calibration was made for images of another size.
 void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);
-/// Throws Error where the height or an angle of the camera is out of range, or points determine no plane.
+/// Throws Error if the height or an angle of the camera is out of range, or the points determine no plane.
 void check_ground(const KnownGround& known);
-/// Throws Error where its number of disparities is none that match.num_disparities takes.
+/// Throws Error if its number of disparities is out of range for match.num_disparities.
 void check_search_range(const Calibration& calibration, const std::filesystem::path& path);
 
 }  // namespace cairn::io

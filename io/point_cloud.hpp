@@ -9,10 +9,10 @@
 
 namespace cairn::io {
 
-/// Writes a coloured point cloud as binary little-endian PLY, atomically: one point per pixel that has a
-/// disparity and lies before infinity, in raster order. Vertices are float x, y, z (m, in the left camera's
-/// frame: x right, y down, z forward), uchar red, green, blue and, with labels, int object (0 = none).
-/// `left_rgb` (grey points without) and `objects` may be empty. Throws Error (names the file).
+/// Writes a coloured point cloud as binary little-endian PLY, atomically: one point per pixel with a finite
+/// positive depth, in raster order. Vertices are float x, y, z (m, in the left camera frame: x right, y down,
+/// z forward), uchar red, green, blue and, with labels, int object (0 = none). `left_rgb` (grey points
+/// without) and `objects` may be empty. Throws Error (names the file).
 void save_ply(const std::filesystem::path& path, View<const Gray> left, View<const Rgb> left_rgb,
               View<const float> disparity_px, View<const ObjectId> objects, const StereoRig& rig);
 

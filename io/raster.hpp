@@ -12,25 +12,23 @@
 
 #include "image_files.hpp"
 
-/// Decoded pictures as they stand in the file; internal to io. What becomes of them is decided by image_files
-/// and disparity_files.
+/// Decoded images as stored in the file; internal to io. image_files and disparity_files convert them.
 namespace cairn::io {
 
 inline constexpr int kMostPixelsPerSide = 32768;
 inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
 
-/// Throws Error (without a file's name) unless both sides are in 1 … kMostPixelsPerSide and the area ≤
+/// Throws Error (without a file name) unless both sides are in 1 … kMostPixelsPerSide and the area ≤
 /// kMostPixels.
 void check_sides(std::int64_t width, std::int64_t height);
 
-/// Samples, rows top-down without padding, channels interleaved (grey or R, G, B), in this machine's byte
-/// order.
+/// Samples, rows top-down without padding, channels interleaved (grey or R, G, B), in native byte order.
 struct Raster {
   Size size;
   int channels = 1;      // 1 or 3
   int bytes_each = 1;    // per sample: 1 or 2
-  int max_value = 255;   // full scale as the file's header declares it
-  bool declared = true;  // false: a 16-bit container whose real depth only the values tell
+  int max_value = 255;   // full scale declared in the header
+  bool declared = true;  // false: a 16-bit container whose real depth follows from the values
   std::vector<std::uint8_t> bytes;
 
   template <class T>
@@ -42,25 +40,25 @@ struct Raster {
   [[nodiscard]] int row_length() const { return size.width * channels; }
 };
 
-/// What a palette's indices are: colours, or the numbers themselves.
+/// The meaning of palette indices: colours, or numbers.
 enum class Palette : std::uint8_t { colours, indices };
 
-/// Reads and decodes a file by its content. Throws Error that names `path`; never prints, never half-decodes.
+/// Reads and decodes a file by its content. Throws Error that names `path`; never prints, never returns
+/// partial data.
 Raster read_raster(const std::filesystem::path& path, Palette palette);
-/// The same of a file's bytes; throws Error without a file's name.
+/// The same for the bytes of a file; throws Error without a file name.
 Raster decode_raster(std::string_view file, Palette palette);
 
-/// Both reduced to 8 bits as load_pair() does it. Throws Error, without files' names, where sizes or depths
-/// differ.
+/// Both reduced to 8 bits as in load_pair(). Throws Error, without file names, if sizes or depths differ.
 PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits = 8);
 
-// One per form; they throw Error without a file's name.
+// One function per form; they throw Error without a file name.
 Raster decode_png(std::string_view file, Palette palette);
 Raster decode_jpeg(std::string_view file);
 Raster decode_tiff(std::string_view file, Palette palette);
 Raster decode_pnm(std::string_view file);
 
-/// Rows of samples to be encoded: grey of 8 or 16 bits, or RGB of 8.
+/// Rows of samples to encode: grey of 8 or 16 bits, or RGB of 8.
 struct PixelRows {
   Size size;
   int channels = 1;
@@ -68,9 +66,9 @@ struct PixelRows {
   const std::uint8_t* first = nullptr;
   std::ptrdiff_t stride_bytes = 0;
 };
-/// A PNG file's bytes. Throws Error without a file's name.
+/// The bytes of a PNG file. Throws Error without a file name.
 std::string encode_png(const PixelRows& rows);
-/// A JPEG file's bytes, for looking at; 8 bits only. `quality`: 1 … 100. Throws Error without a file's name.
+/// The bytes of a JPEG file, for viewing; 8 bits only. `quality`: 1 … 100. Throws Error without a file name.
 std::string encode_jpeg(const PixelRows& rows, int quality = 90);
 
 }  // namespace cairn::io

@@ -11,7 +11,7 @@
 
 namespace cairn::io {
 
-/// One camera as it is, in OpenCV's model; all matrices row-major.
+/// A raw camera in OpenCV's model; all matrices row-major.
 struct RawCamera {
   std::array<double, 9> matrix{};    // focal lengths and principal point, px
   std::vector<double> distortion{};  // k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tx ty]]]]; empty = none
@@ -19,8 +19,7 @@ struct RawCamera {
   std::optional<std::array<double, 12>> projection{};  // of the rectified camera, px and px · m
 };
 
-/// Two cameras that are not rectified. Either both have rotation and projection, or it is known how the right
-/// one stands to the left one.
+/// Two raw cameras. Either both have rotation and projection, or the relative pose of the right one is known.
 struct RawCalibration {
   Size image_size;
   RawCamera left;
@@ -30,13 +29,13 @@ struct RawCalibration {
 };
 
 /// Reads OpenCV FileStorage YAML/XML/JSON (M1 D1 M2 D2 with R T, or with R1 R2 P1 P2; also K1, cameraMatrix1,
-/// distCoeffs1 and the like) and ROS camera_info YAML pairs, found as load_calibration() finds them, and
-/// EuRoC's cam0/sensor.yaml with cam1's. Lengths are metres. Throws Error (one line: file, what was found,
+/// distCoeffs1 and the like), ROS camera_info YAML pairs, found as in load_calibration(), and EuRoC's
+/// cam0/sensor.yaml with that of cam1. Lengths are in metres. Throws Error (one line: file, what was found,
 /// what was expected).
 RawCalibration load_raw_calibration(const std::filesystem::path& path);
 
-/// The same as OpenCV's FileStorage YAML, whole or not at all; `remarks` become comment lines at its top.
-/// With P1 and P2 in it, load_calibration() reads the rectified pair's calibration out of it.
+/// Atomically writes it as OpenCV FileStorage YAML; `remarks` become comment lines at its top. With P1 and
+/// P2, load_calibration() reads the calibration of the rectified pair from it.
 void save_raw_calibration(const std::filesystem::path& path, const RawCalibration& calibration,
                           const std::vector<std::string>& remarks);
 

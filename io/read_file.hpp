@@ -8,11 +8,11 @@
 
 namespace cairn::io {
 
-/// A whole file's bytes. Throws Error (names `path`): missing, a folder, unreadable, or longer than
+/// The bytes of a file. Throws Error (names `path`): missing, a folder, unreadable, or longer than
 /// `most_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes);
 
-/// What is read as text (calibration, configuration): no honest file of these kinds is longer.
+/// Size limit of text files (calibration, configuration).
 inline constexpr std::size_t kMostTextBytes = std::size_t{1} << 20;
 
 }  // namespace cairn::io

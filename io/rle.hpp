@@ -12,20 +12,20 @@
 
 namespace cairn::io {
 
-/// A mask in COCO's compressed run-length form, as pycocotools reads it: the lengths of the runs of 0, 1, 0,
-/// … down the columns, from the left column on, beginning with zeros (perhaps none of them).
+/// A mask in COCO's compressed run-length form, as in pycocotools: the lengths of the runs of 0, 1, 0, … in
+/// column-major order, beginning with a (possibly empty) run of zeros.
 struct Rle {
   Size size;
   std::string counts;
 };
 
-/// The mask of one object; `box` holds all of its pixels (no pixel outside is looked at).
+/// The mask of one object; `box` contains all of its pixels (pixels outside are not read).
 Rle encode_rle(View<const ObjectId> labels, ObjectId id, Rect box);
-/// 1 inside, 0 outside. Throws Error where `counts` is malformed or does not fill the size exactly.
+/// 1 inside, 0 outside. Throws Error if `counts` is malformed or does not fill the size exactly.
 Image<std::uint8_t> decode_rle(const Rle& rle);
 
-/// COCO's text form of run lengths. Each number (from the fourth on: its difference to the one two places
-/// before) is cut into groups of five bits, the lowest first; a group and a bit "more follow" make one
+/// COCO's text form of run lengths. Each number (from the fourth on: its difference to the one two positions
+/// before) is split into groups of five bits, the lowest first; a group and a continuation bit make one
 /// character from '0' on. Bit 4 of the last group is the sign.
 std::string counts_to_text(const std::vector<std::int64_t>& counts);
 /// Throws Error on a character outside the alphabet, a text that ends inside a number, or a negative length.

@@ -10,7 +10,7 @@
 
 namespace cairn::io {
 
-/// SHA-256 (FIPS 180-4) of bytes that come bit by bit. (docs/decisions/own_sha256.md)
+/// Incremental SHA-256 (FIPS 180-4). (docs/decisions/own_sha256.md)
 class Sha256 {
  public:
   void add(std::string_view bytes);
@@ -24,12 +24,12 @@ class Sha256 {
 
   std::array<std::uint32_t, 8> state_{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                       0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::array<unsigned char, kBlock> waiting_{};  // bytes that do not fill a block yet
+  std::array<unsigned char, kBlock> waiting_{};  // bytes of an incomplete block
   std::size_t waiting_count_ = 0;
   std::uint64_t bytes_ = 0;
 };
 
-/// The digest of a whole text.
+/// The digest of a text.
 std::string sha256(std::string_view bytes);
 
 }  // namespace cairn::io

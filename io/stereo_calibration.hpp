@@ -11,8 +11,8 @@
 #include "image_files.hpp"
 #include "raw_calibration.hpp"
 
-/// From raw cameras to rectified pairs, by OpenCV's calib3d. Built without it (CAIRN_CALIBRATION=OFF) every
-/// function here throws an Error that says so.
+/// Calibration of raw cameras and rectification, by OpenCV's calib3d. In a build without it
+/// (CAIRN_CALIBRATION=OFF) every function here throws Error.
 namespace cairn::io {
 
 /// A checkerboard: its inner corners, and the side of a square.
@@ -28,38 +28,39 @@ struct BoardSighting {
   Corners right;
 };
 
-/// The board's inner corners between the pixels; nullopt where the picture does not show all of them.
+/// The inner corners of the board with subpixel accuracy; nullopt unless the image shows all of them.
 std::optional<Corners> find_board(View<const Gray> image, const Board& board);
 
 struct StereoCalibration {
-  RawCalibration raw;        // with R, T and all that rectifies
+  RawCalibration raw;        // with R, T and the rectification
   double error_px = 0;       // root mean squared reprojection error over both cameras
-  double left_error_px = 0;  // of each camera on its own
+  double left_error_px = 0;  // per camera
   double right_error_px = 0;
   double rows_error_px = 0;           // root mean squared difference of the rows of rectified corners
-  std::vector<double> pair_error_px;  // the worse camera's, one per sighting
+  std::vector<double> pair_error_px;  // of the worse camera, one per sighting
 };
 
 inline constexpr std::size_t kLeastSightings = 3;
 
-/// Both cameras and how they stand to each other, from one board in several places (Zhang 2000). Throws Error
-/// with fewer than kLeastSightings, or where OpenCV finds no solution.
+/// Both cameras and their relative pose, from one board in several positions (Zhang 2000). Throws Error with
+/// fewer than kLeastSightings, or if OpenCV finds no solution.
 StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image);
 
-/// Turns pictures of raw cameras into those of a rectified pair.
+/// Rectifies images of raw cameras.
 class Rectifier {
  public:
-  /// Throws Error where the two cameras do not stand one beside the other.
+  /// Throws Error unless the two cameras are side by side.
   explicit Rectifier(const RawCalibration& calibration);
   ~Rectifier();
   Rectifier(const Rectifier&) = delete;
   Rectifier& operator=(const Rectifier&) = delete;
 
-  /// Pictures of the calibration's size, with what lies beyond their border black. Throws Error for others.
+  /// Takes images of the calibrated size; areas beyond their border become black. Throws Error for other
+  /// sizes.
   [[nodiscard]] PicturePair operator()(const PicturePair& raw, const Pool& pool = {}) const;
-  /// The rectified pair's calibration.
+  /// The calibration of the rectified pair.
   [[nodiscard]] const StereoRig& rig() const { return rig_; }
-  /// The rotation from the raw left camera to the rectified one, row by row.
+  /// The rotation from the raw left camera to the rectified one, row-major.
   [[nodiscard]] const std::array<double, 9>& left_rotation() const { return left_rotation_; }
 
  private:

@@ -9,9 +9,9 @@
 
 namespace cairn::io {
 
-/// The documents of a text that others wrote. Throws YAML::Exception also where YAML::LoadAll() would not
-/// end: a comma where a document should begin makes empty documents until the memory is used up (yaml-cpp
-/// 0.7, 0.8), and beyond 200 000 values.
+/// The documents of a YAML text from outside. Also throws YAML::Exception where YAML::LoadAll() would not end
+/// (a comma at the start of a document makes empty documents until memory is exhausted; yaml-cpp 0.7, 0.8),
+/// and above 200 000 values.
 std::vector<YAML::Node> yaml_documents(const std::string& text);
 
 }  // namespace cairn::io

@@ -9,8 +9,7 @@
 
 namespace cairn::live {
 
-/// How long frames took, counted in steps of 0.1 ms up to 2 s, so that a run of days needs no more memory
-/// than one of seconds.
+/// A histogram of frame times in steps of 0.1 ms up to 2 s, of constant size.
 class Latencies {
  public:
   void add(double ms) {
@@ -19,7 +18,7 @@ class Latencies {
     ++all_;
     max_ms_ = std::max(max_ms_, ms);
   }
-  /// The time that `share` (0 … 1) of the frames did not exceed, in ms; 0 where there are none.
+  /// The time that `share` (0 … 1) of the frames did not exceed, in ms; 0 without frames.
   [[nodiscard]] double percentile(double share) const {
     const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(all_));
     std::uint64_t seen = 0;

@@ -12,19 +12,19 @@
 #include "../source/sequence.hpp"
 #include "../source/sequence_run.hpp"
 
-/// A robot's loop: pairs come from a camera, what is found in the newest one goes to whoever wants to know.
+/// The loop of a robot: pairs arrive from a camera, the results of the newest go to sinks.
 namespace cairn::live {
 
 using Clock = std::chrono::steady_clock;
 
-/// Pairs that were not worked on, since the beginning, by reason.
+/// Pairs dropped since the start, by reason.
 struct Drops {
-  std::uint64_t at_source = 0;  // as SourceStatus::dropped and unpaired
-  std::uint64_t replaced = 0;   // a newer pair was there before this one's turn came
-  std::uint64_t too_old = 0;    // older than LiveOptions::max_age when its turn came
+  std::uint64_t at_source = 0;  // SourceStatus::dropped and unpaired
+  std::uint64_t replaced = 0;   // replaced by a newer pair before processing
+  std::uint64_t too_old = 0;    // older than LiveOptions::max_age before processing
 };
 
-/// All that is known of one pair. Shared by everybody who looks at it, so nobody changes it.
+/// The results of one pair, shared by all sinks, hence immutable.
 struct LiveFrame {
   std::shared_ptr<const io::SequenceFrame> pair;
   Step step;
@@ -36,15 +36,15 @@ struct LiveFrame {
   std::vector<io::StageTime> stages;
   Drops drops;
   io::SourceStatus source;
-  double rate_hz = 0;  // of frames done, over the last second or so
-  // What it was computed with; the revision counts the changes.
+  double rate_hz = 0;  // of processed frames, over about a second
+  // The configuration used; the revision counts the changes.
   std::shared_ptr<const FollowConfig> config;
   std::uint64_t revision = 0;
 };
 using LiveFramePtr = std::shared_ptr<const LiveFrame>;
 
-/// Who is told of every frame. offer() must return at once: a sink has a thread of its own for what takes
-/// long, and a NewestSlot (or a bounded queue) before it.
+/// A receiver of every frame. offer() must return at once: slow work belongs on a thread of the sink, behind
+/// a NewestSlot (or a bounded queue).
 class Sink {
  public:
   Sink() = default;
@@ -52,9 +52,9 @@ class Sink {
   Sink(const Sink&) = delete;
   Sink& operator=(const Sink&) = delete;
   virtual void offer(const LiveFramePtr& frame) = 0;
-  /// The run has ended: what is still to be written is written.
+  /// The run has ended: writes what is left.
   virtual void finish() {}
-  /// A line for the end: how many frames went where; empty for none.
+  /// A line for the end: number of frames by outcome; empty for none.
   [[nodiscard]] virtual std::string summary() const { return {}; }
 };
 

@@ -9,9 +9,9 @@
 
 namespace cairn::live {
 
-/// A sequence of files that begins again at its end, for ever: for screens, soaks and trying things out. The
-/// stamps go on rising, and each new round begins after a gap, because the camera is somewhere else then.
-/// `open` opens it anew; throws Error where that does, and where it opens a camera.
+/// A sequence of files that repeats endlessly: for demonstrations, soak tests and experiments. Stamps
+/// continue to ascend, and each round begins after a gap, since the camera jumps. `open` opens the source
+/// again; throws Error if that does, or if it is a camera.
 std::unique_ptr<io::Sequence> looped(std::function<std::unique_ptr<io::Sequence>()> open);
 
 }  // namespace cairn::live

@@ -11,12 +11,12 @@
 
 namespace cairn::live {
 
-/// Hands values from one thread to another and keeps only the newest: who puts never waits, who takes gets
-/// what is latest. What was replaced before anybody took it is counted.
+/// Passes values between threads and keeps only the newest: put() never waits, take() gets the latest. Counts
+/// values that were replaced before being taken.
 template <class T>
 class NewestSlot {
  public:
-  /// Nothing after close(). `merge(value, replaced)`: what of a value that nobody took goes on with this one.
+  /// No effect after close(). `merge(value, replaced)` carries over data of a value that was not taken.
   template <class Merge>
   void put(T value, Merge&& merge) {
     {
@@ -35,14 +35,14 @@ class NewestSlot {
     put(std::move(value), [](T&, const T&) {});
   }
 
-  /// Waits for a value; none where the slot is closed and empty, or the time is over.
+  /// Waits for a value; nullopt if the slot is closed and empty, or on timeout.
   std::optional<T> take(std::chrono::nanoseconds timeout) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [&] { return value_ || is_closed_; });
     return std::exchange(value_, std::nullopt);
   }
 
-  /// What is in the slot may still be taken.
+  /// A value in the slot may still be taken.
   void close() {
     {
       const std::lock_guard lock(mutex_);

@@ -16,7 +16,7 @@
 
 namespace cairn::live {
 
-/// What of each frame is recorded. (docs/recordings.md lists the topics)
+/// The recorded parts of each frame. (docs/recordings.md lists the topics)
 struct RecordWhat {
   bool input = false;      // both images and their camera_info
   bool objects = false;    // objects, tracks, transforms, times
@@ -28,7 +28,7 @@ struct RecordWhat {
 /// "input,objects", "all". Throws Error.
 RecordWhat parse_record_what(std::string_view text);
 
-/// What a recording says of the run that it is of.
+/// The metadata of a recording about its run.
 struct RecordedRun {
   std::string source;
   std::optional<StereoRig> rig;
@@ -39,16 +39,16 @@ struct RecordedRun {
   std::string stamps_from;
   bool tracks = true;
 };
-/// Of a source that is open.
+/// For an open source.
 RecordedRun recorded_run(const io::Sequence& source, const std::string& name, const std::string& preset,
                          bool tracks);
 
 struct RecorderOptions {
   RecordWhat what{.input = true, .objects = true};
-  std::size_t most_waiting = 16;  // frames; further ones are skipped, which the recording says
-  bool waits = false;             // instead of skipping: offer() then takes as long as it takes
+  std::size_t most_waiting = 16;  // frames; further ones are skipped, and the recording notes that
+  bool waits = false;             // wait instead of skipping: offer() then blocks
   ros::FrameNames names;
-  // Told once where a recording ends because it cannot be written, in one line.
+  // Called once if a recording ends because it cannot be written, with one line.
   std::function<void(const std::string&)> on_trouble = {};
 };
 
@@ -58,20 +58,20 @@ struct RecorderStatus {
   std::uint64_t frames = 0;  // recorded
   std::uint64_t skipped = 0;
   std::uint64_t bytes = 0;
-  std::string trouble;  // why it ended before it was stopped
+  std::string trouble;  // why it ended early
 };
 
-/// Records frames, while it is asked to, as MCAP. Writes on a thread of its own. Whatever becomes of the
-/// file, the run goes on. start(), stop() and status() from any thread.
+/// Records frames as MCAP, on request. Writes on its own thread. The run continues even if the file fails.
+/// start(), stop() and status() from any thread.
 class Recorder : public Sink {
  public:
   Recorder(RecordedRun run, RecorderOptions options);
   ~Recorder() override;
 
-  /// With the next frame. Throws Error where the file is there already or cannot be written, or one is being
-  /// recorded.
+  /// Begins with the next frame. Throws Error if the file exists or cannot be written, or a recording is
+  /// active.
   void start(const std::filesystem::path& path);
-  /// What waits is written, and the file is whole. Nothing where nothing is recorded.
+  /// Writes waiting frames and completes the file. No effect without a recording.
   void stop();
   [[nodiscard]] RecorderStatus status() const;
 

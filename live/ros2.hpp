@@ -9,7 +9,7 @@
 #include "../ros/from_step.hpp"
 #include "live_frame.hpp"
 
-/// What is found in every frame, on topics of ROS 2 (docs/ros2.md), by a module that has Cyclone DDS (dds/).
+/// The results of every frame on ROS 2 topics (docs/ros2.md), through a module with Cyclone DDS (dds/).
 namespace cairn::live {
 
 struct Ros2Options {
@@ -18,8 +18,8 @@ struct Ros2Options {
   bool marks_holes_as_ros = false;  // min_disparity − 1 instead of NaN
 };
 
-/// Opens sockets, and publishes on a thread of its own what somebody listens to: who is slow skips frames.
-/// `rig`: the source's. Throws Error where that cannot be, also where Cyclone DDS is not built in.
+/// Opens sockets, and publishes topics with subscribers on its own thread; slow subscribers skip frames.
+/// `rig`: of the source. Throws Error on failure, also in a build without Cyclone DDS.
 std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig);
 
 }  // namespace cairn::live

@@ -18,49 +18,49 @@
 namespace cairn::live {
 
 struct LiveOptions {
-  bool every_frame = false;  // no pair is dropped, however long it takes
-  // Pairs that are older than this when their turn comes are dropped; none: never. Not with every_frame.
+  bool every_frame = false;  // no pair is dropped
+  // Pairs older than this before processing are dropped; nullopt: never. Not with every_frame.
   std::optional<std::chrono::milliseconds> max_age;
-  bool tracks = true;  // off: each frame by itself, as segment() has it
-  // Files are played at the pace of their stamps times this; 0 = as fast as they are worked on.
+  bool tracks = true;  // false: single frames, as by segment()
+  // Playback speed of files relative to their stamps; 0 = as fast as possible.
   double pace = 1;
   std::optional<std::chrono::nanoseconds> duration;
-  // Asked before each frame, and often while waiting for one: the run ends where it says so.
+  // Called before each frame, and often while waiting for one: true ends the run.
   std::function<bool()> is_ended;
 };
 
-/// What a run came to.
+/// The summary of a run.
 struct LiveSummary {
   std::uint64_t frames = 0;
   Drops drops;
   double seconds = 0;
-  double p50_ms = 0;  // from a pair's arrival until all was known of it
+  double p50_ms = 0;  // from the arrival of a pair to its results
   double p99_ms = 0;
   double max_ms = 0;
 };
 
-/// Takes pairs from a source, finds and follows what is in them, and offers the frames to the sinks.
+/// Reads pairs from a source, processes and follows them, and offers the frames to the sinks.
 class Runner {
  public:
-  /// `source` and the sinks must outlive it. Throws Error as SequenceRun does.
+  /// `source` and the sinks must outlive it. Throws Error like SequenceRun.
   Runner(io::Sequence& source, const std::string& source_name, const io::CompanionFiles& files,
          FollowConfig config, LiveOptions options, const Exec& exec);
   void add(Sink& sink) { sinks_.push_back(&sink); }
 
-  /// Until the source ends, the duration is over, or stop(). Throws Error where a frame does not fit.
+  /// Runs until the source ends, the duration is over, or stop(). Throws Error for a frame that does not fit.
   LiveSummary run();
 
   // From any thread:
 
-  /// run() returns behind the frame at hand.
+  /// run() returns after the current frame.
   void stop() noexcept { is_stopped_ = true; }
-  /// Options by name and value, from the next frame on; all or, where one is refused, none (throws Error).
-  /// Refused are also those that fit no further frame of this size.
+  /// Sets options by name and value from the next frame on; all, or none if one is refused (throws Error).
+  /// Also refuses options that do not suit the size of the frames.
   void set(const std::vector<std::pair<std::string, std::string>>& options);
-  /// Those that it began with.
+  /// Restores the initial options.
   void reset();
   [[nodiscard]] std::shared_ptr<const FollowConfig> config() const;
-  /// Nothing is taken from the source while it is paused; step() lets one pair pass. Of files only.
+  /// While paused, no pair is read from the source; step() lets one pass. For files only.
   void pause(bool on) {
     steps_ = 0;
     is_paused_ = on;
@@ -98,7 +98,8 @@ class Runner {
   std::atomic<bool> is_paused_ = false;
   std::atomic<std::uint64_t> steps_ = 0;
   std::optional<Clock::time_point> deadline_;
-  std::optional<std::pair<Stamp, Clock::time_point>> played_;  // the file's frame before, and when it was due
+  std::optional<std::pair<Stamp, Clock::time_point>>
+      played_;  // the previous frame of the file, and when it was due
   Drops drops_;
   int frames_ = 0;
   std::deque<Clock::time_point> recent_;

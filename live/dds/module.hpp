@@ -8,7 +8,7 @@
 namespace cairn::dds {
 
 inline constexpr const char* kRos2SinkEntry = "cairn_publish_ros2";
-/// The function of that name: the caller owns what it returns. Throws Error.
+/// The function of that name: the caller owns the result. Throws Error.
 using Ros2SinkEntry = live::Sink* (*)(const live::Ros2Options&, const std::optional<StereoRig>&);
 
 }  // namespace cairn::dds
