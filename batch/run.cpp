@@ -34,7 +34,7 @@ std::vector<std::size_t> sequences_in(const Json& json, std::size_t frames, cons
               (sequences.empty() ? begin == 0U : begin > sequences.back());
     if (is_good) sequences.push_back(begin.get<std::size_t>());
   }
-  if (!is_good) throw Error(file.string() + ": `sequences` are no numbers of frames that rise from 0 on");
+  if (!is_good) throw Error(file.string() + ": `sequences`: expected ascending numbers of frames, from 0");
   return sequences;
 }
 
@@ -43,7 +43,7 @@ std::string line_of(const PlannedFrame& frame) {
   try {
     return frame.how.dump() + "\n";
   } catch (const nlohmann::json::exception&) {
-    throw Error("a frame's name or file is no UTF-8, which a manifest cannot hold: " +
+    throw Error("the name or file of a frame is not UTF-8, expected UTF-8 in a manifest: " +
                 frame.how.dump(-1, ' ', true, Json::error_handler_t::replace));
   }
 }
@@ -53,7 +53,7 @@ void check_names(const std::vector<PlannedFrame>& frames) {
   for (const PlannedFrame& frame : frames) {
     if (!seen.insert(frame.name).second) {
       throw Error("two frames would have the name " + frame.name +
-                  ", expected inputs that differ in more than the folders above them");
+                  ", expected inputs that differ by more than their parent folders");
     }
   }
 }
@@ -72,7 +72,7 @@ void check_is_free(const fs::path& folder) {
 std::string text_at(const Json& json, const char* key, const fs::path& file) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_string())
-    throw Error(file.string() + ": has no text `" + key + "`, expected a file that cairn batch plan wrote");
+    throw Error(file.string() + ": found no text `" + key + "`, expected a file written by cairn batch plan");
   return found->get<std::string>();
 }
 
@@ -90,7 +90,7 @@ std::string file_sha256(const fs::path& path) {
 
 Planned plan(const fs::path& folder, const std::vector<PlannedFrame>& frames,
              const std::vector<std::size_t>& sequences, std::string_view config_yaml) {
-  if (frames.empty()) throw Error("the inputs hold no frame");
+  if (frames.empty()) throw Error("the inputs contain no frame");
   check_names(frames);
   Run run{folder, {}, frames.size(), sequences, {}, io::sha256(config_yaml)};
   io::Sha256 sum;
@@ -131,7 +131,7 @@ Run open_run(const fs::path& folder) {
     throw Error(folder.string() + ": holds no run.json, expected the folder of cairn batch plan -o");
   const Json json = Json::parse(io::read_file(file, kMostBytes), nullptr, false);
   if (!json.is_object())
-    throw Error(file.string() + ": is no JSON object, expected a file that cairn batch plan wrote");
+    throw Error(file.string() + ": is not a JSON object, expected a file written by cairn batch plan");
   const std::string version = text_at(json, "cairn", file);
   if (version != CAIRN_VERSION) {
     throw Error(file.string() + ": was planned by cairn " + version +
@@ -146,11 +146,11 @@ Run open_run(const fs::path& folder) {
           text_at(json, "config_sha256", file)};
   const auto frames = json.find("frames");
   if (frames == json.end() || !frames->is_number_unsigned() || *frames == 0U)
-    throw Error(file.string() + ": `frames` is no count, expected a file that cairn batch plan wrote");
+    throw Error(file.string() + ": `frames` is not a count, expected a file written by cairn batch plan");
   run.frames = frames->get<std::size_t>();
   run.sequences = sequences_in(json, run.frames, file);
   if (run.id != id_of(run))
-    throw Error(file.string() + ": was changed: its `run` is not that of its manifest and configuration");
+    throw Error(file.string() + ": was changed: its `run` does not match manifest and configuration");
   return run;
 }
 
@@ -159,7 +159,7 @@ void check_unchanged(const Run& run) {
        {std::pair{run.manifest(), run.manifest_sha256}, {run.config(), run.config_sha256}}) {
     if (file_sha256(file) != expected) {
       throw Error(file.string() +
-                  ": was changed since it was planned; other options or frames are another run: cairn batch "
+                  ": was changed since it was planned; other options or frames need a new run: cairn batch "
                   "plan with another -o");
     }
   }
@@ -174,12 +174,12 @@ void each_planned(const Run& run, std::size_t begin, std::size_t end,
     if (i < begin && is_there) continue;
     Json json = Json::parse(line, nullptr, false);
     if (!is_there || !json.is_object() || !json.contains("frame") || !json["frame"].is_string())
-      throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": is no frame of a manifest");
+      throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": is not a frame of a manifest");
     std::string name = json["frame"].get<std::string>();
     const std::filesystem::path below(name);
     if (name.empty() || below.is_absolute() || std::ranges::find(below, "..") != below.end())
       throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": found the frame " + name +
-                  ", expected a name that stays below the run's folder");
+                  ", expected a name inside the folder of the run");
     visit(i, {std::move(name), std::move(json)});
   }
 }

@@ -15,19 +15,19 @@ namespace cairn::batch {
 
 using Json = nlohmann::ordered_json;
 
-/// One frame of the manifest.
+/// A frame of the manifest.
 struct PlannedFrame {
   std::string name;  // unique in the run; a relative path that stays below where it starts
-  Json how;          // the whole line: what reads it
+  Json how;          // the whole line: how to read it
 };
 
-/// A run that is planned.
+/// A planned run.
 struct Run {
   std::filesystem::path folder;
   std::string id;  // SHA-256 over version, manifest, configuration
   std::size_t frames = 0;
-  /// Of a run with tracks: the first frame of each sequence, which no shard parts. Empty: frames by
-  /// themselves.
+  /// For a run with tracks: the first frame of each sequence; shards do not split sequences. Empty:
+  /// independent frames.
   std::vector<std::size_t> sequences;
   std::string manifest_sha256;
   std::string config_sha256;
@@ -40,30 +40,30 @@ struct Run {
 
 struct Planned {
   Run run;
-  bool was_there = false;  // the same run had been planned before
+  bool was_there = false;  // the same run was planned before
 };
 
-/// Writes a run's manifest, a line for each frame, and its configuration; run.json last. `sequences`: as in
-/// Run. Where the folder holds the same run already nothing changes. Throws Error where it holds another one
-/// or other files, where two frames have one name, and where there is no frame.
+/// Writes the manifest of a run, one line per frame, and its configuration; run.json last. `sequences`: as in
+/// Run. No effect if the folder already contains the same run. Throws Error if it contains another one or
+/// other files, two frames have one name, or there is no frame.
 Planned plan(const std::filesystem::path& folder, const std::vector<PlannedFrame>& frames,
              const std::vector<std::size_t>& sequences, std::string_view config_yaml);
 
-/// Reads run.json. Throws Error where the folder holds no run, or one that another version planned.
+/// Reads run.json. Throws Error if the folder contains no run, or one planned by another version.
 Run open_run(const std::filesystem::path& folder);
 
-/// Throws Error where manifest or configuration are not those that were planned.
+/// Throws Error if manifest or configuration have changed since planning.
 void check_unchanged(const Run& run);
 
-/// Calls `visit` for each planned frame of begin … end − 1 in the manifest's order.
+/// Calls `visit` for the planned frames begin … end − 1 in the order of the manifest.
 void each_planned(const Run& run, std::size_t begin, std::size_t end,
                   const std::function<void(std::size_t index, PlannedFrame frame)>& visit);
 
-/// How the row of a frame begins: {"frame":"000012",
+/// The beginning of the row of a frame: {"frame":"000012",
 std::string row_begin(const std::string& frame);
-/// The row of a frame that cannot be used.
+/// The row of an unusable frame.
 std::string error_row(const std::string& frame, const std::string& why);
-/// Whether this row of the frame is one.
+/// Whether this row of the frame is an error row.
 bool is_error_row(std::string_view row, const std::string& frame);
 
 }  // namespace cairn::batch

@@ -214,7 +214,7 @@ class Checkpoint {
       }
       if (copied != rows_) {
         throw Error(path_.string() + ": row " + std::to_string(copied + 1) +
-                    " is not what was written there; the same command goes on from it");
+                    " is not what was written there; the same command continues from it");
       }
       out.sync();
     }

@@ -93,8 +93,8 @@ class PartReader {
     std::string row;
     const bool is_whole = std::getline(file_, row) && !file_.eof();
     if (!is_whole || !row.starts_with(row_begin(frame)) || !row.ends_with('}')) {
-      throw Error(path_.string() + ": has no whole row of frame " + frame +
-                  ", expected a part that cairn batch work wrote; delete it and work on this shard again");
+      throw Error(path_.string() + ": has no complete row of frame " + frame +
+                  ", expected a part written by cairn batch work; delete it and process this shard again");
     }
     return row + "\n";
   }

@@ -11,31 +11,31 @@
 
 namespace cairn::batch {
 
-/// A shard on which somebody has begun to work.
+/// A shard with a worker, past or present.
 struct ShardStatus {
   Shard shard;
   FrameSpan span;
   bool is_done = false;
   std::size_t rows = 0;
-  std::optional<SeenWorker> worker;  // the last one, where its note can be read
+  std::optional<SeenWorker> worker;  // the last one, if its note is readable
 };
 
 struct Status {
   std::vector<ShardStatus> shards;  // by number of shards, then by number
-  std::size_t frames_done = 0;      // in some shard, done or not
-  std::size_t errors = 0;           // rows of frames that could not be used
-  /// Of the frames that are not done, at the pace of the workers that run; none where none does.
+  std::size_t frames_done = 0;      // in any shard, complete or not
+  std::size_t errors = 0;           // rows of unusable frames
+  /// Estimate for the remaining frames, at the pace of the running workers; nullopt without any.
   std::optional<double> seconds_left;
 };
 Status status_of(const Run& run);
 
-/// Frames begin … end − 1 that have no row yet.
+/// The frames begin … end − 1 without a row.
 struct MissingFrames {
   FrameSpan span;
   std::string first;  // names
   std::string last;
 };
-/// Those of no finished part. Reads the manifest only where some are missing.
+/// The frames without a complete part. Reads the manifest only if some are missing.
 std::vector<MissingFrames> missing_frames(const Run& run);
 
 struct Merged {
@@ -43,8 +43,8 @@ struct Merged {
   std::size_t errors = 0;
   std::string sha256;  // of the rows, each with its newline
 };
-/// Hands out the rows of all frames in the manifest's order, from whatever parts hold them; frames without a
-/// row are passed over. Throws Error where a part is not what a worker wrote.
+/// Passes the rows of all frames in the order of the manifest to `take`, from whichever parts; frames without
+/// a row are skipped. Throws Error if a part is not as a worker wrote it.
 Merged merge(const Run& run, const std::function<void(std::string_view row_and_newline)>& take);
 
 }  // namespace cairn::batch

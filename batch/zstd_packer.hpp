@@ -8,7 +8,7 @@
 
 namespace cairn::batch {
 
-/// Packs bytes as one frame of zstd, with a checksum. Throws Error where zstd is not built in.
+/// Compresses bytes as one zstd frame, with a checksum. Throws Error if zstd is not built in.
 class ZstdPacker {
  public:
   ZstdPacker();
@@ -16,9 +16,9 @@ class ZstdPacker {
   ZstdPacker& operator=(const ZstdPacker&) = delete;
   ~ZstdPacker();
 
-  /// What can be written of all bytes so far; may be empty.
+  /// Output available so far; may be empty.
   std::string pack(std::string_view bytes);
-  /// The rest.
+  /// The remaining output.
   std::string end();
 
  private:

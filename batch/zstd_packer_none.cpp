@@ -9,8 +9,8 @@ struct ZstdPacker::State {};
 
 ZstdPacker::ZstdPacker() {
   throw Error(
-      "-o: packing is not built in, it needs zstd (libzstd-dev); without .zst at its end the file is not "
-      "packed");
+      "-o: compression is not built in, it needs zstd (libzstd-dev); a name without .zst needs "
+      "no compression");
 }
 ZstdPacker::~ZstdPacker() = default;
 std::string ZstdPacker::pack(std::string_view /*bytes*/) {

@@ -16,7 +16,7 @@ class Looped : public Sequence {
   explicit Looped(std::function<std::unique_ptr<Sequence>()> open)
       : open_(std::move(open)), inner_(open_()), rig_(inner_->rig()), size_(inner_->image_size()) {
     if (inner_->status().is_live)
-      throw Error(inner_->name() + ": is a camera, which has no end to begin again at");
+      throw Error(inner_->name() + ": is a camera, expected a source with an end to repeat");
   }
 
   std::optional<SequenceFrame> next() override {

@@ -266,7 +266,7 @@ void Recorder::start(const std::filesystem::path& path) {
   if (s.thread.joinable()) s.thread.join();  // one that ended by itself
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_character_file(path, unknown))
-    throw Error(path.string() + ": is there already, expected a new file to record into");
+    throw Error(path.string() + ": already exists, expected a new file to record into");
   try {
     s.recording = std::make_unique<Recording>(path, s.run, s.options);
   } catch (...) {

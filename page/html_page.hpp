@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-/// A run's results as one page for the browser, which needs nothing but itself: no network, no other file.
-/// Style, script and layout are the files beside this one.
+/// The results of a run as one self-contained page for the browser: no network, no other file. Style, script
+/// and layout are the files next to this one.
 namespace cairn::io {
 
-/// What the page shows of one frame. Any view may be empty: what rests on it is then left out; the others
+/// The contents of the page for one frame. Any view may be empty: its parts are then left out; the others
 /// have one size.
 struct PageFrame {
   std::string name;
@@ -35,8 +35,8 @@ struct PageFrame {
   std::string objects_json;  // the text of an objects.json, for the tables; may be empty
 };
 
-/// A frame as text, so that its images need not be kept until the page is written. Ids and reasons are packed
-/// without loss, disparities to 1/64 px, confidences to 1/255, the pictures as JPEG.
+/// A frame as text, so that its images need not be kept until the page is written. Ids and reasons are
+/// lossless, disparities in 1/64 px, confidences in 1/255, images as JPEG.
 struct EncodedFrame {
   std::string facts;  // JSON, read when the page is opened
   std::string maps;   // JSON, read when the frame is shown
@@ -45,11 +45,11 @@ EncodedFrame encode_frame(const PageFrame& frame);
 
 struct PageHead {
   std::string command;     // "segment" or "evaluate"
-  std::string title;       // what was worked on
-  std::string evaluation;  // the text of `cairn evaluate --json`; empty where there is none
+  std::string title;       // the input
+  std::string evaluation;  // text of `cairn evaluate --json`; empty if there is none
 };
 
-/// The page's HTML, the frames in the order given.
+/// The HTML of the page, with the frames in order.
 std::string html_page(const PageHead& head, const std::vector<EncodedFrame>& frames);
 
 }  // namespace cairn::io

@@ -7,8 +7,8 @@
 /// The page of `cairn live --view`: a client of the server that it comes from. (docs/live_view.md)
 namespace cairn::io {
 
-/// The page's HTML. Its script and style have `nonce`, which the Content-Security-Policy that it is sent with
-/// names, new for each answer. It needs img-src data:, and connect-src of the host that it came from.
+/// The HTML of the page. Its script and style have `nonce`, named in the Content-Security-Policy header and
+/// new for each answer. It needs img-src data:, and connect-src to its own host.
 std::string live_page(const std::string& nonce);
 
 }  // namespace cairn::io

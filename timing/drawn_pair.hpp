@@ -6,7 +6,7 @@
 #include <cairn/core/stereo_pair.hpp>
 #include <cstdint>
 
-/// A pair to measure on where nobody gave one: the same pixels on every machine.
+/// A synthetic pair for timing without input: the same pixels on every machine.
 namespace cairn::report {
 
 struct DrawnPair {
@@ -21,9 +21,9 @@ struct DrawnPair {
   [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right, left_rgb); }
 };
 
-/// A room: a tiled floor, a wall, and textured boxes that stand on the floor, with sub-pixel disparities, a
-/// little sensor noise and different texture everywhere. The floor at the bottom row has
-/// `largest_disparity_px`; boxes and texture grow with the picture.
+/// A room: a tiled floor, a wall, and textured boxes on the floor, with sub-pixel disparities, a little
+/// sensor noise and different texture everywhere. The floor at the bottom row has `largest_disparity_px`;
+/// boxes and texture scale with the image.
 DrawnPair draw_pair(Size size, float largest_disparity_px);
 
 }  // namespace cairn::report

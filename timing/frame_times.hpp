@@ -11,25 +11,25 @@
 
 #include "opencv_matchers.hpp"
 
-/// How long the method takes, stage by stage and frame by frame, and what stands beside it.
+/// The time of the method, per stage and frame, next to that of other matchers.
 namespace cairn::report {
 
-/// Milliseconds of one thing, one value for each frame.
+/// Milliseconds, one value per frame.
 struct Samples {
   std::vector<double> wall_ms;
   std::vector<double> cpu_ms;  // of the whole process, all its threads
 };
 
 struct StageTimes {
-  std::string name;            // as the observer names it
-  bool for_disparity = false;  // estimate_disparity() has this stage, too: all that a matcher does
+  std::string name;            // as passed to the observer
+  bool for_disparity = false;  // also a stage of estimate_disparity(): the work of a matcher
   Samples times;
 };
 
 struct PeerTimes {
   const OpenCvMatcher* matcher = nullptr;
   Samples times;
-  std::string refusal;        // why OpenCV does not take this pair; no times then
+  std::string refusal;        // why OpenCV refuses this pair; no times then
   Image<float> disparity_px;  // NaN = hole
 };
 
@@ -38,8 +38,8 @@ struct FrameTimes {
   std::vector<StageTimes> stages;  // in the order of the first frame
   Samples disparity;               // the sum of its stages
   Samples frame;
-  std::int64_t pool_bytes = 0;         // what the pool held at its peak
-  std::int64_t resident_bytes = 0;     // the most that the process had held after the first frame
+  std::int64_t pool_bytes = 0;         // peak size of the pool
+  std::int64_t resident_bytes = 0;     // peak resident size after the first frame
   std::int64_t first_allocations = 0;  // image buffers from the heap, in the first frame …
   std::int64_t later_allocations = 0;  // … and in all later ones
   int objects = 0;
@@ -49,15 +49,15 @@ struct FrameTimes {
   [[nodiscard]] int frames() const { return static_cast<int>(frame.wall_ms.size()); }
 };
 
-/// When to stop: after so many frames or so much time; time does not stop it before the third frame.
+/// The limits of the measurement: number of frames, and time, which applies from the third frame on.
 struct Limits {
   int frames = std::numeric_limits<int>::max();
   double seconds = std::numeric_limits<double>::infinity();
 };
 
-/// Runs the method on one pair over and over, and each of the matchers once after each frame, so that
-/// whatever else the machine does hits all alike. The images come from a pool that the frames share, whatever
-/// exec.pool is; exec.observe is not called. Throws Error where segment() does.
+/// Times the method on one pair repeatedly, and each matcher once after each frame, so that other load on the
+/// machine affects all alike. The frames share a pool, whatever exec.pool is; exec.observe is not called.
+/// Throws Error like segment().
 FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
                        const Exec& exec, const Limits& limits, std::span<const OpenCvMatcher> matchers = {});
 

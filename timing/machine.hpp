@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-/// What a figure depends on beside the code: said with every report.
+/// Machine and build of a measurement, part of every report.
 namespace cairn::report {
 
 inline std::string processor() {
@@ -20,7 +20,7 @@ inline std::string processor() {
   return "unknown processor";
 }
 
-/// The compiler of the program that asks; the library comes from the same build.
+/// The compiler of the calling program; the library is from the same build.
 inline std::string compiler() {
 #if defined(__clang__)
   return "Clang " __clang_version__;

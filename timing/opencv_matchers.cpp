@@ -69,7 +69,7 @@ constexpr std::string_view kSemiGlobalSettings =
 constexpr OpenCvMatcher kSemiGlobal{"StereoSGBM", kSemiGlobalSettings, semi_global_5_paths};
 
 constexpr std::array kQuick{
-    kBlockMatching, OpenCvMatcher{"StereoSGBM 3-way", "as StereoSGBM, with 3 paths", semi_global_3_paths},
+    kBlockMatching, OpenCvMatcher{"StereoSGBM 3-way", "like StereoSGBM, with 3 paths", semi_global_3_paths},
     kSemiGlobal};
 constexpr std::array kAccurate{kBlockMatching, kSemiGlobal,
                                OpenCvMatcher{"StereoSGBM HH", "the same with 8 paths", semi_global_8_paths}};

@@ -9,18 +9,18 @@
 #include <string_view>
 #include <utility>
 
-/// OpenCV's matchers, to stand beside ours in the same run. A build without them has opencv_matchers_none.cpp
+/// OpenCV's matchers, for comparison in the same run. A build without them has opencv_matchers_none.cpp
 /// instead: no matcher, no version.
 namespace cairn::report {
 
-/// A matcher for the frames of one camera: it keeps its buffers from frame to frame, as ours does.
+/// A matcher for the frames of one camera: keeps its buffers between frames, like Segmenter.
 class ReadyMatcher {
  public:
   struct State;
   explicit ReadyMatcher(std::shared_ptr<State> state) : state_(std::move(state)) {}
-  /// OpenCV's own call and nothing else, to be timed. Throws Error where OpenCV refuses the pair.
+  /// OpenCV's own call only, for timing. Throws Error if OpenCV refuses the pair.
   void compute(const StereoPair& pair) const;
-  /// What the last compute() found; px, NaN = hole.
+  /// The result of the last compute(); px, NaN = hole.
   [[nodiscard]] Image<float> disparity_px() const;
 
  private:
@@ -29,7 +29,7 @@ class ReadyMatcher {
 
 struct SearchRange {
   int min_disparity = 0;
-  int num_disparities = 64;  // OpenCV wants multiples of 16: rounded up
+  int num_disparities = 64;  // rounded up to a multiple of 16 for OpenCV
 };
 
 struct OpenCvMatcher {
@@ -38,14 +38,14 @@ struct OpenCvMatcher {
   ReadyMatcher (*prepare)(const SearchRange& range);
 };
 
-/// Those that are quick enough to run beside ours on every frame: StereoBM, StereoSGBM 3-way, StereoSGBM.
+/// Fast enough to run on every frame: StereoBM, StereoSGBM 3-way, StereoSGBM.
 std::span<const OpenCvMatcher> quick_opencv_matchers();
-/// Those whose accuracy is worth a row: StereoBM, StereoSGBM, StereoSGBM with 8 paths.
+/// For comparisons of accuracy: StereoBM, StereoSGBM, StereoSGBM with 8 paths.
 std::span<const OpenCvMatcher> accurate_opencv_matchers();
 
-/// Empty where OpenCV's matchers are not built in.
+/// Empty in a build without OpenCV's matchers.
 std::string_view opencv_version();
-/// OpenCV keeps its threads in a global: set once, before anything is timed.
+/// Sets the global number of OpenCV threads: call once, before timing.
 void set_opencv_threads(int threads);
 
 }  // namespace cairn::report

@@ -8,7 +8,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
-/// Between our images and OpenCV's.
+/// Conversion between cairn's and OpenCV's images.
 namespace cairn::report {
 
 // OpenCV has no matrix of constant pixels; its functions only read.
@@ -21,8 +21,8 @@ inline cv::Mat matrix(View<const Rgb> image) {
           static_cast<std::size_t>(image.stride()) * sizeof(Rgb)};
 }
 
-/// Of what a matcher of OpenCV's wrote, in sixteenths of a pixel; px, NaN = hole, which OpenCV marks by a
-/// value below the least disparity.
+/// The output of an OpenCV matcher, in sixteenths of a pixel, as px; NaN = hole, which OpenCV marks by a
+/// value below the minimum disparity.
 inline Image<float> disparity_px_of(const cv::Mat& sixteenths, int min_disparity) {
   constexpr auto kSubpixels = static_cast<float>(cv::StereoMatcher::DISP_SCALE);
   const int least = min_disparity * cv::StereoMatcher::DISP_SCALE;

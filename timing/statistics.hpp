@@ -10,8 +10,8 @@
 
 namespace cairn::report {
 
-/// The smallest value that at least `share` (0 … 1) of them do not exceed; NaN of none. NaN among the values
-/// are left out.
+/// The smallest value that at least `share` (0 … 1) of the values do not exceed; NaN without values. Ignores
+/// NaN.
 inline double percentile(std::vector<double> values, double share) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -21,7 +21,7 @@ inline double percentile(std::vector<double> values, double share) {
   return values[index];
 }
 
-/// NaN are left out; NaN of none.
+/// Ignores NaN; NaN without values.
 inline double mean(const std::vector<double>& values) {
   double sum = 0;
   int count = 0;

@@ -89,9 +89,9 @@ class Ros2Sink : public live::Sink {
       text += (has_any ? ", " : " ") + topic.summary();
       has_any = true;
     });
-    if (!has_any) text += " nobody listened";
+    if (!has_any) text += " no subscriber";
     if (slot_.replaced() > 0)
-      text += "; " + std::to_string(slot_.replaced()) + " frames skipped because a newer one was there";
+      text += "; " + std::to_string(slot_.replaced()) + " frames replaced by newer ones";
     if (!trouble_.empty()) text += "; " + trouble_;
     return text;
   }

@@ -181,8 +181,8 @@ Access::Access(const ViewOptions& options)
   }
   if (!is_loopback_ && !is_tls_ && !options.insecure) {
     throw Error("--view: found " + options.address +
-                ", which others in the network reach, without encryption; expected --tls-cert and --tls-key, "
-                "or --insecure (or 127.0.0.1 and ssh -L)");
+                ", reachable from the network without encryption; expected --tls-cert and --tls-key, or "
+                "--insecure (or 127.0.0.1 and ssh -L)");
   }
   for (const std::string& origin : origins_) {
     if (!origin.starts_with("https://") && !origin.starts_with("http://"))
@@ -224,9 +224,8 @@ ViewVerdict Access::judge(const ViewRequest& request) const {
     return ViewVerdict{status, std::move(text), path};
   };
   if (!is_own(request.host)) {
-    return refuse(421, is_loopback_
-                           ? "this name is not known here, expected localhost or 127.0.0.1"
-                           : "this name is not known here, expected the computer's own or its address");
+    return refuse(421, is_loopback_ ? "unknown name, expected localhost or 127.0.0.1"
+                                    : "unknown name, expected that of this computer or its address");
   }
   if (request.method != "GET") return refuse(405, "expected GET");
   if (!path.starts_with('/')) return refuse(400, "expected a path");
@@ -236,9 +235,9 @@ ViewVerdict Access::judge(const ViewRequest& request) const {
   const std::string name = cookie_name(request.host);
   const std::string kept = cookie_of(request.cookie, name);
   if (!is_equal_in_constant_time(given.empty() ? kept : given, token_))
-    return refuse(403, "no token, or a wrong one; expected the address that cairn live printed");
+    return refuse(403, "no token, or a wrong one; expected the address printed by cairn live");
   if (request.is_upgrade && !may_connect(request))
-    return refuse(403, "a page of another origin; expected this server's own, or one of --view-origin");
+    return refuse(403, "a page of another origin; expected that of this server, or one of --view-origin");
   if (path == "/" && !given.empty() && !request.is_upgrade) {
     return {303,
             {},

@@ -8,20 +8,19 @@
 
 #include "view_options.hpp"
 
-/// Who may see a live view. Internal to it. (docs/live_view.md, "Security")
+/// Access control of a live view. Internal to it. (docs/live_view.md, "Security")
 namespace cairn::live {
 
-/// 128 bits of the system's randomness, as 32 hexadecimal digits.
+/// 128 random bits of the system, as 32 hexadecimal digits.
 std::string random_token();
 
-/// Takes as long wherever the two differ.
+/// Comparison in a time that does not depend on where the two differ.
 bool is_equal_in_constant_time(std::string_view a, std::string_view b);
 
-/// Whether an IP address, in text, is one that only this computer reaches. Throws Error where it is no
-/// address.
+/// Whether an IP address, in text, is a loopback address. Throws Error if it is not an address.
 bool is_loopback(const std::string& address);
 
-/// What decides of a request: its line and three of its headers, empty where it has none.
+/// The parts of a request that decide about access: its line and three of its headers, empty if absent.
 struct ViewRequest {
   std::string_view method;
   std::string_view target;
@@ -32,16 +31,16 @@ struct ViewRequest {
 };
 
 struct ViewVerdict {
-  int status = 200;         // 303: the token was right and belongs into a cookie
-  std::string text;         // why not, in one line
+  int status = 200;         // 303: correct token, to be moved into a cookie
+  std::string text;         // the reason of a refusal, in one line
   std::string path;         // without the query
-  std::string cookie = {};  // to be set, of 303
+  std::string cookie = {};  // to be set, for 303
 };
 
 class Access {
  public:
-  /// Throws Error where the options are not sound, or less than safe without `insecure`. An empty token is
-  /// made up.
+  /// Throws Error if the options are invalid, or unsafe without `insecure`. An empty token is replaced by a
+  /// random one.
   explicit Access(const ViewOptions& options);
 
   [[nodiscard]] ViewVerdict judge(const ViewRequest& request) const;

@@ -12,7 +12,7 @@
 
 #include "../live_frame.hpp"
 
-/// What a live view shows of a frame, channel by channel. Internal to it. (docs/live_view.md, "Channels")
+/// The contents of a live view, channel by channel. Internal to it. (docs/live_view.md, "Channels")
 namespace cairn::live {
 
 enum class Channel : std::uint8_t { left, labels, reject, disparity, objects, obstacles, scene, stats, tf };
@@ -36,32 +36,32 @@ struct ChannelInfo {
   std::string schema;
   std::string_view schema_encoding;
 };
-/// By index; clients know them by index + 1.
+/// By index; clients use index + 1.
 const std::array<ChannelInfo, kChannels>& channels();
 
-/// One frame's message on a channel, shared by all who get it.
+/// The message of one frame on a channel, shared by all receivers.
 struct ViewMessage {
   Channel channel = Channel::left;
   std::uint64_t frame = 0;     // counted by the server
   std::uint64_t stamp_ns = 0;  // of the pair
   std::vector<std::uint8_t> payload;
-  std::size_t picture_bytes = 0;  // of Channel::left: the JPEG file, which the payload ends with
+  std::size_t picture_bytes = 0;  // of Channel::left: size of the JPEG file at the end of the payload
 };
 using ViewMessagePtr = std::shared_ptr<const ViewMessage>;
 
-/// What the statistics say of the server.
+/// The state of the server, for the statistics.
 struct ViewState {
   int clients = 0;
-  std::uint64_t skipped = 0;  // messages that a slow client did not get
+  std::uint64_t skipped = 0;  // messages skipped for slow clients
   bool is_tunable = false;
   bool can_record = false;
   bool is_recording = false;
-  bool is_file = false;  // that can be paused
+  bool is_file = false;  // a source that can be paused
   bool is_paused = false;
-  std::optional<io::SourceStatus> source;  // now; none: as it was at the frame
+  std::optional<io::SourceStatus> source;  // now; nullopt: as of the frame
 };
 
-/// Throws Error where a message cannot hold the frame's stamp, or its image cannot be encoded.
+/// Throws Error if a message cannot hold the stamp of the frame, or its image cannot be encoded.
 ViewMessage encode(Channel channel, const LiveFrame& frame, const std::optional<StereoRig>& rig,
                    const ViewState& state);
 

@@ -96,13 +96,13 @@ void Client::complain(const std::string& what) {
 }
 
 void Client::on_binary() {
-  complain("found a binary message, expected JSON: nothing can be published here");
+  complain("found a binary message, expected JSON: publishing is not supported");
 }
 
 void Client::on_text(const std::string& text) {
   try {
     const auto message = io::parsed_json(text);
-    if (!message) throw Error("found a text that is no JSON, expected {\"op\": …}");
+    if (!message) throw Error("found text that is not JSON, expected {\"op\": …}");
     handle(*message);
   } catch (const std::exception& error) {  // what records may throw more than Error
     complain(error.what());

@@ -14,18 +14,18 @@
 #include "channels.hpp"
 #include "parameters.hpp"
 
-/// One viewer's side of the Foxglove WebSocket protocol, without the socket. Internal to the live view; used
-/// by one thread.
+/// One connection of the Foxglove WebSocket protocol, without the socket. Internal to the live view; used by
+/// one thread.
 namespace cairn::live {
 
 inline constexpr std::size_t kMostClientBytes = 64 * 1024;  // of one message
-/// Identical on the wire; the first that a client offers in this order is taken.
+/// Identical on the wire; the first one offered by a client, in this order, is selected.
 inline constexpr std::array<std::string_view, 3> kSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1",
                                                                "cairn.v1"};
 /// The subprotocol for an offer such as "a, b"; empty for none.
 std::string_view chosen_subprotocol(std::string_view offered);
 
-/// What is to be sent next: a text, or a message with what stands before its payload.
+/// The next data to send: a text, or a message with a prefix before its payload.
 struct Outgoing {
   std::string text;
   ViewMessagePtr message;
@@ -40,18 +40,18 @@ class Client {
   void on_text(const std::string& text);
   void on_binary();
 
-  /// The newest message of a channel. It replaces one that is still waiting.
+  /// Queues the newest message of a channel; replaces one that is still waiting.
   void offer(const ViewMessagePtr& message);
-  /// Parameters have other values.
+  /// Announces changed values of parameters.
   void changed(const std::set<std::string>& names);
 
-  /// What to send next; none: nothing waits.
+  /// The next data to send; nullopt if nothing waits.
   std::optional<Outgoing> next();
-  /// False: what it asked for is to be read by it before it asks for more.
+  /// False if the client must first read earlier answers before it sends more requests.
   [[nodiscard]] bool may_ask() const { return texts_.size() < 16; }
 
   [[nodiscard]] ChannelBits subscribed() const;
-  /// Messages that were replaced.
+  /// Number of replaced messages.
   [[nodiscard]] std::uint64_t skipped() const { return skipped_; }
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
 
@@ -59,7 +59,7 @@ class Client {
   using Json = Parameters::Json;
   struct Subscription {
     std::uint32_t id = 0;
-    std::uint64_t last_frame = 0;  // that it was offered
+    std::uint64_t last_frame = 0;  // the last frame offered
     ViewMessagePtr waiting;
   };
 
@@ -72,11 +72,11 @@ class Client {
 
   Parameters& parameters_;
   std::map<Channel, Subscription> subscriptions_;
-  std::size_t turn_ = 0;  // of the channels
+  std::size_t turn_ = 0;  // the next channel, round robin
   std::deque<std::string> texts_;
   std::set<std::string> watched_;
   bool watches_all_ = false;
-  std::set<std::string> to_tell_;  // parameters
+  std::set<std::string> to_tell_;  // changed parameters to be sent
   std::uint64_t skipped_ = 0;
   std::uint64_t sent_ = 0;
 };

@@ -7,16 +7,17 @@
 
 #include "channels.hpp"
 
-/// What of a frame goes to viewers as JSON. Internal to the live view.
+/// The JSON data of a frame for viewers. Internal to the live view.
 namespace cairn::live {
 
-/// Of /cairn/stats. (docs/live_view.md, "Statistics")
+/// The content of /cairn/stats. (docs/live_view.md, "Statistics")
 std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& rig, const ViewState& state);
-/// Before the first frame: what is known without one.
+/// The content before the first frame.
 std::string stats_json(const ViewState& state);
 extern const std::string_view kStatsSchema;
 
-/// Of /cairn/scene: a foxglove.SceneUpdate with a box and a text for every object that has a place.
+/// The content of /cairn/scene: a foxglove.SceneUpdate with a box and a text for every object with a
+/// position.
 std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& rig);
 extern const std::string_view kSceneSchema;
 

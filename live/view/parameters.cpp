@@ -103,8 +103,7 @@ bool Parameters::has(const std::string& name) const {
 void Parameters::set(const nlohmann::json& list) {
   if (!list.is_array())
     throw Error("setParameters: found " + io::shown(list) + ", expected a list of parameters");
-  if (!is_tunable_)
-    throw Error("setParameters: this view is for reading only; expected cairn live --tunable");
+  if (!is_tunable_) throw Error("setParameters: this view is read-only; expected cairn live --tunable");
   const std::vector<OptionInfo> known = options();
   std::vector<std::pair<std::string, std::string>> texts;
   std::vector<std::pair<std::string, nlohmann::json>> switches;
@@ -113,7 +112,7 @@ void Parameters::set(const nlohmann::json& list) {
     const std::string name = line.text("name");
     const nlohmann::json& value = line.at("value");
     if (name.starts_with("live.")) {
-      if (!has(name)) throw Error("parameter " + io::shown(name) + ": is not one of this run");
+      if (!has(name)) throw Error("parameter " + io::shown(name) + ": is not an option of this run");
       if (!value.is_boolean()) refuse(name, value, "true or false");
       switches.emplace_back(name, value);
       continue;
@@ -122,7 +121,7 @@ void Parameters::set(const nlohmann::json& list) {
     if (option == known.end()) {
       FollowConfig any;
       cairn::set(any, name.substr(0, 80), "");  // says which is meant, or where it went
-      throw Error("option " + io::shown(name) + ": is not known");
+      throw Error("option " + io::shown(name) + ": unknown option");
     }
     texts.emplace_back(name, value.is_null() ? first_.at(name) : text_of(*option, value));
   }

@@ -19,15 +19,15 @@ class Parameters {
 
   Parameters(ViewedRun run, bool is_tunable);
 
-  /// Those of these names (none: all) with their values; what is not known is left out.
+  /// The values of the named parameters (empty: all); unknown names are left out.
   [[nodiscard]] Json values(const std::set<std::string>& names) const;
   [[nodiscard]] bool has(const std::string& name) const;
 
-  /// What a client asks for: a list of {name, value}; without a value, an option is as at the start. Options
-  /// all or none. Throws Error (what was found, what was expected).
+  /// Sets parameters from a client's list of {name, value}; without a value, an option is reset to its
+  /// initial one. Options: all or none. Throws Error (what was found, what was expected).
   void set(const nlohmann::json& list);
 
-  /// The names of those whose values differ from what they were at the last call.
+  /// The names of the parameters that changed since the last call.
   std::set<std::string> take_changes();
 
   /// For /options.json and /config.yaml.

@@ -15,19 +15,19 @@
 
 namespace cairn::live {
 
-/// The run that is viewed, and what its viewers may do to it. The functions are called from the server's
-/// threads; one that is missing is a thing that cannot be done.
+/// The viewed run and the permitted actions. The functions are called from the threads of the server; a
+/// missing one means that the action is not available.
 struct ViewedRun {
   std::string name;                // of the source
-  std::string preset = "default";  // that the options differ from
+  std::string preset = "default";  // base of the changed options
   Size image;
   std::optional<StereoRig> rig;
-  /// How the source does now: a camera that gives no frames says it in none.
+  /// The present status of the source: a camera without frames cannot report it in a frame.
   std::function<io::SourceStatus()> source;
-  std::function<std::shared_ptr<const FollowConfig>()> config;  // with which the next frame is computed
-  /// As Runner::set().
+  std::function<std::shared_ptr<const FollowConfig>()> config;  // of the next frame
+  /// Like Runner::set().
   std::function<void(const std::vector<std::pair<std::string, std::string>>&)> set;
-  // Of files only.
+  // For files only.
   std::function<void(bool)> pause;
   std::function<bool()> is_paused;
   std::function<void()> step;
@@ -37,18 +37,18 @@ struct ViewedRun {
 };
 
 struct ViewOptions {
-  std::string address = "127.0.0.1";  // an IP address; others than loopback ask for TLS or `insecure`
+  std::string address = "127.0.0.1";  // an IP address; others than loopback need TLS or `insecure`
   std::uint16_t port = 8765;          // 0: a free one
   std::string token;                  // 16 … 128 letters, digits, - and _; empty: 128 random bits
   std::string tls_cert;               // PEM files: both or none
   std::string tls_key;
-  bool insecure = false;             // network without TLS: whoever listens sees all, the token too
+  bool insecure = false;             // network without TLS: eavesdroppers see everything, including the token
   std::vector<std::string> origins;  // of other pages that may connect: "https://app.foxglove.dev"
   bool tunable = false;              // viewers may change options, pause and record
   int max_clients = 8;
 };
 
-/// "127.0.0.1:8765", "[::1]:8765", "0.0.0.0" or ":8765": what is left out stays as it is. Throws Error.
+/// "127.0.0.1:8765", "[::1]:8765", "0.0.0.0" or ":8765": omitted parts are unchanged. Throws Error.
 void read_view_address(const std::string& text, ViewOptions& options);
 
 }  // namespace cairn::live

@@ -689,7 +689,8 @@ class Visitor : public std::enable_shared_from_this<Visitor<Hub, Stream>> {
     const bool is_picture = verdict.path == "/left.mjpeg";
     if (!is_upgrade && !is_picture) return say(hub_.respond(verdict, host));
     if (hub_.is_full()) {
-      return say(plain(http::status::service_unavailable, "as many viewers as allowed are here already"));
+      return say(
+          plain(http::status::service_unavailable, "the largest number of viewers is connected already"));
     }
     if (!is_upgrade) {
       std::make_shared<MovingPicture<Hub, Stream>>(hub_, std::move(stream_))->begin();

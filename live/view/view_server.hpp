@@ -11,25 +11,25 @@
 
 namespace cairn::live {
 
-/// Shows a run in a browser, and to Foxglove and its like, over one port. Nothing is encoded while nobody
-/// looks, and a viewer that is slow gets fewer frames and delays nobody. (docs/live_view.md)
+/// Shows a run in browsers, Foxglove and compatible viewers over one port. Encodes only while there is a
+/// viewer; a slow viewer gets fewer frames and does not delay others. (docs/live_view.md)
 class ViewServer : public Sink {
  public:
-  /// Listens from now on. Throws Error where the options are not sound (Access), a file of TLS cannot be
-  /// used, the address cannot be listened on, or views are not built in.
+  /// Listens from construction on. Throws Error if the options are invalid (Access), a TLS file is unusable,
+  /// the address cannot be listened on, or views are not built in.
   ViewServer(ViewOptions options, ViewedRun run);
   ~ViewServer() override;
 
   void offer(const LiveFramePtr& frame) override;
-  /// Tells the viewers that the run is over, and closes.
+  /// Notifies the viewers of the end, and closes.
   void finish() override;
-  /// After finish().
+  /// To be called after finish().
   [[nodiscard]] std::string summary() const override;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// With the token: who has it may look.
+  /// The address with the token, which grants access.
   [[nodiscard]] std::string url() const;
-  /// Messages encoded, by all channels together.
+  /// Messages encoded, over all channels.
   [[nodiscard]] std::uint64_t encoded() const;
 
  private:
