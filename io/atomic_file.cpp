@@ -125,7 +125,7 @@ void make_folder(const fs::path& path) {
   fs::create_directories(path, reason);
   if (!reason && !fs::is_directory(path, reason) && !reason)
     reason = std::make_error_code(std::errc::not_a_directory);
-  if (reason) throw Error(path.string() + ": cannot be made a folder: " + reason.message());
+  if (reason) throw Error(path.string() + ": cannot be created as a folder: " + reason.message());
 }
 
 }  // namespace cairn::io

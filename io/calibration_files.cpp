@@ -128,13 +128,13 @@ bool is_assignment(std::string_view line) {
 Statement read_statement(std::string_view text, const fs::path& path, bool grey_cameras) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // what some editors put before UTF-8
   if (trimmed(text).empty()) throw Error("is empty, expected a calibration");
-  if (text.find('\0') != std::string_view::npos) throw Error("is no text, expected a calibration");
+  if (text.find('\0') != std::string_view::npos) throw Error("is not text, expected a calibration");
   if (trimmed(text).starts_with('<')) return read_opencv_xml(text);
   if (has_line(text, is_camera_zero)) return read_middlebury(text);
   if (has_kitti_projection(text)) return read_kitti(text, grey_cameras);
   if (has_line(text, is_assignment)) return read_key_value_lines(text);
   if (std::optional<Statement> says = read_yaml(text, path)) return *says;
-  throw Error("is no calibration in a form that is known here (docs/formats.md lists them); it begins with " +
+  throw Error("is not a calibration in a known form (docs/formats.md lists them); it begins with " +
               excerpt(lines_of(trimmed(text)).front()));
 }
 
@@ -278,7 +278,7 @@ Statement from_projections(const Projection& left, const Projection& right) {
   // cx.
   says.baseline_m = (left[3] - right[3]) / left[0];
   if (std::abs(left[7] - right[7]) > std::abs(left[3] - right[3])) {
-    throw Error("is of two cameras one above the other, expected one beside the other");
+    throw Error("is of two cameras one above the other, expected side by side");
   }
   return says;
 }
@@ -360,8 +360,8 @@ Statement read_kitti(std::string_view text, bool grey_cameras) {
     }
   }
   throw Error(
-      "has no projections of a whole pair, expected P_rect_02 and P_rect_03, or 00 and 01 (or P2 and P3, "
-      "...)");
+      "has no projections of a complete pair, expected P_rect_02 and P_rect_03, or 00 and 01 "
+      "(or P2 and P3, ...)");
 }
 
 Calibration load_calibration(const fs::path& path, bool grey_cameras) {

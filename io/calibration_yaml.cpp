@@ -39,25 +39,25 @@ std::vector<YAML::Node> documents_of(std::string_view text) {
   } catch (const YAML::Exception& exception) {
     const std::string line =
         exception.mark.is_null() ? "" : "line " + std::to_string(exception.mark.line + 1) + ": ";
-    throw Error(line + "is no YAML (" + exception.msg + "), expected a calibration");
+    throw Error(line + "is not YAML (" + exception.msg + "), expected a calibration");
   }
 }
 
 std::optional<double> number_at(const YAML::Node& map, const char* key) {
   const YAML::Node node = map[key];
   if (!node) return std::nullopt;
-  if (!node.IsScalar()) throw Error(std::string(key) + " is no number");
+  if (!node.IsScalar()) throw Error(std::string(key) + " is not a number");
   return finite_number(node.Scalar(), key);
 }
 
 std::vector<double> numbers_of(const YAML::Node& sequence, const char* key) {
   // The longest list that any form needs is 4x4.
   if (!sequence.IsSequence() || sequence.size() > 16) {
-    throw Error(std::string(key) + " is no list of at most 16 numbers");
+    throw Error(std::string(key) + " is not a list of at most 16 numbers");
   }
   std::vector<double> numbers;
   for (const YAML::Node& item : sequence) {
-    if (!item.IsScalar()) throw Error(std::string(key) + " holds something that is no number");
+    if (!item.IsScalar()) throw Error(std::string(key) + " contains something that is not a number");
     numbers.push_back(finite_number(item.Scalar(), key));
   }
   return numbers;
@@ -77,7 +77,7 @@ std::string without_comments(std::string_view text) {
   for (std::size_t begin = 0; (begin = text.find("<!--")) != std::string_view::npos;) {
     rest += text.substr(0, begin);
     const std::size_t end = text.find("-->", begin);
-    if (end == std::string_view::npos) throw Error("is a damaged XML: a comment does not end");
+    if (end == std::string_view::npos) throw Error("is damaged XML: a comment does not end");
     text.remove_prefix(end + 3);
   }
   return rest += text;
@@ -93,7 +93,7 @@ std::optional<std::string_view> element(std::string_view xml, std::string_view n
     const std::size_t begin = xml.find('>', after);
     const std::size_t end = xml.find("</" + std::string(name) + ">", after);
     if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) {
-      throw Error("is a damaged XML: <" + std::string(name) + "> does not end");
+      throw Error("is damaged XML: <" + std::string(name) + "> does not end");
     }
     return xml.substr(begin + 1, end - begin - 1);
   }
@@ -138,7 +138,7 @@ std::optional<std::vector<double>> points_at(const YAML::Node& map) {
   if (node.IsScalar()) return finite_numbers(node.Scalar(), kGroundPointsKey);
   constexpr std::size_t kMostPoints = 4096;
   if (!node.IsSequence() || node.size() > kMostPoints)
-    throw Error(std::string(kGroundPointsKey) + " is no list of at most 4096 points");
+    throw Error(std::string(kGroundPointsKey) + " is not a list of at most 4096 points");
   std::vector<double> all;
   for (const YAML::Node& item : node) {
     if (item.IsScalar()) {
@@ -227,7 +227,7 @@ std::optional<Statement> read_opencv(const Document& document) {
          {"M1", "K1", "cameraMatrix1", "camera_matrix", "Camera_Matrix", "P1", "P2", "R", "T"}) {
       if (!matrix_at(document, key)) continue;
       throw Error(std::string("has ") + key +
-                  " but neither P1 and P2 nor Q, expected the calibration of rectified pictures");
+                  " but neither P1 and P2 nor Q, expected the calibration of rectified images");
     }
     return std::nullopt;
   }
@@ -279,12 +279,13 @@ YAML::Node ros_partner(const fs::path& path) {
   const std::optional<fs::path> partner = other_camera(path);
   std::error_code unknown;
   if (!partner || !fs::is_regular_file(*partner, unknown)) {
-    throw Error("is of one camera, expected the other's file beside it" +
+    throw Error("is of one camera, expected the file of the other next to it" +
                 (partner ? ": " + partner->filename().string()
                          : std::string(", named alike with left and right (left.yaml, right.yaml)")));
   }
   const std::vector<YAML::Node> documents = documents_of(read_file(*partner, kMostTextBytes));
-  if (documents.empty()) throw Error("the other camera's file " + partner->filename().string() + " is empty");
+  if (documents.empty())
+    throw Error("the file of the other camera " + partner->filename().string() + " is empty");
   return documents.front();
 }
 
@@ -340,7 +341,7 @@ Size raw_size(const Statement& says) {
   const auto counted = [](const std::optional<double>& side, const char* name) {
     if (side && *side >= 1 && *side <= kMost && *side == static_cast<int>(*side))
       return static_cast<int>(*side);
-    throw Error(std::string("has no ") + name + " of the pictures, expected a whole number");
+    throw Error(std::string("has no ") + name + " of the images, expected a whole number");
   };
   return {counted(says.width, "width"), counted(says.height, "height")};
 }
@@ -424,9 +425,9 @@ RawCalibration raw_from_euroc(const YAML::Node& left, const fs::path& path) {
   const fs::path partner = folder.parent_path() / "cam1" / path.filename();
   std::error_code unknown;
   if (folder.filename() != "cam0" || !fs::is_regular_file(partner, unknown))
-    throw Error("is of one of EuRoC's cameras, expected cam0/sensor.yaml with cam1/sensor.yaml beside");
+    throw Error("is of one of EuRoC's cameras, expected cam0/sensor.yaml with cam1/sensor.yaml next to it");
   const std::vector<YAML::Node> documents = documents_of(read_file(partner, kMostTextBytes));
-  if (documents.empty() || !documents.front().IsMap()) throw Error(partner.string() + " is no YAML map");
+  if (documents.empty() || !documents.front().IsMap()) throw Error(partner.string() + " is not a YAML map");
   const YAML::Node& right = documents.front();
   RawCalibration raw;
   Statement says;
@@ -485,7 +486,7 @@ std::optional<Statement> read_yaml(std::string_view text, const fs::path& path) 
   if (std::optional<Statement> says = read_opencv(map)) return says;
   return read_own(map);
 } catch (const YAML::Exception& exception) {
-  throw Error("is no calibration: " + exception.msg);
+  throw Error("is not a calibration: " + exception.msg);
 }
 
 RawCalibration read_raw(std::string_view text, const fs::path& path) try {
@@ -495,18 +496,18 @@ RawCalibration read_raw(std::string_view text, const fs::path& path) try {
   }
   const std::vector<YAML::Node> documents = documents_of(text);
   if (documents.empty() || !documents.front().IsMap())
-    throw Error("is no YAML map, expected the calibration of raw cameras");
+    throw Error("is not a YAML map, expected the calibration of raw cameras");
   if (const auto pair = ros_pair(documents, path)) return raw_from_ros(pair->first, pair->second);
   if (documents.front()["T_BS"]) return raw_from_euroc(documents.front(), path);
   return read_raw_opencv(documents.front());
 } catch (const YAML::Exception& exception) {
-  throw Error("is no calibration: " + exception.msg);
+  throw Error("is not a calibration: " + exception.msg);
 }
 
 Statement read_opencv_xml(std::string_view text) {
   const std::string xml = without_comments(text);
   if (const std::optional<Statement> says = read_opencv(std::string_view(xml))) return *says;
-  throw Error("is an XML without P1 and P2 or Q, expected OpenCV's calibration of rectified pictures");
+  throw Error("is XML without P1 and P2 or Q, expected OpenCV's calibration of rectified images");
 }
 
 }  // namespace cairn::io

@@ -31,7 +31,7 @@ std::string text_of(const YAML::Node& node) {
 
 std::string key_of(const YAML::Node& key) {
   if (!key.IsScalar())
-    throw Error(at_line(key.Mark()) + "found a key that is no word, expected the name of an option");
+    throw Error(at_line(key.Mark()) + "found a key that is not a word, expected the name of an option");
   return key.Scalar();
 }
 
@@ -67,7 +67,8 @@ void read_section(Config& config, const std::string& section, const YAML::Node& 
 using FromPreset = std::function<Config(std::string_view)>;
 
 void read_preset(Config& config, const YAML::Node& value, const FromPreset& from_preset) {
-  if (!value.IsScalar()) throw Error(at_line(value.Mark()) + "preset is no word, expected default or paper");
+  if (!value.IsScalar())
+    throw Error(at_line(value.Mark()) + "preset is not a word, expected default or paper");
   try {
     config = from_preset(value.Scalar());
   } catch (const Error& error) {
@@ -78,13 +79,13 @@ void read_preset(Config& config, const YAML::Node& value, const FromPreset& from
 void read_root(Config& config, const YAML::Node& root, const FromPreset& from_preset,
                const Elsewhere& elsewhere, std::vector<SetAt>& options) {
   if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments alone: nothing is set
-  if (!root.IsMap()) throw Error("is no map of options, expected lines such as 'match.window_size: 9'");
+  if (!root.IsMap()) throw Error("is not a map of options, expected lines such as 'match.window_size: 9'");
   bool first = true;
   for (const auto& entry : root) {
     const std::string key = key_of(entry.first);
     if (key == "preset" && !first) {
       throw Error(at_line(entry.first.Mark()) +
-                  "preset stands after options, which it would undo; expected it first");
+                  "preset comes after options, which it would undo; expected it first");
     }
     first = false;
     if (key == "preset") {
@@ -129,13 +130,13 @@ void load_config(const fs::path& path, Config& config, const FromPreset& from_pr
   Config read = config;
   std::vector<SetAt> options;
   try {
-    if (text.find('\0') != std::string::npos) throw Error("is no text, expected options in YAML");
+    if (text.find('\0') != std::string::npos) throw Error("is not text, expected options in YAML");
     const std::vector<YAML::Node> documents = yaml_documents(text);
     if (documents.size() > 1)
       throw Error("has " + std::to_string(documents.size()) + " documents, expected one");
     if (!documents.empty()) read_root(read, documents.front(), from_preset, elsewhere, options);
   } catch (const YAML::Exception& exception) {
-    throw Error(path.string() + ": " + at_line(exception.mark) + "is no YAML: " + exception.msg);
+    throw Error(path.string() + ": " + at_line(exception.mark) + "is not YAML: " + exception.msg);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }

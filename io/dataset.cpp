@@ -142,9 +142,8 @@ std::optional<TruthFiles> kitti_truth(const fs::path& folder, const std::string&
 void check_folder(const fs::path& folder) {
   std::error_code reason;
   if (fs::is_directory(folder, reason)) return;
-  throw Error(
-      folder.string() + ": " +
-      (fs::exists(folder, reason) ? "is no folder, expected one" : "is not there, expected a folder"));
+  throw Error(folder.string() + ": " +
+              (fs::exists(folder, reason) ? "is not a folder, expected one" : "no such folder"));
 }
 
 /// What `visit` makes of each entry, sorted by name. Throws Error where the folder cannot be listed.
@@ -219,9 +218,9 @@ std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras) {
     if (pairs.empty()) continue;
     if (names.cameras == Cameras::raw && cameras == Cameras::rectified) {
       const fs::path sensor = (folder / names.left).parent_path() / "sensor.yaml";
-      throw Error(folder.string() + ": holds EuRoC's raw images (" + names.left + ", " + names.right +
+      throw Error(folder.string() + ": contains EuRoC's raw images (" + names.left + ", " + names.right +
                   "), expected rectified ones: cairn rectify " + folder.string() + " --calib " +
-                  sensor.string() + " -o DIR makes them");
+                  sensor.string() + " -o DIR does that");
     }
     return pairs;
   }
@@ -262,13 +261,13 @@ std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
   std::vector<FrameFiles> frames = frames_in(folder, cameras);
   if (!frames.empty()) return frames;
   if (const std::optional<fs::path> deeper = frames_deeper(folder)) {
-    throw Error(folder.string() + ": holds no left.png and no other frame, but " + deeper->string() +
-                " does; name that folder");
+    throw Error(folder.string() + ": contains no left.png and no other frame, but " + deeper->string() +
+                " does; give that folder");
   }
-  throw Error(
-      folder.string() +
-      ": holds no left.png (.jpg .pgm .ppm .tif), nor does a folder in it, nor pairs such as left01.png "
-      "and right01.png, or left/01.png and right/01.png, nor a data set's (docs/formats.md)");
+  throw Error(folder.string() +
+              ": contains no left.png (.jpg .pgm .ppm .tif), no folder with one, no pairs such as "
+              "left01.png and right01.png, or left/01.png and right/01.png, and no known data set "
+              "(docs/formats.md)");
 }
 
 std::vector<FrameFiles> find_pairs(const fs::path& folder) {
@@ -281,7 +280,7 @@ TruthFiles find_truth(const fs::path& folder) {
   check_folder(folder);
   if (std::optional<TruthFiles> truth = truth_in(folder)) return *truth;
   if (std::optional<TruthFiles> truth = truth_in(truth_beside(folder))) return *truth;
-  throw Error(folder.string() + ": holds no truth (objects.png or disp_left.png), nor does " +
+  throw Error(folder.string() + ": contains no truth (objects.png or disp_left.png), nor does " +
               truth_beside(folder).string());
 }
 

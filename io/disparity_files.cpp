@@ -72,9 +72,8 @@ float middlebury_unit(const fs::path& path, Size size) {
   const auto* set = std::find_if(kMiddleburySets.begin(), kMiddleburySets.end(),
                                  [&](const MiddleburySet& each) { return each.height == size.height; });
   if (set != kMiddleburySets.end()) return set->unit;
-  throw Error(
-      path.string() + ": has 8 bits and is " + text(size) +
-      ", which is the size of no Middlebury map whose scale is known; expected 16 bits (disparity * 256)");
+  throw Error(path.string() + ": has 8 bits and is " + text(size) +
+              ", not the size of a Middlebury map of known scale; expected 16 bits (disparity * 256)");
 }
 
 Image<float> load_png(const fs::path& path, const Pool& pool) {
@@ -132,7 +131,7 @@ class HeaderWords {
     T value{};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size()) {
-      throw Error(std::string("is a truncated or damaged PFM: its ") + what + " is no number");
+      throw Error(std::string("is a truncated or damaged PFM: its ") + what + " is not a number");
     }
     return value;
   }
@@ -148,7 +147,7 @@ PfmHeader read_header(std::string_view file) {
   HeaderWords words(file.substr(0, 256));
   const std::string_view kind = words.next();
   if (kind == "PF") throw Error("is a PFM in colour, expected one channel ('Pf')");
-  if (kind != "Pf") throw Error("is no PFM: it does not begin with 'Pf'");
+  if (kind != "Pf") throw Error("is not a PFM: it does not begin with 'Pf'");
   const int width = words.number<int>("width");
   const int height = words.number<int>("height");
   check_sides(width, height);
@@ -235,7 +234,7 @@ Image<float> decode_npy(std::string_view file, const Pool& pool) {
     return static_cast<std::size_t>(static_cast<unsigned char>(file[at]));
   };
   if (!file.starts_with(kMagic) || file.size() < 12)
-    throw Error("is no .npy: it does not begin with \\x93NUMPY");
+    throw Error("is not a .npy: it does not begin with \\x93NUMPY");
   const bool is_first_version = byte(6) == 1;
   const std::size_t begin = is_first_version ? 10 : 12;
   const std::size_t length =
@@ -244,12 +243,12 @@ Image<float> decode_npy(std::string_view file, const Pool& pool) {
   const std::string_view header = file.substr(begin, length);
   const std::string_view pixels = file.substr(begin + length);
   if (!after(header, "'fortran_order'").starts_with("False"))
-    throw Error("is in Fortran's order, expected rows one after the other (numpy.ascontiguousarray)");
+    throw Error("is in Fortran order, expected row-major order (numpy.ascontiguousarray)");
   const Size size = shape_in(header);
   const std::string_view type = after(header, "'descr'").substr(0, 5);
   if (type == "'<f4'") return values_of<float>(pixels, size, pool);
   if (type == "'<f8'") return values_of<double>(pixels, size, pool);
-  throw Error("holds values of the type " + excerpt(type) + ", expected '<f4' or '<f8' (float32, float64)");
+  throw Error("contains values of type " + excerpt(type) + ", expected '<f4' or '<f8' (float32, float64)");
 }
 
 template <class Decode>

@@ -16,12 +16,12 @@ constexpr std::size_t kMostPictureBytes = std::size_t{1} << 31;
 }  // namespace
 
 Raster decode_raster(std::string_view file, Palette palette) {
-  if (file.empty()) throw Error("is empty, expected a picture (PNG, JPEG, PGM, PPM, TIFF)");
+  if (file.empty()) throw Error("is empty, expected an image (PNG, JPEG, PGM, PPM, TIFF)");
   if (file.starts_with("\x89PNG\r\n\x1a\n"sv)) return decode_png(file, palette);
   if (file.starts_with("\xff\xd8\xff"sv)) return decode_jpeg(file);
   if (file.starts_with("II*\0"sv) || file.starts_with("MM\0*"sv)) return decode_tiff(file, palette);
   if (file.size() > 1 && file[0] == 'P' && file[1] >= '1' && file[1] <= '7') return decode_pnm(file);
-  throw Error("is no picture that can be read here, expected PNG, JPEG, PGM, PPM or TIFF");
+  throw Error("is not a readable image, expected PNG, JPEG, PGM, PPM or TIFF");
 }
 
 void check_sides(std::int64_t width, std::int64_t height) {
@@ -38,7 +38,7 @@ Raster read_raster(const std::filesystem::path& path, Palette palette) {
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   } catch (const std::bad_alloc&) {
-    throw Error(path.string() + ": there is not enough memory for this picture");
+    throw Error(path.string() + ": not enough memory for this image");
   }
 }
 

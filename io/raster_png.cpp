@@ -117,7 +117,7 @@ Raster decode_png(std::string_view file, Palette palette) {
     row_bytes = png_get_rowbytes(reader.png, reader.info);
   });
   if (row_bytes != static_cast<std::size_t>(raster.row_length() * raster.bytes_each)) {
-    throw Error("is a PNG of a form that is not known here (colour type " + std::to_string(colour) + ", " +
+    throw Error("is a PNG of an unknown form (colour type " + std::to_string(colour) + ", " +
                 std::to_string(depth) + " bits)");
   }
   std::vector<png_bytep> rows(height);

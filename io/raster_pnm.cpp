@@ -24,7 +24,7 @@ class Numbers {
     int value = 0;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
     if (rest_.empty()) throw Error(std::string("is truncated: it ends before its ") + what);
-    if (error != std::errc{}) throw Error(std::string("is damaged: its ") + what + " is no number");
+    if (error != std::errc{}) throw Error(std::string("is damaged: its ") + what + " is not a number");
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
   }

@@ -28,7 +28,7 @@ std::string matrix_text(const char* name, int rows, std::span<const double> numb
 
 void check_camera(const RawCamera& camera, const std::string& name) {
   if (!(camera.matrix[0] > 0 && camera.matrix[4] > 0)) {
-    throw Error("the " + name + " camera's focal lengths are " + written(camera.matrix[0]) + " and " +
+    throw Error("the " + name + " camera has focal lengths " + written(camera.matrix[0]) + " and " +
                 written(camera.matrix[4]) + ", expected positive numbers");
   }
   const std::size_t count = camera.distortion.size();
@@ -44,7 +44,7 @@ void check(const RawCalibration& calibration) {
   const bool rectifies = calibration.left.rotation && calibration.left.projection &&
                          calibration.right.rotation && calibration.right.projection;
   if (!rectifies && !(calibration.rotation && calibration.translation_m))
-    throw Error("has neither R and T nor R1, R2, P1 and P2, expected how the cameras stand to each other");
+    throw Error("has neither R and T nor R1, R2, P1 and P2, expected the relative pose of the cameras");
 }
 
 /// For a better word than that its matrices are missing.

@@ -539,7 +539,7 @@ std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
     throw Error(path.string() + ": " + error.what());
   } catch (const nlohmann::json::exception&) {
     throw Error(path.string() +
-                ": no objects.json of cairn, expected a list `objects` with `id` and `confidence`");
+                ": not an objects.json of cairn, expected a list `objects` with `id` and `confidence`");
   }
 }
 

@@ -177,8 +177,8 @@ std::optional<Corners> find_board(View<const Gray> image, const Board& board) {
 
 StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image) {
   if (sightings.size() < kLeastSightings) {
-    throw Error("calibrating: the whole board is seen in " + std::to_string(sightings.size()) +
-                " pairs, expected at least " + std::to_string(kLeastSightings) + ", better fifteen");
+    throw Error("calibrating: the whole board is visible in " + std::to_string(sightings.size()) +
+                " pairs, expected at least " + std::to_string(kLeastSightings) + ", preferably fifteen");
   }
   return with_opencv("calibrating", [&] { return calibrate(sightings, board, image); });
 }
@@ -212,7 +212,7 @@ Rectifier::~Rectifier() = default;
 
 PicturePair Rectifier::operator()(const PicturePair& raw, const Pool& pool) const {
   if (raw.left.gray.size() != maps_->size) {
-    throw Error("the calibration is for " + text(maps_->size) + ", the pictures are " +
+    throw Error("the calibration is for " + text(maps_->size) + ", the images are " +
                 text(raw.left.gray.size()));
   }
   return with_opencv("rectifying", [&] {

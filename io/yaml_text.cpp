@@ -17,7 +17,7 @@ class Check : public YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark& mark) override {
     // The parser asks for documents until the text is used up, and one that uses nothing of it begins where
     // the one before began.
-    if (mark.pos == document_) throw YAML::ParserException(mark, "nothing can stand here");
+    if (mark.pos == document_) throw YAML::ParserException(mark, "nothing is allowed here");
     document_ = mark.pos;
     count(mark);
   }
@@ -40,8 +40,7 @@ class Check : public YAML::EventHandler {
 
  private:
   void count(const YAML::Mark& mark) {
-    if (++values_ > kMostValues)
-      throw YAML::ParserException(mark, "more values than any file of this kind has");
+    if (++values_ > kMostValues) throw YAML::ParserException(mark, "too many values for a file of this kind");
   }
 
   int document_ = -1;

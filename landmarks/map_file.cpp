@@ -58,7 +58,7 @@ std::array<T, N> numbers_in(const SQLite::Column& column, const char* what) {
                 std::to_string(sizeof values));
   std::memcpy(values.data(), column.getBlob(), sizeof values);
   for (const T value : values) {
-    if (!std::isfinite(value)) throw Error(std::string(what) + " holds no finite numbers");
+    if (!std::isfinite(value)) throw Error(std::string(what) + " contains numbers that are not finite");
   }
   return values;
 }
@@ -66,7 +66,7 @@ std::array<T, N> numbers_in(const SQLite::Column& column, const char* what) {
 double finite(const SQLite::Column& column, const char* what) {
   const double value = column.getDouble();
   if (column.isNull() || !std::isfinite(value) || std::abs(value) > 1e9)
-    throw Error(std::string(what) + " is no finite number");
+    throw Error(std::string(what) + " is not a finite number");
   return value;
 }
 
@@ -115,7 +115,7 @@ std::array<double, 7> numbers_of(const Pose& pose) {
 
 Pose pose_from(const std::array<double, 7>& n) {
   const double norm = std::sqrt(n[3] * n[3] + n[4] * n[4] + n[5] * n[5] + n[6] * n[6]);
-  if (std::abs(norm - 1) > 1e-3) throw Error("a rotation is no unit quaternion");
+  if (std::abs(norm - 1) > 1e-3) throw Error("a rotation is not a unit quaternion");
   return pose_of({n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]});
 }
 
@@ -153,7 +153,7 @@ std::string uri_of(const fs::path& path) {
 std::string words_for(const SQLite::Exception& error) {
   switch (error.getErrorCode()) {
     case SQLITE_NOTADB:
-      return "is no map: not an SQLite file";
+      return "is not a map: not an SQLite file";
     case SQLITE_CORRUPT:
       return "is damaged: " + std::string(error.what());
     case SQLITE_BUSY:
@@ -172,7 +172,7 @@ std::string words_for(const SQLite::Exception& error) {
   }
   std::string words = error.what();
   std::replace(words.begin(), words.end(), '\n', ' ');
-  return "is damaged, or no map: " + words;
+  return "is damaged, or not a map: " + words;
 }
 
 /// What was stored of a landmark, to tell what has changed.
@@ -425,11 +425,11 @@ MapFile MapFile::open(const fs::path& path, MapMode mode, const std::optional<St
     if (fs::is_directory(status)) throw Error("is a folder, expected a map");
     const bool is_there = fs::exists(status);
     if (!is_there && !is_update) throw Error("no such file");
-    if (is_there && !fs::is_regular_file(status)) throw Error("is no regular file");
+    if (is_there && !fs::is_regular_file(status)) throw Error("is not a regular file");
     if (!is_there && path.has_parent_path() && !fs::is_directory(path.parent_path(), unimportant))
-      throw Error("its folder is not there");
+      throw Error("its folder does not exist");
     if (is_there && is_update && ::access(path.c_str(), W_OK) != 0)
-      throw Error("cannot be written: read-only; --read-only uses it as it is");
+      throw Error("cannot be written: read-only; --read-only uses it unchanged");
 
     constexpr int kPatience_ms = 2000;
     if (is_update) {
@@ -451,7 +451,7 @@ MapFile MapFile::open(const fs::path& path, MapMode mode, const std::optional<St
     if (!is_empty) {
       const int application = database.execAndGet("PRAGMA application_id").getInt();
       const int schema = database.execAndGet("PRAGMA user_version").getInt();
-      if (application != kApplication) throw Error("is another program's database, no map");
+      if (application != kApplication) throw Error("is the database of another program, expected a map");
       if (schema > kSchema)
         throw Error("was written by a newer cairn: schema " + std::to_string(schema) + ", known up to " +
                     std::to_string(kSchema));
@@ -497,7 +497,7 @@ LandmarkMap MapFile::load() const {
                       finite(rows.getColumn(3), "landmark.z")};
       l.covariance_m2 = numbers_in<double, 9>(rows.getColumn(4), "landmark.cov");
       for (const std::size_t i : {0U, 4U, 8U}) {
-        if (l.covariance_m2[i] <= 0) throw Error("landmark.cov is no covariance");
+        if (l.covariance_m2[i] <= 0) throw Error("landmark.cov is not a covariance");
       }
       l.size = {finite(rows.getColumn(5), "landmark.narrowest"), finite(rows.getColumn(6), "landmark.widest"),
                 finite(rows.getColumn(7), "landmark.height")};
@@ -523,7 +523,7 @@ LandmarkMap MapFile::load() const {
       const LandmarkId id{looks.getColumn(0).getInt64()};
       while (at != map.list.end() && at->id < id) ++at;
       if (at == map.list.end() || at->id != id)
-        throw Error("look of landmark " + std::to_string(number(id)) + ", which is not there");
+        throw Error("look of landmark " + std::to_string(number(id)) + ", which does not exist");
       LandmarkLook look;
       look.octant = whole(looks.getColumn(1), "look.octant");
       if (look.octant > 7) throw Error("look.octant is " + std::to_string(look.octant) + ", expected 0 … 7");
@@ -634,9 +634,9 @@ std::vector<MapEvent> MapFile::events() const {
                           finite(rows.getColumn(9), "event.dz")};
       event.probability = finite(rows.getColumn(10), "event.probability");
       const nlohmann::json frames = nlohmann::json::parse(rows.getColumn(11).getString(), nullptr, false);
-      if (!frames.is_array()) throw Error("event.frames is no list");
+      if (!frames.is_array()) throw Error("event.frames is not a list");
       for (const auto& frame : frames) {
-        if (!frame.is_number_integer()) throw Error("event.frames is no list of numbers");
+        if (!frame.is_number_integer()) throw Error("event.frames is not a list of numbers");
         event.frames.push_back(frame.get<int>());
       }
       all.push_back(std::move(one));
@@ -664,7 +664,7 @@ std::vector<std::string> MapFile::check() const {
     SQLite::Statement keys(*store_->database, "PRAGMA foreign_key_check");
     while (keys.executeStep())
       wrong.push_back("a row of " + keys.getColumn(0).getString() + " belongs to a row of " +
-                      keys.getColumn(2).getString() + " that is not there");
+                      keys.getColumn(2).getString() + " that does not exist");
   });
   const auto attempt = [&](auto&& read) {
     try {
@@ -829,7 +829,7 @@ void MapFile::replace(const LandmarkMap& map) {
 
 void MapFile::copy_to(const fs::path& path) const {
   store_->guarded([&] {
-    if (fs::exists(path)) throw Error("cannot be copied to " + path.string() + ", which is there already");
+    if (fs::exists(path)) throw Error("cannot be copied to " + path.string() + ", which already exists");
     SQLite::Statement copy(*store_->database, "VACUUM INTO ?");
     copy.bind(1, path.string());
     copy.exec();

@@ -36,7 +36,7 @@ class InFile {
     struct stat status {};
     if (file_ < 0 || ::fstat(file_, &status) != 0)
       throw Error(path_ + ": cannot be read: " + std::strerror(errno));
-    if (!S_ISREG(status.st_mode)) throw Error(path_ + ": is no file, expected a recording (MCAP)");
+    if (!S_ISREG(status.st_mode)) throw Error(path_ + ": is not a file, expected a recording (MCAP)");
     size_ = static_cast<std::uint64_t>(status.st_size);
   }
   ~InFile() {
@@ -105,12 +105,12 @@ Bytes unpacked(const Bytes& content) {
   }
   Bytes records;
   if (compression.empty()) {
-    if (stored.size() != length) throw Error("a chunk has another length than it claims");
+    if (stored.size() != length) throw Error("a chunk does not have the length it claims");
     records.assign(stored.begin(), stored.end());
   } else {
     const unsigned long long known = ::ZSTD_getFrameContentSize(stored.data(), stored.size());
     if (known == ZSTD_CONTENTSIZE_ERROR || (known != ZSTD_CONTENTSIZE_UNKNOWN && known != length))
-      throw Error("a chunk has another length than it claims");
+      throw Error("a chunk does not have the length it claims");
     records.resize(length);
     const std::size_t got = ::ZSTD_decompress(records.data(), records.size(), stored.data(), stored.size());
     if (::ZSTD_isError(got) != 0 || got != length) throw Error("a chunk cannot be unpacked");
@@ -189,7 +189,7 @@ bool is_mcap(const std::filesystem::path& path) {
 McapReader::McapReader(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {
   State& s = *state_;
   const Bytes begin = s.file.read(0, std::min<std::uint64_t>(s.file.size(), kMagic.size()));
-  if (!std::ranges::equal(begin, kMagic)) throw Error(path.string() + ": is no recording, expected MCAP");
+  if (!std::ranges::equal(begin, kMagic)) throw Error(path.string() + ": is not a recording, expected MCAP");
   try {
     if (s.read_summary()) return;
   } catch (const Error&) {  // a damaged summary: the data may be fine
@@ -419,8 +419,7 @@ bool McapReader::State::open_next_part() {
         if (const std::string compression = compression_of(content);
             !compression.empty() && compression != "zstd") {
           throw std::domain_error(file.path() + ": is compressed with " + compression +
-                                  ", expected zstd or nothing (mcap compress --compression zstd makes such a "
-                                  "file of it)");
+                                  ", expected zstd or none (mcap compress --compression zstd converts it)");
         }
         records = unpacked(content);
       } else {

@@ -79,7 +79,7 @@ class OutFile {
     [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(size_));
     [[maybe_unused]] const off_t at = ::lseek(file_, static_cast<off_t>(size_), SEEK_SET);
     errno = reason;
-    fail("cannot be written any further");
+    fail("can no longer be written");
   }
   [[noreturn]] void fail(const char* what) const {
     throw Error(path_ + ": " + what + ": " + std::strerror(errno));

@@ -101,7 +101,7 @@ Time time_of(Stamp stamp) {
   using Limits = std::numeric_limits<std::int32_t>;
   if (seconds < Limits::min() || seconds > Limits::max()) {
     throw Error("stamp: found " + seconds_text(stamp) +
-                " s, expected less than 2147483648 s, which is all that a message of ROS holds");
+                " s, expected less than 2147483648 s (the limit of ROS messages)");
   }
   return {static_cast<std::int32_t>(seconds), static_cast<std::uint32_t>(rest)};
 }

@@ -116,7 +116,7 @@ std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>
 
 Side side_in(const fs::path& folder) {
   Side side{images_in(folder), {}, {}};
-  if (side.files.empty()) throw Error(folder.string() + ": holds no images (.png .jpg .pgm .ppm .tif)");
+  if (side.files.empty()) throw Error(folder.string() + ": contains no images (.png .jpg .pgm .ppm .tif)");
   const std::vector<std::string> names = stems_of(side.files);
   if (const auto path =
           first_file({folder / "stamps.txt", folder / "timestamps.txt", folder / "times.txt",
@@ -125,7 +125,7 @@ Side side_in(const fs::path& folder) {
     side.stamps_from = path->string();
   } else if (auto stamps = stamps_in_names(names)) {
     side.stamps = std::move(stamps);
-    side.stamps_from = "the names of the files";
+    side.stamps_from = "the file names";
   }
   return side;
 }
@@ -171,7 +171,7 @@ FrameList paired_by_stamps(const Side& left, const Side& right, const SourceOpti
   FrameList list =
       paired(left, right, pair_by_stamps(*left.stamps, *right.stamps, options.max_skew_ms), options);
   if (!list.frames.empty()) return list;
-  throw Error(left.stamps_from + ": no left and right image lie within " +
+  throw Error(left.stamps_from + ": no left and right image are within " +
               std::to_string(std::lround(options.max_skew_ms)) + " ms; the first stamps are " +
               stamp_text(left.stamps->front()) + " and " + stamp_text(right.stamps->front()));
 }
@@ -226,7 +226,7 @@ FrameList list_two_folders(const fs::path& left_folder, const fs::path& right_fo
   if (left.files.size() != right.files.size()) {
     throw Error(right_folder.string() + ": holds " + std::to_string(right.files.size()) + " images, " +
                 left_folder.string() + " " + std::to_string(left.files.size()) +
-                ", with other names and without stamps.txt: which belong together is not known");
+                ", with different names and without stamps.txt: cannot be paired");
   }
   StampPairs in_order;
   for (std::size_t i = 0; i < left.files.size(); ++i) in_order.pairs.push_back({i, i});
@@ -262,9 +262,8 @@ struct Numbered {
 
 Numbered files_of(const std::string& text) {
   const std::optional<Pattern> pattern = pattern_of(text);
-  if (!pattern) throw Error(text + ": expected one %d, %04d or the like in the file's name");
-  if (!is_folder(pattern->folder))
-    throw Error(pattern->folder.string() + ": is not there, expected a folder");
+  if (!pattern) throw Error(text + ": expected one %d, %04d or the like in the file name");
+  if (!is_folder(pattern->folder)) throw Error(pattern->folder.string() + ": no such folder");
   Numbered found;
   for (const fs::path& file : images_in(pattern->folder)) {
     const std::string name = file.filename().string();
@@ -279,7 +278,7 @@ Numbered files_of(const std::string& text) {
     found.side.files.push_back(file);
     found.numbers.push_back(*number);
   }
-  if (found.numbers.empty()) throw Error(text + ": no file has such a name");
+  if (found.numbers.empty()) throw Error(text + ": no file matches");
   return found;
 }
 
@@ -292,7 +291,7 @@ FrameList list_patterns(const std::string& left_text, const std::string& right_t
     left.side.stamps_from = path->string();
   }
   const StampPairs pairs = pair_by_keys(left.numbers, right.numbers);
-  if (pairs.pairs.empty()) throw Error(right_text + ": no number is that of a file of " + left_text);
+  if (pairs.pairs.empty()) throw Error(right_text + ": no number matches a file of " + left_text);
   return paired(left.side, right.side, pairs, options);
 }
 
@@ -306,7 +305,7 @@ std::optional<fs::path> euroc_camera_in(const fs::path& folder) {
 
 FrameList list_euroc(const fs::path& camera, const SourceOptions& options) {
   const fs::path other = camera.parent_path() / "cam1";
-  if (!is_folder(other)) throw Error(other.string() + ": is not there, expected the right camera's folder");
+  if (!is_folder(other)) throw Error(other.string() + ": no such folder, expected that of the right camera");
   FrameList list = paired_by_stamps(euroc_side(camera), euroc_side(other), options);
   list.calib = camera / "sensor.yaml";
   list.is_raw = true;
@@ -363,7 +362,7 @@ void give_stamps(const fs::path& source, const std::vector<std::string>& names, 
 FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& frames,
                       const SourceOptions& options) {
   if (std::none_of(frames.begin(), frames.end(), [](const FrameFiles& files) { return files.right; })) {
-    throw Error(frames.front().left.string() + ": there is no right image" +
+    throw Error(frames.front().left.string() + ": no right image" +
                 (frames.front().expected_right.empty()
                      ? ""
                      : ", expected " + frames.front().expected_right.string()));

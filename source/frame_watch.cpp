@@ -47,10 +47,11 @@ void SourceCalibration::suit(Size image) {
 
 std::optional<SourceRemark> SourceCalibration::remark_on_raw(const std::string& first) const {
   if (rectifier || path.empty() || !says.of_raw_cameras) return std::nullopt;
-  return SourceRemark{path.string() +
-                          ": describes raw cameras and their distortion; the images are taken for "
-                          "rectified ones (--rectify: they are raw)",
-                      0, first, false, false};
+  return SourceRemark{
+      path.string() +
+          ": describes raw cameras and their distortion; the images are assumed to be rectified "
+          "(if raw: --rectify)",
+      0, first, false, false};
 }
 
 SourceCalibration open_calibration(const SourceOptions& options, const std::optional<fs::path>& found,
@@ -63,7 +64,7 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
   }
   if (is_raw || options.rectify) {
     if (calibration.path.empty())
-      throw Error("--rectify: no calibration is known, expected that of the raw cameras as --calib FILE");
+      throw Error("--rectify: found no calibration, expected that of the raw cameras as --calib FILE");
     calibration.rectifier = std::make_shared<Rectifier>(load_raw_calibration(calibration.path));
     calibration.says.rig = calibration.rectifier->rig();
   } else if (!calibration.path.empty()) {
@@ -79,7 +80,7 @@ void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<
     size_ = size;
   } else {
     if (size != size_)
-      throw Error(file + ": is " + text(size) + ", expected " + text(size_) + " as the frames before");
+      throw Error(file + ": is " + text(size) + ", expected " + text(size_) + " like the frames before");
     if (now.stamp <= before_->stamp) {
       throw Error(file + ": frame " + now.name + " has the stamp " + stamp_text(now.stamp) +
                   ", expected one later than the " + stamp_text(before_->stamp) + " of frame " +
@@ -89,8 +90,8 @@ void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<
     const bool left_stands = now.left == before_->left;
     const bool right_stands = now.right == before_->right;
     if (left_stands != right_stands) {
-      remark(remarks, {left_stands ? "left image as in the frame before, the right one new"
-                                   : "right image as in the frame before, the left one new",
+      remark(remarks, {left_stands ? "left image repeated from the frame before, the right one new"
+                                   : "right image repeated from the frame before, the left one new",
                        1, frame.name, false, false});
     }
   }

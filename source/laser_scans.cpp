@@ -30,7 +30,7 @@ Point3 mounting_in(const fs::path& path, std::string_view text) {
     if (!field.empty()) found.push_back(number_in(field, path, number));
   if (found.size() != 3 || std::ranges::any_of(found, [](double x) { return !std::isfinite(x); }))
     throw Error(place(path, number) + ": has " + std::to_string(found.size()) +
-                " numbers, expected 3: where the laser is, x y z in m");
+                " numbers, expected 3: the position of the laser, x y z in m");
   return {found[0], found[1], found[2]};
 }
 
@@ -55,7 +55,7 @@ std::vector<LaserScan> load_scans(const fs::path& path) {
     const std::string where = place(path, lines[i].number);
     const std::vector<std::string_view> fields = fields_of(lines[i].text);
     if (fields.size() <= kBeforeRanges)
-      throw Error(where + ": has " + std::to_string(fields.size()) + " fields, expected ranges behind 3");
+      throw Error(where + ": has " + std::to_string(fields.size()) + " fields, expected 3 and then ranges");
     const auto stamp = in_seconds ? parse_seconds(fields[0]) : parse_stamp(fields[0]);
     if (!stamp) throw Error(where + ": found " + quoted(fields[0]) + ", expected a stamp");
     LaserScan scan{*stamp,

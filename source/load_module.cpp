@@ -47,7 +47,7 @@ std::optional<fs::path> module_file(const char* module) {
 void* module_entry(const ModuleNames& names, const std::string& source) {
   const std::optional<fs::path> file = module_file(names.file);
   if (!file) {
-    throw Error(source + ": " + names.what + " " + names.file + ", which is not installed beside cairn (" +
+    throw Error(source + ": " + names.what + " " + names.file + ", which is not installed next to cairn (" +
                 names.package + ")");
   }
   void* module = ::dlopen(file->c_str(), RTLD_NOW | RTLD_LOCAL);

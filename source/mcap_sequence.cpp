@@ -111,9 +111,10 @@ class McapSequence : public Sequence {
     if (!first_) {
       if (!remarks_.empty())
         throw Error(file_.string() + ": " + remarks_.front().what + ": " + remarks_.front().first);
-      throw Error(file_.string() + (options.frames.first > 0 ? ": has no frame that is in --frames"
-                                                             : ": holds no images of " + left_.channel.topic +
-                                                                   " and " + right_.channel.topic));
+      throw Error(file_.string() +
+                  (options.frames.first > 0
+                       ? ": has no frame that is in --frames"
+                       : ": contains no images of " + left_.channel.topic + " and " + right_.channel.topic));
     }
     calibration_.suit(watch_.image_size());
   }
@@ -143,7 +144,7 @@ class McapSequence : public Sequence {
   [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
   [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] std::string stamps_from() const override {
-    return options_.rate_hz > 0 ? rate_text(options_.rate_hz) : "the messages' headers";
+    return options_.rate_hz > 0 ? rate_text(options_.rate_hz) : "the message headers";
   }
   [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
@@ -370,16 +371,14 @@ class McapSequence : public Sequence {
     is_ended_ = true;
     if (reader_.damaged_chunks() > 0) {
       remarks_.push_back({std::to_string(reader_.damaged_chunks()) +
-                              " damaged parts of the recording left out, the "
-                              "first: " +
-                              reader_.first_damage(),
+                              " damaged parts of the recording skipped, the first: " + reader_.first_damage(),
                           0,
                           {},
                           true,
                           true});
     }
     if (!reader_.is_whole() && !is_past_range_)
-      ended_early_ = file_.string() + ": is cut off: what was recorded whole was read";
+      ended_early_ = file_.string() + ": is truncated: read up to the last complete record";
   }
 
   fs::path file_;
@@ -424,9 +423,8 @@ std::optional<fs::path> recording_in(const fs::path& folder) {
                 " parts, expected one of them: " + parts.front().string());
   }
   if (!has_other) return std::nullopt;
-  throw Error(
-      folder.string() +
-      ": is a recording of ros2 bag that is not in MCAP, expected one that is (ros2 bag convert makes it)");
+  throw Error(folder.string() +
+              ": is a ros2 bag that is not in MCAP, expected MCAP (ros2 bag convert makes it)");
 }
 
 }  // namespace cairn::io

@@ -100,7 +100,7 @@ StereoTopics with_companions(const Channels& channels, const McapChannel& left, 
 StereoTopics find_stereo_topics(const Channels& channels, const std::string& wanted,
                                 const std::string& file) {
   const std::string all = image_topics(channels);
-  const std::string there = all.empty() ? "it has no topic of images in CDR" : "its images: " + all;
+  const std::string there = all.empty() ? "it has no image topic in CDR" : "its images: " + all;
   if (!wanted.empty()) {
     const std::size_t comma = wanted.find(',');
     if (comma == std::string::npos) throw Error("--topics: found " + wanted + ", expected LEFT,RIGHT");
@@ -109,7 +109,7 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
       const std::string topic = i == 0 ? wanted.substr(0, comma) : wanted.substr(comma + 1);
       sides.at(i) = find(channels, topic);
       if (sides.at(i) == nullptr || !is_image(*sides.at(i)))
-        throw Error("--topics: " + file + " has no images as " + topic + "; " + there);
+        throw Error("--topics: " + file + " has no image topic " + topic + "; " + there);
     }
     return with_companions(channels, *sides[0], *sides[1]);
   }

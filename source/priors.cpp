@@ -290,7 +290,7 @@ std::vector<Stamp> stamps_beside(const fs::path& path, const fs::path& source_fo
     }
   }
   throw Error(path.string() + ": its lines have no stamps, expected times.txt or stamps.txt with " +
-              std::to_string(lines) + " of them beside it or in the source's folder" + tried);
+              std::to_string(lines) + " of them next to it or in the folder of the source" + tried);
 }
 
 bool says_robot(const fs::path& path, std::string_view text) {
@@ -378,7 +378,7 @@ class Gyroscope : public MotionPriors {
   [[nodiscard]] Stamp last() const override { return rows_.stamps.back(); }
   [[nodiscard]] std::string description() const override {
     return "a gyroscope, " + rows_text(rows_.stamps) +
-           (rows_.has_bias ? ", its bias taken from a rest at the beginning" : ", its bias not known");
+           (rows_.has_bias ? ", bias from the rest at the beginning" : ", bias unknown");
   }
 
  private:
@@ -451,7 +451,7 @@ Pose camera_from_level(double pitch_deg, double roll_deg) {
 std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path& source_folder) {
   const std::string text = read_file(path, kMostLogBytes);
   const std::vector<TextLine> lines = lines_of(text);
-  if (lines.empty()) throw Error(path.string() + ": holds no lines of numbers, expected odometry");
+  if (lines.empty()) throw Error(path.string() + ": contains no lines of numbers, expected odometry");
   const std::vector<std::string_view> fields = fields_of(lines.front().text);
   const bool is_table = std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
     const std::size_t letter = field.find_first_of("abcdfghijklmnopqrstuvwxyz_");

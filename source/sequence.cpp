@@ -94,7 +94,7 @@ class FileSequence : public Sequence {
     // Of raw images, too: their own size counts.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
-                  text(raw_size_) + " as the frames before");
+                  text(raw_size_) + " like the frames before");
     }
     raw_size_ = pair.left.gray.size();
     bits_ = pair.bits;
@@ -110,7 +110,7 @@ class FileSequence : public Sequence {
         read_file(*files.calib, kMostTextBytes) == calib_bytes_)
       return;
     if (!is_same(load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
-      throw Error(files.calib->string() + ": is another calibration than " + calibration_.path.string() +
+      throw Error(files.calib->string() + ": differs from the calibration " + calibration_.path.string() +
                   ", expected one rig for the whole sequence");
     }
   }
@@ -160,14 +160,13 @@ std::unique_ptr<Sequence> open_pair(const std::string& left, const std::string& 
                                     const SourceOptions& options, const Pool& pool) {
   check_no_layout(options, left + "," + right);
   if (left.empty() || right.empty())
-    throw Error(left + "," + right +
-                ": expected a left and a right part, one before and one behind the comma");
+    throw Error(left + "," + right + ": expected a left part before and a right part after the comma");
   if (!is_pattern(left) && !is_pattern(right)) {
     for (const std::string& side : {left, right}) {
-      if (!exists(side)) throw Error(side + ": is not there, expected a folder, a video or a pattern");
+      if (!exists(side)) throw Error(side + ": not found, expected a folder, a video or a pattern");
     }
     if (is_folder(left) != is_folder(right))
-      throw Error(left + "," + right + ": is one folder and one file, expected two of a kind");
+      throw Error(left + "," + right + ": is one folder and one file, expected two folders or two files");
     if (!is_folder(left)) return open_videos(left, right, options, pool);
   } else if (is_pattern(left) != is_pattern(right)) {
     throw Error(left + "," + right + ": has one pattern, expected two");
@@ -221,7 +220,7 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
   for (const char* web : {"http://", "https://"}) {
     if (source.starts_with(web)) {
       throw Error(source + ": expected gst:'souphttpsrc location=" + source +
-                  " is-live=true ! decodebin' for a camera that is read by HTTP");
+                  " is-live=true ! decodebin' for an HTTP camera");
     }
   }
   if (!exists(source)) {
@@ -229,7 +228,7 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
       return open_pair(source.substr(0, comma), source.substr(comma + 1), options, pool);
     if (is_pattern(source))
       throw Error(source + ": is one pattern, expected two: left_%04d.png,right_%04d.png");
-    throw Error(source + ": is not there, expected a folder of frames, a video, or LEFT,RIGHT");
+    throw Error(source + ": not found, expected a folder of frames, a video, or LEFT,RIGHT");
   }
   if (!is_folder(source)) {
     if (ros::is_mcap(source)) {

@@ -21,7 +21,7 @@ std::vector<TimedPose> known_poses(const fs::path& path) {
   Trajectory known = load_trajectory(path);
   if (!known.has_stamps)
     throw Error(path.string() +
-                ": its poses have no stamps, expected TUM's or EuRoC's form, or a times.txt beside it");
+                ": its poses have no stamps, expected the form of TUM or EuRoC, or a times.txt next to it");
   return std::move(known.poses);
 }
 

@@ -175,7 +175,7 @@ void check_rising(std::span<const Stamp> stamps, std::span<const std::string> na
   for (std::size_t i = 1; i < stamps.size(); ++i)
     longest = std::max<std::int64_t>(longest, std::llabs(stamps[i].ns - stamps[i - 1].ns));
   if (longest > 0 && longest < kShortestStepNs) {
-    throw Error(where + ": all stamps lie less than 1 us apart (" + std::to_string(stamps[0].ns) + " ns, " +
+    throw Error(where + ": all stamps are less than 1 us apart (" + std::to_string(stamps[0].ns) + " ns, " +
                 std::to_string(stamps[1].ns) + " ns), expected ns; write s with a decimal point");
   }
   for (std::size_t i = 1; i < stamps.size(); ++i) {

@@ -36,7 +36,7 @@ std::optional<Pose> pose_in(const JsonLine& line) {
   constexpr double kShortest = 1e-6;
   double squares = 0;
   for (const double entry : *turn) squares += entry * entry;
-  if (squares < kShortest) pose.refuse("quaternion_xyzw", "a turn, not zeros");
+  if (squares < kShortest) pose.refuse("quaternion_xyzw", "a rotation, not zeros");
   return pose_of(*place, *turn);
 }
 
@@ -91,7 +91,7 @@ TrackFrame frame_of(const Json& json) {
   for (const Json& one : tracks) {
     frame.tracks.push_back(track_of(one));
     const TrackId id = frame.tracks.back().id;
-    if (!ids.insert(id).second) throw Error("track " + std::to_string(number(id)) + " comes twice");
+    if (!ids.insert(id).second) throw Error("track " + std::to_string(number(id)) + " occurs twice");
   }
   return frame;
 }
@@ -139,7 +139,7 @@ bool each_json(const fs::path& path, const std::function<void(const Json&, std::
     if (json) {
       take(*json, line);
     } else if (has_end) {
-      throw Error("is no JSON");
+      throw Error("is not JSON");
     } else {
       is_cut_off = true;
     }
@@ -177,7 +177,7 @@ TrackFile load_tracks(const fs::path& path) {
                     std::to_string(before.stamp.ns) + " of the line before");
     }
     if (!names.emplace(frame.name, frame.index).second)
-      throw Error("`name` is \"" + frame.name + "\", which an earlier line has");
+      throw Error("`name` is \"" + frame.name + "\", already used by an earlier line");
     file.frames.push_back(std::move(frame));
   });
   if (file.frames.empty()) throw Error(path.string() + ": has no frame");
@@ -205,7 +205,7 @@ TrackFile load_mots(const fs::path& path) {
     track.mask = Rle{{width, height}, word[5]};
     track.is_dont_care = kind == kIgnored;
     if (!masks[frame].emplace(id, std::move(track)).second)
-      throw Error("id " + word[1] + " comes twice in frame " + word[0]);
+      throw Error("id " + word[1] + " occurs twice in frame " + word[0]);
   });
   if (masks.empty()) throw Error(path.string() + ": has no mask");
   TrackFile file;

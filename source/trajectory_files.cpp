@@ -44,7 +44,7 @@ Pose pose_of_rows(const std::array<double, 12>& m, const std::string& where) {
         r[3 * row] * r[3 * row] + r[3 * row + 1] * r[3 * row + 1] + r[3 * row + 2] * r[3 * row + 2];
     is_rotation = is_rotation && std::abs(square - 1) <= kTolerance;
   }
-  if (!is_rotation) throw Error(where + ": the 3x3 numbers on the left are no rotation");
+  if (!is_rotation) throw Error(where + ": the left 3x3 numbers are not a rotation");
   const Pose rounded{r, {m[3], m[7], m[11]}};
   return pose_of(rounded.translation_m, quaternion(rounded));  // orthonormal beyond the file's digits
 }
@@ -125,7 +125,7 @@ Trajectory load_folder(const fs::path& folder) {
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return in_natural_order(a.parent_path().filename().string(), b.parent_path().filename().string());
   });
-  if (files.empty()) throw Error(folder.string() + ": no frame in this folder holds a pose.txt");
+  if (files.empty()) throw Error(folder.string() + ": no frame in this folder contains a pose.txt");
   Trajectory all;
   for (const fs::path& file : files) all.poses.push_back({{}, load_pose(file)});
   std::error_code ignored;
@@ -183,11 +183,11 @@ Trajectory load_trajectory(const fs::path& path) {
       // EuRoC's truth names its columns in the first line, which need not begin with #.
       if (*form == TrajectoryForm::euroc && !parse_stamp(fields.front())) continue;
     } else if (form_of(line.text, path, line.number) != *form) {
-      throw Error(place(path, line.number) + ": has another form than the lines before");
+      throw Error(place(path, line.number) + ": differs in form from the lines before");
     }
     all.poses.push_back(pose_in(fields, *form, path, line.number));
   }
-  if (all.poses.empty()) throw Error(path.string() + ": holds no pose");
+  if (all.poses.empty()) throw Error(path.string() + ": contains no pose");
   if (*form != TrajectoryForm::kitti) {
     check_order(all.poses, path);
     return all;

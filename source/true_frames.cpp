@@ -29,7 +29,7 @@ Json load_json(const fs::path& path) {
     const std::string message = error.what();
     throw Error(message.starts_with(path.string()) ? message : path.string() + ": " + message);
   }
-  if (!json) throw Error(path.string() + ": is no JSON");
+  if (!json) throw Error(path.string() + ": is not JSON");
   return *json;
 }
 
@@ -100,7 +100,7 @@ TrueSequence load_truth(const fs::path& path) {
     truth.frames.push_back(std::move(frame));
   }
   if (truth.frames.empty())
-    throw Error(path.string() + ": has no sub-folder with objects.png, expected one for each frame");
+    throw Error(path.string() + ": has no sub-folder with objects.png, expected one per frame");
   std::sort(truth.frames.begin(), truth.frames.end(),
             [](const TrueFrame& a, const TrueFrame& b) { return a.name < b.name; });
   for (TrueFrame& frame : truth.frames) {

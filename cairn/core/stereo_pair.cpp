@@ -14,7 +14,7 @@ StereoPair StereoPair::from(View<const Gray> left, View<const Gray> right, View<
                 "; a rectified pair has equal sizes");
   }
   if (!left_rgb.empty() && left_rgb.size() != left.size()) {
-    throw Error("stereo pair: the left image's colour is " + text(left_rgb.size()) + ", its grey " +
+    throw Error("stereo pair: the colour of the left image is " + text(left_rgb.size()) + ", its grey " +
                 text(left.size()));
   }
   return {left, right, left_rgb};

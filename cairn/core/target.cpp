@@ -108,7 +108,7 @@ Target wanted_target(std::string_view wanted, std::string_view source) {
   }
   if (*target != Target::best && std::find(supported.begin(), supported.end(), *target) == supported.end()) {
     throw Error(std::string(source) + ": instruction set " + std::string(wanted) +
-                " is not there in this build or on this processor, expected one of " + expected);
+                " is not available in this build or on this processor, expected one of " + expected);
   }
   return *target;
 }

@@ -61,15 +61,15 @@ bool check_points(Case& c) {
   const bool enough = agreeing >= c.config.least_points;
   if (!enough && textured < c.config.least_textured) {
     c.add(FindingKind::few_points, Severity::note, agreeing,
-          "the left picture has " + std::to_string(textured) + " textured points, and " +
-              std::to_string(agreeing) + " of them are seen in the right one");
+          "the left image has " + std::to_string(textured) + " textured points, and " +
+              std::to_string(agreeing) + " of them are found in the right one");
     return false;
   }
   if (!enough || 100 * rows.agreeing_share() < static_cast<double>(c.config.least_agreeing)) {
     c.add(FindingKind::nothing_in_common, Severity::broken, 100 * rows.agreeing_share(),
           "of " + std::to_string(textured) + " textured points " + std::to_string(rows.points) +
-              " are found in the right picture, and " + std::to_string(agreeing) +
-              " of these agree on one geometry");
+              " are found in the right image, and " + std::to_string(agreeing) +
+              " of these are consistent with one geometry");
     return false;
   }
   return true;
@@ -91,7 +91,7 @@ bool check_same(Case& c) {
   const double zeros = c.share_below(kNoDisparity) - c.share_below(-kNoDisparity);
   const bool is_plain = measures.left_exposure.contrast == 0;  // a black picture equals any other
   if (measures.identical && !is_plain) {
-    c.add(FindingKind::same_picture, Severity::broken, 100, "every pixel is the same in both");
+    c.add(FindingKind::same_picture, Severity::broken, 100, "all pixels are equal in both");
     return true;
   }
   if (static_cast<int>(measures.disparities_px.size()) < c.config.least_points ||
@@ -101,7 +101,7 @@ bool check_same(Case& c) {
   c.add(FindingKind::same_picture, Severity::broken, 100 * zeros,
         percent_text(zeros) + " of " + std::to_string(measures.disparities_px.size()) +
             " points have a disparity of 0, within " + text_of("%g px", kNoDisparity) +
-            " (or all that is seen is infinitely far away)");
+            " (or the whole scene is infinitely far away)");
   return true;
 }
 
@@ -125,8 +125,7 @@ bool check_order(Case& c) {
   if (100 * impossible < limit && !(100 * negative >= limit && fits_exchanged(c))) return true;
   c.add(FindingKind::swapped, Severity::broken, 100 * negative,
         percent_text(negative) + " of " + std::to_string(c.measures.disparities_px.size()) +
-            " points have a negative disparity, in the middle " +
-            text_of("%+.1f px", c.measures.disparity_px(0.5)));
+            " points have a negative disparity, median " + text_of("%+.1f px", c.measures.disparity_px(0.5)));
   return false;
 }
 
@@ -136,8 +135,7 @@ void check_rows(Case& c) {
   const auto distorted = Case::severity(left_over, c.config.warn_left_over, c.config.break_left_over);
   if (distorted) {
     c.add(FindingKind::rectification, *distorted, left_over,
-          "1 point in 10 is " + text_of("%.1f rows", left_over) +
-              " or more off even if shift and roll are taken back");
+          "1 point in 10 is " + text_of("%.1f rows", left_over) + " or more off even without shift and roll");
   }
   const auto slope = static_cast<double>(rows.rows_per_px);
   const double worse =
@@ -145,8 +143,8 @@ void check_rows(Case& c) {
   if (const auto severity = Case::severity(worse, c.config.warn_rows, c.config.break_rows);
       severity && (!distorted || *severity > *distorted)) {
     c.add(FindingKind::rows, *severity, worse,
-          "the right picture stands " + text_of("%+.2f rows", static_cast<double>(rows.offset_rows)) +
-              " lower in its middle, turned by " + text_of("%+.2f degrees", kDegrees * std::atan(slope)) +
+          "the right image is " + text_of("%+.2f rows", static_cast<double>(rows.offset_rows)) +
+              " lower at its centre, rotated by " + text_of("%+.2f degrees", kDegrees * std::atan(slope)) +
               ": " + text_of("%.2f rows", worse) + " at its worse side");
   }
 }
@@ -170,8 +168,8 @@ void check_range(Case& c) {
     const int from =
         furthest < first - 1 ? static_cast<int>(std::floor(furthest)) - 4 : c.range.min_disparity;
     c.add(FindingKind::range_too_small, *severity, 100 * beyond,
-          percent_text(beyond) + " of the points lie outside " + text_of("%.0f", first) +
-              text_of(" ... %.0f px", last) + "; nearly all lie in " + text_of("%.0f", furthest) +
+          percent_text(beyond) + " of the points are outside " + text_of("%.0f", first) +
+              text_of(" ... %.0f px", last) + "; nearly all are in " + text_of("%.0f", furthest) +
               text_of(" ... %.0f px", nearest) + ": match.min_disparity=" + std::to_string(from) +
               ", match.num_disparities=" + std::to_string(suggested_range(nearest - from)));
     return;
@@ -201,9 +199,9 @@ void check_end_of_range(Case& c, const DisparityMap& map) {
   const double share = known > 0 ? static_cast<double>(at_end) / static_cast<double>(known) : 0.0;
   if (100 * share < static_cast<double>(c.config.warn_at_end)) return;
   c.add(FindingKind::range_too_small, Severity::warning, 100 * share,
-        percent_text(share) + " of the disparities lie in the last 2 px of " +
+        percent_text(share) + " of the disparities are in the last 2 px of " +
             std::to_string(c.range.min_disparity) + text_of(" ... %.0f px", last) +
-            ", so nearer things are lost: match.num_disparities=" +
+            ", so nearer objects are lost: match.num_disparities=" +
             std::to_string(suggested_range(1.6 * c.range.num_disparities)));
 }
 
@@ -239,8 +237,8 @@ void check_clipping(Case& c) {
   if (!severity) return;
   std::string says;
   for (const auto& [exposure, first, second] :
-       {std::tuple{&left, "in the left picture ", ""},
-        std::tuple{&right, "in the right picture ", ", in the right one "}}) {
+       {std::tuple{&left, "in the left image ", ""},
+        std::tuple{&right, "in the right image ", ", in the right one "}}) {
     if (100 * clipped(*exposure) < limit) continue;
     says += (says.empty() ? first : second) + percent_text(clipped(*exposure)) + " of the pixels are " +
             (exposure->white >= exposure->black ? "white (254, 255)" : "black (0, 1)");
@@ -256,9 +254,9 @@ void check_contrast(Case& c) {
   const bool is_right = right < c.config.least_contrast;
   if (!is_left && !is_right) return;
   const auto levels = [](float contrast) { return text_of("%.0f of 255", static_cast<double>(contrast)); };
-  std::string says = "the left picture's levels span " + levels(left);
-  if (is_left && is_right) says += ", the right one's " + levels(right);
-  if (!is_left) says = "the right picture's levels span " + levels(right);
+  std::string says = "the levels of the left image span " + levels(left);
+  if (is_left && is_right) says += ", those of the right one " + levels(right);
+  if (!is_left) says = "the levels of the right image span " + levels(right);
   c.add(FindingKind::dark, Severity::warning, static_cast<double>(std::min(left, right)), says,
         camera_of(is_left, is_right));
 }
@@ -268,8 +266,8 @@ void check_brightness(Case& c) {
   if (b.median < c.config.warn_brightness) return;
   c.add(FindingKind::brightness, Severity::warning, static_cast<double>(b.median),
         "right = " + text_of("%.2f", static_cast<double>(b.gain)) + " x left " +
-            text_of("%+.0f", static_cast<double>(b.offset)) + " grey levels; " +
-            text_of("%.0f", static_cast<double>(b.median)) + " apart in the middle");
+            text_of("%+.0f", static_cast<double>(b.offset)) + " grey levels; median difference " +
+            text_of("%.0f", static_cast<double>(b.median)));
 }
 
 void check_sharpness(Case& c) {
@@ -281,7 +279,7 @@ void check_sharpness(Case& c) {
   const double worse = std::max(left, right);
   const std::string numbers = text_of("left %.1f px", left) + text_of(", right %.1f px", right);
   if (std::min(left, right) >= limit) {
-    c.add(FindingKind::blur, Severity::warning, worse, "edges are wide in both pictures: " + numbers);
+    c.add(FindingKind::blur, Severity::warning, worse, "edges are wide in both images: " + numbers);
     return;
   }
   // Noise makes edges narrow, so the other camera's alone blame nobody.
@@ -289,7 +287,7 @@ void check_sharpness(Case& c) {
       worse >= static_cast<double>(c.config.least_unequal_edge) && worse >= ratio * std::min(left, right);
   if (worse < limit && !is_unequal) return;
   c.add(FindingKind::blur, Severity::warning, worse,
-        "edges are wide in the " + std::string(left > right ? "left" : "right") + " picture: " + numbers,
+        "edges are wide in the " + std::string(left > right ? "left" : "right") + " image: " + numbers,
         camera_of(left > right, right > left));
 }
 
@@ -314,8 +312,8 @@ void check_camera(Case& c) {
     c.add(FindingKind::calibration, Severity::broken,
           static_cast<double>(off_x > off_y ? rig.cx_px : rig.cy_px),
           "the principal point (" + text_of("%.0f, ", static_cast<double>(rig.cx_px)) +
-              text_of("%.0f", static_cast<double>(rig.cy_px)) + ") is far from the middle of " + text(size) +
-              " pictures: a calibration for another size?");
+              text_of("%.0f", static_cast<double>(rig.cy_px)) + ") is far from the centre of " + text(size) +
+              " images: a calibration for another size?");
   }
 }
 
@@ -444,8 +442,8 @@ std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::opt
   std::vector<NotChecked> all;
   const RowAlignment& rows = measures.rows;
   if (!rig) all.push_back({"calibration and distances", "no calibration with a baseline was given", false});
-  const std::string found =
-      std::to_string(rows.agreeing) + " of " + std::to_string(rows.points) + " points agree on one geometry";
+  const std::string found = std::to_string(rows.agreeing) + " of " + std::to_string(rows.points) +
+                            " points are consistent with one geometry";
   const auto too_few = [&](std::string_view check, int least) {
     if (rows.agreeing < least) all.push_back({check, found + ", expected " + std::to_string(least)});
   };
@@ -454,22 +452,22 @@ std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::opt
     all.push_back({"order of the cameras and disparity range",
                    static_cast<int>(supported) < config.least_points
                        ? std::to_string(supported) +
-                             " points have a disparity like their neighbours', expected " +
+                             " points have a disparity similar to their neighbours, expected " +
                              std::to_string(config.least_points)
                        : found + ", expected " + std::to_string(config.least_certain) +
                              text_of(", or %g %% of them", static_cast<double>(config.least_certain_share))});
   }
   too_few("shift of the rows", config.least_points);
-  too_few("turn of the right picture", RowAlignment::kLeastForRoll);
+  too_few("rotation of the right image", RowAlignment::kLeastForRoll);
   too_few("rectification", RowAlignment::kLeastForField);
   if (!measures.brightness.is_measured()) {
     all.push_back({"equal brightness", std::to_string(measures.brightness.points) +
-                                           " places could be compared, expected " +
+                                           " windows could be compared, expected " +
                                            std::to_string(BrightnessDifference::kLeastPoints)});
   }
   const int edges = std::min(measures.left_sharpness.edges, measures.right_sharpness.edges);
   if (edges < Sharpness::kLeastEdges) {
-    all.push_back({"focus", std::to_string(edges) + " edges in the poorer picture, expected " +
+    all.push_back({"focus", std::to_string(edges) + " edges in the poorer image, expected " +
                                 std::to_string(Sharpness::kLeastEdges)});
   }
   return all;

@@ -223,7 +223,7 @@ Finding out_of_step(int lag, std::string says, int first, int last) {
 Finding changed(const LagChange& change, int frames, std::span<const std::string> names) {
   const auto at = static_cast<std::size_t>(change.from);
   const std::string says = "from frame " + (at < names.size() ? names[at] : std::to_string(change.from)) +
-                           " on the right camera's pictures " + lag_text(change.after) +
+                           " on the images of the right camera " + lag_text(change.after) +
                            ", before that they " + lag_text(change.before) +
                            ": the changes in both correlate to " + share_text(change.motion) + " then";
   if (change.after == 0) return out_of_step(change.before, says, 0, change.from);
@@ -237,7 +237,7 @@ std::optional<Finding> diagnose(const Synchrony& synchrony, std::span<const std:
   const double as_they_are = synchrony.motion[index(0)];
   if (const int lag = synchrony.lag(); lag != 0) {
     return out_of_step(lag,
-                       "the right camera's pictures " + lag_text(lag) +
+                       "the images of the right camera " + lag_text(lag) +
                            ": the changes in both correlate to " + share_text(synchrony.motion[index(lag)]) +
                            " then, and to " + share_text(as_they_are) + " as they are",
                        0, synchrony.frames);
@@ -247,16 +247,16 @@ std::optional<Finding> diagnose(const Synchrony& synchrony, std::span<const std:
     return Finding{FindingKind::synchrony,
                    Severity::warning,
                    0,
-                   std::string("the ") + (is_right ? "right" : "left") + " camera repeats its picture in " +
+                   std::string("the ") + (is_right ? "right" : "left") + " camera repeats its image in " +
                        std::to_string(repeats) + " of " + frames_text(synchrony.frames) +
-                       " while the other one's changes",
+                       " while that of the other changes",
                    {},
                    is_right ? Camera::right : Camera::left};
   }
   if (synchrony.frames < Synchrony::kLeastFrames || synchrony.tells()) return std::nullopt;
   return Finding{FindingKind::unknown_synchrony, Severity::note, 100 * as_they_are,
-                 "too little moves, or too evenly, to tell whether a camera is late: the changes in both "
-                 "pictures correlate to " +
+                 "too little motion, or too even, to determine whether a camera is late: the changes in "
+                 "both images correlate to " +
                      share_text(as_they_are) + " as they are, and to " +
                      share_text(std::max(synchrony.motion[index(-1)], synchrony.motion[index(1)])) +
                      " one frame apart"};

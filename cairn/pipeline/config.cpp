@@ -18,12 +18,12 @@ struct Gone {
 };
 
 constexpr std::array kGone{
-    Gone{"match.evidence", "what the checks and the confidence need is kept"},
-    Gone{"confidence.enabled", "whatever was matched has a confidence"},
-    Gone{"ground.points", "it is a fact of the rig, ground_points in its calibration file (docs/formats.md)"},
-    Gone{"ground.height", "it is a fact of the rig, camera_height in its calibration file (docs/formats.md)"},
-    Gone{"ground.pitch", "it is a fact of the rig, camera_pitch in its calibration file (docs/formats.md)"},
-    Gone{"ground.roll", "it is a fact of the rig, camera_roll in its calibration file (docs/formats.md)"}};
+    Gone{"match.evidence", "the maps that checks and confidence need are always computed"},
+    Gone{"confidence.enabled", "confidence is always computed"},
+    Gone{"ground.points", "it is now ground_points in the calibration file (docs/formats.md)"},
+    Gone{"ground.height", "it is now camera_height in the calibration file (docs/formats.md)"},
+    Gone{"ground.pitch", "it is now camera_pitch in the calibration file (docs/formats.md)"},
+    Gone{"ground.roll", "it is now camera_roll in the calibration file (docs/formats.md)"}};
 
 constexpr std::array<std::string_view, 6> kConstants{"evidence.noise_factor",       "evidence.agreement",
                                                      "background.tolerance",        "background.min_share",
@@ -33,13 +33,13 @@ constexpr std::array<std::string_view, 3> kGoneSections{"facets.", "figure.", "g
 
 void refuse_what_is_gone(std::string_view name) {
   for (const auto& [option, where] : kGone) {
-    if (option == name) throw Error("option " + std::string(name) + " is gone: " + std::string(where));
+    if (option == name) throw Error("option " + std::string(name) + " was removed: " + std::string(where));
   }
   if (std::find(kConstants.begin(), kConstants.end(), name) != kConstants.end())
-    throw Error("option " + std::string(name) + " is gone: it is a constant of its stage");
+    throw Error("option " + std::string(name) + " was removed: it is a constant of its stage");
   for (const std::string_view section : kGoneSections) {
     if (name.starts_with(section))
-      throw Error("option " + std::string(name) + " is gone: fitted scores have replaced its stage");
+      throw Error("option " + std::string(name) + " was removed: fitted scores replaced its stage");
   }
 }
 
@@ -115,7 +115,7 @@ Config Config::paper() {
 void validate(const Config& config) {
   option_walk::check_ranges(config);
   if (config.match.maps != MatchMaps::full)
-    throw Error("match.maps: less than full is for match() alone, the method needs full");
+    throw Error("match.maps: found less than full, expected full (only match() by itself accepts less)");
   validate(config.ground, true);
 }
 
@@ -125,7 +125,7 @@ void validate(const Config& config, Size image, bool has_rig) {
   const bool has_window = config.match.method == MatchMethod::window;
   if (has_window && (window > image.width || window > image.height)) {
     throw Error("option match.window_size: a window of " + option_walk::write(window) +
-                " px does not fit an image of " + text(image));
+                " px does not fit into an image of " + text(image));
   }
   constexpr int kLeast = 3;  // px
   if (!has_window && (image.width < kLeast || image.height < kLeast)) {
@@ -136,11 +136,11 @@ void validate(const Config& config, Size image, bool has_rig) {
   const int last = first + config.match.num_disparities - 1;
   if (config.match.num_disparities > image.width) {
     throw Error("option match.num_disparities: " + option_walk::write(config.match.num_disparities) +
-                " disparities are more than the image is wide (" + option_walk::write(image.width) + " px)");
+                " disparities exceed the image width (" + option_walk::write(image.width) + " px)");
   }
   if (first >= image.width || last <= -image.width) {
     throw Error("option match.min_disparity: disparities " + option_walk::write(first) + " … " +
-                option_walk::write(last) + " lie outside an image " + option_walk::write(image.width) +
+                option_walk::write(last) + " are outside of an image " + option_walk::write(image.width) +
                 " px wide");
   }
   validate(config.ground, has_rig);

@@ -70,7 +70,7 @@ Ground ground_from_points(const std::vector<PointPair>& points) {
   const auto found = plane_through(points);
   if (!found) {
     throw Error("ground_points: found " + std::to_string(points.size()) +
-                " pairs that determine no plane, expected some that do not all lie on a line");
+                " pairs that determine no plane, expected points that are not collinear");
   }
   double sum = 0;
   for (const auto& p : found->pairs) {
@@ -90,8 +90,8 @@ void validate(const GroundConfig& config, bool has_rig) {
   }
   if (config.source == GroundSource::pose && !(has_rig && config.known.camera_height_m)) {
     throw Error(
-        "option ground.source: a ground from the camera's pose needs a calibration with camera_height; give "
-        "one (--calib)");
+        "option ground.source: a ground from the camera pose needs a calibration with "
+        "camera_height (--calib)");
   }
 }
 

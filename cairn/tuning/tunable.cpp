@@ -55,7 +55,7 @@ bool fits(std::string_view name, std::string_view pattern) {
   for (const Tunable& tunable : all) names.push_back(tunable.name);
   const std::string close = nearest(pattern, names);
   throw Error("no option to tune is named '" + pattern.substr(0, 80) + "'" +
-              (close.empty() ? ", expected names as cairn config lists them, or a beginning such as match.*"
+              (close.empty() ? ", expected names from cairn config, or a prefix such as match.*"
                              : ", did you mean '" + close + "'?"));
 }
 

@@ -21,14 +21,14 @@ constexpr Margin kLeastGain{.least_share = 0.01};
 void check(const std::vector<TuningFrame>& frames, const TuneConfig& config) {
   if (frames.empty()) throw Error("frames: found none, expected one or more to tune on");
   if (!(config.budget_s > 0)) {
-    throw Error("budget_s: found " + std::to_string(config.budget_s) + ", expected seconds, more than 0");
+    throw Error("budget_s: found " + std::to_string(config.budget_s) + ", expected seconds > 0");
   }
   if (config.evaluations < 0) {
     throw Error("evaluations: found " + std::to_string(config.evaluations) +
                 ", expected 0 or more; 0 = no limit");
   }
   if (!(config.holdout >= 0 && config.holdout <= 0.9)) {
-    throw Error("holdout: found " + std::to_string(config.holdout) + ", expected a share, 0 … 0.9");
+    throw Error("holdout: found " + std::to_string(config.holdout) + ", expected a share of 0 … 0.9");
   }
   for (const TuningFrame& frame : frames) {
     try {
@@ -57,7 +57,7 @@ void choose_tunables(const std::vector<std::string>& wanted, const Config& start
   tuning.tunables.erase(judged, tuning.tunables.end());
   if (tuning.tunables.empty()) {
     throw Error("options " + wanted.front() +
-                ": changes no disparity, and without true objects nothing else can be judged");
+                ": has no effect on disparities, and nothing else can be judged without true objects");
   }
 }
 
@@ -70,7 +70,7 @@ std::vector<bool> frames_held_out(const std::vector<TuningFrame>& frames, const 
   for (const TuningFrame& frame : frames) {
     if (std::find(names.begin(), names.end(), frame.name) == names.end()) names.push_back(frame.name);
   }
-  if (names.size() < 2) throw Error("holdout: there is one frame, expected two or more to share out");
+  if (names.size() < 2) throw Error("holdout: found one frame, expected two or more to split");
   const std::vector<bool> drawn =
       held_out(static_cast<int>(names.size()), config.holdout, sequence, config.seed);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -95,13 +95,13 @@ Tuning prepared(const std::vector<TuningFrame>& frames, const TuneConfig& config
 std::string reason_to_keep(const Tuning& tuning) {
   const SearchResult& s = tuning.search;
   if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain)) {
-    return "nothing that was tried is better by " +
-           std::to_string(std::lround(100 * kLeastGain.least_share)) + " % and by more than chance";
+    return "no other setting is better by " + std::to_string(std::lround(100 * kLeastGain.least_share)) +
+           " % and significantly so";
   }
   const double before = mean_loss(losses_of(tuning.held_out_before));
   const double after = mean_loss(losses_of(tuning.held_out_after));
   if (!tuning.held_out_before.empty() && std::isfinite(before) && after > before)
-    return "what was found is worse on the frames held out";
+    return "the best found is worse on the frames held out";
   return {};
 }
 
@@ -193,7 +193,7 @@ class TuningRun {
   void keep(const std::vector<Setting>& settings) {
     const bool is_start = !knows_start();
     if (is_start && !std::isfinite(mean_loss(losses_of(latest_))))
-      throw Error("the truth of the frames to tune on has nothing that can be scored");
+      throw Error("the truth of the frames to tune on contains nothing that can be scored");
     tuning_.after = latest_;
     if (holds_out()) tuning_.held_out_after = *measured(tuning_.held_out, settings, {});
     if (!is_start) return;

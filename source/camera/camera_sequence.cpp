@@ -242,8 +242,8 @@ class CameraSequence : public Sequence {
     }
     is_after_gap_ = is_after_gap_ || image.is_after_gap;
     if (last_stamp_ && image.stamp <= *last_stamp_) {
-      remark(remarks_,
-             {"frame whose stamp is not later than the one before", 1, number_text(count_), true, false});
+      remark(remarks_, {"frame with a stamp that is not later than the one before", 1, number_text(count_),
+                        true, false});
       return std::nullopt;
     }
     const std::size_t index = count_++;
@@ -273,7 +273,7 @@ class CameraSequence : public Sequence {
     note("left image without a right one", unpaired[0], "before " + before);
     note("right image without a left one", unpaired[1], "before " + before);
     if (now.reconnects > 0) note_once("was lost and came back", text_of_times(now.reconnects));
-    if (pairs > 0) note_once("the two cameras run freely", text_of(skew));
+    if (pairs > 0) note_once("the two cameras are not synchronised", text_of(skew));
     if (has_ended_) note_once("the pipeline ended", "after " + std::to_string(count_) + " frames");
   }
 
@@ -310,10 +310,10 @@ class CameraSequence : public Sequence {
     std::string words =
         formatted("right images are %.1f to %.1f ms later than left ones", skew.least_ms, skew.most_ms);
     if (skew.drift_over_s >= kLeastDriftSeconds) words += formatted(", drift %.0f ppm", skew.drift_ppm);
-    return words + "; whatever moves meanwhile has a wrong disparity (a common trigger helps)";
+    return words + "; moving objects get wrong disparities (a common trigger helps)";
   }
 
-  static constexpr const char* kDropped = "frame that came and was not taken, or that the camera lost";
+  static constexpr const char* kDropped = "frame dropped unread, or lost by the camera";
   static constexpr double kLeastDriftSeconds = 10;
 
   CameraNames names_;

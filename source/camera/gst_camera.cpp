@@ -50,7 +50,7 @@ std::string words_of(const GError& error, const char* debug) {
     if (c == '\n' || c == '\r') c = ' ';
   }
   if (words.find("not-negotiated") != std::string::npos)
-    words += ", expected raw video at the pipeline's end (add decodebin or a decoder)";
+    words += ", expected raw video at the end of the pipeline (add decodebin or a decoder)";
   return without_password(words);
 }
 
@@ -77,7 +77,7 @@ Ref<GstElement> parsed(const std::string& pipeline) {
       words += ", expected an installed element (gst-inspect-1.0 lists them)";
     g_clear_error(&error);
     if (element != nullptr) gst_object_unref(element);
-    throw Error("the pipeline cannot be made: " + words);
+    throw Error("the pipeline cannot be created: " + words);
   }
   return Ref<GstElement>(element);
 }
@@ -214,7 +214,7 @@ class GstCamera : public Camera {
     GstCaps* caps = gst_sample_get_caps(&sample);
     if (caps == nullptr || gst_video_info_from_caps(&info, caps) == 0 ||
         gst_video_frame_map(&frame, &info, gst_sample_get_buffer(&sample), GST_MAP_READ) == 0)
-      throw Error("the pipeline gives an image that cannot be read");
+      throw Error("the pipeline delivered an image that cannot be read");
     struct Unmap {
       GstVideoFrame& frame;
       ~Unmap() { gst_video_frame_unmap(&frame); }

@@ -84,7 +84,7 @@ void KeptCamera::read(Camera& camera) {
       // The first image of all may take as long as whoever opened it waits.
       if (is_first && !has_image) continue;
       const std::chrono::milliseconds most = has_image ? times_.silence : times_.first_image;
-      if (Clock::now() - last > most) throw Error("gives no frame for " + seconds_of(most));
+      if (Clock::now() - last > most) throw Error("delivers no frame for " + seconds_of(most));
       continue;
     }
     const Size size = image->left.gray.size();

@@ -94,8 +94,7 @@ GstRequest gst_request(const std::string& part, const std::string& source) {
   request.pipeline = part;
   const std::size_t first = part.find_first_not_of(' ');
   if (first == std::string::npos)
-    throw Error(source +
-                ": found an empty pipeline, expected one as gst-launch-1.0 takes it, without the sink");
+    throw Error(source + ": found an empty pipeline, expected one for gst-launch-1.0, without the sink");
   return request;
 }
 

@@ -59,10 +59,10 @@ class Device {
       case ENOENT:
       case ENODEV:
       case ENXIO:
-        throw Error("is not there, expected a camera (v4l2-ctl --list-devices names them)");
+        throw Error("no such device, expected a camera (v4l2-ctl --list-devices lists them)");
       case EACCES:
       case EPERM:
-        throw Error("may not be read, expected a user of the group video");
+        throw Error("permission denied, expected a user of the group video");
       case EBUSY:
         throw Error("is used by another program");
       default:
@@ -102,19 +102,19 @@ class Device {
     request.memory = V4L2_MEMORY_MMAP;
     if (!control(VIDIOC_REQBUFS, request)) {
       throw Error(errno == EBUSY ? "is used by another program"
-                                 : "gives no buffers in shared memory: " + reason());
+                                 : "provides no buffers in shared memory: " + reason());
     }
     if (request.count < 2)
       throw Error("gives " + std::to_string(request.count) + " buffers, expected 2 or more");
     for (std::uint32_t i = 0; i < request.count; ++i) map(i);
     for (std::uint32_t i = 0; i < request.count; ++i) {
-      if (!give_back(i)) throw Error("takes no buffer: " + reason());
+      if (!give_back(i)) throw Error("accepts no buffer: " + reason());
     }
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     if (!control(VIDIOC_STREAMON, type)) {
       throw Error(errno == ENOSPC
-                      ? "cannot start: the USB bus has no room for it, expected a smaller size, a "
-                        "lower rate, format=MJPG or another port"
+                      ? "cannot start: not enough USB bandwidth, expected a smaller size, a lower rate, "
+                        "format=MJPG or another port"
                       : "cannot start: " + reason());
     }
     is_streaming_ = true;
@@ -131,7 +131,7 @@ class Device {
   void map(std::uint32_t index) {
     v4l2_buffer buffer = empty_buffer();
     buffer.index = index;
-    if (!control(VIDIOC_QUERYBUF, buffer)) throw Error("does not tell of its buffers: " + reason());
+    if (!control(VIDIOC_QUERYBUF, buffer)) throw Error("does not report its buffers: " + reason());
     void* start = ops_.map(fd_, buffer.length, buffer.m.offset);
     if (start == nullptr) throw Error("does not share its memory: " + reason());
     buffers_.push_back({static_cast<std::uint8_t*>(start), buffer.length});
@@ -165,7 +165,7 @@ class V4l2Camera : public Camera {
       image =
           image_of(device_.bytes(buffer.index)
                        .first(std::min<std::size_t>(buffer.bytesused, device_.bytes(buffer.index).size())));
-    if (!device_.give_back(buffer.index)) throw Error("takes no buffer back: " + reason());
+    if (!device_.give_back(buffer.index)) throw Error("does not take a buffer back: " + reason());
     if (!image) {
       ++dropped_;
       return std::nullopt;
@@ -184,7 +184,7 @@ class V4l2Camera : public Camera {
 
   void check_capabilities() {
     v4l2_capability can{};
-    if (!device_.control(VIDIOC_QUERYCAP, can)) throw Error("is no camera of V4L2: " + reason());
+    if (!device_.control(VIDIOC_QUERYCAP, can)) throw Error("is not a V4L2 camera: " + reason());
     const std::uint32_t has =
         (can.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? can.device_caps : can.capabilities;
     if ((has & V4L2_CAP_VIDEO_CAPTURE) == 0) {
@@ -221,7 +221,7 @@ class V4l2Camera : public Camera {
   void set_size() {
     v4l2_format format{};
     format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    if (!device_.control(VIDIOC_G_FMT, format)) throw Error("does not tell its format: " + reason());
+    if (!device_.control(VIDIOC_G_FMT, format)) throw Error("does not report its format: " + reason());
     v4l2_pix_format& pixels = format.fmt.pix;
     const bool has_size = request_.size.area() > 0;
     if (has_size) {
@@ -248,7 +248,7 @@ class V4l2Camera : public Camera {
     size_ = {static_cast<int>(pixels.width), static_cast<int>(pixels.height)};
     if (has_size && size_ != request_.size) {
       throw Error("gives " + text(size_) + ", expected " + text(request_.size) +
-                  " (v4l2-ctl --list-formats-ext names what it has)");
+                  " (v4l2-ctl --list-formats-ext lists the formats)");
     }
     const auto least = static_cast<std::uint32_t>(size_.width * format_->bytes_each);
     stride_ = std::max(pixels.bytesperline, least);
@@ -272,13 +272,13 @@ class V4l2Camera : public Camera {
     v4l2_fract& period = rate.parm.capture.timeperframe;
     period = {1000, static_cast<std::uint32_t>(std::lround(1000 * request_.fps))};
     if (!device_.control(VIDIOC_S_PARM, rate) || period.numerator == 0 || period.denominator == 0) {
-      notes_.push_back("fps: the camera's pace cannot be set");
+      notes_.push_back("fps: the frame rate of the camera cannot be set");
       return;
     }
     const double fps = static_cast<double>(period.denominator) / static_cast<double>(period.numerator);
     if (std::abs(fps - request_.fps) > 0.01 * request_.fps) {
       std::array<char, 80> words{};
-      std::snprintf(words.data(), words.size(), "fps: found %.4g, asked for %.4g", fps, request_.fps);
+      std::snprintf(words.data(), words.size(), "fps: found %.4g, expected %.4g", fps, request_.fps);
       notes_.emplace_back(words.data());
     }
   }
@@ -293,12 +293,12 @@ class V4l2Camera : public Camera {
       case EIO:
         ++dropped_;
         if (++errors_ < kMostErrors) return std::nullopt;
-        throw Error("gives errors only (EIO): cable, power or USB bus");
+        throw Error("returns only errors (EIO): cable, power or USB bus");
       case ENODEV:
       case ENXIO:
         throw Error("was unplugged");
       default:
-        throw Error("gives no frame: " + reason());
+        throw Error("delivers no frame: " + reason());
     }
   }
 

@@ -168,9 +168,9 @@ std::string checked_name(const std::string& name, const std::string& option) {
     before = c;
   }
   if (!is_name || before == '/') {
-    throw Error(
-        option + ": found \"" + name +
-        "\", expected a name of ROS: letters, digits and _ between slashes, none begins with a digit");
+    throw Error(option + ": found \"" + name +
+                "\", expected a ROS name: letters, digits and _ between slashes, not beginning with a "
+                "digit");
   }
   return full;
 }

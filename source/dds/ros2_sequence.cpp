@@ -143,7 +143,7 @@ class Ros2Sequence : public io::Sequence {
           return pair;
         } catch (const Error& error) {
           is_idle = false;
-          io::remark(remarks_, {"message that is no image", 1,
+          io::remark(remarks_, {"message that is not an image", 1,
                                 "on " + topics_[side] + " (" + error.what() + ")", true, false});
         }
       }
@@ -196,10 +196,10 @@ class Ros2Sequence : public io::Sequence {
       silent += (silent.empty() ? "" : " and ") + topics_[side];
       if (!images_[side].has_writer()) unknown += (unknown.empty() ? "" : " nor ") + topics_[side];
     }
-    return "nothing came on " + silent + within + ", expected sensor_msgs/msg/Image" +
-           (unknown.empty() ? "; somebody publishes there: are messages lost (docs/ros2.md, \"Buffers\")?"
-                            : "; nobody publishes " + unknown +
-                                  " (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, the topics' names)");
+    return "received nothing on " + silent + within + ", expected sensor_msgs/msg/Image" +
+           (unknown.empty() ? "; there is a publisher: are messages lost (docs/ros2.md, \"Buffers\")?"
+                            : "; no publisher on " + unknown +
+                                  " (check ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY and the topic names)");
   }
 
   void calibrate(const Pair& pair, bool needs_infos) {
@@ -211,8 +211,8 @@ class Ros2Sequence : public io::Sequence {
     } else {
       const char* const side = kSides[last_infos_[0] ? 1 : 0];
       remarks_.push_back(
-          {"nothing came on " + prefix_ + "/" + side + "/camera_info: no metres (--calib FILE instead)", 0,
-           "", false, false});
+          {"received nothing on " + prefix_ + "/" + side + "/camera_info: no metres (--calib FILE instead)",
+           0, "", false, false});
     }
   }
 
@@ -236,8 +236,8 @@ class Ros2Sequence : public io::Sequence {
   std::optional<io::SequenceFrame> frame_of(const Pair& pair) {
     const Stamp stamp = ros::stamp_of(pair.first.image.header.stamp);
     if (last_stamp_ && stamp <= *last_stamp_) {
-      io::remark(remarks_, {"frame whose stamp is not later than the one before", 1, io::number_text(count_),
-                            true, false});
+      io::remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
+                            io::number_text(count_), true, false});
       return std::nullopt;
     }
     const std::size_t index = count_++;
@@ -262,7 +262,7 @@ class Ros2Sequence : public io::Sequence {
 
   void note_losses(const std::string& before) {
     note("image without its other half within --max-skew", unpaired_, before);
-    note("image that was sent and never came", lost(), before);
+    note("image that was sent but not received", lost(), before);
   }
   /// A remark with a count that grows.
   void note(const char* what, std::uint64_t count, const std::string& before) {

@@ -41,8 +41,7 @@ Form checked(const ros::Image& image, const std::string& topic) {
     throw Error(topic + ": found " + std::to_string(image.data.size()) + " bytes for an image of " +
                 std::to_string(image.width) + " x " + std::to_string(image.height) + " " + image.encoding +
                 " with rows of " + std::to_string(image.step) +
-                ", expected width, height, step and bytes "
-                "that fit each other");
+                ", expected consistent width, height, step and bytes");
   }
   return *form;
 }

@@ -28,7 +28,8 @@ class VideoFile {
  public:
   VideoFile(fs::path path, double rate_hz) : path_(std::move(path)), rate_hz_(rate_hz) {
     std::error_code unknown;
-    if (!fs::is_regular_file(path_, unknown)) throw Error(path_.string() + ": is no file, expected a video");
+    if (!fs::is_regular_file(path_, unknown))
+      throw Error(path_.string() + ": is not a file, expected a video");
     if (!cv::videoio_registry::hasBackend(cv::CAP_FFMPEG)) {
       throw Error(
           path_.string() +
@@ -40,8 +41,7 @@ class VideoFile {
       throw Error(path_.string() + ": cannot be opened as a video: OpenCV says: " + exception.err);
     }
     if (!capture_.isOpened())
-      throw Error(path_.string() +
-                  ": cannot be opened as a video: no known format, cut off, or no codec for it");
+      throw Error(path_.string() + ": cannot be opened as a video: unknown format, truncated, or no codec");
     const double fps = capture_.get(cv::CAP_PROP_FPS);
     if (fps > 0 && std::isfinite(fps)) fps_ = fps;
     const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
@@ -92,7 +92,7 @@ class VideoFile {
     if (end_s > length_s - std::max(1.5 * step_s, 0.005 * length_s)) return {};
     std::array<char, 160> words{};
     std::snprintf(words.data(), words.size(),
-                  ": is cut off: ends after %zu frames, %.2f s; its header says %.2f s", grabbed_, end_s,
+                  ": is truncated: ends after %zu frames, %.2f s; its header says %.2f s", grabbed_, end_s,
                   length_s);
     return path_.string() + words.data();
   }
@@ -178,7 +178,8 @@ class VideoSequence : public Sequence {
     first_ = advance();
     if (!first_) {
       const bool is_ranged = options_.frames.first > 0;
-      throw Error(file_.string() + (is_ranged ? ": has no frame that is in --frames" : ": holds no frames"));
+      throw Error(file_.string() +
+                  (is_ranged ? ": has no frame that is in --frames" : ": contains no frames"));
     }
     calibration_.suit(watch_.image_size());
   }

@@ -43,7 +43,7 @@ TEST_F(BadInput, PairsThatAreNone) {
 
 TEST_F(BadInput, APathThatLeadsNowhere) {
   for (const char* command : {"segment", "disparity", "doctor"})
-    refuses({command, path("nowhere")}, {"nowhere", "is not there"});
+    refuses({command, path("nowhere")}, {"nowhere", "no such file or folder"});
 }
 
 TEST_F(BadInput, ImagesThatTheMethodDoesNotFit) {
@@ -116,14 +116,14 @@ TEST_F(BadInput, OptionsWithoutEffect) {
 TEST_F(BadInput, OptionsThatAreGone) {
   for (const std::string name : {"points", "height", "pitch", "roll"})
     refuses({"config", "--set", "ground." + name + "=1"},
-            {"ground." + name + " is gone", "calibration file"});
-  refuses({"config", "--set", "match.evidence=full"}, {"match.evidence is gone"});
-  refuses({"config", "--set", "confidence.enabled=true"}, {"confidence.enabled is gone"});
-  refuses({"config", "--set", "background.tolerance=3"}, {"background.tolerance is gone", "constant"});
+            {"ground." + name + " was removed", "calibration file"});
+  refuses({"config", "--set", "match.evidence=full"}, {"match.evidence was removed"});
+  refuses({"config", "--set", "confidence.enabled=true"}, {"confidence.enabled was removed"});
+  refuses({"config", "--set", "background.tolerance=3"}, {"background.tolerance was removed", "constant"});
   for (const std::string option : {"facets.edge_min", "figure.margin", "group.gap_share"}) {
-    refuses({"config", "--set", option + "=1"}, {option + " is gone", "fitted scores"});
+    refuses({"config", "--set", option + "=1"}, {option + " was removed", "fitted scores"});
     write(at("gone.yaml"), "match.num_disparities: 64\n" + option + ": 1\n");
-    refuses({"config", "--config", path("gone.yaml")}, {"gone.yaml: line 2: ", option + " is gone"});
+    refuses({"config", "--config", path("gone.yaml")}, {"gone.yaml: line 2: ", option + " was removed"});
   }
 }
 
@@ -225,7 +225,7 @@ TEST_F(BadInput, AFullDiskIsReported) {
   refuses(with("disparity", pair, {"-o", path("full.pfm")}), {"full.pfm"});
   const Outcome outcome = run({"config"}, "/dev/full");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_EQ(outcome.err, "cairn: standard output: cannot be written to\n");
+  EXPECT_EQ(outcome.err, "cairn: standard output: cannot be written\n");
 }
 
 TEST_F(BadInput, ConfigFilesThatAreNone) {
@@ -290,9 +290,9 @@ TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndLeftOut) {
   const Outcome outcome = run({"segment", path("many"), "--html", "-o", path("out")});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 3) << outcome.err;
-  EXPECT_EQ(outcome.err.find("cairn: frame b is left out: " + bad[1]), 0U) << outcome.err;
+  EXPECT_EQ(outcome.err.find("cairn: frame b is skipped: " + bad[1]), 0U) << outcome.err;
   EXPECT_NE(outcome.err.find("\ncairn: note: no floor: "), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames skipped\n"), std::string::npos) << outcome.err;
   EXPECT_TRUE(fs::exists(at("out/a/objects.json")));
   EXPECT_FALSE(fs::exists(at("out/b")));
   EXPECT_TRUE(fs::exists(at("out/c/objects.json")));
@@ -313,8 +313,8 @@ TEST_F(BadInput, ABadResultOfAFolderIsNamedAndLeftOut) {
   write(at("results/b/objects.png"), "no picture");
   const Outcome outcome = run({"evaluate", path("results"), path("truth"), "--json", path("e.json")});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err.find("cairn: frame b is left out: "), 0U) << outcome.err;
-  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("cairn: frame b is skipped: "), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames skipped\n"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("in 2 frames"), std::string::npos) << outcome.out;
   EXPECT_NE(content(at("e.json")).find("\"left_out\": [\n  \"b\"\n ]"), std::string::npos);
   for (const char* name : {"a", "c"}) write(at("results") / name / "objects.png", "no picture");

@@ -28,7 +28,7 @@ TEST_F(Cameras, LiveFollowsAPipelineAndEndsInTime) {
   EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 2);
   EXPECT_NE(outcome.out.find("\"stamp_ns\":"), std::string::npos);
   EXPECT_NE(outcome.err.find(" frames in "), std::string::npos);
-  EXPECT_NE(outcome.err.find("from picture to objects"), std::string::npos);
+  EXPECT_NE(outcome.err.find("from image to objects"), std::string::npos);
 }
 
 TEST_F(Cameras, RecordTakesTheFirstFramesOfAPipeline) {
@@ -43,7 +43,7 @@ TEST_F(Cameras, RecordTakesTheFirstFramesOfAPipeline) {
 }
 
 TEST_F(Cameras, ThatAreNotThereAreRefused) {
-  refuses({"live", "v4l2:/dev/video98"}, {"v4l2:/dev/video98", "is not there"});
+  refuses({"live", "v4l2:/dev/video98"}, {"v4l2:/dev/video98", "no such device"});
   refuses({"live", "gst:no_such_element_at_all"}, {"no_such_element_at_all"});
   refuses({"follow", "gst:videotestsrc", "--open-timeout", "0"}, {"--open-timeout", "found 0"});
 }

@@ -46,7 +46,7 @@ TEST_F(Doctor, SaysWhatIsWrongAndWhatToDoAndExitsWithOne) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("broken   cameras swapped: "), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("Exchange the two pictures"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("Exchange the two images"), std::string::npos) << outcome.out;
   EXPECT_EQ(last_line(outcome.out), "verdict: broken: cameras swapped");
   const Json j = Json::parse(content(at("d.json")));
   EXPECT_EQ(j["broken"], true);
@@ -72,7 +72,7 @@ TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
   const auto other = pair_in("other", {64, 48});
   const Outcome outcome = run({"doctor", pair[0], other[1]});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("broken   sizes: the left picture is 96x72, the right one 64x48"),
+  EXPECT_NE(outcome.out.find("broken   sizes: the left image is 96x72, the right one 64x48"),
             std::string::npos)
       << outcome.out;
   EXPECT_EQ(outcome.out.find("measured"), std::string::npos) << outcome.out;
@@ -95,7 +95,7 @@ TEST_F(Doctor, SeesANegativeBaselineAndACalibrationOfAnotherSize) {
   write(at("large.txt"), "fx=300\nfy=300\ncx=640\ncy=480\nbaseline=0.1\nwidth=1280\nheight=960\n");
   outcome = run({"doctor", sample("overlap"), "--calib", path("large.txt")});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("the calibration is of 1280x960 pictures"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("the calibration is of 1280x960 images"), std::string::npos) << outcome.out;
 }
 
 TEST_F(Doctor, NamesThePairsOfAFolderThatAreBad) {
@@ -115,7 +115,7 @@ TEST_F(Doctor, SeesTheSamePictureTwice) {
   const std::string picture = (samples::folder("overlap") / "left.png").string();
   const Outcome outcome = run({"doctor", picture, picture});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("broken   the two pictures are the same: every pixel"), std::string::npos)
+  EXPECT_NE(outcome.out.find("broken   the two pictures are the same: all pixels"), std::string::npos)
       << outcome.out;
 }
 
@@ -213,8 +213,8 @@ TEST_F(Doctor, NamesAPairThatCannotBeReadAndLooksAtTheOthers) {
   write(at("rig/a/right.png"), "no picture");
   const Outcome outcome = run({"doctor", path("rig"), "--json", path("d.json")});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err.find("cairn: frame a is left out: "), 0U) << outcome.err;
-  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames left out\n"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("cairn: frame a is skipped: "), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames skipped\n"), std::string::npos) << outcome.err;
   const Json j = Json::parse(content(at("d.json")));
   EXPECT_EQ(j["left_out"], Json::array({"a"}));
   EXPECT_EQ(j["pairs"].size(), 2U);

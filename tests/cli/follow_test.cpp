@@ -218,8 +218,8 @@ TEST_F(Follow, AnErrorOnTheWayKeepsWhatWasDone) {
 
 TEST_F(Follow, ResultsDoNotLieAmongTheFrames) {
   standing(2);
-  refuses({"follow", path("in"), "-o", path("in")}, {"-o", "in the source"});
-  refuses({"follow", path("in"), "-o", path("in/results")}, {"-o", "in the source"});
+  refuses({"follow", path("in"), "-o", path("in")}, {"-o", "inside the source"});
+  refuses({"follow", path("in"), "-o", path("in/results")}, {"-o", "inside the source"});
 }
 
 TEST_F(Follow, AReaderThatStopsEndsTheRun) {

@@ -82,10 +82,10 @@ TEST_F(LiveRecord, KeepsTheOptionsThatItWasMadeWith) {
                                       "0",    "--json-lines"};
   const Outcome again = run(live);
   EXPECT_EQ(lines_of(again.out), lines_of(original));
-  EXPECT_TRUE(again.err.starts_with("cairn: " + path("run.mcap") + ": the options that it was recorded with"))
+  EXPECT_TRUE(again.err.starts_with("cairn: " + path("run.mcap") + ": using the options of the recording"))
       << again.err;
   const Outcome others = run(with("live", {live.begin() + 1, live.end()}, {"--preset", "default"}));
-  EXPECT_EQ(others.err.find("recorded with"), std::string::npos);
+  EXPECT_EQ(others.err.find("of the recording"), std::string::npos);
   EXPECT_NE(lines_of(others.out), lines_of(original));
 }
 
@@ -100,7 +100,7 @@ TEST_F(LiveRecord, AFileThatMayNotGrowEndsTheRecordingAndNotTheRun) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 6);
   EXPECT_NE(outcome.err.find("cairn: recording stopped: " + path("run.mcap") +
-                             ": cannot be written any further: File too large\n"),
+                             ": can no longer be written: File too large\n"),
             std::string::npos)
       << outcome.err;
   EXPECT_NE(outcome.err.find("; stopped: "), std::string::npos) << outcome.err;
@@ -122,7 +122,7 @@ TEST_F(LiveRecord, CutOffItIsReadUpToItsLastChunk) {
 TEST_F(LiveRecord, RefusesInOneLine) {
   write(at("there.mcap"), "something");
   write(at("text.mcap"), "\x89MCAP0\r\n");
-  refuses({"live", sequence(), "--record", path("there.mcap")}, {"there.mcap", "is there already"});
+  refuses({"live", sequence(), "--record", path("there.mcap")}, {"there.mcap", "already exists"});
   refuses({"live", sequence(), "--record", path("no/folder.mcap")}, {"no/folder.mcap", "cannot be written"});
   refuses({"live", sequence(), "--record-what", "pictures"},
           {"--record-what", "\"pictures\"", "input, objects"});

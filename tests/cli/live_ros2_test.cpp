@@ -146,10 +146,10 @@ TEST_F(LiveRos2, ACameraOnTopicsIsSegmentedAsItsImagesAre) {
 }
 
 TEST_F(LiveRos2, RefusesWhatRosHasNot) {
-  refuses({"live", sequence(), "--ros2", "a-b"}, {"--ros2", "a-b", "expected a name of ROS"});
+  refuses({"live", sequence(), "--ros2", "a-b"}, {"--ros2", "a-b", "expected a ROS name"});
   refuses({"live", sequence(), "--ros2", "--ros2-holes", "zero"}, {"--ros2-holes", "zero", "nan or ros"});
-  refuses({"live", sequence(), "--ros2-holes", "ros"}, {"--ros2-holes", "is of --ros2"});
-  refuses({"live", "ros2:/a//b"}, {"a//b", "expected a name of ROS"});
+  refuses({"live", sequence(), "--ros2-holes", "ros"}, {"--ros2-holes", "needs --ros2"});
+  refuses({"live", "ros2:/a//b"}, {"a//b", "expected a ROS name"});
   refuses({"live", "ros2:/a", "--layout", "side_by_side"}, {"--layout"});
   const std::string domain = std::getenv("ROS_DOMAIN_ID");
   ::setenv("ROS_DOMAIN_ID", "300", 1);

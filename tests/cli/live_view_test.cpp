@@ -21,8 +21,8 @@ TEST_F(LiveView, PrintsWhereItIs) {
 }
 
 TEST_F(LiveView, RefusesWhatIsNotSafeOrSound) {
-  refuses({"live", source_, "--tunable"}, {"--tunable", "no --view"});
-  refuses({"live", source_, "--tls-key", "key.pem"}, {"--tls-key", "no --view"});
+  refuses({"live", source_, "--tunable"}, {"--tunable", "needs --view"});
+  refuses({"live", source_, "--tls-key", "key.pem"}, {"--tls-key", "needs --view"});
   refuses({"live", source_, "--view", "0.0.0.0:0"}, {"0.0.0.0", "--tls-cert", "--insecure"});
   refuses({"live", source_, "--view", "robot:8765"}, {"'robot:8765'", "127.0.0.1:8765"});
   refuses({"live", source_, "--view", "127.0.0.1:0", "--view-token", "short"}, {"--view-token", "16 to 128"});

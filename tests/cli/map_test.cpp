@@ -123,7 +123,7 @@ TEST_F(MapCommand, ComparesAndMergesMapsThatBeganElsewhere) {
   EXPECT_EQ(merged.out, "both.db: 5 landmarks, 5 of them in both\n");
   EXPECT_EQ(run({"map", "check", "both.db"}).code, 0);
   EXPECT_FALSE(fs::exists(at("both.db.part")));
-  refuses({"map", "merge", "room.db", "other.db", "-o", "both.db"}, {"both.db", "is there already"});
+  refuses({"map", "merge", "room.db", "other.db", "-o", "both.db"}, {"both.db", "already exists"});
   write_map("strange.db", {}, 2);
   refuses({"map", "merge", "room.db", "strange.db", "-o", "all.db"}, {"strange.db", "too_few_pairs"});
 }
@@ -174,7 +174,7 @@ TEST_F(MapCommand, RefusesWhatIsNoMap) {
   refuses({"map", "show"}, {"FILE"});
   write_map("room.db");
   refuses({"map", "diff", "room.db"}, {"second map"});
-  refuses({"map", "show", "room.db", "room.db"}, {"takes one map"});
+  refuses({"map", "show", "room.db", "room.db"}, {"expected one map"});
   refuses({"map", "export", "room.db", "--form", "shapefile"}, {"shapefile"});
   refuses({"map", "export", "room.db", "-o", "no/such/folder/out.json"}, {"no/such/folder"});
 }

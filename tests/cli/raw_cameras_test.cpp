@@ -111,7 +111,7 @@ TEST_F(RawCameras, RefuseABoardThatIsNotThere) {
   pair_in("boards/a");
   pair_in("boards/b");
   refuses({"calibrate", path("boards"), "--board", "9x6", "--square", "0.025", "-o", path("c.yaml")},
-          {"--board 9x6", "seen in 0 of 2 pairs", "10x7 squares"});
+          {"--board 9x6", "visible in 0 of 2 pairs", "10x7 squares"});
   refuses({"calibrate", path("boards"), "--board", "nine", "--square", "0.025"}, {"--board nine", "9x6"});
   refuses({"calibrate", path("boards"), "--board", "9x6", "--square", "0"}, {"--square", "metres"});
   refuses({"calibrate", path("boards"), "--board", "9x6", "--square", "25"},

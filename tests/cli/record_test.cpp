@@ -82,8 +82,8 @@ TEST_F(Record, CountsFramesThatCannotBeReadAndKeepsTheOthers) {
   const Outcome outcome = run({"record", path("in"), "-o", path("out")});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.out.find("recorded 2 frames"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.err.find("cannot be read: 1 frame left out"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("without a right one: 1 frame left out, the first is 2"), std::string::npos)
+  EXPECT_NE(outcome.err.find("cannot be read: 1 frame skipped"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("without a right one: 1 frame skipped, the first is 2"), std::string::npos)
       << outcome.err;
 }
 
@@ -101,9 +101,9 @@ TEST_F(Record, KeepsWholeFramesWhereTheSourceChangesItsSize) {
 
 TEST_F(Record, RefusesWithoutWritingAnything) {
   frames(2);
-  refuses({"record", path("nowhere"), "-o", path("out")}, {"nowhere", "is not there"});
+  refuses({"record", path("nowhere"), "-o", path("out")}, {"nowhere", "not found"});
   refuses({"record", path("in"), "-o", path("in")}, {"is not empty"});
-  refuses({"record", path("in"), "-o", path("in/0/left.png")}, {"is no folder"});
+  refuses({"record", path("in"), "-o", path("in/0/left.png")}, {"is not a folder"});
   refuses({"record", path("in"), "-o", path("out"), "--frames", "5:4"}, {"--frames 5:4"});
   refuses({"record", path("in"), "-o", path("out"), "--frames", "7:"}, {"has 2 frames", "--frames"});
   refuses({"record", path("in"), "-o", path("out"), "--rate", "-1"}, {"--rate"});

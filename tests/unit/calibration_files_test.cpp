@@ -326,7 +326,7 @@ TEST_F(CalibrationFiles, RefusesWhatIsNoCalibration) {
   EXPECT_TRUE(has(refused(" \n\t\n"), {"empty"}));
   EXPECT_TRUE(has(refused("hello world\n"), {"no calibration", "hello world"}));
   EXPECT_TRUE(has(refused("- 1\n- 2\n"), {"no calibration"}));
-  EXPECT_TRUE(has(refused("{unfinished: [1,"), {"no YAML"}));
+  EXPECT_TRUE(has(refused("{unfinished: [1,"), {"not YAML"}));
   EXPECT_TRUE(has(refused("lens=wide\n"), {"fx fy cx cy"}));
   EXPECT_TRUE(has(refused(std::string("fx=1\0", 5)), {"no text"}));
   EXPECT_TRUE(has(refused("\x89PNG\r\n\x1a\n"), {""}));

@@ -73,7 +73,7 @@ TEST_F(ConfigFiles, APresetIsWhereTheOptionsStart) {
 
 TEST_F(ConfigFiles, WhatMovedToTheCalibrationSaysSo) {
   EXPECT_TRUE(has(refused("ground:\n  points: [[1, 2, 3, 4], [5.5, 6, 7, 8]]\n"),
-                  {"line 2", "ground.points", "ground_points in its calibration"}));
+                  {"line 2", "ground.points", "ground_points in the calibration"}));
   EXPECT_TRUE(has(refused("ground.height: 2\n"), {"line 1", "camera_height"}));
 }
 
@@ -141,9 +141,9 @@ TEST_F(ConfigFiles, RefusesOtherShapes) {
   EXPECT_TRUE(has(refused("match:\n  window_size:\n"), {"line", "value"}));
   EXPECT_TRUE(has(refused("match: 9\n"), {"match"}));
   EXPECT_TRUE(has(refused("? [a, b]\n: 9\n"), {"key"}));
-  EXPECT_TRUE(has(refused("match: {window_size: 9\n"), {"line", "no YAML"}));
-  EXPECT_TRUE(has(refused("match:\n\twindow_size: 9\n"), {"no YAML"}));
-  EXPECT_TRUE(has(refused("a: *nobody\n"), {"no YAML"}));
+  EXPECT_TRUE(has(refused("match: {window_size: 9\n"), {"line", "not YAML"}));
+  EXPECT_TRUE(has(refused("match:\n\twindow_size: 9\n"), {"not YAML"}));
+  EXPECT_TRUE(has(refused("a: *nobody\n"), {"not YAML"}));
   EXPECT_TRUE(has(refused("match.window_size: 9\n---\nmatch.window_size: 7\n"), {"2 documents"}));
   EXPECT_TRUE(has(refused(std::string("\0\0\0", 3)), {"no text"}));
 }

@@ -166,14 +166,14 @@ TEST(ActiveOptions, OfAStageByItselfOnlyItsOwnSectionsCount) {
 
 TEST(GoneOptions, SayWhereTheyWent) {
   EXPECT_EQ(refusal("ground.height", "1.5"),
-            "option ground.height is gone: it is a fact of the rig, camera_height in its calibration file "
+            "option ground.height was removed: it is now camera_height in the calibration file "
             "(docs/formats.md)");
-  EXPECT_NE(refusal("ground.points", "1,2,3,4").find("ground_points in its calibration"), std::string::npos);
-  EXPECT_NE(refusal("match.evidence", "full").find("is gone"), std::string::npos);
+  EXPECT_NE(refusal("ground.points", "1,2,3,4").find("ground_points in the calibration"), std::string::npos);
+  EXPECT_NE(refusal("match.evidence", "full").find("was removed"), std::string::npos);
   EXPECT_NE(refusal("background.tolerance", "1").find("a constant of its stage"), std::string::npos);
   for (const char* option : {"facets.edge_min", "figure.margin", "figure.skirting", "group.step"})
     EXPECT_EQ(refusal(option, "1"),
-              "option " + std::string(option) + " is gone: fitted scores have replaced its stage");
+              "option " + std::string(option) + " was removed: fitted scores replaced its stage");
 }
 
 TEST(Validate, AcceptsThePresets) {

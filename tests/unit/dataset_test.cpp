@@ -88,9 +88,9 @@ TEST(Dataset, TheCalibrationIsTheFramesOwnThenThatOfTheTruthBesideIt) {
 TEST(Dataset, RefusesFoldersWithoutFrames) {
   const TemporaryFolder folder;
   EXPECT_TRUE(has(refusal([&] { io::find_frames(folder.path()); }), {"left.png"}));
-  EXPECT_TRUE(has(refusal([&] { io::find_frames(folder.path() / "none"); }), {"none", "not there"}));
-  EXPECT_TRUE(has(refusal([&] { io::find_frames(folder.with("file", "")); }), {"no folder"}));
-  EXPECT_TRUE(has(refusal([&] { io::find_frames(""); }), {"not there"}));
+  EXPECT_TRUE(has(refusal([&] { io::find_frames(folder.path() / "none"); }), {"none", "no such folder"}));
+  EXPECT_TRUE(has(refusal([&] { io::find_frames(folder.with("file", "")); }), {"not a folder"}));
+  EXPECT_TRUE(has(refusal([&] { io::find_frames(""); }), {"no such folder"}));
 }
 
 TEST(Dataset, TruthIsInTheFrameOrBesideIt) {
@@ -115,7 +115,7 @@ TEST(Dataset, RefusesFoldersWithoutTruth) {
   const TemporaryFolder folder;
   (void)folder.with("a/left.png", "");
   EXPECT_TRUE(has(refusal([&] { io::find_truth(folder.path() / "a"); }), {"objects.png", "gt"}));
-  EXPECT_TRUE(has(refusal([&] { io::find_truth(folder.path() / "none"); }), {"not there"}));
+  EXPECT_TRUE(has(refusal([&] { io::find_truth(folder.path() / "none"); }), {"no such folder"}));
 }
 
 // ---- data sets as they are downloaded ----
@@ -192,7 +192,7 @@ TEST(Dataset, KittisFoldersHoldFramesWithTheirOwnCalibrationAndTruth) {
   const auto raw = io::find_frames(folder.path() / "day/drive");
   EXPECT_EQ(raw.at(0).calib, folder.path() / "day/calib_cam_to_cam.txt");
   // The folder above several says which of them holds frames.
-  EXPECT_TRUE(has(refusal([&] { (void)io::find_frames(folder.path()); }), {"2012", "name that folder"}));
+  EXPECT_TRUE(has(refusal([&] { (void)io::find_frames(folder.path()); }), {"2012", "give that folder"}));
 }
 
 TEST(Dataset, EurocsRawPicturesAreForRectifyAlone) {

@@ -306,10 +306,10 @@ TEST_F(Diagnosis, SeesWhichCameraIsBlurred) {
   const auto soft_left = blurred(left(), 2);
   auto found = findings(left(), soft);
   finds(found, FindingKind::blur, Severity::warning);
-  EXPECT_NE(says(found).find("in the right picture"), std::string::npos) << says(found);
+  EXPECT_NE(says(found).find("in the right image"), std::string::npos) << says(found);
   found = findings(soft_left, right());
   finds(found, FindingKind::blur, Severity::warning);
-  EXPECT_NE(says(found).find("in the left picture"), std::string::npos) << says(found);
+  EXPECT_NE(says(found).find("in the left image"), std::string::npos) << says(found);
   found = findings_of_both([](View<const Gray> image) { return blurred(image, 3); });
   finds(found, FindingKind::blur, Severity::warning);
   EXPECT_NE(says(found).find("in both pictures"), std::string::npos) << says(found);
@@ -348,16 +348,16 @@ TEST_F(Diagnosis, NamesBothCamerasWhereBothAreAtFault) {
     }
     return std::string();
   };
-  EXPECT_NE(of(clipped, FindingKind::exposure).find("in the left picture"), std::string::npos);
+  EXPECT_NE(of(clipped, FindingKind::exposure).find("in the left image"), std::string::npos);
   EXPECT_NE(of(clipped, FindingKind::exposure).find("white (254, 255), in the right one"), std::string::npos)
       << of(clipped, FindingKind::exposure);
   EXPECT_NE(of(clipped, FindingKind::exposure).find("black (0, 1)"), std::string::npos);
   const auto dim = [](View<const Gray> image) { return toned(image, 0.15, 3); };
   const std::string levels = of(findings_of_both(dim), FindingKind::dark);
-  EXPECT_NE(levels.find("the left picture's levels"), std::string::npos) << levels;
+  EXPECT_NE(levels.find("the levels of the left image"), std::string::npos) << levels;
   EXPECT_NE(levels.find("the right one's"), std::string::npos) << levels;
   const Image<Gray> dim_right = dim(right());
-  EXPECT_EQ(of(findings(left(), dim_right), FindingKind::dark).find("the right picture's levels"), 0U);
+  EXPECT_EQ(of(findings(left(), dim_right), FindingKind::dark).find("the levels of the right image"), 0U);
 }
 
 TEST_F(Diagnosis, SeesClippedExposure) {
@@ -525,7 +525,7 @@ TEST(SynchronyOfASequence, MayBeLostFromAFrameOn) {
   const Sequence sequence(34);
   for (const int late : {-2, -1, 1}) {
     for (const int from : {12, 20}) {
-      // The first part in step, then the right camera's pictures `late` frames late.
+      // The first part in step, then the images of the right camera `late` frames late.
       std::vector<StereoPair> pairs = sequence.pairs(0);
       const std::vector<StereoPair> out_of_step = sequence.pairs(late);
       const auto shift = static_cast<std::size_t>(std::max(0, late));

@@ -143,7 +143,7 @@ TEST_F(DisparityFiles, RefusesAPfmThatIsNotWhole) {
   EXPECT_TRUE(has(refused("d.pfm", "Pf\n2 2\n-1\n" + four + "x"), {"17 bytes", "expected 16"}));
   EXPECT_TRUE(has(refused("d.pfm", "Pf\n2 2"), {"scale"}));
   EXPECT_TRUE(has(refused("d.pfm", "PF\n2 2\n-1\n" + four), {"colour"}));
-  EXPECT_TRUE(has(refused("d.pfm", "P5\n2 2\n255\n" + four), {"no PFM"}));
+  EXPECT_TRUE(has(refused("d.pfm", "P5\n2 2\n255\n" + four), {"not a PFM"}));
   EXPECT_TRUE(has(refused("d.pfm", "Pf\n2 2\n0\n" + four), {"scale"}));
   EXPECT_TRUE(has(refused("d.pfm", "Pf\n2 2\nnan\n" + four), {"scale"}));
   EXPECT_TRUE(has(refused("d.pfm", "Pf\n2 2\n-1x\n" + four), {"scale"}));

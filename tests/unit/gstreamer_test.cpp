@@ -185,7 +185,7 @@ TEST_F(Pipelines, TwoArePairedByStamps) {
   (void)source->next();
   bool is_remarked = false;
   for (const SourceRemark& remark : source->remarks())
-    is_remarked = is_remarked || remark.what.starts_with("the two cameras run freely: ");
+    is_remarked = is_remarked || remark.what.starts_with("the two cameras are not synchronised: ");
   EXPECT_TRUE(is_remarked);
   options.layout = "side_by_side";
   EXPECT_TRUE(has(refused(std::string("gst:") + half + " !! " + half, options), {"--layout", "found two"}));
@@ -194,11 +194,11 @@ TEST_F(Pipelines, TwoArePairedByStamps) {
 TEST_F(Pipelines, ThatDoNotWorkAreRefusedInOneLine) {
   EXPECT_TRUE(has(refused("gst:"), {"empty pipeline"}));
   EXPECT_TRUE(has(refused("gst:a !! b !! c"), {"3 pipelines"}));
-  EXPECT_TRUE(has(refused("gst:videotestsrc ! !"), {"cannot be made", "syntax error"}));
+  EXPECT_TRUE(has(refused("gst:videotestsrc ! !"), {"cannot be created", "syntax error"}));
   EXPECT_TRUE(
       has(refused("gst:no_such_camera_src"), {"no element \"no_such_camera_src\"", "gst-inspect-1.0"}));
-  EXPECT_TRUE(has(refused("gst:videotestsrc ! fakesink"), {"cannot be made", "could not link"}));
-  EXPECT_TRUE(has(refused("gst:videotestsrc nonsense=3"), {"cannot be made", "nonsense"}));
+  EXPECT_TRUE(has(refused("gst:videotestsrc ! fakesink"), {"cannot be created", "could not link"}));
+  EXPECT_TRUE(has(refused("gst:videotestsrc nonsense=3"), {"cannot be created", "nonsense"}));
   EXPECT_TRUE(has(refused("gst:filesrc location=/no/such/file ! decodebin"), {"/no/such/file"}));
   save_pair({16, 16}, false);
   EXPECT_TRUE(has(refused("gst:filesrc location=" + file("left.png")), {"not-negotiated", "decodebin"}));

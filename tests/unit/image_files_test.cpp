@@ -239,9 +239,9 @@ TEST_F(ImageFiles, RefusesWhatIsNoPicture) {
       has(refusal([&] { io::load_picture(folder_.path() / "none.png"); }), {"none.png", "No such file"}));
   EXPECT_TRUE(has(refusal([&] { io::load_picture(folder_.path()); }), {"is a folder"}));
   EXPECT_TRUE(has(refused(""), {"is empty"}));
-  EXPECT_TRUE(has(refused("hello, this is text"), {"no picture"}));
+  EXPECT_TRUE(has(refused("hello, this is text"), {"not a readable image"}));
   EXPECT_TRUE(has(refused("P4 1 1\n\x80"), {"P4", "expected P2"}));
-  EXPECT_TRUE(has(refused("GIF89a"), {"no picture"}));
+  EXPECT_TRUE(has(refused("GIF89a"), {"not a readable image"}));
 }
 
 TEST_F(ImageFiles, RefusesAbsurdSizesBeforeTheyCostMemory) {

@@ -351,7 +351,7 @@ TEST(MapFile, ThatIsNoMapIsRefusedAndLeftAlone) {
   std::string bytes = support::bytes_of(path);
   bytes[71] = 0;  // application_id, at 68
   (void)folder.with("room.db", bytes);
-  EXPECT_TRUE(has(refusal([&] { (void)MapFile::open(path, MapMode::update); }), {"another program's"}));
+  EXPECT_TRUE(has(refusal([&] { (void)MapFile::open(path, MapMode::update); }), {"another program"}));
 }
 
 TEST(MapFile, KilledInTheMiddleOfARunIsWholeAndTheRunAborted) {

@@ -216,7 +216,8 @@ TEST_F(McapSequence, SaysWhichTopicsThereAreWhereItCannotChoose) {
   options.topics = "/b/left/image_rect,/b/right/image_rect";
   EXPECT_TRUE(shows_dots(open(options)->next()->left.gray, 3));
   options.topics = "/b/left/image_rect,/c";
-  EXPECT_NE(refusal(options).find("has no images as /c; its images: /a/left/image_rect"), std::string::npos);
+  EXPECT_NE(refusal(options).find("has no image topic /c; its images: /a/left/image_rect"),
+            std::string::npos);
 }
 
 TEST_F(McapSequence, RawImagesAskToBeRectified) {

@@ -310,7 +310,7 @@ TEST_F(Mcap, AFullDiskIsSaid) {
     McapWriter file("/dev/full");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "/dev/full: cannot be written any further: No space left on device");
+    EXPECT_STREQ(error.what(), "/dev/full: can no longer be written: No space left on device");
   }
   EXPECT_THROW(McapWriter(at("no/such/folder/a.mcap")), Error);
 }

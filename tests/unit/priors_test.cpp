@@ -200,7 +200,7 @@ TEST(PriorOfAGyroscope, IsARotationWithoutItsBias) {
   const TemporaryFolder folder;
   const auto priors = load_imu(folder.with("imu.csv", imu_rows(0.08, 0.5)));
   EXPECT_EQ(priors->kind(), PriorKind::gyroscope);
-  EXPECT_TRUE(has(priors->description(), {"gyroscope", "100 Hz", "bias taken"}));
+  EXPECT_TRUE(has(priors->description(), {"gyroscope", "100 Hz", "bias from the rest"}));
   const auto rest = priors->between(at_s(1.2), at_s(1.9));
   ASSERT_TRUE(rest);
   EXPECT_NEAR(angle_of(rest->now_from_before), 0, 1e-9);
@@ -217,7 +217,7 @@ TEST(PriorOfAGyroscope, IsARotationWithoutItsBias) {
 TEST(PriorOfAGyroscope, ThatIsNotAtRestHasAnUnknownBias) {
   const TemporaryFolder folder;
   const auto priors = load_imu(folder.with("imu.csv", imu_rows(0.08, 0.5, "0.4")));
-  EXPECT_TRUE(has(priors->description(), {"bias not known"}));
+  EXPECT_TRUE(has(priors->description(), {"bias unknown"}));
   EXPECT_GT(sigma(*priors->between(at_s(1.2), at_s(1.9)), 3), 0.05);
 }
 

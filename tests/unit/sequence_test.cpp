@@ -283,7 +283,7 @@ TEST(SequenceOfFolders, SaysThatOneCameraIsFrozen) {
   EXPECT_EQ(sequence->remarks()[0].count, 2U);
   EXPECT_EQ(sequence->remarks()[0].first, "002");
   EXPECT_FALSE(sequence->remarks()[0].is_left_out);
-  EXPECT_TRUE(has(sequence->remarks()[0].what, {"right image as in the frame before"}));
+  EXPECT_TRUE(has(sequence->remarks()[0].what, {"right image repeated from the frame before"}));
 }
 
 TEST(SequenceOfFolders, KeepsOneScaleForDeepImages) {
@@ -314,14 +314,14 @@ TEST(Sources, ThatAreNoneAreRefused) {
     return refusal([&] { (void)open_sequence(source, options); });
   };
   EXPECT_TRUE(has(refused(""), {"SOURCE", "empty"}));
-  EXPECT_TRUE(has(refused(at), {at, "holds no left.png"}));
-  EXPECT_TRUE(has(refused(at + "/nowhere"), {"nowhere: is not there"}));
+  EXPECT_TRUE(has(refused(at), {at, "contains no left.png"}));
+  EXPECT_TRUE(has(refused(at + "/nowhere"), {"nowhere: not found"}));
   EXPECT_TRUE(has(refused(at + "/l_%d.png"), {"one pattern", "expected two"}));
   EXPECT_TRUE(has(refused(at + "/l_%d.png," + at + "/r_%d.png"), {"l_%d.png: no file"}));
   EXPECT_TRUE(has(refused(at + "/l_%d.png," + at), {"one pattern, expected two"}));
-  EXPECT_TRUE(has(refused(at + "/a," + at + "/b"), {"/a: is not there"}));
-  EXPECT_TRUE(has(refused(at + ","), {"left and a right part"}));
-  EXPECT_TRUE(has(refused("v4l2:/dev/video99"), {"v4l2:/dev/video99", "is not there"}));
+  EXPECT_TRUE(has(refused(at + "/a," + at + "/b"), {"/a: not found"}));
+  EXPECT_TRUE(has(refused(at + ","), {"expected a left part"}));
+  EXPECT_TRUE(has(refused("v4l2:/dev/video99"), {"v4l2:/dev/video99", "no such device"}));
   save(folder, "000/left.png", 1);
   EXPECT_TRUE(has(refused(at), {"000/left.png", "no right image", "right.png"}));
   SourceOptions options;

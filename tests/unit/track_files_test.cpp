@@ -97,10 +97,10 @@ TEST(TrackFiles, EachRefusalNamesTheLine) {
     EXPECT_TRUE(has(message, {path.string() + ": line 2: "}));
     EXPECT_TRUE(has(message, words));
   };
-  says("{", {"is no JSON"});
+  says("{", {"is not JSON"});
   says("7", {"found 7", "{…}"});
   says(std::string(1000, '['), {"nests deeper than 64"});
-  says(R"({"frame": 1e999})", {"is no JSON"});
+  says(R"({"frame": 1e999})", {"is not JSON"});
   says(R"({"frame": 2e128})", {"`frame` is 2e+128", "a whole number from 0 to"});
   says(R"({"frame": 1.5})", {"`frame` is 1.5"});
   says(R"({"frame": 18446744073709551615})", {"`frame` is 18446744073709551615"});
@@ -110,7 +110,7 @@ TEST(TrackFiles, EachRefusalNamesTheLine) {
   says(R"({"frame": 1, "name": "001", "stamp_ns": 0, "tracks": []})",
        {"`stamp_ns` is 0, expected more than 0"});
   says(R"({"frame": 1, "name": "000", "stamp_ns": 9, "tracks": []})", {"`name` is \"000\""});
-  says(frame(1, track("") + "," + track("")), {"track 3 comes twice"});
+  says(frame(1, track("") + "," + track("")), {"track 3 occurs twice"});
   says(frame(1, R"({"id": 0, "state": "lost"})"), {"`id` is 0, expected a whole number from 1 on"});
   says(frame(1, R"({"id": 1, "state": "asleep"})"), {"`state` is \"asleep\"", "tentative, confirmed"});
   says(frame(1, R"({"id": 1, "state": "lost", "position_m": [1, 2]})"),
@@ -222,9 +222,9 @@ TEST(TrueFrames, WhatIsMalformedIsRefusedByName) {
   };
   says("1 2 3", "", {"pose.txt: found 3 numbers"});
   says("1 x", "", {"pose.txt:1: found 'x'"});
-  says("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "", {"pose.txt", "no rotation"});
+  says("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "", {"pose.txt", "not a rotation"});
   says("nan 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "", {"pose.txt:1: found 'nan'"});
-  says(good, "{", {"scene.json: is no JSON"});
+  says(good, "{", {"scene.json: is not JSON"});
   says(good, R"({"objects": 7})", {"scene.json: `objects` is 7, expected a list"});
   says(good, R"({"objects": [{"id": 2e128}]})", {"scene.json: `id` is 2e+128"});
   const TemporaryFolder empty;

@@ -117,15 +117,15 @@ TEST_F(TrajectoryFiles, AFolderOfFramesHoldsAPoseEach) {
 TEST_F(TrajectoryFiles, AreRefusedInOneLineThatNamesThePlace) {
   const std::string good = "0.1 1 2 3 0 0 0 1\n";
   EXPECT_EQ(refusal(good), "none");
-  EXPECT_NE(refusal("").find("holds no pose"), std::string::npos);
+  EXPECT_NE(refusal("").find("contains no pose"), std::string::npos);
   EXPECT_NE(refusal(good + "0.2 1 2 3\n").find("poses.txt:2: found 4 fields"), std::string::npos);
   EXPECT_NE(refusal(good + "0.2 1 2 x 0 0 0 1\n").find("'x', expected a number"), std::string::npos);
   EXPECT_NE(refusal(good + "0.2 1 2 nan 0 0 0 1\n").find("expected a finite number"), std::string::npos);
   EXPECT_NE(refusal(good + "0.1 1 2 3 0 0 0 1\n").find("is not later than"), std::string::npos);
   EXPECT_NE(refusal("0.1 1 2 3 0 0 0 0\n").find("quaternion"), std::string::npos);
-  EXPECT_NE(refusal("1 0 0 0 0 1 0 0 0 0 2 0\n").find("no rotation"), std::string::npos);
-  EXPECT_NE(refusal("1 0 0 0 0 1 0 0 0 0 -1 0\n").find("no rotation"), std::string::npos) << "mirrored";
-  EXPECT_NE(refusal(good + "1 0 0 0 0 1 0 0 0 0 1 0\n").find("another form"), std::string::npos);
+  EXPECT_NE(refusal("1 0 0 0 0 1 0 0 0 0 2 0\n").find("not a rotation"), std::string::npos);
+  EXPECT_NE(refusal("1 0 0 0 0 1 0 0 0 0 -1 0\n").find("not a rotation"), std::string::npos) << "mirrored";
+  EXPECT_NE(refusal(good + "1 0 0 0 0 1 0 0 0 0 1 0\n").find("differs in form"), std::string::npos);
   EXPECT_THROW((void)load_trajectory(folder() / "absent.txt"), Error);
 }
 

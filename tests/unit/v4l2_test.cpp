@@ -244,7 +244,7 @@ TEST_F(V4l2, StampsOfAnotherClockAreNotTaken) {
 }
 
 TEST_F(V4l2, WhatCannotBeHadIsRefusedInOneLine) {
-  EXPECT_TRUE(has(refused(), {"is not there"}));
+  EXPECT_TRUE(has(refused(), {"no such device"}));
   FakeDevice& device = fake_.devices[kDevice];
   device = yuyv_device();
   device.open_errors = {EACCES, EBUSY, EMFILE};
@@ -279,7 +279,7 @@ TEST_F(V4l2, WhatCannotBeHadIsRefusedInOneLine) {
        std::map<unsigned long, const char*>{{VIDIOC_S_FMT, "refuses the format YUYV"},
                                             {VIDIOC_REQBUFS, "no buffers"},
                                             {VIDIOC_QUERYBUF, "buffers"},
-                                            {VIDIOC_QBUF, "takes no buffer"},
+                                            {VIDIOC_QBUF, "accepts no buffer"},
                                             {VIDIOC_STREAMON, "cannot start"}}) {
     device.refuses = {{call, EINVAL}};
     EXPECT_TRUE(has(refused(), {words}));
@@ -406,7 +406,7 @@ TEST_F(V4l2Sequence, WhatIsNotTakenIsReplacedAndCounted) {
   EXPECT_LT(Clock::now() - *pair->arrived, 40ms);
   EXPECT_GT(source->status().dropped, 3U);
   ASSERT_EQ(source->remarks().size(), 1U);
-  EXPECT_TRUE(has(source->remarks()[0].what, {"not taken"}));
+  EXPECT_TRUE(has(source->remarks()[0].what, {"dropped unread"}));
 }
 
 TEST_F(V4l2Sequence, ThatIsUnpluggedComesBackAfterAGap) {
@@ -441,12 +441,12 @@ TEST_F(V4l2Sequence, SaysWhyItIsNotConnected) {
   const auto source = sequence();
   ASSERT_TRUE(source->next());
   SourceStatus status;
-  for (int i = 0; i < 200 && !has(status.trouble, {"is not there"}); ++i) {
+  for (int i = 0; i < 200 && !has(status.trouble, {"no such device"}); ++i) {
     std::this_thread::sleep_for(5ms);
     status = source->status();
   }
   EXPECT_FALSE(status.is_connected);
-  EXPECT_TRUE(has(status.trouble, {"is not there"}));
+  EXPECT_TRUE(has(status.trouble, {"no such device"}));
   EXPECT_EQ(status.reconnects, 0U);
 }
 
@@ -490,7 +490,7 @@ TEST_F(V4l2Sequence, WithoutAFrameIsNotOpened) {
   options.open_timeout_s = 0;
   EXPECT_TRUE(has(refusal([&] { (void)open_sequence("v4l2:/dev/video0", options); }), {"--open-timeout"}));
   EXPECT_TRUE(
-      has(refusal([&] { (void)sequence("v4l2:/dev/video7"); }), {"v4l2:/dev/video7", "is not there"}));
+      has(refusal([&] { (void)sequence("v4l2:/dev/video7"); }), {"v4l2:/dev/video7", "no such device"}));
   options = {};
   options.rate_hz = 10;
   EXPECT_TRUE(has(refusal([&] { (void)sequence(options); }), {"--rate"}));
@@ -595,9 +595,9 @@ TEST_F(TwoDevices, ArePairedByStampsAndTheRestIsCounted) {
   EXPECT_EQ(source->status().unpaired, 2U);
   std::string all;
   for (const SourceRemark& remark : source->remarks()) all += remark.what + "\n";
-  EXPECT_TRUE(
-      has(all, {"left image without a right one", "right image without a left one",
-                "the two cameras run freely: right images are 1.0 to 1.0 ms later", "wrong disparity"}));
+  EXPECT_TRUE(has(all, {"left image without a right one", "right image without a left one",
+                        "the two cameras are not synchronised: right images are 1.0 to 1.0 ms later",
+                        "wrong disparities"}));
 }
 
 TEST_F(TwoDevices, ThatAreNeverTogetherSayHowFarTheyAreApart) {
@@ -611,7 +611,7 @@ TEST_F(TwoDevices, ThatAreNeverTogetherSayHowFarTheyAreApart) {
   right.events = {silence()};
   EXPECT_TRUE(has(refusal([&] { (void)sequence(kBoth, options); }), {"no frame of the right camera"}));
   fake_.devices.erase("/dev/video2");
-  EXPECT_TRUE(has(refusal([&] { (void)sequence(kBoth, options); }), {"the right camera is not there"}));
+  EXPECT_TRUE(has(refusal([&] { (void)sequence(kBoth, options); }), {"the right camera no such device"}));
 }
 
 TEST_F(TwoDevices, OfDifferentSizesAreRefused) {

@@ -562,7 +562,7 @@ TEST(ViewServer, TakesForeignTextForWhatItIs) {
     socket.send_frame(1, text);
     return socket.read_op("status").at("message").get<std::string>();
   };
-  EXPECT_TRUE(has(complaint("{"), "no JSON"));
+  EXPECT_TRUE(has(complaint("{"), "not JSON"));
   EXPECT_TRUE(has(complaint(std::string(1000, '[')), "nests deeper"));
   EXPECT_TRUE(has(complaint("7"), "expected an object"));
   EXPECT_TRUE(has(complaint("{}"), "`op` is missing"));
@@ -578,7 +578,7 @@ TEST(ViewServer, TakesForeignTextForWhatItIs) {
   EXPECT_TRUE(has(complaint(R"({"op":"unsubscribe","subscriptionIds":[7]})"), "found 7"));
   EXPECT_TRUE(has(complaint(R"({"op":"getParameters","parameterNames":[1]})"), "holds 1"));
   socket.send_frame(2, "binary");
-  EXPECT_TRUE(has(socket.read_op("status").at("message"), "nothing can be published"));
+  EXPECT_TRUE(has(socket.read_op("status").at("message"), "publishing is not supported"));
   socket.send_frame(1, std::string(kMostClientBytes + 1, ' '));
   EXPECT_EQ(socket.read_close(), 1009);
   // Noise of any kind: the server is still there.
@@ -815,7 +815,7 @@ TEST(ViewServer, RefusesValuesAndSaysWhatItExpects) {
   EXPECT_TRUE(has(refusal("match.method", "magic"), "found 'magic', expected one of window|semi_global"));
   EXPECT_TRUE(has(refusal("subpixel.enabled", 1), "found 1, expected true or false"));
   EXPECT_TRUE(has(refusal("match.num_disparites", 32), "match.num_disparities"));  // the nearest known one
-  EXPECT_TRUE(has(refusal("live.record", true), "not one of this run"));
+  EXPECT_TRUE(has(refusal("live.record", true), "not an option of this run"));
   EXPECT_TRUE(has(refusal("live.pause", 1), "found 1, expected true or false"));
   // Fits no image of this size.
   EXPECT_TRUE(has(refusal("match.min_disparity", 1000), "1000"));

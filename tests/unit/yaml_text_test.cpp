@@ -71,7 +71,7 @@ TEST(YamlText, ACommaWhereNoneCanBeIsRefusedAtOnce) {
                              Config config;
                              load_config(folder.with("f.yaml", "# options\n,"), config);
                            }),
-                           {"f.yaml: line 2: is no YAML: nothing can stand here"}));
+                           {"f.yaml: line 2: is not YAML: nothing is allowed here"}));
 }
 
 TEST(YamlText, ShortTextsOfItsSignsEnd) {
