@@ -265,26 +265,26 @@ def page(fitting, sets, reports, score):
     rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get("more rooms", []))
     more = ""
     if rooms:
-        more = f"The more rooms are the generator's numbers {runs_of(rooms)} (`rooms.py jobs.json FIRST LAST+1`).\n"
+        more = f"*more rooms* are the generator's numbers {runs_of(rooms)} (`rooms.py jobs.json FIRST LAST+1`).\n"
     return f"""# What was fitted
 
 <!-- Written by ./dev fit; do not edit. -->
 
-`./dev fit` fits the two sums of small trees that the preset `default` judges regions by ([grouping](stages/grouping.md)), and writes them and this page: the same frames give the same numbers.
+This page reports how well the fitted trees of the preset `default` find objects ([grouping](stages/grouping.md)). `./dev fit` fits the trees and writes them and this page: the same frames give the same numbers.
 Fitted to: {counts}; each frame once in colour and once in grey.
-{more}Frames of the fit set are judged by trees that were fitted without their scene, in {fitting.folds} folds; frames to validate by those that the library has, and nothing was chosen on them.
-In brackets: Wilson's interval of 95 %. ms: of one core, the median frame, from the superpixels to the choice of objects; on a machine that did other things meanwhile.
+{more}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds. Validation frames are scored by the library's trees, and were not used for any choice.
+In brackets: Wilson's 95 % interval. ms: one core's time for the median frame, from the superpixels to the choice of objects, on a shared machine.
 `objects.min_confidence` = {score}.
 
 {reports}
 
-## What pairs of regions are judged by
+## Features of a pair of regions
 
-{len(fitting.pair_features)} features, {PAIR_TREES} trees of depth {PAIR_DEPTH}. Those that gain less than 0.5 % are left out of the table.
+{len(fitting.pair_features)} features, {PAIR_TREES} trees of depth {PAIR_DEPTH}. The tables omit features that gain less than 0.5 %.
 
 {table("same_thing", "feature")}
 
-## What regions are judged by
+## Features of a region
 
 {len(fitting.region_features)} features, {REGION_TREES} trees of depth {REGION_DEPTH}.
 
@@ -328,7 +328,7 @@ def report(rows, jobs):
 
 
 def ablation(fitting, validation, path):
-    """What is found on the validation frames when one kind of cues is left out, and all is fitted anew."""
+    """Objects found on the validation frames after fitting again without one kind of cue."""
     names = {"all frames": lambda name: True, "rooms": lambda name: "x" in name, "tabletops": lambda name: "rc" in name,
              "Middlebury": lambda name: "middlebury" in name}
     lines = ["| without | " + " | ".join(f"{name}, {colour}" for name in names for colour in ("colour", "grey")) +
@@ -353,11 +353,11 @@ def ablation(fitting, validation, path):
 
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
-Objects found (IoU ≥ 0.5) on the frames to validate, of colour and of grey pictures, when the features of one kind of cues are left out and both sets of trees are fitted anew without them.
-Fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so that the first row lies below [what was fitted](fitting.md). Below three objects' difference there is none.
+This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the validation frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
+Fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row is below [what was fitted](fitting.md). A difference of fewer than three objects is noise.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
-        f"- **{cue}**: features whose names hold " + ", ".join(f"“{word}”" for word in words) + "."
+        f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
         for cue, words in CUES.items()) + "\n")
 
 
