@@ -29,7 +29,7 @@ inline constexpr Ablation kAsPrinted{
 
 /// To add a row, add a line. What the presets disagree on comes by itself: see all_ablations().
 inline constexpr std::array kAblations{
-    Ablation{"match.method=window", "paper: each pixel's window decides alone"},
+    Ablation{"match.method=window", "paper: matching of windows"},
     Ablation{"semi_global.penalty_edge=0", "a step costs the same at intensity edges"},
     Ablation{"subpixel.method=parabola", "paper: the parabola through three costs"},
     Ablation{"subpixel.enabled=false", "whole pixels"},
@@ -39,16 +39,16 @@ inline constexpr std::array kAblations{
     Ablation{"uniqueness.ratio=10", "paper: the check is on"},
     Ablation{"flatness.threshold=0.1", "paper: the check is on"},
     Ablation{"texture.threshold=2", "paper: the check is on"},
-    Ablation{"ground.source=off", "no ground: reflections stay, the floor is a surface like others"},
+    Ablation{"ground.source=off", "no ground: reflections stay, the floor is an ordinary surface"},
     Ablation{"ground.label_floor=false", "as printed: no floor label"},
     Ablation{"speckle.size=-1", "paper: speckles stay"},
-    Ablation{"evidence.gradient_min=0", "only the noise says what counts as evidence"},
+    Ablation{"evidence.gradient_min=0", "only the noise decides which disparities are textured"},
     Ablation{"background.max_walls=0", "the floor is the only background"},
-    Ablation{"input=grey", "pictures without their colour"},
+    Ablation{"input=grey", "images without colour"},
     Ablation{"superpixels.count=125", "half as many superpixels"},
     Ablation{"superpixels.count=500", "twice as many superpixels"},
     Ablation{"fusion.method=overlap", "paper: the two segmentations and their overlap"},
-    Ablation{"objects.min_confidence=0", "paper: whatever is left is an object"},
+    Ablation{"objects.min_confidence=0", "paper: every remaining region is an object"},
     Ablation{"objects.min_area=0.5", "paper"},
 };
 

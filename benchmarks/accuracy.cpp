@@ -75,7 +75,7 @@ const std::vector<Stress>& stresses() {
        {{"floor_0.0", 0}, {"floor_0.3", 0.3}, {"floor_0.6", 0.6}},
        {"0", "0.3", "0.6"}},
       {"gain_offset",
-       "right picture: gain, offset",
+       "right image: gain, offset",
        false,
        {{"gain_0.80_offset_-8", 0},
         {"gain_1.00_offset_+0", 1},
@@ -89,7 +89,7 @@ const std::vector<Stress>& stresses() {
        {{"noise_0", 0}, {"noise_4", 4}, {"noise_8", 8}},
        {"0", "4", "8"}},
       {"vertical_shift",
-       "right picture lower by, px",
+       "right image lower by, px",
        true,
        {{"vshift_0", 0}, {"vshift_0.5", 0.5}, {"vshift_1", 1}, {"vshift_2", 2}},
        {"0", "0.5", "1", "2"}},
@@ -255,7 +255,7 @@ std::string frame_set_section(const FrameSet& set, const std::vector<TrueFrame>&
 }
 
 std::string ablation_list() {
-  MarkdownTable table({"`default` with", "is then"}, 2);
+  MarkdownTable table({"`default` with", "meaning"}, 2);
   for (const auto& [settings, meaning] : all_ablations()) table.add({"`" + settings + "`", meaning});
   return table.text();
 }
@@ -304,11 +304,10 @@ void add_splits(Page& page, const fs::path& data, int threads) {
   }
   page.text += "## Fit and validation\n\n";
   page.text +=
-      "Options, features and trees were chosen on the sets that say so; what they reach there is no promise. "
-      "[What was fitted](fitting.md) has the same sets judged by trees that were fitted without their "
-      "scenes, and [what is lost](failures.md) what fails. "
-      "The other sets are reported only. In brackets: Wilson's interval of 95 %. Middlebury's objects are "
-      "labelled in part, which leaves no precision there.\n\n";
+      "Options, features and trees were chosen on the sets marked *yes*, so results there are optimistic. "
+      "[What was fitted](fitting.md) has the same sets scored by trees fitted without their scenes, and "
+      "[what is lost](failures.md) the failures. The other sets are only reported. In brackets: Wilson's 95 "
+      "% interval. Middlebury's objects are only partly labelled, so precision is undefined there.\n\n";
   page.text += table.text() + "\n";
 }
 
@@ -367,7 +366,8 @@ void add_pictures(Page& page, const std::vector<TrueFrame>& frames, int threads)
   page.text += "## The best, the median and the worst frame\n\n";
   page.text +=
       "By the mean E of a frame's objects, of `rendered/dev/320x240` with `default`. "
-      "Left the truth, right what was found; the distance in metres, the colours mean nothing.\n\n";
+      "The truth is on the left, the result on the right, with distances in metres; colours have no "
+      "meaning.\n\n";
   const std::array<std::pair<const char*, std::size_t>, 3> shown{
       std::pair{"best", std::size_t{0}}, {"median", (order.size() - 1) / 2}, {"worst", order.size() - 1}};
   for (const auto& [name, rank] : shown) {
@@ -468,8 +468,7 @@ void add_stress(Page& page, const fs::path& data, int threads) {
              file + ")\n\n";
   }
   page.text +=
-      "## Under stress\n\nThree rendered scenes, 320x240, in which one thing at a time gets worse and the "
-      "truth stays "
+      "## Under stress\n\nThree rendered scenes, 320x240, in which one condition at a time gets worse "
       "(`rendered/stress`): " +
       std::to_string(objects) + " scored objects, so that one is " + percent(1.0 / objects) +
       " % of found. Disparity where both cameras see.\n\n" + plots;
@@ -578,12 +577,12 @@ void add_middlebury(Page& page, const fs::path& data, int threads) {
   page.text += "Means over " + std::to_string(frames.size()) +
                " pairs of the Middlebury collections of 2001 to 2014, where both cameras see (of Motorcycle: "
                "all pixels with truth); OpenCV " +
-               std::string(opencv_version()) + " in the same run, grey pictures for all. ";
+               std::string(opencv_version()) + " in the same run, grey images for all. ";
   page.text +=
-      "bad-t: share of the matched that are off by more than t px; with holes: of all, holes counted as "
-      "bad.\n\n";
+      "bad-t: share of the matched pixels that are off by more than t px; with holes: share of all pixels, "
+      "with holes counted as bad.\n\n";
   page.text +=
-      "Columns x ≥ the number of disparities only, since OpenCV's matchers leave the others empty:\n\n" +
+      "Only columns x ≥ the number of disparities, since OpenCV's matchers leave the others empty:\n\n" +
       from_range.text() + "\nAll columns:\n\n" + all_columns.text() + "\n";
   page.text += "OpenCV's settings: ";
   for (const OpenCvMatcher& matcher : accurate_opencv_matchers()) {
@@ -747,16 +746,16 @@ void add_sequences(Page& page, const fs::path& data, int threads) {
   }
   page.text += "## Frame by frame\n\n";
   page.text +=
-      "Two rendered sequences of 40 frames at 320x240 (`rendered/dev/sequences`): A, the robot drives and "
-      "turns among objects that stand still; B, a ball rolls past. Each frame is segmented by itself, so "
-      "this also shows how steady the result is. Mean over the frames, and in brackets what 95 % of them "
-      "reach: the 5th percentile, or the 95th of E, phantoms and bad-2, of which less is better.\n\n";
+      "Two rendered sequences of 40 frames at 320x240 (`rendered/dev/sequences`): in A, the robot drives and "
+      "turns among static objects; in B, a ball rolls past. Each frame is segmented independently, so this "
+      "also shows how stable the result is. The table has means over the frames, and in brackets the 5th "
+      "percentile, or the 95th of E, phantoms and bad-2, where less is better.\n\n";
   page.text += table.text() + "\n" + pictures;
   page.text +=
       "Found: frames with IoU ≥ 0.5. Merged: frames in which more than half of the object lay in one of ours "
-      "that holds more than half of another, too. Lost: how often the object was found in one frame and not "
-      "in the next. The greatest fall "
-      "is from one frame to the next, with the later one's number.\n\n" +
+      "that also contains more than half of another. Lost: the number of times the object was found in one "
+      "frame and not in the next. The greatest fall is between consecutive frames, with the number of the "
+      "later one.\n\n" +
       objects.text() + "\n";
 }
 
@@ -767,13 +766,14 @@ std::string head(const std::string& commit) {
          "Measured on " +
          today() + " at commit " + commit + ", on " + processor() +
          " (kernels: " + std::string(name(supported_targets().back())) +
-         ").\n`./dev accuracy` measures everything again and writes this page and its pictures; it needs the "
-         "data collection in `../shared/data`, or where `CAIRN_DATA` says.\n\n";
+         ").\nThis page reports how well cairn finds objects and disparities, against ground truth and "
+         "compared with OpenCV's matchers. `./dev accuracy` measures everything again and writes this page "
+         "and its plots; it needs the data collection in `../shared/data`, or in `CAIRN_DATA`.\n\n";
 }
 
 constexpr std::string_view kNotHeldOut =
-    "**Most of it is not held out.** What follows the first table is measured on frames that the options and "
-    "the trees of `default` were fitted to, and flatters it. What is rendered is of our own making.\n\n";
+    "**Most of it is not held out.** After the first table, results are measured on frames that the options "
+    "and the trees of `default` were fitted to, so they are optimistic. The rendered frames are our own.\n\n";
 
 constexpr std::string_view kColumns =
     "## Presets and ablations\n\n"
@@ -783,16 +783,14 @@ constexpr std::string_view kColumns =
     "| median E | of the paper's E (Eq. 5, 1/IoU − 1) over all true objects; each counts for 200 % at most "
     "|\n"
     "| boundary F | mean over all true objects |\n"
-    "| phantoms | per frame: objects of ours of at least 200 px that hardly lie on any true one |\n"
-    "| density, bad-2 | of the disparity, where both cameras see: share of the pixels that have one, and of "
-    "these "
-    "the share that is off by more than 2 px; rc_tabletop has no true disparity |\n"
-    "| ms | of one core for the whole method, the median frame |\n\n"
-    "[evaluation](evaluation.md) defines each word. **paper** and **default** are the presets, and "
-    "**as printed** is `paper` without floor label and thresholds of the gradients; each other "
-    "row is "
-    "`default` with one thing undone: switched off, or as `paper` has it. "
-    "The last digits are no differences: see below each title how much one object makes.\n\n";
+    "| phantoms | per frame: objects of ours of at least 200 px with little overlap with true ones |\n"
+    "| density, bad-2 | of the disparity, where both cameras see: share of the pixels with a disparity, and "
+    "of these the share that is off by more than 2 px; rc_tabletop has no true disparity |\n"
+    "| ms | one core's time for the whole method, median frame |\n\n"
+    "[Evaluation](evaluation.md) defines the words. **paper** and **default** are the presets, **as "
+    "printed** is `paper` without the floor label and the gradient thresholds. Each other row is an "
+    "ablation: `default` with one feature disabled or as in `paper`. A difference of one object is noise; "
+    "each section gives the share of one object.\n\n";
 
 Page measure_all(const fs::path& data, const std::string& commit, int threads) {
   Page page;

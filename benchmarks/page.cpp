@@ -271,22 +271,23 @@ std::string head(const std::string& commit, int threads) {
          today() + " at commit " + commit + ", on " + processor() + " with " + std::to_string(threads) +
          (threads == 1 ? " processor" : " processors") +
          " (kernels: " + std::string(name(supported_targets().back())) + "), compiled with " + compiler() +
-         ".\n`./dev bench` measures everything again and writes this page and its pictures. "
-         "It wants a machine that does nothing else.\n\n";
+         ".\nThis page reports the time of each stage, its growth with the image size, and a comparison with "
+         "OpenCV. `./dev bench` measures everything again and writes this page and its plots. It needs an "
+         "otherwise idle machine.\n\n";
 }
 
 constexpr std::string_view kStagesIntro =
     "## Stages\n\n"
-    "On the pair that `cairn bench` draws, by the wall clock, the median over the frames after the first; "
-    "each size with its number of disparities. "
-    "The drawn room has fewer and larger pieces than many photographs, and the stages that group pieces take "
-    "longer on those; the time of matching hangs on the size alone.\n\n";
+    "Wall-clock times on the pair that `cairn bench` generates: the median over the frames after a first "
+    "warm-up frame, for each size with its number of disparities. The generated room has fewer and larger "
+    "regions than many photographs, on which the grouping stages take longer; the time of matching depends "
+    "only on the size.\n\n";
 
 constexpr std::string_view kGrowthIntro =
     "## Growth\n\n"
-    "Processor time on one thread, median, and the straight line (ms besides + ms for each) that fits it "
-    "best, by relative distance. Matching works on whole vectors of disparities, so between their multiples "
-    "its time climbs in steps.\n\n";
+    "Median processor time on one thread, and the straight line (constant ms + ms per unit) that fits it "
+    "best, by relative distance. Matching processes whole vectors of disparities, so its time grows in "
+    "steps.\n\n";
 
 std::string growth_section(const char* title, const char* picture, const Growth& growth, const char* x_name,
                            const char* x_format) {
@@ -311,12 +312,12 @@ void write_page(const fs::path& root, const std::string& commit, const std::opti
       std::string(kGrowthIntro) +
       growth_section("Time against pixels", "pixels.svg", with_pixels, "megapixels", "%.2f") +
       growth_section("Time against disparities", "disparities.svg", with_disparities, "disparities", "%.0f");
-  page += "## Beside OpenCV\n\n";
+  page += "## Comparison with OpenCV\n\n";
   if (engines) {
     constexpr std::size_t kMost = std::size_t{1} << 24;
     page +=
-        "What `./dev bench engines` prints: ours and theirs interleaved in one process, on real pictures, "
-        "one thread each where nothing else is said; the ratio is theirs to ours, of the least times.\n\n" +
+        "The output of `./dev bench engines`: ours and theirs interleaved in one process, on real images, "
+        "one thread each unless stated otherwise; the ratio is theirs to ours, of the minimum times.\n\n" +
         io::read_file(*engines, kMost);
   } else {
     page += "Not measured in this run: it needs OpenCV's calib3d and the data collection.\n";
