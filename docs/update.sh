@@ -28,9 +28,9 @@ options_page() {
 
 <!-- Written by ./dev docs from `cairn config --markdown`; do not edit. -->
 
-Every option of every stage, with its value in the presets `default` and `paper` (empty: the same as in `default`).
-Set one with `--set stage.name=value`, several in a file with `--config FILE`; see [formats](formats.md) for the file.
-An option is read only while the last column is so (and what that names is itself read); elsewhere it is refused. `cairn config --preset P` prints what a preset reads.
+Look up here every option of every stage, with its value in the presets `default` and `paper` (empty: the same as in `default`).
+Set one with `--set stage.name=value`, several in a file with `--config FILE` ([format](formats.md)). `cairn config --preset P` prints the options in force.
+An option with a condition in the last column is refused while the condition does not hold.
 TEXT
   # One heading per stage, and the paper's value beside the default.
   awk -F'|' '
@@ -49,7 +49,7 @@ TEXT
 
 # Options of a sequence
 
-`cairn follow` reads these beside all above; `cairn config --sequence` prints them.
+`cairn follow` reads these in addition to those above; `cairn config --sequence` prints them.
 TEXT
   awk -F'|' '
     !/^\| `/ { next }
