@@ -101,12 +101,12 @@ def hidden_floor(left, right, k, frames):
 
 BREAKAGES = [
     ("as it is", as_it_is, {}),
-    ("right picture black", black, {}),
-    ("right picture blurred, σ 3 px", blurred, {}),
-    ("right picture two frames late", late, {}),
+    ("right image black", black, {}),
+    ("right image blurred, σ 3 px", blurred, {}),
+    ("right image two frames late", late, {}),
     ("right rows 9 px off", rows_off, {}),
     ("two of three frames repeated", frozen, {}),
-    ("lower part of both pictures covered", hidden_floor, {}),
+    ("lower part of both images covered", hidden_floor, {}),
     ("focal length 1.3 times too long", as_it_is, {"fx": 1.3, "fy": 1.3}),
     ("baseline 1.3 times too long", as_it_is, {"baseline": 1.3}),
 ]
