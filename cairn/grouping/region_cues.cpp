@@ -69,9 +69,11 @@ class Gathering {
       }
     }
     for (int y = 0; y < height_; ++y) {
+      const RegionId* const row = labels_.row(y);
+      const RegionId* const below = y + 1 < height_ ? labels_.row(y + 1) : row;
       for (int x = 0; x < width_; ++x) {
-        if (x + 1 < width_) meet(x, y, 1, 0);
-        if (y + 1 < height_) meet(x, y, 0, 1);
+        if (x + 1 < width_ && row[x + 1] != row[x]) meet(x, y, 1, 0);
+        if (below[x] != row[x]) meet(x, y, 0, 1);
       }
     }
     return std::move(result_);
@@ -206,11 +208,10 @@ class Gathering {
     return {x, y};
   }
 
-  /// The pixel with its neighbour to the right or below.
+  /// The pixel with its neighbour to the right or below, which is another region's.
   void meet(int x, int y, int dx, int dy) {
     const std::int32_t here = number(labels_(x, y));
     const std::int32_t there = number(labels_(x + dx, y + dy));
-    if (here == there) return;
     ContactCues& c = contact(std::min(here, there), std::max(here, there));
     const int sign = here < there ? 1 : -1;
     const int edge = std::max(edges_(x, y), edges_(x + dx, y + dy));

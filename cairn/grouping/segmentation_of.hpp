@@ -14,15 +14,21 @@ template <class Value>
 Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, Value value) {
   Segmentation result{std::move(labels), std::vector<Region>(count)};
   for (int y = 0; y < result.labels.height(); ++y) {
-    for (int x = 0; x < result.labels.width(); ++x) {
-      Region& region = result.regions[index(result.labels(x, y))];
-      ++region.pixel_count;
-      region.box = united(region.box, {x, y, 1, 1});
-      const double v = value(x, y);
-      if (!(v == v)) continue;
-      ++region.valid_count;
-      region.mean += v;
-      region.variance += v * v;
+    const RegionId* const row = result.labels.row(y);
+    for (int first = 0; first < result.labels.width();) {
+      int last = first + 1;
+      while (last < result.labels.width() && row[last] == row[first]) ++last;
+      Region& region = result.regions[index(row[first])];
+      region.pixel_count += last - first;
+      region.box = united(region.box, {first, y, last - first, 1});
+      for (int x = first; x < last; ++x) {
+        const double v = value(x, y);
+        if (!(v == v)) continue;
+        ++region.valid_count;
+        region.mean += v;
+        region.variance += v * v;
+      }
+      first = last;
     }
   }
   for (Region& region : result.regions) {

@@ -69,25 +69,30 @@ class Fusing {
     std::iota(parents_.begin(), parents_.end(), 0);
     common_.assign(count, -1);
     links_of_.resize(count);
-    for (int y = 0; y < basins.labels.height(); ++y) {
-      for (int x = 0; x < basins.labels.width(); ++x) {
-        if (x + 1 < basins.labels.width()) meet(basins.labels, edges, {x, y}, {x + 1, y});
-        if (y + 1 < basins.labels.height()) meet(basins.labels, edges, {x, y}, {x, y + 1});
+    const Size size = basins.labels.size();
+    for (int y = 0; y < size.height; ++y) {
+      const RegionId* const row = basins.labels.row(y);
+      const RegionId* const below = y + 1 < size.height ? basins.labels.row(y + 1) : row;
+      for (int x = 0; x < size.width; ++x) {
+        if (x + 1 < size.width && row[x + 1] != row[x]) meet(row[x], row[x + 1], edges, {x, y}, {x + 1, y});
+        if (below[x] != row[x]) meet(row[x], below[x], edges, {x, y}, {x, y + 1});
       }
     }
-    for (std::size_t i = 0; i < links_.size(); ++i) queue(static_cast<std::int32_t>(i));
+    for (std::int32_t i = 0; slot(i) < links_.size(); ++i) queue(i, key_of(i));
   }
 
   void until(int count) {
     while (left_ > count && !queue_.empty()) {
       const Entry next = queue_.top();
       queue_.pop();
-      if (links_[slot(next.link)].version != next.version) continue;
+      const Link& link = links_[slot(next.link)];
+      if (link.version != next.version) continue;
       // A key only grows while its two regions do, so that what was queued is never too late.
-      if (key_of(next.link) == next.key) {
+      const double key = key_of(next.link);
+      if (key == next.key && link.first == next.first) {
         fuse(next.link);
       } else {
-        queue(next.link);
+        queue(next.link, key);
       }
     }
   }
@@ -109,6 +114,8 @@ class Fusing {
     std::int64_t length = 0;
     std::int64_t edge_sum = 0;
     std::int32_t version = 0;  // −1 = gone
+    std::int32_t queued_first = 0;
+    double queued_key = 0;
     [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
   };
   struct Entry {
@@ -117,15 +124,17 @@ class Fusing {
     std::int32_t link;
     std::int32_t version;
     bool operator<(const Entry& other) const {  // the queue's top is the greatest
-      return key > other.key || (key == other.key && first > other.first);
+      return is_after(key, first, other.key, other.first);
     }
   };
 
-  void meet(View<const RegionId> labels, View<const std::uint16_t> edges, Point p, Point q) {
-    const std::int32_t a = number(labels(p.x, p.y));
-    const std::int32_t b = number(labels(q.x, q.y));
-    if (a == b) return;
-    Link& link = link_between(a, b);
+  /// Without branches: which of two entries is the later one is a toss-up for the processor.
+  static bool is_after(double key, std::int32_t first, double other_key, std::int32_t other_first) {
+    return ((key > other_key) | ((key == other_key) & (first > other_first))) != 0;
+  }
+
+  void meet(RegionId a, RegionId b, View<const std::uint16_t> edges, Point p, Point q) {
+    Link& link = link_between(number(a), number(b));
     ++link.length;
     link.edge_sum += std::max(edges(p.x, p.y), edges(q.x, q.y));
   }
@@ -148,9 +157,11 @@ class Fusing {
     const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
     return (edge + kEvenWithoutEdge) * std::sqrt(area);
   }
-  void queue(std::int32_t i) {
-    const Link& link = links_[slot(i)];
-    queue_.push({key_of(i), link.first, i, link.version});
+  void queue(std::int32_t i, double key) {
+    Link& link = links_[slot(i)];
+    link.queued_key = key;
+    link.queued_first = link.first;
+    queue_.push({key, link.first, i, link.version});
   }
 
   void fuse(std::int32_t across) {
@@ -174,8 +185,12 @@ class Fusing {
         both.length += link.length;
         both.edge_sum += link.edge_sum;
         link.version = -1;
-        ++both.version;
-        queue(known);
+        // What is queued too early is queued again when its turn comes; only what would be too late is not.
+        const double key = key_of(known);
+        if (is_after(both.queued_key, both.queued_first, key, both.first)) {
+          ++both.version;
+          queue(known, key);
+        }
       } else {
         (link.a == lost ? link.a : link.b) = kept;
         links.push_back(i);
