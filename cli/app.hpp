@@ -11,17 +11,17 @@
 
 namespace cairn::cli {
 
-/// The whole command line: every command with its options, and what each does.
+/// The command line: all commands with their options and actions.
 struct CommandLine {
   std::unique_ptr<CLI::App> app;
   std::vector<std::pair<CLI::App*, Work>> commands;
 };
 CommandLine declare_command_line();
 
-/// "Examples:" and a line for each; what a command's own --help says comes behind it.
+/// "Examples:" with one line each, followed by the command's own notes in --help.
 std::string examples_text(const Command& command);
 
-/// The sentence for a command that does not exist; empty where there is one of this name.
+/// The message for an unknown command; empty if it exists.
 std::string unknown_command(const std::string& name);
 
 }  // namespace cairn::cli

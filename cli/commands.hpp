@@ -8,10 +8,11 @@
 
 namespace cairn::cli {
 
-/// What a command does once its options are read; returns the exit code. Throws cairn::Error for bad input.
+/// The action of a command after its options are parsed; returns the exit code. Throws cairn::Error for bad
+/// input.
 using Work = std::function<int()>;
 
-/// Each declares its options on `app` and returns the work that uses them.
+/// Each declares its options on `app` and returns its action.
 Work declare_segment(CLI::App& app);
 Work declare_follow(CLI::App& app);
 Work declare_live(CLI::App& app);
@@ -33,7 +34,7 @@ Work declare_help(CLI::App& app);
 struct Command {
   const char* name;
   const char* help;
-  const char* examples;  // lines of the shell, which a test runs
+  const char* examples;  // shell lines, run by a test
   Work (*declare)(CLI::App&);
 };
 

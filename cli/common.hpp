@@ -19,7 +19,7 @@
 
 namespace cairn::cli {
 
-// ---- options that several commands share ----
+// ---- options common to several commands ----
 
 struct ConfigOptions {
   std::string preset = "default";
@@ -29,34 +29,34 @@ struct ConfigOptions {
 void add_config_options(CLI::App& app, ConfigOptions& options);
 struct ResolvedConfig {
   Config config;
-  std::string preset;  // what it started from: the config file's word, else --preset
+  std::string preset;  // the base preset: from the config file, else --preset
 };
-/// Preset, then a calibration's number of disparities, then the config file, then --set; later ones win.
-/// `elsewhere` takes the options of another configuration, see io::load_config().
+/// Preset, then the number of disparities of a calibration, then the config file, then --set; later ones
+/// override. `elsewhere` handles the options of another configuration, see io::load_config().
 ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities = std::nullopt,
                        const std::function<bool(std::string_view, std::string_view)>& elsewhere = {});
 
-/// The options of a sequence alone, as the config options leave them. Throws Error where sequences are not
-/// built in.
+/// The options of a sequence only, after applying the config options. Throws Error if sequences are not built
+/// in.
 std::vector<OptionInfo> sequence_options(const ConfigOptions& config);
 
 struct ExecOptions {
-  int threads = 0;  // 0 = one for each processor
+  int threads = 0;  // 0 = one per processor
   std::string target;
 };
 void add_exec_options(CLI::App& app, ExecOptions& options);
-/// With a pool, so that the frames of a folder share their buffers.
+/// With a pool, so that the frames of a folder share buffers.
 Exec make_exec(const ExecOptions& options);
-/// The instruction set that --target, else the environment variable CAIRN_TARGET, asks for.
+/// The instruction set from --target, else from the environment variable CAIRN_TARGET.
 Target wanted_target(const std::string& option);
 
 struct InputOptions {
   std::string left;   // or a folder
-  std::string right;  // empty with a folder, or where the disparity is given
+  std::string right;  // empty with a folder, or with a given disparity
   std::string calib;
   std::string disparity;
   ConfigOptions config;
-  io::Cameras cameras = io::Cameras::rectified;  // whose pictures are taken
+  io::Cameras cameras = io::Cameras::rectified;  // the kind of images searched for
 };
 
 /// LEFT, RIGHT, --calib and those of add_config_options().
@@ -64,30 +64,30 @@ void add_input_options(CLI::App& app, InputOptions& options);
 
 // ---- frames ----
 
-/// The frames that the options name: one pair, one folder, or a folder of folders.
+/// The frames from the options: one pair, one folder, or a folder of folders.
 std::vector<io::FrameFiles> frames_of(const InputOptions& options);
-/// Throws Error where the frame has none.
+/// Throws Error if the frame has no right image.
 const std::filesystem::path& right_of(const io::FrameFiles& files);
 
-/// A frame with all that is needed to work on it.
+/// A frame with everything needed to process it.
 struct LoadedFrame {
   io::Picture left;
-  Image<Gray> right;                  // empty where the disparity is given
-  std::optional<DisparityMap> given;  // instead of the right picture
+  Image<Gray> right;                  // empty with a given disparity
+  std::optional<DisparityMap> given;  // instead of the right image
   std::optional<StereoRig> rig;
   Config config;
   std::string preset;
-  std::optional<std::filesystem::path> raw_calibration;  // its file, where that describes raw cameras
+  std::optional<std::filesystem::path> raw_calibration;  // the file, if it describes raw cameras
 };
-/// Reads and checks everything before any work is done. Throws Error.
+/// Reads and checks everything before processing. Throws Error.
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec);
-/// Takes the given disparity out of `loaded`, where there is one.
+/// Moves the given disparity out of `loaded`, if there is one.
 Frame segment_frame(LoadedFrame& loaded, const Exec& exec);
 
-/// A line for stderr where the calibration is right only of pictures that were rectified with it; else "".
+/// A line for stderr if the calibration is valid only for images rectified with it; else "".
 std::string remark_on_calibration(const LoadedFrame& loaded);
 
-/// Collects the time of every stage while it lives.
+/// Collects the time of every stage during its lifetime.
 class Stopwatch {
  public:
   explicit Stopwatch(Exec& exec);
@@ -109,14 +109,14 @@ std::string text_of(const char* format, double value);
 /// "62.1 %" of 0.621; "-" for NaN.
 std::string percent(double share);
 
-/// The last part of a path, whatever way it is written: "frames" of "data/frames/".
+/// The last part of a path, with or without a trailing slash: "frames" of "data/frames/".
 std::string name_of(const std::filesystem::path& path);
 
-/// What became of the epipolar correction, in words; "" where it is switched off.
+/// The outcome of the epipolar correction, in words; "" if it is off.
 std::string describe(const EpipolarOffset& epipolar);
 
-/// Columns of text for the terminal: the first to the left, the others to the right; columns without any text
-/// are left out.
+/// Columns of text for the terminal: the first left-aligned, the others right-aligned; empty columns are left
+/// out.
 class Table {
  public:
   explicit Table(std::vector<std::string> header) : rows_{std::move(header)} {}
@@ -127,20 +127,20 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// The frames of a folder run whose own files cannot be used. The others are worked on nevertheless.
+/// The skipped frames of a folder run, whose files are unusable. The others are processed.
 class LeftOut {
  public:
-  /// With a line on stderr.
+  /// Also prints a line on stderr.
   void add(const std::string& frame, const std::string& why);
   [[nodiscard]] const std::vector<std::string>& frames() const { return frames_; }
-  /// 0; where frames were left out 2, with a line on stderr that counts them.
+  /// 0; 2 if frames were skipped, with their number on stderr.
   [[nodiscard]] int exit_code(std::size_t frames_in_all) const;
 
  private:
   std::vector<std::string> frames_;
 };
 
-/// How far a folder run has come, on stderr where that is a terminal; nothing elsewhere.
+/// The progress of a folder run, on stderr if that is a terminal; else silent.
 class Progress {
  public:
   explicit Progress(std::size_t count);
@@ -148,9 +148,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void at(std::size_t index, const std::string& name) const;
-  /// A bar of which `share` (0 … 1) is done, with words behind it; also where there is but one frame.
+  /// A bar of which `share` (0 … 1) is filled, followed by words; also for a single frame.
   void bar(double share, const std::string& words) const;
-  /// Takes the bar away, so that other text may follow.
+  /// Removes the bar before other output.
   void clear() const;
 
  private:

@@ -33,7 +33,7 @@ struct DoctorOptions {
 };
 
 /// What became of one pair.
-struct Examined {
+struct ExaminedPair {
   std::string name;
   std::optional<Size> size;              // of the left picture
   std::optional<PairMeasures> measures;  // nothing where the pictures differ in size
@@ -44,7 +44,7 @@ struct Examined {
 // ---- one pair ----
 
 /// The pair, or nothing and a finding where the sizes differ. Throws Error for anything else.
-std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examined& examined,
+std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, ExaminedPair& examined,
                                             const Exec& exec) {
   const fs::path& right_file = right_of(files);
   try {
@@ -65,7 +65,7 @@ std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examine
 
 /// The calibration; empty with a finding where it cannot be true, or is of other pictures.
 io::Calibration calibration_or_find(const io::FrameFiles& files, const std::string& given,
-                                    Examined& examined) {
+                                    ExaminedPair& examined) {
   std::optional<fs::path> path = files.calib;
   if (!given.empty()) path = given;
   if (!path) return {};
@@ -88,7 +88,7 @@ io::Calibration calibration_or_find(const io::FrameFiles& files, const std::stri
 }
 
 /// Whether the pictures were rectified with a calibration that describes raw cameras: their rows tell.
-void examine_rectification(Examined& examined) {
+void examine_rectification(ExaminedPair& examined) {
   const auto is = [](FindingKind kind) {
     return [kind](const Finding& finding) { return finding.kind == kind; };
   };
@@ -109,8 +109,8 @@ void examine_rectification(Examined& examined) {
                     "rectified with it"});
 }
 
-Examined examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
-  Examined examined{files.name, {}, {}, {}, {}};
+ExaminedPair examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
+  ExaminedPair examined{files.name, {}, {}, {}, {}};
   const std::optional<io::PicturePair> pictures = load_or_find(files, examined, exec);
   const io::Calibration calibration = calibration_or_find(files, options.input.calib, examined);
   if (!pictures) return examined;
@@ -144,14 +144,14 @@ struct Sequence {
 
 struct Diagnosis {
   std::size_t pairs_in_all = 0;
-  std::vector<Examined> pairs;
+  std::vector<ExaminedPair> pairs;
   std::vector<std::size_t> indices;  // of these pairs in the folder
   LeftOut left_out;                  // pairs whose files cannot be used
   std::optional<Sequence> sequence;
   std::vector<Finding> findings;
 };
 
-std::optional<Finding> find_sizes(const std::vector<Examined>& pairs) {
+std::optional<Finding> find_sizes(const std::vector<ExaminedPair>& pairs) {
   Finding finding{FindingKind::sizes, Severity::note, 1, {}};
   for (std::size_t i = 1; i < pairs.size(); ++i) {
     if (pairs[i].size == pairs[0].size) continue;
@@ -289,7 +289,7 @@ Diagnosis examine_all(const DoctorOptions& options) {
       diagnosis.findings.insert(after, *finding);
   };
   const bool measured = std::all_of(diagnosis.pairs.begin(), diagnosis.pairs.end(),
-                                    [](const Examined& one) { return one.measures.has_value(); });
+                                    [](const ExaminedPair& one) { return one.measures.has_value(); });
   if (frames.size() > 1 && measured) {
     diagnosis.sequence = telling_sequence(frames, exec);
     if (diagnosis.sequence->finding) {
@@ -361,16 +361,16 @@ constexpr std::array kNumbers{
     Number{"right_edge_px", "edges right, px", "%.2f",
            [](const PairMeasures& m) { return width_of(m.right_sharpness); }}};
 
-std::string numbers_text(const std::vector<Examined>& pairs) {
+std::string numbers_text(const std::vector<ExaminedPair>& pairs) {
   const bool several = pairs.size() > 1;
   if (std::none_of(pairs.begin(), pairs.end(),
-                   [](const Examined& pair) { return pair.measures.has_value(); }))
+                   [](const ExaminedPair& pair) { return pair.measures.has_value(); }))
     return {};
   Table table(several ? std::vector<std::string>{"measured", "least", "median", "most"}
                       : std::vector<std::string>{"measured", ""});
   for (const Number& number : kNumbers) {
     std::vector<double> values;
-    for (const Examined& pair : pairs) {
+    for (const ExaminedPair& pair : pairs) {
       if (pair.measures) values.push_back(number.of(*pair.measures));
     }
     std::erase_if(values, [](double value) { return std::isnan(value); });
@@ -394,9 +394,9 @@ std::string numbers_text(const std::vector<Examined>& pairs) {
 
 using Histogram = decltype(RowAlignment::histogram);
 
-Histogram histogram_of(const std::vector<Examined>& pairs) {
+Histogram histogram_of(const std::vector<ExaminedPair>& pairs) {
   Histogram sum{};
-  for (const Examined& pair : pairs) {
+  for (const ExaminedPair& pair : pairs) {
     for (std::size_t i = 0; pair.measures && i < sum.size(); ++i) sum[i] += pair.measures->rows.histogram[i];
   }
   return sum;
@@ -423,10 +423,10 @@ std::string histogram_text(const Histogram& histogram) {
 
 // ---- words ----
 
-std::vector<std::string> names_of(const std::vector<Examined>& pairs) {
+std::vector<std::string> names_of(const std::vector<ExaminedPair>& pairs) {
   std::vector<std::string> names;
   names.reserve(pairs.size());
-  for (const Examined& pair : pairs) names.push_back(pair.name);
+  for (const ExaminedPair& pair : pairs) names.push_back(pair.name);
   return names;
 }
 
@@ -516,7 +516,7 @@ Json number_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json finding_json(const Finding& finding, const std::vector<Examined>& pairs) {
+Json finding_json(const Finding& finding, const std::vector<ExaminedPair>& pairs) {
   Json frames = Json::array();
   for (const std::size_t i : finding.frames) frames.push_back(pairs[i].name);
   const FindingInfo& known = info(finding.kind);
@@ -546,7 +546,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   }
   j["left_out"] = diagnosis.left_out.frames();
   j["pairs"] = Json::array();
-  for (const Examined& pair : diagnosis.pairs) {
+  for (const ExaminedPair& pair : diagnosis.pairs) {
     Json one{{"name", pair.name}, {"width", pair.size->width}, {"height", pair.size->height}};
     one["measured"] = nullptr;
     if (pair.measures) {

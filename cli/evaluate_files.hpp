@@ -10,7 +10,7 @@
 #include <page/html_page.hpp>
 #include <string>
 
-/// What `cairn evaluate` reads.
+/// The input files of `cairn evaluate`.
 namespace cairn::cli {
 
 struct ResultFiles {
@@ -23,17 +23,17 @@ struct ResultFiles {
   std::optional<std::filesystem::path> json;
 };
 
-/// nullopt where the folder holds no result.
+/// nullopt if the folder contains no result.
 std::optional<ResultFiles> result_in(const std::filesystem::path& folder);
 
 Image<ObjectId> ours_of(const io::Labels& labels);
 
-/// Throws Error that names both.
+/// Throws Error naming both.
 void require_equal_size(const std::filesystem::path& ours, Size our_size, const std::filesystem::path& theirs,
                         Size their_size);
 
-/// A result beside its truth, for the page of --html. The left picture is the one beside the truth; without
-/// one the page has none. Throws Error where two maps differ in size.
+/// A result next to its truth, for the page of --html. The left image is the one next to the truth, if any.
+/// Throws Error if two maps differ in size.
 io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth);
 
 }  // namespace cairn::cli

@@ -17,7 +17,8 @@ struct EvaluateSequenceOptions {
   std::optional<std::string> csv;
 };
 
-/// `cairn evaluate RESULT … TRUTH --sequence`: prints, and writes what is asked for. Returns the exit code.
+/// `cairn evaluate RESULT … TRUTH --sequence`: prints the scores and writes the requested files. Returns the
+/// exit code.
 int evaluate_sequence(const EvaluateSequenceOptions& options);
 
 /// `cairn evaluate poses.tum truth.tum`.

@@ -9,10 +9,10 @@
 
 namespace cairn::cli {
 
-/// What a shell offers where a word is expected.
+/// The completion that a shell offers for a word.
 enum class Expects { nothing, file, folder, one_of, assignment, text };
 
-/// One option or positional, as manual pages and completions tell it.
+/// One option or positional, for manual pages and completions.
 struct OptionFacts {
   std::vector<std::string> names;  // "-o", "--output"; of a positional "LEFT"
   std::string value;               // "FILE"; empty for a flag and for a positional
@@ -30,15 +30,15 @@ struct OptionFacts {
 struct CommandFacts {
   std::string name;  // empty: cairn itself
   std::string help;
-  std::string examples;  // lines of the shell; may be empty
-  std::string footer;    // of its own; may be empty
+  std::string examples;  // shell lines; may be empty
+  std::string footer;    // notes of the command; may be empty
   std::vector<OptionFacts> options;
 };
 
 /// cairn itself, then each command.
 std::vector<CommandFacts> facts_of(const CLI::App& app);
 
-/// The pages in section 1 of each command and cairn-options(7), all in roff, each with its file's name.
+/// The manual pages in section 1 of each command and cairn-options(7), in roff, each with its file name.
 struct NamedText {
   std::string name;
   std::string text;

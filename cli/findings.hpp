@@ -11,19 +11,19 @@ namespace cairn::cli {
 /// "broken", "warning", "note".
 std::string name_of(Severity severity);
 
-/// Whether one of them is.
+/// Whether any of them is broken.
 bool is_broken(const std::vector<Finding>& findings);
 
-/// ", in 2 of 40 pairs (a, b)"; "" where there is one frame only. `noun`: "pairs" or "frames".
+/// ", in 2 of 40 pairs (a, b)"; "" for a single frame. `noun`: "pairs" or "frames".
 std::string frames_text(const Finding& finding, const std::vector<std::string>& names, const char* noun);
 
-/// What a folder run finds in passing, said once for all frames that show it.
+/// The findings of a folder run, reported once for all frames with them.
 class PassingFindings {
  public:
   void add(const std::string& frame, std::vector<Finding> findings);
-  /// One more frame that was doubtful and not measured.
+  /// Counts a doubtful frame that was not measured.
   void add_doubtful() { ++doubtful_; }
-  /// One line on stderr for each finding, with what to do.
+  /// Prints one line on stderr per finding, with its remedy.
   void tell() const;
 
  private:

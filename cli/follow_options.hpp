@@ -9,11 +9,11 @@
 
 namespace cairn::cli {
 
-/// As resolve(), with the options of a sequence, which may stand in the same file and behind the same --set.
+/// Like resolve(), with the options of a sequence, which may be in the same file and in --set.
 FollowConfig resolve_follow(const ConfigOptions& options,
                             std::optional<int> calibrated_disparities = std::nullopt,
                             KnownGround ground = {});
-/// The preset that it starts from.
+/// The base preset.
 std::string preset_of(const ConfigOptions& options);
 
 }  // namespace cairn::cli

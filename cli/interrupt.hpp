@@ -4,14 +4,14 @@
 
 namespace cairn::cli {
 
-/// The exit code of a run that was ended by a signal, as shells have it.
+/// The exit code of a run ended by a signal, as in shells.
 inline constexpr int kInterrupted = 130;
 
-/// From now on Ctrl-C and SIGTERM only leave a mark, so that what is at hand is done and written whole; a
-/// second one ends the program at once. A closed stdout shows in the stream, not as a signal.
+/// Makes Ctrl-C and SIGTERM set a flag, so that the current work is completed; a second one ends the program
+/// at once. A closed stdout is reported by the stream, not by a signal.
 void catch_interrupts();
 [[nodiscard]] bool is_interrupted();
-/// What the signal does besides, in its handler; none: nothing.
+/// An additional action of the signal handler; null: none.
 void on_interrupt_also(void (*also)());
 
 }  // namespace cairn::cli

@@ -13,19 +13,19 @@
 
 namespace cairn::cli {
 
-/// Every frame's line of JSON on stdout: as cairn follow's, and without tracks as objects.json. Written on a
-/// thread of its own: a reader that hangs costs lines, which are counted, and not the run.
+/// One line of JSON per frame on stdout: as from cairn follow, and without tracks as objects.json. Written on
+/// its own thread: a slow reader loses lines, which are counted, but does not block the run.
 class JsonLines : public live::Sink {
  public:
-  /// `waits`: for the reader, so that no line is missing.
+  /// `waits`: wait for the reader, so that no line is lost.
   JsonLines(std::string preset, std::optional<StereoRig> rig, bool tracks, bool waits);
   ~JsonLines() override;
 
   void offer(const live::LiveFramePtr& frame) override;
-  /// What waits is written, unless the reader hangs and somebody ends the run.
+  /// Writes waiting lines, unless the reader blocks and the run is interrupted.
   void finish() override;
   [[nodiscard]] std::string summary() const override;
-  /// Nobody reads any more.
+  /// Whether the reader has closed the stream.
   [[nodiscard]] bool is_closed() const;
 
  private:

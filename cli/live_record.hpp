@@ -11,31 +11,31 @@
 
 namespace cairn::cli {
 
-/// --record FILE and what is recorded.
+/// --record FILE and --record-what.
 struct LiveRecordOptions {
   std::string file;
   std::string what = "input,objects";
 };
 void add_record_options(CLI::App& app, LiveRecordOptions& options);
 
-/// A recorder that records nothing yet. With `waits` no frame is skipped. Throws Error.
+/// An idle recorder. With `waits` no frame is skipped. Throws Error.
 std::unique_ptr<live::Recorder> open_recorder(const LiveRecordOptions& options, live::RecordedRun run,
                                               bool waits);
 
-/// Begins where --record says so, once nothing else can be refused: an empty file would be in the next run's
-/// way. Throws Error.
+/// Begins the recording requested by --record, after all other checks: an empty file would block the next
+/// run. Throws Error.
 void begin_recording(const LiveRecordOptions& options, live::Recorder& recorder);
 
-/// The configuration that a recording was made with, as the file behind --config, while this lives.
+/// The configuration stored in a recording, as the file of --config, during its lifetime.
 class RecordedConfig {
  public:
-  /// Nothing where `source` is no recording, or one without a configuration, or where --preset or --config is
+  /// Empty if `source` is not a recording, or one without a configuration, or if --preset or --config is
   /// given.
   RecordedConfig(const std::string& source, ConfigOptions& options, bool is_told);
   ~RecordedConfig();
-  /// A line for stderr; empty where there is nothing to say.
+  /// A line for stderr; empty if there is none.
   [[nodiscard]] std::string notice() const;
-  /// A message about the configuration's file, with the recording's name in its place.
+  /// A message about the configuration file, with the name of the recording instead.
   [[nodiscard]] std::string named(std::string message) const;
   RecordedConfig(const RecordedConfig&) = delete;
   RecordedConfig& operator=(const RecordedConfig&) = delete;

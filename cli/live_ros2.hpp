@@ -9,15 +9,15 @@
 
 namespace cairn::cli {
 
-/// --ros2 and what belongs to it.
+/// --ros2 and its options.
 struct Ros2CommandOptions {
   const CLI::Option* is_wanted = nullptr;
-  std::string name_space;  // "" where --ros2 has no value
+  std::string name_space;  // "" if --ros2 has no value
   std::string holes;
   std::string frame;
 };
 void add_ros2_options(CLI::App& app, Ros2CommandOptions& options);
-/// Publishes from now on; nothing where it is not wanted. Throws Error.
+/// Publishes from now on; null without --ros2. Throws Error.
 std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const io::Sequence& source);
 
 }  // namespace cairn::cli

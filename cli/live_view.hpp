@@ -12,18 +12,18 @@
 
 namespace cairn::cli {
 
-/// What cairn live --view is given.
+/// The options of cairn live --view.
 struct ViewInput {
   bool is_wanted = false;
   std::string address;  // "127.0.0.1:8765"
   live::ViewOptions options;
 };
 void add_view_options(CLI::App& app, ViewInput& input);
-/// Throws Error where an option of the view is given without it.
+/// Throws Error if an option of the view is given without --view.
 void check(const ViewInput& input);
 
-/// None where no view is wanted. Says on stderr where it is. Throws Error as live::ViewServer does. The
-/// runner, the recorder and the source must outlive it.
+/// Null without --view. Prints the address on stderr. Throws Error like live::ViewServer. The runner, the
+/// recorder and the source must outlive it.
 std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner, live::Recorder& recorder,
                                       const io::Sequence& source, const std::string& preset);
 

@@ -8,7 +8,7 @@
 
 namespace cairn::cli {
 
-/// What `cairn map` was asked for.
+/// The options of `cairn map`.
 struct MapOptions {
   std::string action;
   std::string file;
@@ -20,7 +20,7 @@ struct MapOptions {
   std::int64_t run = 0;
 };
 
-/// Does it, and returns the exit code. Throws Error; always where sequences are not built in.
+/// Executes the action and returns the exit code. Throws Error; always if sequences are not built in.
 int work_on_map(const MapOptions& options);
 
 }  // namespace cairn::cli

@@ -8,11 +8,11 @@
 
 namespace cairn::cli {
 
-/// How often a map gives one reason.
+/// The frequency of a rejection reason in a map.
 struct RefusalCount {
   std::string name;
   double share = 0;          // of all pixels
-  double dark_or_plain = 0;  // of these pixels: where the picture shows no texture above its noise
+  double dark_or_plain = 0;  // share of these without texture above the noise
 };
 struct Refusals {
   std::vector<RefusalCount> counts;  // of each reason in force, in the order of their bits
@@ -20,7 +20,7 @@ struct Refusals {
 };
 Refusals count_refusals(const DisparityMap& map, View<const Gray> left, Reject in_force, const Exec& exec);
 
-/// "refused: left_right 6.4 %, speckle 30.6 % (92 % of it too dark or without texture)"; empty where nothing
+/// "refused: left_right 6.4 %, speckle 30.6 % (92 % of it too dark or without texture)"; empty if nothing
 /// was.
 std::string refusals_line(const Refusals& refusals);
 std::string refusals_table(const Refusals& refusals);

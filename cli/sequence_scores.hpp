@@ -13,47 +13,47 @@
 #include <tracking/trajectory_error.hpp>
 #include <vector>
 
-/// What `cairn evaluate --sequence` says of a result. (docs/evaluation.md, "Sequences")
+/// The scores of `cairn evaluate --sequence`. (docs/evaluation.md, "Sequences")
 namespace cairn::cli {
 
 struct SequenceOptions {
-  int min_area = 200;      // px; smaller true objects are neither right nor wrong
-  bool tentative = false;  // tracks that are not confirmed yet count, too
+  int min_area = 200;      // px; smaller true objects are ignored
+  bool tentative = false;  // unconfirmed tracks count too
 };
 
-/// Errors in m, and how many of them lie in the ellipsoid that holds 95 % by what is stated.
+/// Errors in m, and the number of errors within the stated 95 % ellipsoid.
 struct PlaceErrors {
-  std::vector<double> in_map_m;     // both trajectories laid together at the first frame that has both poses
-  std::vector<double> in_camera_m;  // without what the camera's own place is off
-  int stated = 0;                   // of the first, those with a covariance
+  std::vector<double> in_map_m;     // with the trajectories aligned at the first common frame
+  std::vector<double> in_camera_m;  // without the error of the camera pose
+  int stated = 0;                   // of in_map_m, those with a covariance
   int inside = 0;
 };
 
 struct MovingErrors {
-  /// By true object that moves in view: frames from the first in which it does so and counts until its track
-  /// is labelled; none: never while it moved.
+  /// Per true object that moves in view: frames from its first moving frame until its track is labelled so;
+  /// nullopt: never while it moved.
   std::map<std::int64_t, std::optional<std::int64_t>> frames_to_detect;
-  int moving = 0;          // track-frames of what moves
+  int moving = 0;          // track-frames of moving objects
   int labelled = 0;        // of these
-  int at_rest = 0;         // of what does not, nor did in the 8 frames before
+  int at_rest = 0;         // track-frames of objects at rest for 8 frames
   int labelled_wrong = 0;  // of these
-  bool is_known = false;   // the truth says what moves
+  bool is_known = false;   // the truth has motion labels
 };
 
 struct LandmarkErrors {
   int again =
       0;  // true objects with a landmark, out of view for 10 frames or more, then in view for 10 or more
   int re_identified = 0;
-  int wrong = 0;          // have another object's landmark
+  int wrong = 0;          // with the landmark of another object
   bool is_known = false;  // the result has landmarks
 };
 
 struct ChangeErrors {
-  int expected = 0;  // objects that were carried elsewhere while out of view
+  int expected = 0;  // objects relocated while out of view
   int found = 0;
-  int reported = 0;  // moved, gone, new; those of objects that moved in view count nowhere
+  int reported = 0;  // moved, gone, new; excludes objects that moved in view
   int wrong = 0;
-  std::vector<double> errors_m;  // of the way on the floor, of those found
+  std::vector<double> errors_m;  // of the displacement on the floor, for those found
   bool is_known = false;
 };
 
@@ -75,7 +75,7 @@ struct SequenceScores {
   std::optional<TrajectoryError> trajectory;
 };
 
-/// `result`: a folder of `cairn follow`, its tracks.jsonl, or a MOTS text. Throws Error.
+/// `result`: a folder from `cairn follow`, its tracks.jsonl, or a MOTS text. Throws Error.
 SequenceScores score_sequence(const std::filesystem::path& result, const io::TrueSequence& truth,
                               const SequenceOptions& options);
 

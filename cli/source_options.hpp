@@ -8,7 +8,7 @@
 
 namespace cairn::cli {
 
-/// SOURCE and how it is read, for commands that work on sequences.
+/// SOURCE and its options, for commands on sequences.
 struct SourceInput {
   std::string source;
   std::string frames;  // "10:60:2"
@@ -18,8 +18,8 @@ void add_source_options(CLI::App& app, SourceInput& input);
 /// Throws Error.
 std::unique_ptr<io::Sequence> open_source(const SourceInput& input, const Pool& pool);
 
-/// A camera never ends by itself, and one that hangs gives no frame at hand: while this lives, Ctrl-C ends it
-/// as a file's end would. Of files nothing changes. One at a time.
+/// Makes Ctrl-C end a camera source like the end of a file, during its lifetime, since cameras do not end by
+/// themselves. No effect on files. One at a time.
 class EndsBySignal {
  public:
   explicit EndsBySignal(io::Sequence& sequence);
@@ -28,12 +28,12 @@ class EndsBySignal {
   EndsBySignal& operator=(const EndsBySignal&) = delete;
 };
 
-/// Of the two only one would be asked: throws Error where both are given.
+/// Throws Error if both priors are given, since only one would be used.
 void refuse_two_priors(const std::string& odometry, const std::string& imu);
 
-/// What became of the source's frames, for stderr: a line for each remark, and one where it ended early.
+/// The remarks on skipped frames, for stderr: one line each, and one for an early end.
 std::string remarks_text(const io::Sequence& sequence);
-/// 3 where it ended early, 2 where frames could not be read, else 0.
+/// 3 after an early end, 2 if frames could not be read, else 0.
 int exit_code_of(const io::Sequence& sequence);
 
 }  // namespace cairn::cli

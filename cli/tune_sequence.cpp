@@ -22,7 +22,7 @@ constexpr std::size_t kFewestFrames = 10;
 /// A smaller gain, or one below two standard errors, does not count.
 constexpr Margin kLeastGain{.least_share = 0.05, .standard_errors = 2};
 
-struct Steady {
+struct SteadinessRun {
   std::vector<float> frames;  // of each but the first
   [[nodiscard]] double mean(std::size_t first, std::size_t last) const {
     double sum = 0;
@@ -67,11 +67,11 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const Progress progress(frames.size());
   int tried = 0;
   bool is_up = false;
-  const auto run = [&](const std::vector<Setting>& settings) -> std::optional<Steady> {
+  const auto run = [&](const std::vector<Setting>& settings) -> std::optional<SteadinessRun> {
     FollowConfig config = start;
     config.segmentation = with_settings(start.segmentation, settings);
     Follower follower(config, source->rig(), exec);
-    Steady steady;
+    SteadinessRun steady;
     for (const io::SequenceFrame& frame : frames) {
       if (stop() || (tried > 0 && seconds() > options.seconds)) {
         is_up = true;
@@ -89,13 +89,13 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
       tunables(options.patterns.empty() ? usual_tunables(start.segmentation, true) : options.patterns,
                start.segmentation);
   const std::vector<Setting> from = settings_of(start.segmentation, options_tried);
-  const std::optional<Steady> before = run(from);
+  const std::optional<SteadinessRun> before = run(from);
   if (!before) throw Error(options.source + ": stopped before the first run ended; nothing is written");
   const double reference = before->mean(0, tuned_on);
-  Steady best = *before;
-  Steady latest = *before;
+  SteadinessRun best = *before;
+  SteadinessRun latest = *before;
   // A loss falls as steadiness rises, and is twice the start's or more where nothing is steady.
-  const auto losses = [&](const Steady& steady) {
+  const auto losses = [&](const SteadinessRun& steady) {
     std::vector<Loss> all;
     for (std::size_t i = 0; i < tuned_on; ++i)
       all.push_back({1 + 2 * reference - double{steady.frames[i]}, 1, 0});
@@ -116,7 +116,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
         progress.bar(std::min(1.0, seconds() / options.seconds),
                      std::to_string(tried) + " tried, steadiness " + text(best.mean(0, tuned_on)) + " (was " +
                          text(reference) + ")");
-        std::optional<Steady> steady = settings == from ? before : run(settings);
+        std::optional<SteadinessRun> steady = settings == from ? before : run(settings);
         if (!steady) return std::nullopt;
         latest = std::move(*steady);
         return losses(latest);

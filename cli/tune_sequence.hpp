@@ -16,16 +16,16 @@ struct TuneSequenceOptions {
   std::string calib;
   ConfigOptions config;
   ExecOptions exec;
-  std::vector<std::string> patterns;  // empty: the usual options
-  int evaluations = 0;                // 0 = as many as the time allows
+  std::vector<std::string> patterns;  // empty: usual_tunables()
+  int evaluations = 0;                // 0 = limited by the time only
   double seconds = 60;
   std::optional<double> holdout;
   std::uint32_t seed = 1;
   std::string output;
 };
 
-/// `cairn tune --sequence`: searches for the options with which the objects of a sequence are steadiest, see
-/// steadiness(); prints, and writes the options. `stop` asks for an end. Returns the exit code.
+/// `cairn tune --sequence`: searches for the options with the steadiest objects of a sequence, see
+/// steadiness(); prints and writes the options. `stop` returns true to end. Returns the exit code.
 int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()>& stop);
 
 }  // namespace cairn::cli

@@ -10,22 +10,22 @@
 
 namespace cairn::cli {
 
-/// A frame's files in memory.
+/// The images and truth of a frame in memory.
 struct TuningFiles {
   std::string name;
   LoadedFrame loaded;
-  bool follows = false;  // the frame before it in the folder shows nearly the same
+  bool follows = false;  // nearly equal to the frame before in the folder
   Image<TruthId> objects{};
   bool partial = false;
   Image<float> truth_px{};
   Image<std::uint8_t> hidden{};
 
-  /// Borrows from this.
+  /// Borrows from this object.
   [[nodiscard]] TuningFrame frame() const;
 };
 
-/// Every frame of the folders, with its truth where `with_truth`. Throws Error for a bad frame, one without
-/// truth where that is asked for, and for a configuration that does not fit a frame.
+/// All frames of the folders, with truth if `with_truth`. Throws Error for an unusable frame, one without
+/// required truth, and a configuration that does not suit a frame.
 std::vector<TuningFiles> load_tuning_files(const std::vector<std::string>& folders, InputOptions input,
                                            bool with_truth);
 
