@@ -91,7 +91,7 @@ inline constexpr std::array kFindings{
                 "Nothing to fix: to have it checked, give a sequence with fast, uneven motion (wave a hand "
                 "before both cameras)."},
     FindingInfo{FindingKind::rectification, "not rectified",
-                "row error of the worst tenth of points without shift and roll", "rows",
+                "row error exceeded by 1 in 10 points, without shift and roll", "rows",
                 "Rectify the pair with its calibration (cairn rectify); if it is rectified, calibrate again "
                 "(cairn calibrate): a lens or a mount has moved."},
     FindingInfo{

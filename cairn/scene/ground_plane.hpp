@@ -25,8 +25,7 @@ struct GroundConfig {
 };
 template <class V>
 void fields(GroundConfig& c, V&& v) {
-  v("source", c.source, "", "floor fitted per frame, from points or pose of the calibration, or off",
-    kGroundSources);
+  v("source", c.source, "", "floor from a fit per frame, calibration points or pose, or off", kGroundSources);
   constexpr Condition kGround = unless("ground.source", "off");
   v("margin", c.margin, "px", "largest distance of floor pixels from the floor plane", range(0.0F, 64.0F),
     kGround);
