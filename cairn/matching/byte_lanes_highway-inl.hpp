@@ -3,13 +3,13 @@
 //
 // No include guard: compiled once for each target, inside HWY_BEFORE_NAMESPACE.
 
-/// Highway's operations, and those few on vectors of bytes that semi-global matching needs beyond them. The
-/// same vocabulary as byte_lanes_plain.hpp.
+/// Highway's operations, plus the operations on byte vectors that semi-global matching needs. The same
+/// vocabulary as byte_lanes_plain.hpp.
 namespace cairn::kernels::HWY_NAMESPACE::bytes {
 
 using namespace hwy::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary is Highway's
 
-/// Lane i of the result is lane i − 1 of `here`; lane 0 the last one of `before`.
+/// Lane i of the result is lane i − 1 of `here`; lane 0 is the last lane of `before`.
 template <class D, class V = Vec<D>>
 HWY_INLINE V SlideUp(D d, V before, V here) {
 #if HWY_ARCH_X86
@@ -27,7 +27,7 @@ HWY_INLINE V SlideUp(D d, V before, V here) {
   if constexpr (sizeof(V) == 16) return CombineShiftRightBytes<15>(d, here, before);
 }
 
-/// Lane i of the result is lane i + 1 of `here`; the last one lane 0 of `next`.
+/// Lane i of the result is lane i + 1 of `here`; the last lane is lane 0 of `next`.
 template <class D, class V = Vec<D>>
 HWY_INLINE V SlideDown(D d, V here, V next) {
 #if HWY_ARCH_X86
@@ -45,7 +45,7 @@ HWY_INLINE V SlideDown(D d, V here, V next) {
   if constexpr (sizeof(V) == 16) return CombineShiftRightBytes<1>(d, next, here);
 }
 
-/// Of 16 bytes the least, in lane 0.
+/// The minimum of 16 bytes, in lane 0.
 template <class D>
 HWY_INLINE Vec<D> LeastBlock([[maybe_unused]] D d, Vec<D> v) {
   if constexpr (MaxLanes(D()) > 16) {
@@ -65,7 +65,7 @@ HWY_INLINE Vec<D> LeastBlock([[maybe_unused]] D d, Vec<D> v) {
   }
 }
 
-/// The least lane, in every lane.
+/// The minimum over all lanes, in every lane.
 template <class D, class V = Vec<D>>
 HWY_INLINE V MinOfAll(D d, V v) {
   const V least = LeastBlock(d, v);
@@ -78,7 +78,7 @@ HWY_INLINE V MinOfAll(D d, V v) {
   if constexpr (sizeof(V) == 16) return TableLookupBytes(least, Zero(d));
 }
 
-/// Bits of 4-bit numbers.
+/// Population count of 4-bit numbers.
 template <class D, class V = Vec<D>>
 HWY_INLINE V CountBits(D d, V v) {
   alignas(16) constexpr std::uint8_t kBits[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
@@ -87,14 +87,14 @@ HWY_INLINE V CountBits(D d, V v) {
   return Add(TableLookupBytes(table, And(v, four)), TableLookupBytes(table, ShiftRight<4>(v)));
 }
 
-/// In how many of their 24 bits a and b differ, lane by lane.
+/// Hamming distance of 24-bit a and b, lane by lane.
 template <class D, class V = Vec<D>>
 HWY_INLINE V CountDifferentBits(D d, const V (&a)[3], const V (&b)[3]) {
   const V x = Xor(a[0], b[0]);
   const V y = Xor(a[1], b[1]);
   const V z = Xor(a[2], b[2]);
-  // Of three bits at the same place, how many are set: in binary, so that two bytes are counted and not
-  // three.
+  // The number of set bits among three bits at the same position, in binary, so that two bytes are counted
+  // instead of three.
   const V x_y = Xor(x, y);
   const V ones = Xor(x_y, z);
   const V twos = Or(And(x, y), And(x_y, z));

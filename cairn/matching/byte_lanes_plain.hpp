@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Vectors of one lane in plain C++, with those of Highway's operations that semi-global matching uses, under
-/// Highway's names and with its meaning; and those of byte_lanes_highway-inl.hpp.
+/// Vectors of one lane in plain C++, with the subset of Highway's operations used by semi-global matching,
+/// under Highway's names and semantics; and those of byte_lanes_highway-inl.hpp.
 namespace cairn::kernels::plain_bytes {
 
 template <class T>

@@ -3,14 +3,14 @@
 //
 // No include guard: compiled once for each target, inside HWY_BEFORE_NAMESPACE.
 
-/// Highway's operations on the widest vectors of the target, and those few that the kernels need beyond them.
-/// The same vocabulary as lanes_plain.hpp.
+/// Highway's operations on the widest vectors of the target, plus the operations that the kernels need. The
+/// same vocabulary as lanes_plain.hpp.
 namespace cairn::kernels::HWY_NAMESPACE::lanes {
 
 using namespace hwy::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary is Highway's
 
-/// first, first + 1, first + 2 … Loaded: compilers put Iota() together lane by lane, in memory, and wait for
-/// it.
+/// first, first + 1, first + 2 … Loaded, because compilers assemble Iota() lane by lane in memory and stall
+/// on it.
 template <class D, class T = TFromD<D>>
 HWY_INLINE Vec<D> CountFrom(D d, T first) {
   alignas(64) static constexpr T kNumbers[32] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10,
@@ -23,7 +23,7 @@ HWY_INLINE Vec<D> CountFrom(D d, T first) {
 template <class D>
 HWY_INLINE Vec<D> DotPairs(D d, Vec<D> a, Vec<D> b) {
 #if HWY_ARCH_X86
-  // One pmaddwd, which adds up neighbouring products.
+  // One pmaddwd, which adds neighbouring products.
   const Repartition<std::int16_t, D> d16;
   Vec<D> unused = Zero(d);
   return ReorderWidenMulAccumulate(d, BitCast(d16, a), BitCast(d16, b), Zero(d), unused);
@@ -53,7 +53,7 @@ HWY_INLINE Vec<D> AbsChange(D d, Vec<D> a, Vec<D> b) {
   const auto differences = kShift > 0 ? BitCast(d8, Abs(Sub(BitCast(signed8, a), BitCast(signed8, b))))
                                       : Sub(Max(a8, b8), Min(a8, b8));
 #if HWY_ARCH_X86
-  // One pmaddubsw: unsigned bytes times (2^kShift, −2^kShift), neighbours added up. Two products of 255 fit.
+  // One pmaddubsw: unsigned bytes times (2^kShift, −2^kShift), neighbours added. Two products of 255 fit.
   using V = Vec<D>;
   const V signs = Set(d, static_cast<std::int16_t>((-(1 << kShift) & 0xFF) << 8 | 1 << kShift));
 #if HWY_TARGET <= HWY_AVX3
@@ -70,13 +70,13 @@ HWY_INLINE Vec<D> AbsChange(D d, Vec<D> a, Vec<D> b) {
 #endif
 }
 
-/// The least of all lanes.
+/// The minimum over all lanes.
 template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
 HWY_INLINE auto LeastLane(D d, Vec<D> v) {
   return GetLane(MinOfLanes(d, v));
 }
-/// The lanes are seen as rows of eight, one below the other. The least of all (less −32768), and above its 16
-/// bits the first column that it stands in.
+/// The lanes as rows of eight, one below the other: the minimum (minus 32768), and above its 16 bits the
+/// first column with it.
 template <class D>
 HWY_INLINE std::int32_t LeastEighth([[maybe_unused]] D d, Vec<D> v) {
   if constexpr (MaxLanes(D()) > 8) {
@@ -101,7 +101,7 @@ HWY_INLINE std::int16_t LeastLane(D d, Vec<D> v) {
   return static_cast<std::int16_t>(LeastEighth(d, v) ^ 0x8000);
 }
 
-/// The first lane that holds no more than `most` does, the vectors' lanes counted on. There is one.
+/// The first lane with a value of at most `most`, counted over all vectors. One exists.
 template <class D, int kCount>
 HWY_INLINE int FirstUpTo([[maybe_unused]] D d, const Vec<D> (&v)[kCount], Vec<D> most) {
   constexpr int kLanes = static_cast<int>(MaxLanes(D()));
@@ -120,7 +120,7 @@ HWY_INLINE int FirstUpTo([[maybe_unused]] D d, const Vec<D> (&v)[kCount], Vec<D>
 #endif
 }
 
-/// Of all vectors one, lane by lane the least.
+/// The lane-wise minimum of all vectors.
 template <class V, int kCount>
 HWY_INLINE V LeastOf(const V (&v)[kCount]) {
   V least = v[0];
@@ -129,16 +129,16 @@ HWY_INLINE V LeastOf(const V (&v)[kCount]) {
   return least;
 }
 
-/// The same of all vectors, one below the other.
+/// The same for all vectors, one below the other.
 template <class D, int kCount>
 HWY_INLINE std::int32_t LeastOfEights(D d, const Vec<D> (&v)[kCount]) {
   return LeastEighth(d, LeastOf(v));
 }
 
-/// Registers hold the costs of several pixels at a time.
+/// Whether registers hold the costs of several pixels at a time.
 constexpr bool kManyCosts = HWY_TARGET == HWY_AVX3;
 
-/// So many vectors are brought down to one lane each at a time: as many as stand side by side in 128 bits.
+/// Number of vectors that are reduced to one lane each at a time: as many as fit side by side into 128 bits.
 template <class D>
 constexpr int kFolded = 16 / static_cast<int>(sizeof(TFromD<D>));
 template <class D>
@@ -165,7 +165,7 @@ HWY_INLINE Vec<Folded<D>> FoldBlocks([[maybe_unused]] D d, Vec<D> v) {
     return v;
   }
 }
-/// Lane k: all lanes of v[k]. Two vectors become one, their lanes side by side and half as many of each,
+/// Lane k: the reduction of v[k]. Two vectors become one, their lanes side by side and half as many of each,
 /// until one is left.
 template <class Op, class D>
 HWY_INLINE Vec<Folded<D>> FoldEach(D d, Vec<D> (&v)[kFolded<D>]) {
@@ -178,7 +178,7 @@ HWY_INLINE Vec<Folded<D>> FoldEach(D d, Vec<D> (&v)[kFolded<D>]) {
   return FoldBlocks<Op>(d, v[0]);
 }
 
-/// The sum of all lanes: the upper half is added to the lower one until one lane is left.
+/// The sum of all lanes: the upper half is added to the lower one repeatedly.
 template <class D>
 HWY_INLINE float SumByHalves(D d, Vec<D> v) {
   if constexpr (MaxLanes(D()) > 4) {
@@ -191,7 +191,7 @@ HWY_INLINE float SumByHalves(D d, Vec<D> v) {
   }
 }
 
-/// A sum of 16-bit numbers, in fewer and wider lanes: none yet; with those of v.
+/// A sum of 16-bit numbers, in fewer and wider lanes: initially none; plus those of v.
 template <class D>
 using SumTag = Repartition<std::int32_t, D>;
 template <class D>
@@ -212,7 +212,7 @@ HWY_INLINE SumOf<D> AddPairs(D d, SumOf<D> sum, Vec<D> v) {
   return Add(sum, Add(ShiftRight<16>(ShiftLeft<16>(pairs)), ShiftRight<16>(pairs)));
 #endif
 }
-/// `before`'s last lane and the lanes of v up to each, added up. Of at most 4 lanes.
+/// Prefix sums of the lanes of v, plus the last lane of `before`. For at most 4 lanes.
 template <class D>
 HWY_INLINE Vec<D> RunningSum(D d, Vec<D> before, Vec<D> v) {
   v = Add(v, ShiftLeftLanes<1>(d, v));
@@ -220,12 +220,12 @@ HWY_INLINE Vec<D> RunningSum(D d, Vec<D> before, Vec<D> v) {
   return Add(v, Broadcast<3>(before));
 }
 
-/// As many smaller numbers as there are 32-bit lanes.
+/// A vector of smaller numbers with as many lanes as 32-bit lanes.
 template <class D, class T>
 HWY_INLINE Vec<D> LoadWidened(D d, const T* from) {
   return PromoteTo(d, LoadU(Rebind<T, D>(), from));
 }
-/// The first and the third number of each four.
+/// The first and the third number of each group of four.
 template <class D>
 struct FirstAndThird {
   Vec<D> first;
@@ -252,7 +252,7 @@ HWY_INLINE void StoreNarrowed(D, Vec<D> v, T* to) {
   StoreU(DemoteTo(small, v), small, to);
 }
 
-/// n·a − b·c in double lanes: below 2^53, thus exact.
+/// n·a − b·c in double lanes: below 2^53, hence exact.
 template <class DD, class VI>
 HWY_INLINE Vec<DD> DoubleDifference(DD dd, VI n, VI a, VI b, VI c) {
   return Sub(Mul(PromoteTo(dd, n), PromoteTo(dd, a)), Mul(PromoteTo(dd, b), PromoteTo(dd, c)));

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-/// Vectors of one lane in plain C++, with those of Highway's operations that the kernels use, under Highway's
-/// names and with its meaning. The kernels compiled over these are Target::scalar.
+/// Vectors of one lane in plain C++, with the subset of Highway's operations used by the kernels, under
+/// Highway's names and semantics. The kernels compiled with these are Target::scalar.
 namespace cairn::kernels::plain {
 
 template <class T>
@@ -82,7 +82,7 @@ inline float Div(float a, float b) {
 inline float Sqrt(float a) {
   return std::sqrt(a);
 }
-// As on every processor, what overflows wraps around.
+// Overflow wraps around, as on every processor.
 constexpr std::uint32_t bits(std::int32_t a) {
   return static_cast<std::uint32_t>(a);
 }
@@ -198,18 +198,17 @@ template <class T>
 T LeastLane(Tag<T>, T v) {
   return v;
 }
-/// The first lane that holds no more than `most` does, the vectors' lanes counted on. There is one.
+/// The first lane with a value of at most `most`, counted over all vectors. One exists.
 template <class T, int kCount>
 int FirstUpTo(Tag<T>, const T (&v)[kCount], T most) {
   return static_cast<int>(std::find_if(v, v + kCount, [=](T lane) { return lane <= most; }) - v);
 }
-/// Of all vectors one, lane by lane the least.
+/// The lane-wise minimum of all vectors.
 template <class T, int kCount>
 T LeastOf(const T (&v)[kCount]) {
   return *std::min_element(v, v + kCount);
 }
-/// The lanes are seen as rows of eight. The least of all (less −32768), and above its 16 bits the first
-/// column that it stands in.
+/// The lanes as rows of eight: the minimum (minus 32768), and above its 16 bits the first column with it.
 template <int kCount>
 std::int32_t LeastOfEights(Tag<std::int16_t>, const std::int16_t (&v)[kCount]) {
   std::uint32_t first = ~0U;
@@ -221,7 +220,7 @@ std::int32_t LeastOfEights(Tag<std::int16_t>, const std::int16_t (&v)[kCount]) {
 inline std::int32_t Reverse(Tag<std::int32_t>, std::int32_t v) {
   return v;
 }
-/// `before`'s last lane and the lanes of v up to each, added up.
+/// Prefix sums of the lanes of v, plus the last lane of `before`.
 inline std::int32_t RunningSum(Tag<std::int32_t>, std::int32_t before, std::int32_t v) {
   return Add(before, v);
 }
@@ -240,7 +239,7 @@ template <class D>
 using Folded = D;
 struct Lesser {};
 struct Sum {};
-/// Lane k: all lanes of v[k].
+/// Lane k: the reduction of v[k].
 template <class Op, class T>
 T FoldEach(Tag<T>, const T (&v)[1]) {
   return v[0];

@@ -3,11 +3,11 @@
 //
 // No include guard: compiled once for each target, over the vocabulary `bytes` of that target.
 //
-// How paths are followed. Vectors run along the disparity, one byte for each candidate. Lanes beyond the last
-// candidate have a cost of 255; sums saturate, so that their L stays 255, and no real lane ever takes
-// anything from them: a real L is at most 54 + 127. For the same reason a saturated L + P1 changes nothing.
+// Path accumulation. Vectors run along the disparity, one byte per candidate. Lanes beyond the last candidate
+// have a cost of 255; sums saturate, so their L stays 255 and no real lane takes a minimum from them: a real
+// L is at most 54 + 127. For the same reason a saturated L + P1 has no effect.
 //
-// What a path adds to C is at most P2. Only that is kept of the vertical paths, both in the same byte.
+// A path adds at most P2 to C. Only that part is stored for the vertical paths, both in the same byte.
 #include <cairn/matching/byte_lanes-inl.hpp>
 #include <cairn/matching/lanes-inl.hpp>
 
@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::uint8_t kNoLane = 255;
 constexpr int kOutsideCost = 12;        // of 24 bits
-constexpr std::int16_t kNoSum = 32767;  // of a candidate that does not exist
-constexpr int kBlock = 32;              // left pixels whose sums are held at a time
-constexpr int kBlockMargin = 32;        // lanes without candidate before, between and after pixels' sums
+constexpr std::int16_t kNoSum = 32767;  // of a missing candidate
+constexpr int kBlock = 32;              // left pixels whose sums are kept at a time
+constexpr int kBlockMargin = 32;  // lanes without candidate before, between and after the sums of pixels
 
 template <class D>
 CAIRN_LANES_INLINE int lane_count(D d) {
@@ -28,7 +28,7 @@ CAIRN_LANES_INLINE int lane_count(D d) {
 // ---------------------------------------------------------------------------------------------------------------
 // Census and smoothing
 
-/// The five rows around a row, each with its border replicated. Row y − 2 … y + 2 stands in slot y mod 5.
+/// The five rows around a row, with replicated borders. Row y − 2 … y + 2 is in slot y mod 5.
 class PaddedRows {
  public:
   static constexpr int kBorder = 2;
@@ -50,7 +50,7 @@ class PaddedRows {
     std::fill_n(to, kBorder, to[kBorder]);
     std::fill_n(to + kBorder + width, kBorder, to[kBorder + width - 1]);
   }
-  /// Its first real pixel.
+  /// The first real pixel.
   [[nodiscard]] const std::uint8_t* row(int y) const { return slot(y) + kBorder; }
 
  private:
@@ -61,7 +61,7 @@ class PaddedRows {
   Scratch<std::uint8_t> rows_;
 };
 
-/// Eight of the window's comparisons make a byte; the centre is none of them.
+/// Packs eight comparisons of the window into a byte; the centre is not compared.
 template <bool kMirrored>
 void census_row(const PaddedRows& rows, int y, int width, std::uint8_t* bits, int plane) {
   const bytes::CappedTag<std::uint8_t, 64> d;
@@ -114,7 +114,7 @@ inline void describe_rows(const SemiGlobalTask& task, int first, int last) {
 // ---------------------------------------------------------------------------------------------------------------
 // One step of a path
 
-/// P2 of the step between two neighbours. `large`: by the step of intensity.
+/// P2 of the step between two neighbours. `large`: indexed by the intensity step.
 CAIRN_LANES_INLINE std::uint8_t large_penalty(const std::uint8_t* large, Gray a, Gray b) {
   return large[std::abs(a - b)];
 }
@@ -127,7 +127,7 @@ struct Stored {
   [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<D> get(int i) const { return bytes::Load(d, at + i); }
   CAIRN_LANES_INLINE void set(int i, bytes::Vec<D> along) const { bytes::Store(along, d, at + i); }
 };
-/// … and, where one vector is all of it, at hand.
+/// … and in a register, if one vector holds all of it.
 template <class D>
 struct Held {
   bytes::Vec<D>& all;
@@ -135,9 +135,9 @@ struct Held {
   CAIRN_LANES_INLINE void set(int, bytes::Vec<D> along) const { all = along; }
 };
 
-/// Goes on by one pixel: `along` holds the L of the pixel before and gets this one's. `least` is the least of
-/// the former in every lane; the least of the latter is returned. Where a path begins, all of them are 0.
-/// use(i, C, L − C) is called for each vector.
+/// Advances by one pixel: `along` holds the L of the previous pixel and receives that of this one. `least` is
+/// the minimum of the former in every lane; returns the minimum of the latter. At the start of a path, all
+/// are 0. Calls use(i, C, L − C) for each vector.
 template <class D, class Along, class Use>
 CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Along& along,
                                        bytes::Vec<D> least, bytes::Vec<D> small, bytes::Vec<D> large,
@@ -150,7 +150,7 @@ CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Alo
     const auto next = i + lane_count(d) < lanes ? along.get(i + lane_count(d)) : none;
     const auto neighbour = bytes::Min(bytes::SlideUp(d, before, here), bytes::SlideDown(d, here, next));
     const auto kept = bytes::Min(here, bytes::SaturatedAdd(neighbour, small));
-    const auto step = bytes::Min(bytes::Sub(kept, least), large);  // Eq. 13 less C
+    const auto step = bytes::Min(bytes::Sub(kept, least), large);  // Eq. 13 minus C
     const auto cost = bytes::Load(d, costs + i);
     const auto sum = bytes::SaturatedAdd(cost, step);
     along.set(i, sum);
@@ -162,7 +162,7 @@ CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Alo
   return bytes::MinOfAll(d, least_now);
 }
 
-/// What is done with L − C: kept, added to what is there, or added up with all the rest.
+/// The use of L − C: stored, added to the stored value, or added to the total.
 template <class D>
 struct Keep {
   D d;
@@ -223,13 +223,13 @@ class Descent {
   }
 
  private:
-  /// Σh over three neighbours of row y.
+  /// Σh over three neighbours in row y.
   [[nodiscard]] std::uint8_t* sums(int y) const {
     return sums_.data() + std::clamp(y, 0, g_.height - 1) % 3 * (last_ - first_) * g_.lanes;
   }
 
-  // What is reached through a pointer is copied first, here and below: as far as the compiler knows, a vector
-  // of bytes that is stored may be any of it.
+  // Data behind pointers is copied first, here and below: for the compiler, a stored vector of bytes may
+  // alias any of it.
 
   void sum_rows(int y) {
     const D d;
@@ -351,9 +351,8 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
 // ---------------------------------------------------------------------------------------------------------------
 // The paths to the left and to the right, and the winners
 
-/// Rows first … last − 1. What a pixel adds to a path waits for what the one before it added, and a processor
-/// could do several times as much meanwhile: so the paths of up to kRowsAbreast rows are followed side by
-/// side.
+/// Rows first … last − 1. Each pixel of a path depends on the one before, which leaves a processor mostly
+/// idle: so the paths of up to kRowsAbreast rows are computed concurrently.
 template <class D, bool kOneVector>
 class Crossing {
   using Sums = lanes::CappedTag<std::int16_t, 32>;
@@ -391,20 +390,20 @@ class Crossing {
     go_right<kRows>(y);
   }
 
-  /// Some rows' paths in one direction.
+  /// The paths of some rows in one direction.
   template <int kRows>
   struct Paths {
     const std::uint8_t* costs[kRows];
     const Gray* smooth[kRows];
-    std::uint8_t* along;  // unless it is at hand
+    std::uint8_t* along;  // unless in a register
     const std::uint8_t* large;
     int lanes;
     bytes::Vec<D> small;
     bytes::Vec<D> held[kRows];
     bytes::Vec<D> least[kRows];
 
-    /// Goes on by pixel x in each row, coming from pixel `from`. use(row) makes what is called for each
-    /// vector.
+    /// Advances by pixel x in each row, coming from pixel `from`. use(row) returns the function called for
+    /// each vector.
     template <class Use>
     CAIRN_LANES_INLINE void step(int x, int from, const Use& use) {
       const D d;
@@ -494,7 +493,7 @@ class Crossing {
     }
   }
 
-  /// Asks for the memory that a block's maps are written to.
+  /// Prefetches the memory of the maps of a block.
   CAIRN_LANES_INLINE void expect_maps(int x_first, int y) const {
     const Matches& out = task_.out;
     expect_writes(out.best.row(y) + x_first, kBlock);
@@ -510,13 +509,12 @@ class Crossing {
     return sums_.data() + (row * kBlock + pixel) * stride_ + kBlockMargin;
   }
 
-  /// Numbers of a block's pixels.
+  /// One number per pixel of a block.
   template <class T>
   using OfBlock = std::array<T, kBlock>;
 
-  /// Writes a block's part of the maps. One question after the other for all its pixels, so that no pixel
-  /// waits for its own answer. All of the block are asked, also where the row ends before. `row`: of those
-  /// side by side.
+  /// Writes the maps of a block, one property after the other for all its pixels, so that pixels do not wait
+  /// for each other. Computes whole blocks, also at the end of a row. `row`: index among the concurrent rows.
   void settle(int row, int x_first, int pixels, int y) {
     const std::int32_t* const candidates = candidates_.data() + x_first;
     if (std::min(candidates[0], candidates[pixels - 1]) < g_.lanes) hide_missing(row, x_first, pixels);
@@ -540,7 +538,7 @@ class Crossing {
       std::int16_t* const sums = sums_of(row, static_cast<int>(i)) + lane[i];
       before[i] = sums[-1];
       after[i] = sums[1];
-      sums[-1] = sums[0] = sums[1] = kNoSum;  // so that the runner-up is the least of what is left
+      sums[-1] = sums[0] = sums[1] = kNoSum;  // so that the runner-up is the minimum of the rest
     }
     alignas(64) OfBlock<std::int16_t> runner_up;
     fold<Sums, lanes::Lesser>(
@@ -564,7 +562,7 @@ class Crossing {
     }
   }
 
-  /// Takes out the lanes without candidate.
+  /// Masks the lanes without candidate.
   void hide_missing(int row, int x_first, int pixels) const {
     const Sums d;
     const auto none = lanes::Set(d, kNoSum);
@@ -580,7 +578,7 @@ class Crossing {
     }
   }
 
-  /// out[pixel] = all lanes of of(pixel) together.
+  /// out[pixel] = the reduction of of(pixel).
   template <class Tag, class Op, class Of, class T>
   static CAIRN_LANES_INLINE void fold(const Of& of, T* out) {
     constexpr int kPixels = lanes::kFolded<Tag>;
@@ -592,8 +590,8 @@ class Crossing {
     }
   }
 
-  /// Each pixel's least sum, and the first lane that has it. Sums take ten bits, and the number of one of 64
-  /// lanes the six below: the least of these numbers is both.
+  /// The minimum sum of each pixel, and the first lane with it. Sums take ten bits, and the index of one of
+  /// 64 lanes the six bits below: the minimum of these numbers gives both.
   void find_winners(int row, OfBlock<std::int16_t>& least, OfBlock<std::int16_t>& lane) const {
     least.fill(kNoSum);
     lane.fill(0);
@@ -622,7 +620,7 @@ class Crossing {
     return least;
   }
 
-  /// Over all candidates.
+  /// The mean over all candidates.
   void write_means(int row, int x_first, int pixels, float* CAIRN_RESTRICT out) const {
     alignas(64) OfBlock<std::int32_t> totals;
     fold<lanes::SumTag<Sums>, lanes::Sum>(
@@ -642,8 +640,8 @@ class Crossing {
     }
   }
 
-  /// Hands a block's sums to the right pixels that they are about. A right pixel meets its left pixels from
-  /// left to right, its candidates thus in ascending order: strictly less keeps the smallest disparity.
+  /// Passes the sums of a block to the matching right pixels. A right pixel meets its left pixels from left
+  /// to right, hence its candidates in ascending order: strict comparison keeps the smallest disparity.
   void update_right(int row, int x_first, int pixels) {
     const Sums d;
     const auto one = lanes::Set(d, std::int16_t{1});
@@ -678,18 +676,18 @@ class Crossing {
   const SemiGlobalTask& task_;
   const SearchLayout& g_;
   int stride_;
-  Scratch<std::uint8_t> back_;  // for each row abreast: L − C of the path to the left
+  Scratch<std::uint8_t> back_;  // for each concurrent row: L − C of the leftward path
   Scratch<std::uint8_t> along_;
   Scratch<std::int16_t> sums_;        // S of a block of pixels
-  Scratch<std::int32_t> candidates_;  // [x]: so many
+  Scratch<std::int32_t> candidates_;  // [x]: number of candidates
   int right_length_;
-  Scratch<std::int16_t> right_sum_;   // least S of the right pixels, reversed
+  Scratch<std::int16_t> right_sum_;   // minimum S of the right pixels, reversed
   Scratch<std::int16_t> right_lane_;  // and its lane
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 
-using Narrow = bytes::CappedTag<std::uint8_t, 32>;  // does not waste half a vector on 32 candidates
+using Narrow = bytes::CappedTag<std::uint8_t, 32>;  // avoids half-empty vectors for 32 candidates
 using Full = bytes::CappedTag<std::uint8_t, 64>;
 
 int lanes_of(int count) {

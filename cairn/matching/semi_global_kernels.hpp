@@ -13,12 +13,12 @@
 /// to the library.
 namespace cairn::kernels {
 
-/// C of a box of nine pixels whose 24 bits all differ.
+/// C of a box of nine pixels with all 24 bits different.
 inline constexpr int kGreatestCost = (9 * 24 + 2) / 4;
-/// Two paths' penalties together fit a byte.
+/// The penalties of two paths together fit into a byte.
 inline constexpr int kGreatestPenalty = 127;
 
-/// So many rows' horizontal paths are followed side by side.
+/// Number of rows whose horizontal paths are computed concurrently.
 inline constexpr int kRowsAbreast = 2;
 
 struct SemiGlobalPenalties {
@@ -26,8 +26,8 @@ struct SemiGlobalPenalties {
   std::array<std::uint8_t, 256> large{};  // by the step of intensity
 };
 
-/// The search, and where the partners of a left pixel stand in a reversed right row: side by side, lane i for
-/// first_d + i.
+/// The search range, and the position of the candidates of a left pixel in a reversed right row: contiguous,
+/// lane i for first_d + i.
 struct SearchLayout {
   int width;
   int height;
@@ -42,12 +42,12 @@ struct SearchLayout {
   }
   [[nodiscard]] int reversed(int x_right) const { return pad() + width - 1 - x_right; }
   [[nodiscard]] int first_lane(int x) const { return reversed(x - first_d); }
-  /// The candidates of x that lie inside the right image: lanes begin … end − 1.
+  /// The candidates of x inside the right image: lanes begin … end − 1.
   [[nodiscard]] int begin(int x) const { return std::clamp(x - width + 1 - first_d, 0, count); }
   [[nodiscard]] int end(int x) const { return std::clamp(x - first_d + 1, begin(x), count); }
 };
 
-/// One call of match_semi_global(): its images and its working memory.
+/// One call of match_semi_global(): its images and working memory.
 struct SemiGlobalTask {
   SearchLayout layout;
   SemiGlobalPenalties penalties;
@@ -57,25 +57,25 @@ struct SemiGlobalTask {
   View<Gray> smooth;                // the left image, smoothed
   View<std::uint8_t> left_bits;     // census: three rows of bytes side by side, round_up(width, 64) each
   View<std::uint8_t> right_bits;    // the same reversed, layout.length() each
-  View<const std::uint8_t> inside;  // one reversed row: 255 where there is a pixel
+  View<const std::uint8_t> inside;  // one reversed row: 255 for existing pixels
   View<std::uint8_t> costs;         // C: width·lanes in a row; 255 in lanes ≥ count
-  View<std::uint8_t> steps;  // L − C of the path down; with that of the path up added once that is known
-  View<std::uint8_t> along;  // L of the path up, one row
-  View<std::uint8_t> least;  // the least of these, for each pixel
+  View<std::uint8_t> steps;         // L − C of the downward path, later plus that of the upward path
+  View<std::uint8_t> along;         // L of the upward path, one row
+  View<std::uint8_t> least;         // minimum of these for each pixel
   Matches& out;
 };
 
 struct SemiGlobalKernels {
-  /// How many lanes `count` candidates take.
+  /// Number of lanes for `count` candidates.
   int (*lanes)(int count);
   /// Census of both images and the smoothed left one, for the rows first … last − 1.
   void (*describe_rows)(const SemiGlobalTask& task, int first, int last);
-  /// Costs and the path down, for the columns first … last − 1 of all rows.
+  /// Costs and the downward path, for the columns first … last − 1 of all rows.
   void (*match_down)(const SemiGlobalTask& task, int first, int last);
-  /// The path up, for the columns first … last − 1 of the rows bottom − 1 … top. Call it from the lowest rows
-  /// to the highest.
+  /// The upward path, for the columns first … last − 1 of the rows bottom − 1 … top. To be called from the
+  /// lowest rows to the highest.
   void (*match_up)(const SemiGlobalTask& task, int first, int last, int top, int bottom);
-  /// The paths to the left and to the right, and the winners, for the rows first … last − 1.
+  /// The horizontal paths and the winners, for the rows first … last − 1.
   void (*match_across)(const SemiGlobalTask& task, int first, int last);
 };
 

@@ -12,7 +12,7 @@ using I = lanes::Rebind<std::int32_t, F>;
 using VF = lanes::Vec<F>;
 using VI = lanes::Vec<I>;
 
-/// How steeply the curve through (−1, before), (0, least), (1, after) rises.
+/// The slope of the curve through (−1, before), (0, least), (1, after).
 template <SubpixelMethod kMethod>
 CAIRN_LANES_INLINE VF steepness(VF before, VF least, VF after) {
   if constexpr (kMethod == SubpixelMethod::parabola) {
@@ -22,8 +22,8 @@ CAIRN_LANES_INLINE VF steepness(VF before, VF least, VF after) {
   }
 }
 
-/// Where that curve is lowest: within ±1/2, as `least` is the least of the three. A missing neighbour (∞) and
-/// three equal costs give 0.
+/// The minimum of that curve: within ±1/2, as `least` is the smallest of the three. 0 for a missing neighbour
+/// (∞) and for three equal costs.
 template <SubpixelMethod kMethod>
 CAIRN_LANES_INLINE VF lowest(VF before, VF least, VF after) {
   const F f;

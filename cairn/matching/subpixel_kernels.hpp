@@ -9,11 +9,11 @@
 /// The kernels of refine_subpixel(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
-/// One row of refine_subpixel(). Rows of images: whole vectors are read and written, beyond `width` in their
-/// padding.
+/// One row of refine_subpixel(). Whole vectors are read and written, beyond `width` into the padding of image
+/// rows.
 struct RefinedRow {
   const std::int16_t* best;
-  const float* before;  // nullptr: nothing is refined
+  const float* before;  // nullptr: no refinement
   const float* cost;
   const float* after;
   int width;

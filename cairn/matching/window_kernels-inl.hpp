@@ -3,7 +3,7 @@
 //
 // No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
 //
-// The walk over a band of rows: geometry-inl.hpp says how a row is matched.
+// The walk over a band of rows; geometry-inl.hpp describes the matching of a row.
 
 // clang-format off
 #include <cairn/matching/lanes-inl.hpp>
@@ -18,8 +18,7 @@ namespace {
 template <Cost kCost, class Width, bool kDouble>
 class Band {
   using Lane = typename Width::Cost;
-  using KeptTag =
-      std::conditional_t<std::is_same_v<Width, Wide>, F, I>;  // of costs that are made Matches' own
+  using KeptTag = std::conditional_t<std::is_same_v<Width, Wide>, F, I>;  // of costs converted for Matches
   using Strip = kernels::CAIRN_KERNEL_TARGET::Strip<Width>;
   using CostBlock = kernels::CAIRN_KERNEL_TARGET::CostBlock<Lane>;
   using RightRow = kernels::CAIRN_KERNEL_TARGET::RightRow<Lane>;
@@ -33,7 +32,7 @@ class Band {
         radius_(task.config.row_band),
         first_(first),
         last_(last),
-        // The right rows at the band's ends are also matched by left rows beyond them.
+        // The right rows at the ends of the band are also matched by left rows beyond them.
         first_matched_(full_ ? std::max(0, first - radius_) : first),
         last_matched_(full_ ? std::min(g_.height, last + radius_) : last),
         exists_(g_),
@@ -68,14 +67,14 @@ class Band {
 
  private:
   [[nodiscard]] bool mine(int y) const { return y >= first_ && y < last_; }
-  /// Left row y and its partner in the strip both exist.
+  /// Whether left row y and its partner in the strip both exist.
   [[nodiscard]] bool inside(const Strip& strip, int y) const {
     return y >= 0 && y < g_.height && y + strip.row >= 0 && y + strip.row < g_.height;
   }
 
   // -- rows -----------------------------------------------------------------------------------------------
 
-  /// Lays the row that comes in and the one that goes out side by side, and moves the moments down.
+  /// Interleaves the incoming and the outgoing row, and moves the moments down.
   void load_rows(Strip& strip, int incoming, int outgoing) {
     const bool comes = inside(strip, incoming);
     const bool goes = inside(strip, outgoing) && outgoing >= first_matched_ - g_.half;
@@ -88,18 +87,18 @@ class Band {
     if constexpr (correlates(kCost)) {
       move_down<-1>(strip.left, strip.left_pairs.data());
       move_down<1>(strip.right, strip.right_pairs.data());
-      // The moments are those of the pixels as they are.
+      // The moments are those of the unscaled pixels.
       if (g_.scale > 1) scale_pairs(strip.left_pairs.data() + g_.pad, g_.width, g_.scale);
     }
   }
 
-  /// A row of −1 does not exist; it is all zeros in both images.
+  /// Row −1 does not exist; it is all zeros in both images.
   template <class Pixel>
   void load_pairs(Strip& strip, View<const Pixel> left, View<const Pixel> right, int incoming, int outgoing) {
     const auto* zeros = reinterpret_cast<const Pixel*>(zeros_.data());
     const Pixel* in = incoming >= 0 ? left.row(incoming) : zeros;
     const Pixel* out = outgoing >= 0 ? left.row(outgoing) : zeros;
-    // Of a correlation, the product that goes out is taken away.
+    // For a correlation, the outgoing product is subtracted.
     constexpr int kSign = correlates(kCost) ? -1 : 1;
     pair_up<Width, kSign>(in, out, g_.width, strip.left_pairs.data() + g_.pad);
 
@@ -119,7 +118,7 @@ class Band {
     }
   }
 
-  /// The strip's columns x < end, further down by the row loaded last.
+  /// The columns x < end of the strip, moved down by the row loaded last.
   void begin_row(const Strip& strip, int end) {
     const Rows<Width> rows(strip, g_, exists_);
     for_each_tile([&]<int kLanes>(int first) { begin_box<kCost, Width, kLanes>(rows, first, end); });
@@ -143,18 +142,18 @@ class Band {
     if (mine(y)) settle_winners(y);
   }
 
-  /// The strip's costs for left row y go into a map of this band.
+  /// Whether the costs of the strip for left row y go into a map of this band.
   [[nodiscard]] bool wanted(const Strip& strip, int y) const {
     return inside(strip, y) && (mine(y) || (full_ && mine(y + strip.row)));
   }
 
-  /// So many left pixels and one row of the right image: what is done before the block is looked at.
+  /// A number of left pixels and one row of the right image, processed before the block is evaluated.
   struct Work {
     const Strip* strip = nullptr;
     const Rows<Width>* rows = nullptr;
     int x_first = 0;
     int x_last = 0;
-    bool begins = false;  // with the first strip
+    bool begins = false;  // at the first strip
     bool ends = false;
   };
 
@@ -162,7 +161,7 @@ class Band {
     const auto unwanted = [&](const Strip& strip) { return !wanted(strip, y); };
     const auto first = std::find_if_not(strips_.begin(), strips_.end(), unwanted);
     const auto last = std::find_if_not(strips_.rbegin(), strips_.rend(), unwanted).base();
-    // Once for all blocks: what was just written number by number and is copied at once must be waited for.
+    // Once for all blocks: copying data right after writing it number by number would stall.
     rows_.clear();
     for (const Strip& strip : strips_) rows_.emplace_back(strip, g_, exists_);
     for (int x = 0; x < g_.width; x += step_) {
@@ -182,7 +181,7 @@ class Band {
     for_each_tile([&, rows = rows, x_first = x_first, x_last = x_last]<int kLanes>(int first) {
       const int least_d = g_.first_d + first;
       const int most_d = least_d + kLanes - 1;
-      // From x_inside to x_border − 1 nothing is clipped and nothing missing.
+      // From x_inside to x_border − 1 nothing is clipped or missing.
       const bool ragged = first + kLanes > g_.count;
       const int x_end = std::clamp(g_.width - g_.half, x_first, x_last);
       const int x_inside = ragged ? x_end : std::clamp(g_.half + std::max(0, most_d), x_first, x_end);
@@ -195,7 +194,7 @@ class Band {
       };
       int x_second_half = x_first;
       if constexpr (std::is_same_v<Width, Wide> && kLanes == kTile) {
-        // Before, not even a column of the tile's second half has a partner.
+        // Before that, the second half of the tile has no candidate in any column.
         constexpr int kHalf = kTile / 2;
         if (!keeps_costs_) x_second_half = std::clamp(least_d + kHalf - g_.half, x_first, x_inside);
         if (x_second_half > x_first)
@@ -253,9 +252,9 @@ class Band {
     std::copy_n(winners_.row.data(), g_.width, task_.out.row_offset.row(y));
   }
 
-  /// Writes what a block's costs tell beside the winners. One question after the other for all its pixels, so
-  /// that no pixel waits for its own answer. All of the block are asked, also where the row ends before;
-  /// written are whole vectors, to which rows of images are padded.
+  /// Writes the properties of the costs of a block besides the winners, one after the other for all its
+  /// pixels, so that pixels do not wait for each other. Computes whole blocks, also at the end of a row, and
+  /// writes whole vectors, for which rows of images are padded.
   void settle_maps(const CostBlock& block, int x_first, int pixels, int y) {
     if (full_) settle_mean(block, x_first, pixels, y);
     const std::int32_t* const best = winners_.lane.data() + x_first;
@@ -263,14 +262,14 @@ class Band {
     Lane* costs = block.of(0) - 1;
     const std::ptrdiff_t stride = block.stride;
     for (std::ptrdiff_t i = 0; i < kBlock; ++i) {
-      // So that the runner-up is the least of what is left.
+      // So that the runner-up is the minimum of the rest.
       take_three<Width>(costs + best[i], around.data() + 4 * i);
       costs += stride;
     }
     alignas(64) std::array<Lane, kBlock> runner_up;
     runner_up.fill(kNone<Lane>);
     for_each_tile([&]<int kLanes>(int first) { keep_least<Width, kLanes>(block, first, runner_up); });
-    // Only now, as vectors: what was just written number by number would have to be waited for.
+    // Only now, as vectors: right after writing number by number, loads would stall.
     store_neighbours(around, pixels, task_.out.cost_before.row(y) + x_first,
                      task_.out.cost_after.row(y) + x_first);
     store_costs(runner_up, pixels, task_.out.runner_up.row(y) + x_first);
@@ -285,8 +284,8 @@ class Band {
     }
   }
 
-  /// Asks for the memory that a block's maps are written to, a row before: more of them are written than a
-  /// processor looks ahead for.
+  /// Prefetches the memory of the maps of a block, one row ahead: there are more streams than the hardware
+  /// prefetcher follows.
   CAIRN_LANES_INLINE void expect_maps(int x_first, int y) const {
     const Matches& out = task_.out;
     expect_writes(out.cost.row(y) + x_first, kBlock);
@@ -369,7 +368,7 @@ class Band {
   int step_;  // left pixels in a block
   Block<Width> block_;
   CostBlock least_;                   // over the rows of the band
-  Scratch<std::int32_t> candidates_;  // [x]: so many
+  Scratch<std::int32_t> candidates_;  // [x]: number of candidates
   RowWinners winners_;
   std::vector<Strip> strips_;
   std::vector<Rows<Width>> rows_;  // of these

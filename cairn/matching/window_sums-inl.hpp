@@ -3,7 +3,7 @@
 //
 // No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
 //
-// Running sums over windows, and the costs that they make.
+// Running sums over windows, and the costs from them.
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
@@ -13,25 +13,25 @@ int length(const Scratch<T>& list) {
   return static_cast<int>(list.size());
 }
 
-/// Sums of one image's own windows for the current row, each clipped at that image's borders. Entries: the
-/// pixels of the row in the order of its pairs, with margins before and after.
+/// Sums over the windows of one image for the current row, clipped at its borders. Entries: the pixels of the
+/// row in the order of its pairs, with margins before and after.
 struct Moments {
   int half;
-  int lead;                             // entries before the first, so many that vectors stay aligned
+  int lead;                             // entries before the first; keeps vectors aligned
   int first;                            // entry of a pixel
-  int width;                            // so many are
+  int width;                            // number of pixels
   Scratch<std::int32_t> column_sum;     // [lead + entry]
   Scratch<std::int32_t> column_energy;  // likewise, of squares
   Scratch<std::int32_t>
       sum_before;  // [lead + entry]: over the columns before the entry; may wrap, differences do not
   Scratch<std::int32_t> energy_before;
-  Scratch<std::int32_t> columns;  // [entry]: of the window, those inside the image
+  Scratch<std::int32_t> columns;  // [entry]: columns of the window inside the image
   Scratch<std::int32_t> sum;
   Scratch<std::int32_t> energy;
   Scratch<std::int32_t> variance;  // n·energy − sum², modulo 2^32
-  Scratch<float> inverse;          // root, as the operator asks for it
+  Scratch<float> inverse;          // inverse root needed by the operator
 
-  /// Operators that compare nothing but differences need none.
+  /// Operators on differences only need none.
   Moments(const Geometry& g, bool wanted)
       : half(g.half),
         lead(wanted ? round_up(half, 16) : 0),
@@ -52,13 +52,13 @@ struct Moments {
   }
 };
 
-/// Left windows, whole in their own image, that the right image's left border cuts: only their columns from d
-/// on have a partner. Of each left pixel x there are those for d = x − half + 1 … x; entries of no pixel may
-/// hold anything.
+/// Left windows, complete in their own image, that the left border of the right image cuts: only their
+/// columns from d on have a partner. For each left pixel x, those for d = x − half + 1 … x; unused entries
+/// are undefined.
 struct CutWindows {
   int half;
   int first_x;
-  int count;   // of pixels
+  int count;   // number of pixels
   int stride;  // from pixel to pixel
   Scratch<std::int32_t> columns;
   Scratch<std::int32_t> sum;
@@ -81,12 +81,12 @@ struct CutWindows {
   [[nodiscard]] int at(int x, int d) const { return kMargin + (x - first_x) * stride + d - (x - half + 1); }
 };
 
-/// What one row of the right image (the left row's own, or one of its band) is correlated with.
+/// The row of the right image (in the same row, or one of its band) correlated with a left row.
 template <class Width>
 struct Strip {
   using Sum = typename Width::Sum;
-  int row;                   // of the right image, relative to the left one's
-  int rows = 0;              // of the window, those inside both images
+  int row;                   // of the right image, relative to that of the left one
+  int rows = 0;              // rows of the window inside both images
   Scratch<Sum> column_sums;  // Geometry::column(); in units of 1/2^Width::kShift
   Scratch<Sum> box;          // [lane]
   Scratch<Sum> left_pairs;   // [pad + x]
@@ -116,7 +116,7 @@ CAIRN_LANES_INLINE VI pair_up(const Pixel* in, const Pixel* out) {
   return lanes::Sub(comes, goes);  // of numbers ≥ 0
 }
 
-/// Lays the pixels of two rows side by side, one that comes in and one that goes out, the latter times kSign.
+/// Interleaves the pixels of two rows, one incoming and one outgoing, the latter times kSign.
 template <class Width, int kSign, class Pixel>
 void pair_up(const Pixel* in, const Pixel* out, int width, typename Width::Sum* pairs) {
   int x = 0;
@@ -128,7 +128,7 @@ void pair_up(const Pixel* in, const Pixel* out, int width, typename Width::Sum* 
   for (; x < width; ++x) pairs[x] = Width::pair_of(in[x], kSign * out[x]);
 }
 
-/// The same, the last pixel first.
+/// The same, last pixel first.
 template <class Width, class Pixel>
 void pair_up_reversed(const Pixel* in, const Pixel* out, int width, typename Width::Sum* pairs) {
   int x = 0;
@@ -143,7 +143,7 @@ void pair_up_reversed(const Pixel* in, const Pixel* out, int width, typename Wid
   for (int i = 0; i < width - x; ++i) pairs[i] = Width::pair_of(last_in[-i], last_out[-i]);
 }
 
-/// Pairs of small numbers times one that keeps them small.
+/// Multiplies pairs of small numbers; the products stay small.
 inline void scale_pairs(std::int32_t* pairs, int count, int scale) {
   const I i32;
   for (int x = 0; x < count; x += lane_count<Wide>()) {
@@ -151,20 +151,20 @@ inline void scale_pairs(std::int32_t* pairs, int count, int scale) {
   }
 }
 
-/// Which candidates there are at all: all bits set, or none.
+/// Masks of the existing candidates: all bits set, or none.
 template <class Width>
 struct Existence {
   using Sum = typename Width::Sum;
-  Scratch<Sum> inside;  // of a reversed row: is there such a pixel?
-  Scratch<Sum> within;  // [lane]: is there such a candidate?
+  Scratch<Sum> inside;  // of a reversed row: mask of existing pixels
+  Scratch<Sum> within;  // [lane]: mask of existing candidates
   explicit Existence(const Geometry& g) : inside(g.length + 16), within(g.lanes) {
     std::fill_n(inside.data() + g.pad, g.width, Sum{-1});
     std::fill_n(within.data(), g.count, Sum{-1});
   }
 };
 
-/// A strip's and its geometry's numbers as plain locals: the compiler must assume that a vector store changes
-/// whatever is reached through a reference, and would fetch it anew for every vector.
+/// The numbers of a strip and its geometry as local variables: behind a reference, the compiler must assume
+/// that vector stores change them, and would reload them for every vector.
 template <class Width>
 struct Rows {
   using Sum = typename Width::Sum;
@@ -225,7 +225,7 @@ struct Rows {
 // ----------------------------------------------------------------------------------------------------
 // Formulas: pixel_math.hpp, lane by lane
 
-/// n·a − b·c, rounded once. In 32 bits where the result is known to fit them, whatever the products do.
+/// n·a − b·c, rounded once. In 32 bits if the result is known to fit, whatever the products do.
 template <bool kDouble>
 CAIRN_LANES_INLINE VF difference(VI n, VI a, VI b, VI c) {
   if constexpr (kDouble) {
@@ -244,8 +244,8 @@ CAIRN_LANES_INLINE VF inverse_root(VI n, VI energy, VI sum) {
   return lanes::IfThenElseZero(lanes::Gt(v, lanes::Zero(f)), lanes::Div(lanes::Set(f, 1.0F), lanes::Sqrt(v)));
 }
 
-/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp: of the left window, and of
-/// the right ones.
+/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp: of the left and of the right
+/// windows.
 struct LeftSums {
   VI n;
   VI n_of_box;  // n over the scale of box sums
@@ -293,8 +293,8 @@ CAIRN_LANES_INLINE VF cost_of(VI box, const LeftSums& left, const RightSums& rig
   }
 }
 
-/// The same where left.n_of_box is 1. For zssd the moments of `left` and `right` are N·ΣL² − (ΣL)² and
-/// N·ΣR² − (ΣR)² in place of ΣL² and ΣR².
+/// The same for left.n_of_box = 1. For zssd the moments of `left` and `right` are N·ΣL² − (ΣL)² and N·ΣR² −
+/// (ΣR)² instead of ΣL² and ΣR².
 template <Cost kCost>
 CAIRN_LANES_INLINE VF cost_of_whole(VI box, const LeftSums& left, const RightSums& right) {
   const F f;
@@ -312,7 +312,7 @@ CAIRN_LANES_INLINE VF cost_of_whole(VI box, const LeftSums& left, const RightSum
 // ----------------------------------------------------------------------------------------------------
 // The windows' own sums
 
-/// The columns' sums, one row further down. kSign: with which the pairs hold the row that goes out.
+/// Moves the sums of the columns one row down. kSign: the sign of the outgoing row in the pairs.
 template <int kSign>
 void move_down(Moments& m, const std::int32_t* pairs) {
   const I i32;
@@ -345,7 +345,7 @@ inline void sum_up_columns(Moments& m) {
   }
 }
 
-/// Every window's own sums, out of the columns'. `rows`: of the window, those inside.
+/// The sums of every window, from those of the columns. `rows`: rows of the window inside.
 template <Cost kCost, bool kDouble>
 void sum_windows(Moments& m, int rows) {
   const I i32;
@@ -374,7 +374,7 @@ void sum_windows(Moments& m, int rows) {
   }
 }
 
-/// The same for those that the right image cuts.
+/// The same for windows cut by the right image.
 template <Cost kCost, bool kDouble>
 void sum_cut_windows(const Moments& left, int rows, CutWindows& cut) {
   const lanes::CappedTag<std::int32_t, 4> few;
@@ -403,7 +403,7 @@ void sum_cut_windows(const Moments& left, int rows, CutWindows& cut) {
   }
 }
 
-/// Where no window is clipped at the left or right: each image's own.
+/// Without clipping at the left or right: the sums of each image.
 CAIRN_LANES_INLINE LeftSums own_left_sums(const Rows<Wide>& in, int x) {
   const I i32;
   const F f;
@@ -434,8 +434,8 @@ CAIRN_LANES_INLINE VI clipped_left_sum(const std::int32_t* before, const Geometr
   return lanes::Sub(high, low);
 }
 
-/// The sum over the same columns' partners. Where a partner lies outside, its column is 0 and need not be
-/// left out.
+/// The sum over the partners of the same columns. A partner outside has a column of 0 and need not be
+/// skipped.
 CAIRN_LANES_INLINE VI clipped_right_sum(const std::int32_t* before, const Geometry& g, int begin, int end,
                                         int i) {
   const I i32;
@@ -444,8 +444,7 @@ CAIRN_LANES_INLINE VI clipped_right_sum(const std::int32_t* before, const Geomet
                     lanes::LoadU(i32, at + g.first_lane(end - 1)));
 }
 
-/// The same near the left and right borders: of those columns alone that lie inside both images, lane by
-/// lane.
+/// The same near the left and right borders: over columns inside both images, lane by lane.
 template <Cost kCost, bool kDouble>
 CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
   const I i32;
@@ -463,7 +462,7 @@ CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
   const int least_d = g.first_d + i;
   const int most_d = least_d + lane_count<Wide>() - 1;
   if (begin >= most_d && end <= g.width + least_d) {
-    // Nothing but the left image's own border clips its window.
+    // Only the border of the left image itself clips its window.
     const int e = g.pad + x;
     left.l = lanes::Set(i32, in.l[e]);
     left.ll = lanes::Set(i32, in.ll[e]);
@@ -474,7 +473,7 @@ CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
     left.inverse_l = inverse_root<kCost, kDouble>(left.n, left.ll, left.l);
   }
   RightSums right = own_right_sums(in, g.first_lane(x) + i);
-  // The right windows are clipped by their own image already, unless the left one cuts off more.
+  // The right windows are already clipped by their own image, unless the left one clips more.
   if (end - begin < 2 * g.half + 1) {
     right.r = clipped_right_sum(in.r_before, g, begin, end, i);
     right.rr = clipped_right_sum(in.rr_before, g, begin, end, i);
@@ -483,7 +482,7 @@ CAIRN_LANES_INLINE VF clipped_cost(const Rows<Wide>& in, VI box, int x, int i) {
   return cost_of<kCost, kDouble>(box, left, right);
 }
 
-/// The same where nothing but the right image's left border cuts windows, at least one of them.
+/// The same if only the left border of the right image cuts windows, at least one of them.
 template <Cost kCost, bool kDouble>
 CAIRN_LANES_INLINE VF cut_cost(const Rows<Wide>& in, VI box, int x, int i) {
   const I i32;
@@ -510,7 +509,7 @@ CAIRN_LANES_INLINE VF cut_cost(const Rows<Wide>& in, VI box, int x, int i) {
 // ----------------------------------------------------------------------------------------------------
 // Running sums
 
-/// By how much columns change with this row: the pairs of a left pixel and of its partners.
+/// The change of the columns in this row: the pairs of a left pixel and of its candidates.
 template <Cost kCost, class Width>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(lanes::Vec<typename Width::SumTag> left,
                                                                 lanes::Vec<typename Width::SumTag> right) {
@@ -521,18 +520,18 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(lanes::Vec<typen
     return lanes::AbsChange<Width::kShift>(d, left, right);
   }
 }
-/// The same near the border. `left`: a pixel's pair in every lane; `j`: where its partners stand.
+/// The same near the border. `left`: the pair of a pixel in every lane; `j`: position of its candidates.
 template <Cost kCost, class Width, bool kBorder>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> change_of(const Rows<Width>& in,
                                                                 lanes::Vec<typename Width::SumTag> left,
                                                                 int j) {
   const typename Width::SumTag d;
   const auto change = change_of<kCost, Width>(left, lanes::LoadU(d, in.right_pairs + j));
-  // Partners outside the image count for nothing; of correlations they are 0 anyway.
+  // Partners outside the image do not count; for correlations they are 0 anyway.
   return kBorder && !correlates(kCost) ? lanes::And(change, lanes::LoadU(d, in.inside + j)) : change;
 }
 
-/// The columns of left pixel x with this row, and the box with them.
+/// Updates the columns of left pixel x with this row, and the box with them.
 template <Cost kCost, class Width, int kLanes, bool kBorder>
 CAIRN_LANES_INLINE void enter(const Rows<Width>& in, int first, int x,
                               lanes::Vec<typename Width::SumTag> (&box)[kVectors<Width, kLanes>]) {
@@ -550,7 +549,7 @@ CAIRN_LANES_INLINE void enter(const Rows<Width>& in, int first, int x,
   }
 }
 
-/// Before a row's first pixel: the columns x < end join the box of a tile, which starts anew.
+/// Before the first pixel of a row: initialises the box of a tile with the columns x < end.
 template <Cost kCost, class Width, int kLanes>
 void begin_box(const Rows<Width>& rows, int first, int end) {
   const typename Width::SumTag d;
@@ -566,8 +565,8 @@ void begin_box(const Rows<Width>& rows, int first, int end) {
     lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
 }
 
-/// The cost that a box makes, kNone where there is no candidate: lanes i and on of left pixel x. Only with
-/// kBorder can there be none, or a window be clipped.
+/// The cost of a box, kNone without candidate: lanes from i on of left pixel x. Only with kBorder can
+/// candidates be missing, or windows be clipped.
 template <Cost kCost, class Width, bool kDouble, bool kBorder>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>& in, int x, int i,
                                                                lanes::Vec<typename Width::SumTag> box,
@@ -604,7 +603,7 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_at(const Rows<Width>
   return cost;
 }
 
-/// Writes a pixel's costs into its block.
+/// Writes the costs of a pixel into its block.
 template <Cost kCost, class Width, int kLanes>
 CAIRN_LANES_INLINE void keep_costs(bool equal_tags,
                                    lanes::Vec<typename Width::SumTag> (&keys)[kVectors<Width, kLanes>],
@@ -620,11 +619,11 @@ CAIRN_LANES_INLINE void keep_costs(bool equal_tags,
     lanes::Store(cost_of_key<kCost, Width>(keys[v]), d, costs + v * lane_count<Width>());
 }
 
-/// The winners of left pixels x_begin … x_end − 1 among the lanes of a tile, and where the block keeps them
-/// their costs. For each a column joins the box and one leaves it. `pixel`: number of the first one in its
-/// block.
+/// The winners of left pixels x_begin … x_end − 1 among the lanes of a tile, and their costs if the block
+/// keeps them. For each pixel a column joins the box and one leaves it. `pixel`: index of the first one in
+/// its block.
 ///
-/// Not to be inlined: on its own it gets all registers.
+/// Not to be inlined: as a separate function it gets all registers.
 template <Cost kCost, class Width, bool kDouble, int kLanes, Place kPlace>
 CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x_end, int pixel,
                           const Block<Width>& block) {
@@ -664,8 +663,8 @@ CAIRN_NOINLINE void slide(const Rows<Width>& rows, int first, int x_begin, int x
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, in.box + first + v * lane_count<Width>());
 }
 
-/// What a walk along a row reads and writes for one left pixel and a tile's lanes: pointers that move on
-/// together.
+/// The input and output of a walk along a row for one left pixel and the lanes of a tile: pointers that
+/// advance together.
 struct Cursor {
   const std::int32_t* left_pair;    // of the pixel whose column joins the window
   const std::int32_t* right_pairs;  // of that pixel's partners
@@ -678,7 +677,7 @@ struct Cursor {
         joins(in.column_sums + in.g.column(x + in.g.half, first)),
         leaves(in.column_sums + in.g.column(x - in.g.half - 1, first)) {}
 
-  /// So many pixels further right. `lanes_used`: of the tile.
+  /// Advances by `pixels` to the right. `lanes_used`: of the tile.
   CAIRN_LANES_INLINE void move(int pixels, int lanes_used) {
     left_pair += pixels;
     right_pairs -= pixels;
@@ -686,7 +685,7 @@ struct Cursor {
     leaves += pixels * lanes_used;
   }
 };
-/// The same for the windows' own sums, where a cost asks for them.
+/// The same for the sums of the windows, for costs that need them.
 struct MomentsCursor {
   const std::int32_t* l = nullptr;
   const std::int32_t* ll = nullptr;
@@ -696,7 +695,7 @@ struct MomentsCursor {
   const float* inverse_r = nullptr;
 
   MomentsCursor() = default;
-  /// With the variances in place of the energies, or not.
+  /// `variances`: use variances instead of energies.
   MomentsCursor(const Rows<Wide>& in, int first, int x, bool variances)
       : l(in.l + in.g.pad + x),
         ll((variances ? in.variance_l : in.ll) + in.g.pad + x),
@@ -715,8 +714,8 @@ struct MomentsCursor {
   }
 };
 
-/// The box moves on to the left pixel number `i` from the cursor on. Each step for all vectors, then the next
-/// one: no instruction waits for the one before it.
+/// Moves the box to the left pixel `i` after the cursor. Performs each step for all vectors before the next
+/// step, so that no instruction waits for the previous one.
 template <Cost kCost, bool kDouble, int kLanes, bool kWhole>
 CAIRN_LANES_INLINE void move_inside(const Cursor& at, const MomentsCursor& moments, int i,
                                     const LeftSums& window, VI (&box)[kVectors<Wide, kLanes>],
@@ -763,7 +762,7 @@ CAIRN_LANES_INLINE void move_inside(const Cursor& at, const MomentsCursor& momen
   }
 }
 
-/// slide() for Place::inside. kWhole: the window's rows are all there, and box sums are scaled for that.
+/// slide() for Place::inside. kWhole: all rows of the window exist, and box sums are scaled for that.
 template <Cost kCost, bool kDouble, int kLanes, bool kWhole>
 CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, int x_end, int pixel,
                                  const Block<Wide>& block) {
@@ -808,7 +807,7 @@ CAIRN_NOINLINE void slide_inside(const Rows<Wide>& in, int first, int x_begin, i
   for (int v = 0; v < kCount; ++v) lanes::Store(box[v], d, kept_box + v * lane_count<Wide>());
 }
 
-/// slide(), or what does the same faster.
+/// slide(), or a faster equivalent.
 template <Cost kCost, class Width, bool kDouble, int kLanes, Place kPlace>
 void slide_along(const Rows<Width>& in, int first, int x_begin, int x_end, int pixel,
                  const Block<Width>& block) {

@@ -3,15 +3,15 @@
 //
 // No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
 //
-// What is asked of a pixel's costs once they are there. `Width` says how wide they are: Wide or Narrow.
+// Evaluation of the costs of a pixel. `Width` is their type: Wide or Narrow.
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-constexpr int kBlock = 64;       // left pixels whose costs are held at a time
-constexpr int kRightBlock = 16;  // of these, so many are handed on at a time: as many as a vector has lanes
+constexpr int kBlock = 64;       // left pixels whose costs are kept at a time
+constexpr int kRightBlock = 16;  // number of these passed on at a time: the lanes of a vector
 
-/// As Matches has it.
+/// The value for Matches.
 template <class Width>
 CAIRN_LANES_INLINE float as_cost(typename Width::Cost lane) {
   if constexpr (std::is_same_v<Width, Wide>) {
@@ -21,8 +21,8 @@ CAIRN_LANES_INLINE float as_cost(typename Width::Cost lane) {
   }
 }
 
-/// What is less where the cost is less, in integers, which compare faster than floats. A cost that its
-/// roundings have carried below 0 counts as 0; its key is below 0.
+/// An integer key in the order of the costs; integers compare faster than floats. A cost below 0 by rounding
+/// counts as 0; its key is below 0.
 template <class Width>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> as_key(lanes::Vec<typename Width::CostTag> cost) {
   if constexpr (std::is_same_v<Width, Wide>) {
@@ -32,18 +32,18 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> as_key(lanes::Vec<typename
   }
 }
 
-/// The least costs of left pixels among a tile's lanes, and the first lanes that have them.
+/// The minimum costs of left pixels among the lanes of a tile, and the first lanes with them.
 template <class Width>
 struct TileWinners {
   Scratch<float> costs;  // [pixel]
   Scratch<std::int32_t> first_lanes;
   explicit TileWinners(int pixels) : costs(pixels), first_lanes(pixels) {}
 
-  /// Where winners are written, on its own: nothing of it is fetched anew for each pixel.
+  /// Output positions of winners, as a separate object: avoids reloads for each pixel.
   struct Places {
     float* costs;
     std::int32_t* first_lanes;
-    /// Of so many pixels from `pixel` on.
+    /// For kCount pixels from `pixel` on.
     template <int kCount>
     CAIRN_LANES_INLINE void find(int pixel,
                                  const lanes::Vec<typename Width::SumTag> (&keys)[1][kCount]) const {
@@ -72,7 +72,7 @@ struct TileWinners<Wide> {
     CAIRN_LANES_INLINE void find(int pixel, const VI (&keys)[kPixels][kCount]) const {
       const I d;
       if constexpr (kPixels == 1) {
-        // Through a float's register, which is the same as a vector's.
+        // Through a float register, which is also a vector register.
         const F f;
         const float least_lane = lanes::LeastLane(f, lanes::BitCast(f, lanes::LeastOf(keys[0])));
         const VF least = lanes::Max(lanes::Set(f, least_lane), lanes::Zero(f));
@@ -102,7 +102,7 @@ struct TileWinners<Wide> {
 };
 template <>
 struct TileWinners<Tagged> {
-  /// [pixel]: the sum with its tag, from 0 on; above its 16 bits, which of eight lanes.
+  /// [pixel]: the sum with its tag, from 0 on; above its 16 bits, the index among eight lanes.
   Scratch<std::int32_t> tagged;
   explicit TileWinners(int pixels) : tagged(pixels) {}
 
@@ -127,7 +127,7 @@ struct TileWinners<Tagged> {
   [[nodiscard]] Places places() const { return {tagged.data()}; }
 };
 
-/// Tags are made equal, so that of equal costs none is less for its lane.
+/// Equalises tags, so that equal costs compare as equal.
 template <class Width>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> with_equal_tag(lanes::Vec<typename Width::SumTag> key) {
   if constexpr (std::is_same_v<Width, Tagged>) {
@@ -136,7 +136,7 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> with_equal_tag(lanes::Vec<
     return key;
   }
 }
-/// The cost that a key was made of, but ≥ 0.
+/// The cost of a key, clamped to ≥ 0.
 template <Cost kCost, class Width>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_of_key(lanes::Vec<typename Width::SumTag> key) {
   if constexpr (kCost == Cost::zncc) {
@@ -148,7 +148,7 @@ CAIRN_LANES_INLINE lanes::Vec<typename Width::CostTag> cost_of_key(lanes::Vec<ty
   }
 }
 
-/// The costs of a block of left pixels, margins of kNone before, between and after them.
+/// The costs of a block of left pixels, with margins of kNone before, between and after them.
 template <class Lane>
 struct CostBlock {
   int stride;
@@ -162,16 +162,17 @@ struct CostBlock {
   [[nodiscard]] Lane* of(std::ptrdiff_t pixel) const { return costs.data() + kBefore + pixel * stride; }
 };
 
-/// The winners of one right row, reversed like the row itself.
+/// The winners of one right row, in reversed order.
 template <class Lane>
 struct RightRow {
   Scratch<Lane> cost;
-  Scratch<Lane> lane;  // in the cost's own type, so that one mask serves both
+  Scratch<Lane> lane;  // in the type of the cost, so that one mask serves both
   explicit RightRow(int length) : cost(length + 64), lane(length + 64) { clear(); }
   void clear() { std::fill_n(cost.data(), cost.size(), kNone<Lane>); }
 };
 
-/// Keeps in `least`, for each pixel of a block, what is less in a tile. `first`: the tile's first lane.
+/// Keeps in `least`, for each pixel of a block, the minimum with that of a tile. `first`: first lane of the
+/// tile.
 template <class Width, int kLanes>
 void keep_least(const CostBlock<typename Width::Cost>& block, int first,
                 std::array<typename Width::Cost, kBlock>& least) {
@@ -197,7 +198,7 @@ void keep_least(const CostBlock<typename Width::Cost>& block, int first,
   }
 }
 
-/// Copies four costs from `at` on, and makes the first three of them kNone.
+/// Copies four costs from `at` on, and sets the first three of them to kNone.
 template <class Width>
 CAIRN_LANES_INLINE void take_three(typename Width::Cost* at, typename Width::Cost* four) {
   using Lane = typename Width::Cost;
@@ -211,8 +212,8 @@ CAIRN_LANES_INLINE void take_three(typename Width::Cost* at, typename Width::Cos
   }
 }
 
-/// The costs number k, k + 16, … of a pixel for as many k from `residue` on as there are lanes; none counts
-/// 0.
+/// The costs k, k + 16, … of a pixel for as many k from `residue` on as there are lanes; missing ones count
+/// as 0.
 template <class Width>
 CAIRN_LANES_INLINE VF partial_sums(const float* costs, int count, int residue) {
   const F f;
@@ -223,7 +224,7 @@ CAIRN_LANES_INLINE VF partial_sums(const float* costs, int count, int residue) {
   }
   return sum;
 }
-/// As integers; each is below 2^24, so that as floats they would have been exact too.
+/// As integers; each is below 2^24, so floats would be exact too.
 template <class Width>
 CAIRN_LANES_INLINE VF partial_sums(const std::int16_t* costs, int count, int residue) {
   const I i32;
@@ -236,7 +237,7 @@ CAIRN_LANES_INLINE VF partial_sums(const std::int16_t* costs, int count, int res
   return lanes::ConvertTo(F(), sum);
 }
 
-/// pixel_math::sum_of_partials() of them all: the same halvings, vectors first, then lanes.
+/// pixel_math::sum_of_partials() of all of them: the same halvings, vectors first, then lanes.
 template <class Width>
 CAIRN_LANES_INLINE float sum_by_parts(const typename Width::Cost* costs, int count) {
   constexpr int kLanes = static_cast<int>(lanes::MaxLanes(F()));
@@ -249,7 +250,7 @@ CAIRN_LANES_INLINE float sum_by_parts(const typename Width::Cost* costs, int cou
   return lanes::SumByHalves(F(), sums[0]);
 }
 
-/// The sums of a block's costs as they are kept, for each pixel.
+/// The sums of the stored costs of a block, for each pixel.
 template <class Width>
 void sums_of_kept(const CostBlock<std::int16_t>& block, int count, std::array<std::int32_t, kBlock>& sums) {
   using Tag = typename Width::CostTag;
@@ -277,8 +278,8 @@ void sums_of_kept(const CostBlock<std::int16_t>& block, int count, std::array<st
   }
 }
 
-/// What sum_by_parts() says, out of the sum of `count` kept costs, `missing` of which are none. Below 2^24
-/// all parts are exact in any order.
+/// The result of sum_by_parts(), from the sum of `count` stored costs, `missing` of which are none. Below
+/// 2^24 all parts are exact in any order.
 template <class Width>
 CAIRN_LANES_INLINE VF sum_from_kept(const std::int32_t* sum_of_kept, int count, VI missing) {
   const I i32;
@@ -288,7 +289,7 @@ CAIRN_LANES_INLINE VF sum_from_kept(const std::int32_t* sum_of_kept, int count, 
   return lanes::ConvertTo(F(), lanes::Sub(lanes::ShiftRight<Width::kShift>(from_0), of_none));
 }
 
-/// Costs that were kept, as Matches has them.
+/// Stored costs as values for Matches.
 CAIRN_LANES_INLINE VF as_costs(Wide, VF kept) {
   return kept;
 }
@@ -307,7 +308,7 @@ CAIRN_LANES_INLINE VF as_costs(Width, const std::int16_t* kept) {
   return as_costs(Width(), lanes::LoadWidened(I(), kept));
 }
 
-/// Numbers of lanes, kept in the costs' own type.
+/// Indices of lanes, stored in the type of the costs.
 CAIRN_LANES_INLINE VI as_lanes(Wide, const float* kept) {
   return lanes::ConvertTo(I(), lanes::LoadU(F(), kept));
 }
@@ -316,9 +317,9 @@ CAIRN_LANES_INLINE VI as_lanes(Width, const std::int16_t* kept) {
   return lanes::LoadWidened(I(), kept);
 }
 
-/// What a right pixel has found so far against what it finds now, both with the lane. A right pixel meets its
-/// left pixels from left to right, its candidates thus in ascending order: strictly less keeps the smallest
-/// disparity. Between the rows of a band that is no longer so, and equal costs are decided by the lane
+/// The better of a right pixel's result so far and a new one, both with the lane. A right pixel meets its
+/// left pixels from left to right, hence its candidates in ascending order: strict comparison keeps the
+/// smallest disparity. Between the rows of a band this does not hold, and ties are decided by the lane
 /// (kTies).
 template <class Width, bool kTies, class V>
 CAIRN_LANES_INLINE void keep_lesser(V& least, V& where, V cost, V lane) {
@@ -330,8 +331,8 @@ CAIRN_LANES_INLINE void keep_lesser(V& least, V& where, V cost, V lane) {
   least = lanes::Min(cost, least);
 }
 
-/// Hands the costs of a block's left pixels begin … end − 1 to the right pixels that they are about.
-/// `x_first`: of the block.
+/// Passes the costs of the left pixels begin … end − 1 of a block to the matching right pixels. `x_first`: of
+/// the block.
 template <class Width, bool kTies>
 void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& g, int x_first, int begin,
                   int end, RightRow<typename Width::Cost>& right) {
@@ -358,8 +359,8 @@ void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& 
   }
 }
 
-/// The least costs of eight left pixels, one lane further for each. Their numbers take the place of the tag,
-/// which is 7: so the least knows whose it is.
+/// The minimum costs of eight left pixels, one lane further for each. Their index replaces the tag, which is
+/// 7, and so identifies the pixel of the minimum.
 CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t* costs,
                                                               std::ptrdiff_t next) {
   const Tagged::CostTag d;
@@ -372,7 +373,7 @@ CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t
   return least;
 }
 
-/// The same for kRightBlock pixels: what is stored is loaded again by the next ones at the same places.
+/// The same for kRightBlock pixels: data stored is reloaded by the next ones at the same positions.
 template <bool kTies>
 void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x_first, int begin,
                   RightRow<std::int16_t>& right) {
@@ -397,7 +398,7 @@ void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x
   }
 }
 
-/// … and for all that a block holds.
+/// … and for all pixels of a block.
 template <class Width, bool kTies>
 void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& g, int x_first, int pixels,
                   RightRow<typename Width::Cost>& right) {
@@ -413,7 +414,7 @@ void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& 
   }
 }
 
-/// Keeps in `best` the lesser costs.
+/// Keeps the lower costs in `best`.
 template <class Width>
 void keep_lesser(const CostBlock<typename Width::Cost>& block, int pixels, int count,
                  CostBlock<typename Width::Cost>& best) {
@@ -427,10 +428,10 @@ void keep_lesser(const CostBlock<typename Width::Cost>& block, int pixels, int c
   }
 }
 
-/// What is found out of left pixels that lie side by side, before it is looked at.
+/// The results for adjacent left pixels, before evaluation.
 template <class Width>
 struct Block {
-  CostBlock<typename Width::Cost> costs;  // empty where nobody asks for them
+  CostBlock<typename Width::Cost> costs;  // empty if not needed
   std::vector<TileWinners<Width>> winners;
   bool equal_tags;  // of all costs
   Block(const Geometry& g, int pixels, MatchMaps maps)
@@ -439,15 +440,14 @@ struct Block {
   }
 };
 
-/// The winners of a row's left pixels among all tiles and rows.
+/// The winners of the left pixels of a row among all tiles and rows.
 struct RowWinners {
   Scratch<float> cost;  // [x]
   Scratch<std::int32_t> lane;
   Scratch<std::int8_t> row;
   explicit RowWinners(int width) : cost(width), lane(width), row(width) {}
 
-  /// With the first tile of the row's own height, which is about the left pixels `begin` (a multiple of 16)
-  /// to end − 1.
+  /// Starts with the first tile of the same row, for the left pixels `begin` (a multiple of 16) to end − 1.
   template <class Width>
   void start(const TileWinners<Width>& tile, int begin, int end) const {
     const auto found = tile.places();
@@ -459,8 +459,8 @@ struct RowWinners {
     }
     std::fill(&row[begin], row.data() + end, std::int8_t{0});
   }
-  /// What comes later wins where it costs less, and between rows where it costs as little and is a smaller
-  /// disparity.
+  /// A later result wins if its cost is lower, and between rows also at equal cost if its disparity is
+  /// smaller.
   template <class Width>
   void keep(const TileWinners<Width>& tile, int first, int of_row, int begin, int end) const {
     const F f;
