@@ -41,8 +41,7 @@ struct MovingErrors {
 };
 
 struct LandmarkErrors {
-  int again =
-      0;  // true objects with a landmark, out of view for 10 frames or more, then in view for 10 or more
+  int again = 0;  // true objects with a landmark, in view for 10 frames again after 10 out of view
   int re_identified = 0;
   int wrong = 0;          // with the landmark of another object
   bool is_known = false;  // the result has landmarks

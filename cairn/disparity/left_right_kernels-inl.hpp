@@ -26,8 +26,7 @@ inline void judge_differences(const std::int16_t* best, int width, int max_diff,
   }
 }
 
-inline constexpr int kVotes =
-    256;  // left pixels at a time: what is noted about them stays in the nearest cache
+inline constexpr int kVotes = 256;  // left pixels at a time: their claims stay in the nearest cache
 
 /// Two pixels may claim the same one, so this loop is scalar, but it is a minimum of two numbers only; pixels
 /// without a partner claim an entry beyond the row. So the time does not depend on the image content.

@@ -15,8 +15,7 @@ struct Consistency {
   std::int64_t pixels = 0;
   std::int64_t matched = 0;    // with a disparity
   std::int64_t confirmed = 0;  // of these, agreeing with the winner of the right image within kConfirmedPx
-  double photometric_sum =
-      0;  // over the confirmed: |left − right warped to it| / kFarthestGrey, 1 at most each
+  double photometric_sum = 0;  // over the confirmed: |left − warped right| / kFarthestGrey, at most 1
 
   Consistency& operator+=(const Consistency& other);
   [[nodiscard]] double density() const;      // matched / pixels

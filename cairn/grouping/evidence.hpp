@@ -11,8 +11,7 @@ namespace cairn {
 struct EvidenceConfig {
   // A constant, not an option: noise σ; a textured pixel has a horizontal gradient of at least this times σ …
   float noise_factor = 1.0F;
-  float gradient_min =
-      0.65F;  // grey levels, 0 … 255; … plus this; higher trusts fewer pixels: for dark images
+  float gradient_min = 0.65F;  // grey levels, 0 … 255; … plus this; higher trusts fewer pixels (dark images)
   // A constant, not an option: ‰ of the width; largest difference between neighbouring textured disparities.
   float agreement = 2.5F;
 };

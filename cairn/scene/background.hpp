@@ -13,9 +13,8 @@ struct BackgroundConfig {
   // Constants, not options:
   float tolerance = 2.3F;  // ‰ of the width; largest distance of a disparity from a wall that it supports
   float min_share = 1.5F;  // % of the textured disparities; smallest support of a wall
-  float min_share_square =
-      0.4F;                  // % of the textured disparities; the same for a wall perpendicular to the first
-  float max_behind = 33.0F;  // % of the support; most textured disparities behind a wall
+  float min_share_square = 0.4F;  // % of the textured disparities; for a wall perpendicular to the first
+  float max_behind = 33.0F;       // % of the support; most textured disparities behind a wall
 };
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
