@@ -1,98 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/target.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <cairn/tuning/tunable.hpp>
+#include <iostream>
 #include <string_view>
 
-#include "facts.hpp"
+#include "app.hpp"
 
 namespace cairn::cli {
 namespace {
 
-std::string joined(const std::vector<std::string>& words, std::string_view separator = " ") {
+std::string joined(const std::vector<std::string>& words) {
   std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : std::string(separator)) + word;
+  for (const std::string& word : words) all += (all.empty() ? "" : " ") + word;
   return all;
 }
 
-/// As one word of any of the three shells.
-std::string shell_word(std::string_view text) {
-  std::string all = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      all += R"('\'')";
-    } else {
-      all += c;
-    }
-  }
-  return all + "'";
-}
-
-std::vector<std::string> words_of(const OptionInfo& option) {
-  if (option.type == "bool") return {"false", "true"};
-  std::vector<std::string> words;
-  if (option.type != "choice") return words;
-  for (std::size_t at = 0; at < option.domain.size();) {
-    const std::size_t bar = std::min(option.domain.find('|', at), option.domain.size());
-    words.push_back(option.domain.substr(at, bar - at));
-    at = bar + 1;
-  }
+/// The words of "a|b" or "a,b".
+std::string apart(std::string words, char separator) {
+  std::replace(words.begin(), words.end(), separator, ' ');
   return words;
 }
 
-/// "match.window_size=", and "match.method=window" for each word of a choice.
-std::vector<std::string> assignments() {
-  std::vector<std::string> all;
-  for (const OptionInfo& option : options(Config{})) {
-    const std::vector<std::string> words = words_of(option);
-    if (words.empty()) all.push_back(option.name + "=");
-    for (const std::string& word : words) all.push_back(option.name + "=" + word);
-  }
-  return all;
+std::string shell_word(std::string_view text) {
+  std::string all = "'";
+  for (const char c : text) all += c == '\'' ? std::string(R"('\'')") : std::string(1, c);
+  return all + "'";
 }
 
-std::vector<std::string> command_names(const std::vector<CommandFacts>& commands) {
-  std::vector<std::string> names;
-  for (const CommandFacts& command : commands) {
-    if (!command.name.empty()) names.push_back(command.name);
-  }
+std::string target_names() {
+  std::string names = "best";
+  for (const Target target : compiled_targets()) names += " " + std::string(name(target));
   return names;
 }
 
-std::vector<std::string> option_names(const CommandFacts& command) {
+std::string tunable_names() {
   std::vector<std::string> names;
-  for (const OptionFacts& option : command.options) {
-    if (!option.positional) names.insert(names.end(), option.names.begin(), option.names.end());
+  for (const Tunable& tunable : tunables()) {
+    const std::string section = tunable.name.substr(0, tunable.name.find('.')) + ".*";
+    if (std::find(names.begin(), names.end(), section) == names.end()) names.push_back(section);
+    names.push_back(tunable.name);
   }
+  return joined(names);
+}
+
+std::string command_names() {
+  std::string names;
+  for (const Command& command : kCommands) names += (names.empty() ? "" : " ") + std::string(command.name);
   return names;
 }
 
-/// The first positional; nullptr where there is none.
-const OptionFacts* positional_of(const CommandFacts& command) {
-  const auto found = std::find_if(command.options.begin(), command.options.end(),
-                                  [](const OptionFacts& option) { return option.positional; });
-  return found == command.options.end() ? nullptr : &*found;
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
 }
 
-// ---- bash ----
-
-/// What follows an option, in the script's own words.
-std::string bash_word(const OptionFacts& option) {
-  switch (option.expects) {
-    case Expects::nothing:
-      return {};
-    case Expects::file:
-      return "@file";
-    case Expects::folder:
-      return "@folder";
-    case Expects::one_of:
-      return joined(option.words);
-    case Expects::assignment:
-      return "@assignment";
-    case Expects::text:
-      break;
-  }
-  return "@text";
+/// What follows an option, or takes a positional's place, in the script's own words; empty for a flag.
+std::string expected_by(const CLI::Option& option) {
+  const bool positional = option.get_positional();
+  if (!positional && option.get_items_expected_max() == 0) return {};
+  // Their words are the library's, and --help describes them.
+  if (option.check_lname("preset")) return joined(preset_names());
+  if (option.check_lname("target")) return target_names();
+  if (option.check_lname("options")) return tunable_names();
+  if (positional && option.get_name(true) == "COMMAND") return command_names();
+  const std::string type = option.get_type_name();
+  // CLI::IsMember describes itself as "{a,b}".
+  if (const std::size_t open = type.find('{'); open != std::string::npos && type.ends_with('}'))
+    return apart(type.substr(open + 1, type.size() - open - 2), ',');
+  const std::string value = type.substr(0, type.find(':'));
+  if (value == "NAME=VALUE") return "@assignment";
+  if (value == "DIR") return "@folder";
+  // Positionals are pictures and folders in every command.
+  return positional || value == "FILE" || value == "PATH" ? "@file" : "@text";
 }
 
 constexpr const char* kBashFunction = R"TEXT(
@@ -131,167 +115,54 @@ _cairn() {
 complete -F _cairn cairn
 )TEXT";
 
-// ---- zsh ----
-
-/// Text inside the brackets of an _arguments specification.
-std::string zsh_text(std::string_view text) {
-  std::string all;
-  for (const char c : text) {
-    if (c == '[' || c == ']' || c == ':' || c == '\\') all += '\\';
-    all += c;
-  }
-  return all;
+/// A function of the shell that prints the words of a case.
+std::string function(const char* name, const std::string& cases) {
+  return std::string(name) + "() {\n  case $1 in\n" + cases + "  esac\n}\n";
 }
 
-std::string zsh_action(const OptionFacts& option) {
-  switch (option.expects) {
-    case Expects::nothing:
-      return {};
-    case Expects::file:
-      return "_files";
-    case Expects::folder:
-      return "_files -/";
-    case Expects::one_of:
-      return "(" + joined(option.words) + ")";
-    case Expects::assignment:
-      return "_cairn_assignments";
-    case Expects::text:
-      break;
-  }
-  return " ";
+std::string one_case(const std::string& key, const std::string& words) {
+  return words.empty() ? "" : "    " + shell_word(key) + ") echo " + shell_word(words) + " ;;\n";
 }
 
-/// One specification for each name, as _arguments wants it.
-std::string zsh_specifications(const OptionFacts& option, int& position) {
-  if (option.positional) {
-    return " \\\n      " + shell_word(std::to_string(++position) + (option.required ? ":" : "::") +
-                                      zsh_text(option.names.front()) + ":" + zsh_action(option));
+std::string bash_completion(const CLI::App& cairn) {
+  std::string options_of;
+  std::string positional_of;
+  std::string expected;
+  std::vector<const CLI::App*> apps = cairn.get_subcommands([](const CLI::App*) { return true; });
+  apps.insert(apps.begin(), &cairn);
+  for (const CLI::App* app : apps) {
+    const std::string command = app == &cairn ? "" : app->get_name();
+    std::vector<std::string> names;
+    std::string positional;
+    for (const CLI::Option* option : app->get_options()) {
+      if (option->get_positional() && positional.empty()) positional = expected_by(*option);
+      for (const std::string& name : names_of(*option)) {
+        names.push_back(name);
+        expected += one_case(command + " " + name, expected_by(*option));
+      }
+    }
+    options_of += one_case(command, joined(names));
+    positional_of += one_case(command, positional);
   }
-  std::string all;
-  for (const std::string& name : option.names) {
-    std::string spec = option.expects == Expects::assignment ? "*" : "(" + joined(option.names) + ")";
-    spec += name;
-    if (!option.is_flag()) spec += name.starts_with("--") ? "=" : "+";
-    spec += "[" + zsh_text(option.help) + "]";
-    if (!option.is_flag()) spec += ":" + zsh_text(option.value) + ":" + zsh_action(option);
-    all += " \\\n      " + shell_word(spec);
+  std::string assignable;
+  std::string values;
+  for (const OptionInfo& option : options(Config{})) {
+    assignable += (assignable.empty() ? "" : " ") + option.name + "=";
+    if (option.type == "bool") values += one_case(option.name, "false true");
+    if (option.type == "choice") values += one_case(option.name, apart(option.domain, '|'));
   }
-  return all;
-}
-
-std::string zsh_arguments(const CommandFacts& command) {
-  std::string all;
-  int position = 0;
-  for (const OptionFacts& option : command.options) all += zsh_specifications(option, position);
-  return all;
-}
-
-// ---- fish ----
-
-std::string fish_action(const OptionFacts& option) {
-  switch (option.expects) {
-    case Expects::nothing:
-      return {};
-    case Expects::file:
-      return " -r -F";
-    case Expects::folder:
-      return " -x -a '(__fish_complete_directories)'";
-    case Expects::one_of:
-      return " -x -a " + shell_word(joined(option.words));
-    case Expects::assignment:
-      return " -x -a " + shell_word(joined(assignments()));
-    case Expects::text:
-      break;
-  }
-  return " -x";
-}
-
-std::string fish_line(const std::string& condition, const OptionFacts& option) {
-  std::string names;
-  for (const std::string& name : option.names) {
-    names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-  }
-  return "complete -c cairn -n " + shell_word(condition) + names + fish_action(option) + " -d " +
-         shell_word(option.help) + "\n";
+  return "# bash completion of cairn, written from what the command declares.\n"
+         "_cairn_commands() { echo " +
+         shell_word(command_names()) + "; }\n_cairn_names() { echo " + shell_word(assignable) + "; }\n" +
+         function("_cairn_options", options_of) + function("_cairn_positionals", positional_of) +
+         function("_cairn_expected", expected) + function("_cairn_values", values) + kBashFunction;
 }
 
 }  // namespace
-
-std::string bash_completion(const std::vector<CommandFacts>& commands) {
-  std::string names;
-  std::string expected;
-  std::string positionals;
-  for (const CommandFacts& command : commands) {
-    names +=
-        "    " + shell_word(command.name) + ") echo " + shell_word(joined(option_names(command))) + " ;;\n";
-    if (const OptionFacts* first = positional_of(command))
-      positionals += "    " + shell_word(command.name) + ") echo " + shell_word(bash_word(*first)) + " ;;\n";
-    for (const OptionFacts& option : command.options) {
-      const std::string word = bash_word(option);
-      if (option.positional || word.empty()) continue;
-      for (const std::string& name : option.names) {
-        expected += "    " + shell_word(command.name + " " + name) + ") echo " + shell_word(word) + " ;;\n";
-      }
-    }
-  }
-  std::string assigned;
-  std::vector<std::string> assignable;
-  for (const OptionInfo& option : options(Config{})) {
-    assignable.push_back(option.name + "=");
-    const std::vector<std::string> words = words_of(option);
-    if (!words.empty()) assigned += "    " + option.name + ") echo " + shell_word(joined(words)) + " ;;\n";
-  }
-  const auto function = [](const char* name, const std::string& cases) {
-    return std::string(name) + "() {\n  case $1 in\n" + cases + "  esac\n}\n";
-  };
-  return "# bash completion of cairn, written from what the command declares.\n"
-         "_cairn_commands() { echo " +
-         shell_word(joined(command_names(commands))) + "; }\n_cairn_names() { echo " +
-         shell_word(joined(assignable)) + "; }\n" + function("_cairn_options", names) +
-         function("_cairn_positionals", positionals) + function("_cairn_expected", expected) +
-         function("_cairn_values", assigned) + kBashFunction;
-}
-
-std::string zsh_completion(const std::vector<CommandFacts>& commands) {
-  std::string described;
-  std::string cases;
-  for (const CommandFacts& command : commands) {
-    if (command.name.empty()) continue;
-    described += "      " + shell_word(command.name + ":" + zsh_text(command.help)) + "\n";
-    cases += "    " + command.name + ")\n      _arguments" + zsh_arguments(command) + "\n      ;;\n";
-  }
-  return "#compdef cairn\n"
-         "# zsh completion of cairn, written from what the command declares.\n"
-         "_cairn_assignments() {\n  compadd -S '' -- " +
-         joined(assignments()) +
-         "\n}\n\n_cairn() {\n  local context state state_descr line\n  typeset -A opt_args\n  _arguments -C" +
-         zsh_arguments(commands.front()) +
-         " \\\n      '1:command:->command' \\\n      '*::argument:->argument'\n"
-         "  case $state in\n  command)\n    local -a commands=(\n" +
-         described + "    )\n    _describe command commands\n    ;;\n  argument)\n    case $line[1] in\n" +
-         cases + "    esac\n    ;;\n  esac\n}\n\n_cairn \"$@\"\n";
-}
-
-std::string fish_completion(const std::vector<CommandFacts>& commands) {
-  std::string all = "# fish completion of cairn, written from what the command declares.\n";
-  for (const CommandFacts& command : commands) {
-    const bool top = command.name.empty();
-    if (!top) {
-      all += "complete -c cairn -n __fish_use_subcommand -f -a " + command.name + " -d " +
-             shell_word(command.help) + "\n";
-    }
-    const std::string condition =
-        top ? "__fish_use_subcommand" : "__fish_seen_subcommand_from " + command.name;
-    for (const OptionFacts& option : command.options) {
-      if (!option.positional) all += fish_line(condition, option);
-    }
-    const OptionFacts* first = positional_of(command);
-    if (!top && (first == nullptr || first->expects == Expects::one_of)) {
-      all += "complete -c cairn -n " + shell_word(condition) + " -f" +
-             (first == nullptr ? "" : " -a " + shell_word(joined(first->words))) + "\n";
-    }
-  }
-  return all;
-}
-
 }  // namespace cairn::cli
+
+/// Prints the completion for bash.
+int main() {
+  std::cout << cairn::cli::bash_completion(*cairn::cli::declare_command_line().app);
+  return std::cout.flush() ? 0 : 1;
+}

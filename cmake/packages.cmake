@@ -74,7 +74,9 @@ endforeach()
 if(CAIRN_DEBIAN)
   install(CODE [[
     file(GLOB pages $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/man/man[17]/*.[17])
-    execute_process(COMMAND gzip -9nf ${pages} COMMAND_ERROR_IS_FATAL ANY)]] COMPONENT tools)
+    if(pages)
+      execute_process(COMMAND gzip -9nf ${pages} COMMAND_ERROR_IS_FATAL ANY)
+    endif()]] COMPONENT tools)
 endif()
 
 set(CPACK_GENERATOR DEB)

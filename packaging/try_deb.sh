@@ -103,6 +103,6 @@ fi
 say "and away again"
 mapfile -t ours < <(inside dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed \(.*cairn.*\)/\1/p')
 inside apt-get purge --yes "${ours[@]}" >/dev/null 2>&1
-left=$(inside find /usr -name 'cairn*' -o -name 'libcairn*' -o -name _cairn)
+left=$(inside find /usr -name 'cairn*' -o -name 'libcairn*')
 [[ -z $left ]] || fail "left behind: $left"
 echo "installed, used and removed on Debian $(cat "$root/etc/debian_version")"
