@@ -55,16 +55,6 @@ std::string joined(const std::string& folder, const std::string& name) {
   return folder.empty() ? name : folder + "/" + name;
 }
 
-bool is_picture(const std::string& path) {
-  std::string ending = fs::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  constexpr std::array kEndings = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff"};
-  std::error_code unknown;
-  return fs::is_regular_file(path, unknown) &&
-         std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
-}
-
 /// Collects the frames of one input after the other.
 class Planner {
  public:
@@ -82,7 +72,7 @@ class Planner {
     if (inputs_.tracks) {
       sequences_.push_back(frames_.size());
       add_sequence(input, two, name);
-    } else if (two && is_picture(two->first) && is_picture(two->second)) {
+    } else if (two && io::is_picture(two->first) && io::is_picture(two->second)) {
       const fs::path left = two->first;
       io::FrameFiles files{left.stem().string(), left.parent_path(), left, two->second, {}};
       files.calib = io::calibration_in(left.parent_path().empty() ? "." : left.parent_path());

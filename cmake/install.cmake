@@ -128,7 +128,7 @@ if(CAIRN_IO)
     string(PREPEND opencv_libs "-lopencv_calib3d ")
   endif()
   cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results" "-lcairn-io"
-    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg libtiff-4 zlib" "${opencv_libs}")
+    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg zlib" "${opencv_libs}")
   if(CAIRN_HAS_TRACKING)
     set(mcap_requires)
     if(CAIRN_HAS_ZSTD)

@@ -13,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A TIFF is found, so that reading it says what to do.
 constexpr std::array kPictureExtensions = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff",
                                            ".PNG", ".JPG", ".JPEG", ".PGM", ".PPM", ".PNM", ".TIF", ".TIFF"};
 constexpr std::array kCalibrations = {"calib.txt", "calib.yaml", "calib.yml",           "calib.json",
@@ -57,12 +58,6 @@ std::optional<fs::path> file(const fs::path& path) {
 bool is_folder(const fs::path& path) {
   std::error_code unknown;
   return fs::is_directory(path, unknown);
-}
-
-bool is_picture(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  return is_file(path) && std::find(kPictureExtensions.begin(), kPictureExtensions.end(), extension) !=
-                              kPictureExtensions.end();
 }
 
 std::optional<fs::path> picture(const fs::path& folder, const std::string& stem) {
@@ -256,6 +251,14 @@ std::optional<fs::path> calibration_in(const fs::path& folder) {
   return std::nullopt;
 }
 
+bool is_picture(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return is_file(path) && std::find(kPictureExtensions.begin(), kPictureExtensions.end(), extension) !=
+                              kPictureExtensions.end();
+}
+
 std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
   check_folder(folder);
   std::vector<FrameFiles> frames = frames_in(folder, cameras);
@@ -265,7 +268,7 @@ std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
                 " does; give that folder");
   }
   throw Error(folder.string() +
-              ": contains no left.png (.jpg .pgm .ppm .tif), no folder with one, no pairs such as "
+              ": contains no left.png (.jpg .pgm .ppm), no folder with one, no pairs such as "
               "left01.png and right01.png, or left/01.png and right/01.png, and no known data set "
               "(docs/formats.md)");
 }

@@ -24,8 +24,11 @@ struct FrameFiles {
 
 enum class Cameras : std::uint8_t { rectified, raw };
 
+/// Whether this is a file with an image's extension.
+bool is_picture(const std::filesystem::path& path);
+
 /// The frames in a folder, sorted by name. A folder with a left image (left.png, .jpg, .jpeg, .pgm, .ppm,
-/// .pnm, .tif, .tiff; Middlebury and ETH3D: im0, im2 or view1) is one frame; otherwise each of its
+/// .pnm; Middlebury and ETH3D: im0, im2 or view1) is one frame; otherwise each of its
 /// sub-folders with one is, else each pair of files whose names differ only in left and right (left01.jpg,
 /// right01.jpg) or that have the same name in the sub-folders left/ and right/, or in KITTI's image_2/ and
 /// image_3/ and the like; EuRoC's cam0/data/ and cam1/data/ only if raw cameras are requested. Throws Error

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-/// Reading and writing of images. Read: PNG, JPEG, PGM/PPM (P2, P3, P5, P6), TIFF; 8 or 16 bits; grey or
+/// Reading and writing of images. Read: PNG, JPEG, PGM/PPM (P2, P3, P5, P6); 8 or 16 bits; grey or
 /// colour; by content, not by extension. Every function throws Error with one line that names the file:
 /// missing, a folder, empty, not an image, truncated or damaged, a side outside 1 … 32768 px or more than
 /// 2^28 px (checked before allocation).

@@ -16,12 +16,15 @@ constexpr std::size_t kMostPictureBytes = std::size_t{1} << 31;
 }  // namespace
 
 Raster decode_raster(std::string_view file, Palette palette) {
-  if (file.empty()) throw Error("is empty, expected an image (PNG, JPEG, PGM, PPM, TIFF)");
+  if (file.empty()) throw Error("is empty, expected an image (PNG, JPEG, PGM, PPM)");
   if (file.starts_with("\x89PNG\r\n\x1a\n"sv)) return decode_png(file, palette);
   if (file.starts_with("\xff\xd8\xff"sv)) return decode_jpeg(file);
-  if (file.starts_with("II*\0"sv) || file.starts_with("MM\0*"sv)) return decode_tiff(file, palette);
+  if (file.starts_with("II*\0"sv) || file.starts_with("MM\0*"sv)) {
+    throw Error(
+        "is a TIFF, expected PNG, JPEG, PGM or PPM; convert it, e.g. with ImageMagick: convert a.tif a.png");
+  }
   if (file.size() > 1 && file[0] == 'P' && file[1] >= '1' && file[1] <= '7') return decode_pnm(file);
-  throw Error("is not a readable image, expected PNG, JPEG, PGM, PPM or TIFF");
+  throw Error("is not a readable image, expected PNG, JPEG, PGM or PPM");
 }
 
 void check_sides(std::int64_t width, std::int64_t height) {

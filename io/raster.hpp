@@ -55,7 +55,6 @@ PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, i
 // One function per form; they throw Error without a file name.
 Raster decode_png(std::string_view file, Palette palette);
 Raster decode_jpeg(std::string_view file);
-Raster decode_tiff(std::string_view file, Palette palette);
 Raster decode_pnm(std::string_view file);
 
 /// Rows of samples to encode: grey of 8 or 16 bits, or RGB of 8.

@@ -28,15 +28,10 @@ bool is_file(const fs::path& path) {
 
 /// The images of a folder in their order.
 std::vector<fs::path> images_in(const fs::path& folder) {
-  constexpr std::array kEndings = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff"};
   std::vector<fs::path> images;
   std::error_code reason;
   for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
-    std::string ending = it->path().extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() && is_file(it->path()))
-      images.push_back(it->path());
+    if (io::is_picture(it->path())) images.push_back(it->path());
   }
   if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
   std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
@@ -116,7 +111,7 @@ std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>
 
 Side side_in(const fs::path& folder) {
   Side side{images_in(folder), {}, {}};
-  if (side.files.empty()) throw Error(folder.string() + ": contains no images (.png .jpg .pgm .ppm .tif)");
+  if (side.files.empty()) throw Error(folder.string() + ": contains no images (.png .jpg .pgm .ppm)");
   const std::vector<std::string> names = stems_of(side.files);
   if (const auto path =
           first_file({folder / "stamps.txt", folder / "timestamps.txt", folder / "times.txt",
