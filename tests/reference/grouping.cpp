@@ -159,36 +159,44 @@ Point up_to_three_away(Point p, Point to, View<const RegionId> labels) {
 
 // ---- the tree ----
 
-FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
-  FrameCues frame;
-  frame.width = cues.gray.width();
-  frame.height = cues.gray.height();
-  frame.has_colour = !cues.rgb.empty();
-  frame.has_ground = cues.ground.plane.has_value();
-  frame.walls_and_floor = static_cast<int>(cues.background.planes.size());
-  frame.noise_sigma = cues.noise_sigma;
-  Members all;
-  Members floor;
-  Members background;
+/// The superpixels of which `is_kind` says yes, as one region.
+template <class Kind>
+RegionCues together(const Superpixels& superpixels, const Cues& cues, Kind is_kind) {
+  Members members;
   for (std::int32_t i = 0; i < superpixels.count; ++i) {
-    all.insert(i);
-    const RegionCues one = cues_of({i}, superpixels, cues);
-    const PlaneMoments& m = one.matched;
-    if (2 * one.above_ground.on > one.area) floor.insert(i);
-    if (2 * (one.before_background.on + one.before_background.behind) > one.area) background.insert(i);
-    if (m.n > 0)
-      frame.nearest_px = std::max(frame.nearest_px, static_cast<double>(m.d) / static_cast<double>(m.n) / 64);
+    if (is_kind(cues_of({i}, superpixels, cues))) members.insert(i);
   }
-  const RegionCues image = cues_of(all, superpixels, cues);
-  frame.matched_share = static_cast<float>(image.matched.n) / static_cast<float>(image.area);
-  frame.evidence_share = static_cast<float>(image.textured.n) / static_cast<float>(image.area);
-  const auto colours = [&](const Members& members) {
-    const RegionCues region = cues_of(members, superpixels, cues);
-    return SceneColours{region.area, region.histogram};
+  return cues_of(members, superpixels, cues);
+}
+
+double mean_disparity_px(const PlaneMoments& m) {
+  return m.n == 0 ? 0 : static_cast<double>(m.d) / static_cast<double>(m.n) / 64;
+}
+
+FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
+  const auto seen = together(superpixels, cues, [](const RegionCues&) { return true; });
+  const auto floor =
+      together(superpixels, cues, [](const RegionCues& r) { return 2 * r.above_ground.on > r.area; });
+  const auto background = together(superpixels, cues, [](const RegionCues& r) {
+    return 2 * (r.before_background.on + r.before_background.behind) > r.area;
+  });
+  double nearest_px = 1;
+  for (std::int32_t i = 0; i < superpixels.count; ++i)
+    nearest_px = std::max(nearest_px, mean_disparity_px(cues_of({i}, superpixels, cues).matched));
+  const auto share = [&](const PlaneMoments& m) {
+    return static_cast<float>(m.n) / static_cast<float>(seen.area);
   };
-  frame.floor = colours(floor);
-  frame.background = colours(background);
-  return frame;
+  return {.width = cues.gray.width(),
+          .height = cues.gray.height(),
+          .has_colour = !cues.rgb.empty(),
+          .has_ground = cues.ground.plane.has_value(),
+          .walls_and_floor = static_cast<int>(cues.background.planes.size()),
+          .noise_sigma = cues.noise_sigma,
+          .matched_share = share(seen.matched),
+          .evidence_share = share(seen.textured),
+          .nearest_px = nearest_px,
+          .floor = {floor.area, floor.histogram},
+          .background = {background.area, background.histogram}};
 }
 
 /// Regions, contacts between them, and nothing that would find one of them fast.
