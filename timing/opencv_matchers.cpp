@@ -57,9 +57,6 @@ ReadyMatcher semi_global_3_paths(const SearchRange& range) {
 ReadyMatcher semi_global_5_paths(const SearchRange& range) {
   return semi_global(range, cv::StereoSGBM::MODE_SGBM);
 }
-ReadyMatcher semi_global_8_paths(const SearchRange& range) {
-  return semi_global(range, cv::StereoSGBM::MODE_HH);
-}
 
 constexpr OpenCvMatcher kBlockMatching{
     "StereoBM", "window 9, x-Sobel with cap 31, uniqueness 15, texture 10, left-right 1, no speckle filter",
@@ -71,8 +68,6 @@ constexpr OpenCvMatcher kSemiGlobal{"StereoSGBM", kSemiGlobalSettings, semi_glob
 constexpr std::array kQuick{
     kBlockMatching, OpenCvMatcher{"StereoSGBM 3-way", "like StereoSGBM, with 3 paths", semi_global_3_paths},
     kSemiGlobal};
-constexpr std::array kAccurate{kBlockMatching, kSemiGlobal,
-                               OpenCvMatcher{"StereoSGBM HH", "the same with 8 paths", semi_global_8_paths}};
 
 }  // namespace
 
@@ -97,9 +92,6 @@ Image<float> ReadyMatcher::disparity_px() const {
 
 std::span<const OpenCvMatcher> quick_opencv_matchers() {
   return kQuick;
-}
-std::span<const OpenCvMatcher> accurate_opencv_matchers() {
-  return kAccurate;
 }
 
 std::string_view opencv_version() {

@@ -40,8 +40,6 @@ struct OpenCvMatcher {
 
 /// Fast enough to run on every frame: StereoBM, StereoSGBM 3-way, StereoSGBM.
 std::span<const OpenCvMatcher> quick_opencv_matchers();
-/// For comparisons of accuracy: StereoBM, StereoSGBM, StereoSGBM with 8 paths.
-std::span<const OpenCvMatcher> accurate_opencv_matchers();
 
 /// Empty in a build without OpenCV's matchers.
 std::string_view opencv_version();

@@ -17,9 +17,6 @@ Image<float> ReadyMatcher::disparity_px() const {
 std::span<const OpenCvMatcher> quick_opencv_matchers() {
   return {};
 }
-std::span<const OpenCvMatcher> accurate_opencv_matchers() {
-  return {};
-}
 std::string_view opencv_version() {
   return {};
 }

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 the cairn authors
+"""Two builds of the command on one pair, in turns: how many times as long each stage takes in the second.
+
+    against.py FIRST SECOND [--rounds N] [FOLDER] [OPTIONS]
+
+FIRST and SECOND are programs called cairn. FOLDER holds left.png, right.png and perhaps calib.txt; default: a sample.
+OPTIONS go to both. A round is a few frames of each; who begins changes with every round, and a ratio is one round's, so
+that what the machine does meanwhile hits both alike. Processor time of `cairn bench` on one thread where nothing else is
+asked for; the wall time that `cairn segment` states where one of the two is too old to know `bench`.
+"""
+import collections
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+FRAMES = 5  # of each program in a round
+SAMPLE = pathlib.Path(__file__).resolve().parent.parent / "samples" / "four_in_a_row"
+
+
+def run(program, *arguments):
+    try:
+        return subprocess.run([program, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True).stdout
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"against: {program}: {'failed' if isinstance(error, subprocess.CalledProcessError) else 'cannot be run'}")
+
+
+def knows_bench(program):
+    return subprocess.run([program, "bench", "--help"], capture_output=True).returncode == 0
+
+
+def times_of_bench(program, folder, options, scratch):
+    """Milliseconds of each stage in the order of the work, the whole frame last."""
+    run(program, "bench", folder, "--no-opencv", "--frames", FRAMES, "--json", scratch / "bench.json", *options)
+    found = json.loads((scratch / "bench.json").read_text())
+    return {**{stage["name"]: stage["cpu_ms"]["median"] for stage in found["stages"]}, "frame": found["frame"]["cpu_ms"]["median"]}
+
+
+def times_of_segment(program, folder, options, scratch):
+    """Over a folder that holds the pair several times; the first frame fills the pool and counts for nothing."""
+    frames = scratch / "frames"
+    frames.mkdir(exist_ok=True)
+    for i in range(FRAMES + 1):
+        if not (frames / str(i)).exists():
+            (frames / str(i)).symlink_to(folder.resolve(), target_is_directory=True)
+    text, decoder, stages = run(program, "segment", frames, "--json", *options), json.JSONDecoder(), collections.defaultdict(list)
+    for i in range(FRAMES + 1):
+        frame, end = decoder.raw_decode(text.lstrip())
+        text = text.lstrip()[end:]
+        for stage, ms in {**frame["timings_ms"], "frame": sum(frame["timings_ms"].values())}.items():
+            if i > 0:
+                stages[stage].append(ms)
+    return {stage: np.median(ms) for stage, ms in stages.items()}
+
+
+def main():
+    words = sys.argv[1:]
+    if len(words) < 2:
+        sys.exit(__doc__)
+    programs, words, rounds, folder = words[:2], words[2:], 15, SAMPLE
+    if words[:1] == ["--rounds"]:
+        if not (len(words) > 1 and words[1].isdigit() and int(words[1]) > 0):
+            sys.exit("against: --rounds: expected a positive number")
+        rounds, words = int(words[1]), words[2:]
+    if words and not words[0].startswith("-"):
+        folder, words = pathlib.Path(words[0]), words[1:]
+    options = words if "--threads" in words else [*words, "--threads", "1"]
+    by_bench = all(map(knows_bench, programs))
+    times_of = times_of_bench if by_bench else times_of_segment
+    found = [[], []]
+    with tempfile.TemporaryDirectory() as scratch:
+        for i in range(rounds):
+            for which in (i % 2, 1 - i % 2):
+                found[which].append(times_of(programs[which], folder, options, pathlib.Path(scratch)))
+    print(f"{'processor time' if by_bench else 'wall time':22} {'first ms':>12} {'second ms':>12} {'ratio':>8}   middle half of the rounds")
+    stages = dict.fromkeys([*found[0][0], *found[1][0]])
+    for stage in [*(s for s in stages if s != "frame"), "frame"]:
+        first, second = (np.array([times.get(stage, np.nan) for times in of]) for of in found)
+        low, middle, high = np.quantile(second / first, [0.25, 0.5, 0.75], method="inverted_cdf")
+        print(f"{stage:22} {np.median(first):12.3f} {np.median(second):12.3f} {middle:8.3f}   {low:.3f} ... {high:.3f}")
+    print(f"The median of {rounds} rounds of {FRAMES} frames each; ratio: second to first, below 1 is quicker.")
+
+
+if __name__ == "__main__":
+    main()
