@@ -38,7 +38,7 @@ set(private_headers
   regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
-  ros/mcap_format source/mcap_sequence source/mcap_topics
+  ros/mcap_format source/mcap_sequence source/mcap_topics source/ros_pictures source/stamp_pairing
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
   source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video
   source/open_ros2 source/text_lines

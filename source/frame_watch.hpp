@@ -63,4 +63,25 @@ class FrameWatch {
   std::optional<Seen> before_;
 };
 
+/// What sources of frames share: a calibration, what they were checked against, and what is to be said of
+/// them.
+class SourceSequence : public Sequence {
+ public:
+  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
+  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
+  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
+  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
+  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
+
+ protected:
+  explicit SourceSequence(double max_gap_s) : watch_(max_gap_s) {}
+
+  FrameWatch watch_;
+  SourceCalibration calibration_;
+  std::vector<SourceRemark> remarks_;
+  std::string ended_early_;
+};
+
 }  // namespace cairn::io

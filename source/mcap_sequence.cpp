@@ -3,10 +3,8 @@
 #include "mcap_sequence.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cairn/core/error.hpp>
-#include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <io/raster.hpp>
 
@@ -16,6 +14,8 @@
 #include "frame_watch.hpp"
 #include "mcap_topics.hpp"
 #include "names_and_numbers.hpp"
+#include "ros_pictures.hpp"
+#include "stamp_pairing.hpp"
 
 namespace cairn::io {
 namespace {
@@ -27,80 +27,33 @@ constexpr std::size_t kMostWaiting = 64;
 // And no more of all of them together, but for one of each.
 constexpr std::size_t kMostWaitingBytes = std::size_t{512} << 20;
 
-/// How an encoding stores a pixel.
-struct Encoding {
-  const char* name;
-  std::size_t channels;  // in the message
-  int bytes_each;
-  bool is_reversed;  // blue before red
-};
-constexpr std::array kEncodings{
-    Encoding{"mono8", 1, 1, false}, Encoding{"8UC1", 1, 1, false},   Encoding{"rgb8", 3, 1, false},
-    Encoding{"bgr8", 3, 1, true},   Encoding{"8UC3", 3, 1, true},    Encoding{"rgba8", 4, 1, false},
-    Encoding{"bgra8", 4, 1, true},  Encoding{"mono16", 1, 2, false}, Encoding{"16UC1", 1, 2, false}};
-
-Raster raster_of(const ros::Image& image) {
-  const auto* const encoding =
-      std::ranges::find_if(kEncodings, [&](const Encoding& e) { return image.encoding == e.name; });
-  if (encoding == kEncodings.end()) {
-    throw Error("has the encoding " + image.encoding +
-                ", expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (debayer others first)");
-  }
-  check_sides(image.width, image.height);
-  const std::size_t pixel = encoding->channels * static_cast<std::size_t>(encoding->bytes_each);
-  if (image.step < image.width * pixel || image.data.size() < std::size_t{image.step} * image.height) {
-    throw Error("has " + std::to_string(image.data.size()) + " bytes in rows of " +
-                std::to_string(image.step) + ", expected those of " + std::to_string(image.width) + "x" +
-                std::to_string(image.height) + " pixels of " + std::to_string(pixel));
-  }
-  Raster raster;
-  raster.size = {static_cast<int>(image.width), static_cast<int>(image.height)};
-  raster.channels = encoding->channels == 1 ? 1 : 3;
-  raster.bytes_each = encoding->bytes_each;
-  if (raster.bytes_each == 2) {
-    raster.max_value = 65535;
-    raster.declared = false;
-  }
-  const std::size_t out_pixel = static_cast<std::size_t>(raster.channels * raster.bytes_each);
-  raster.bytes.resize(std::size_t{image.width} * image.height * out_pixel);
-  const bool is_swapped =
-      raster.bytes_each == 2 && (image.is_bigendian != 0) != (std::endian::native == std::endian::big);
-  for (std::size_t y = 0; y < image.height; ++y) {
-    const std::uint8_t* from = image.data.data() + y * image.step;
-    std::uint8_t* to = raster.bytes.data() + y * image.width * out_pixel;
-    if (pixel == out_pixel && !encoding->is_reversed && !is_swapped) {
-      std::memcpy(to, from, image.width * pixel);
-      continue;
-    }
-    for (std::size_t x = 0; x < image.width; ++x, from += pixel, to += out_pixel) {
-      std::copy_n(from, out_pixel, to);
-      if (encoding->is_reversed) std::swap(to[0], to[2]);
-      if (is_swapped) std::swap(to[0], to[1]);
-    }
-  }
-  return raster;
-}
-
-/// One camera's images that wait for the other's.
+/// One camera's images.
 struct Side {
-  struct Taken {
-    std::size_t index = 0;
-    Stamp stamp;
-    std::optional<Raster> image;  // none: cannot be read
-    std::string trouble;
-  };
   ros::McapChannel channel;
   std::size_t seen = 0;
-  std::deque<Taken> waiting;
+};
+/// One that waits for the other camera's.
+struct Taken {
+  std::size_t index = 0;
+  std::optional<Raster> image;  // none: cannot be read
+  std::string trouble;
 };
 
-class McapSequence : public Sequence {
+class McapSequence : public SourceSequence {
  public:
   McapSequence(const fs::path& file, const SourceOptions& options, Pool pool)
-      : file_(file), options_(options), pool_(std::move(pool)), reader_(file), watch_(options.max_gap_s) {
+      : SourceSequence(options.max_gap_s),
+        file_(file),
+        options_(options),
+        pool_(std::move(pool)),
+        reader_(file),
+        pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::Waiting&& alone) {
+          remark(remarks_, {side == 0 ? "left image without a right one" : "right image without a left one",
+                            1, number_text(alone.value.index), true, false});
+        }) {
     const StereoTopics topics = find_stereo_topics(reader_.channels(), options.topics, file.string());
-    left_.channel = topics.left;
-    right_.channel = topics.right;
+    sides_[0].channel = topics.left;
+    sides_[1].channel = topics.right;
     calibrate(topics);
     std::vector<std::uint16_t> wanted{topics.left.id, topics.right.id};
     if (topics.left_grey) wanted.push_back(*topics.left_grey);
@@ -111,10 +64,10 @@ class McapSequence : public Sequence {
     if (!first_) {
       if (!remarks_.empty())
         throw Error(file_.string() + ": " + remarks_.front().what + ": " + remarks_.front().first);
-      throw Error(file_.string() +
-                  (options.frames.first > 0
-                       ? ": has no frame that is in --frames"
-                       : ": contains no images of " + left_.channel.topic + " and " + right_.channel.topic));
+      throw Error(file_.string() + (options.frames.first > 0
+                                        ? ": has no frame that is in --frames"
+                                        : ": contains no images of " + sides_[0].channel.topic + " and " +
+                                              sides_[1].channel.topic));
     }
     calibration_.suit(watch_.image_size());
   }
@@ -129,8 +82,8 @@ class McapSequence : public Sequence {
   }
   [[nodiscard]] std::optional<std::size_t> size() const override {
     const auto& counts = reader_.counts();
-    const auto left = counts.find(left_.channel.id);
-    const auto right = counts.find(right_.channel.id);
+    const auto left = counts.find(sides_[0].channel.id);
+    const auto right = counts.find(sides_[1].channel.id);
     if (left == counts.end() || right == counts.end()) return std::nullopt;
     const FrameRange& range = options_.frames;
     const std::size_t count = std::min(left->second, right->second);
@@ -138,18 +91,13 @@ class McapSequence : public Sequence {
     return end <= range.first ? 0 : (end - range.first + range.step - 1) / range.step;
   }
   [[nodiscard]] std::string name() const override { return file_.filename().string(); }
-  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
-  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
-  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
-  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
-  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] std::string stamps_from() const override {
     return options_.rate_hz > 0 ? rate_text(options_.rate_hz) : "the message headers";
   }
-  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
-  [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
 
  private:
+  using Pairing = StampPairing<Taken>;
+
   /// The first message of a channel.
   template <class M>
   std::optional<M> first_of(std::optional<std::uint16_t> channel) {
@@ -189,7 +137,7 @@ class McapSequence : public Sequence {
     if (is_raw && !options_.rectify) refuse_raw("with distortion");
     if (left->k[0] == 0 && left->p[0] == 0) {  // a driver's way to say that it does not know
       remark(remarks_,
-             {"camera_info without a calibration: no metres", 0, left_.channel.topic, false, false});
+             {"camera_info without a calibration: no metres", 0, sides_[0].channel.topic, false, false});
       return;
     }
     calibration_.path = file_ / "camera_info";
@@ -220,53 +168,55 @@ class McapSequence : public Sequence {
   }
   [[noreturn]] void refuse_raw(const std::string& how) const {
     throw Error(
-        file_.string() + ": " + left_.channel.topic + " are raw images " + how +
+        file_.string() + ": " + sides_[0].channel.topic + " are raw images " + how +
         ", expected rectified ones, or --rectify with camera_info or --calib FILE of the raw cameras");
   }
 
   /// Reads on until the side has so many that wait; false at the end.
-  bool has(Side& side, std::size_t count) {
-    while (side.waiting.size() < count) {
+  bool has(std::size_t side, std::size_t count) {
+    while (pairing_.waiting(side).size() < count) {
       const auto message = reader_.next();
       if (!message) return false;
-      if (message->channel == left_.channel.id)
-        take(left_, *message);
-      else if (message->channel == right_.channel.id)
-        take(right_, *message);
+      if (message->channel == sides_[0].channel.id)
+        take(0, *message);
+      else if (message->channel == sides_[1].channel.id)
+        take(1, *message);
       else
         take_grey(*message);
-      for (Side* full : {&left_, &right_}) {
-        while (full->waiting.size() > kMostWaiting ||
-               (full->waiting.size() > 1 && bytes_of(*full) > kMostWaitingBytes))
-          leave(*full);
+      for (const std::size_t full : {std::size_t{0}, std::size_t{1}}) {
+        while (pairing_.waiting(full).size() > kMostWaiting ||
+               (pairing_.waiting(full).size() > 1 && bytes_of(full) > kMostWaitingBytes))
+          pairing_.leave(full);
       }
     }
     return true;
   }
 
-  static std::size_t bytes_of(const Side& side) {
+  [[nodiscard]] std::size_t bytes_of(std::size_t side) const {
     std::size_t bytes = 0;
-    for (const Side::Taken& taken : side.waiting) bytes += taken.image ? taken.image->bytes.size() : 0;
+    for (const auto& taken : pairing_.waiting(side))
+      bytes += taken.value.image ? taken.value.image->bytes.size() : 0;
     return bytes;
   }
 
-  void take(Side& side, const ros::McapMessage& message) {
-    Side::Taken taken{side.seen++, message.logged, std::nullopt, {}};
+  void take(std::size_t side, const ros::McapMessage& message) {
+    Taken taken{sides_[side].seen++, std::nullopt, {}};
+    Stamp stamp = message.logged;
     try {
-      if (side.channel.type == ros::CompressedImage::kType) {
+      if (sides_[side].channel.type == ros::CompressedImage::kType) {
         const auto image = ros::decode<ros::CompressedImage>(message.bytes);
-        taken.stamp = stamp_of(image.header, message);
+        stamp = stamp_of(image.header, message);
         taken.image = decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
                                     Palette::colours);
       } else {
         const auto image = ros::decode<ros::Image>(message.bytes);
-        taken.stamp = stamp_of(image.header, message);
+        stamp = stamp_of(image.header, message);
         taken.image = raster_of(image);
       }
     } catch (const Error& error) {
       taken.trouble = error.what();
     }
-    side.waiting.push_back(std::move(taken));
+    pairing_.push(side, stamp, std::move(taken));
   }
   void take_grey(const ros::McapMessage& message) {
     try {
@@ -286,67 +236,47 @@ class McapSequence : public Sequence {
     return stamp.ns == 0 ? message.logged : stamp;
   }
 
-  struct Both {
-    std::size_t index = 0;
-    Side::Taken left;
-    Side::Taken right;
-  };
-  /// As pair_by_stamps() does it.
-  std::optional<Both> next_pair() {
-    const auto apart = [&](std::size_t l, std::size_t r) {
-      return std::abs(left_.waiting[l].stamp.ns - right_.waiting[r].stamp.ns);
-    };
-    const double most_ns = options_.max_skew_ms * 1e6;
-    while (has(left_, 1) && has(right_, 1)) {
+  /// The next pair of the range, and its number among all.
+  std::optional<std::pair<std::size_t, Pairing::Pair>> next_pair() {
+    while (has(0, 1) && has(1, 1)) {
       // Reading on for the one may have let go of the other.
-      if (left_.waiting.empty() || right_.waiting.empty()) continue;
-      const auto gap = apart(0, 0);
-      if (gap > 0 && has(right_, 2) && !left_.waiting.empty() && apart(0, 1) < apart(0, 0)) {
-        leave(right_);
-      } else if (gap > 0 && has(left_, 2) && !right_.waiting.empty() && apart(1, 0) < apart(0, 0)) {
-        leave(left_);
-      } else if (static_cast<double>(apart(0, 0)) > most_ns) {
-        leave(left_.waiting[0].stamp < right_.waiting[0].stamp ? left_ : right_);
-      } else {
-        Both both{pairs_++, std::move(left_.waiting.front()), std::move(right_.waiting.front())};
-        left_.waiting.pop_front();
-        right_.waiting.pop_front();
-        const FrameRange& range = options_.frames;
-        if (range.last_excluded && both.index >= *range.last_excluded) {
-          is_past_range_ = true;
-          return std::nullopt;
-        }
-        if (is_in(range, both.index)) return both;
+      if (pairing_.waiting(0).empty()) continue;
+      auto both = pairing_.decide([&](std::size_t side) { return has(side, 2); });
+      if (!both) continue;
+      const std::size_t index = pairs_++;
+      const FrameRange& range = options_.frames;
+      if (range.last_excluded && index >= *range.last_excluded) {
+        is_past_range_ = true;
+        return std::nullopt;
       }
+      if (is_in(range, index)) return std::pair(index, std::move(*both));
     }
-    for (Side* side : {&left_, &right_}) {
-      while (has(*side, 1)) leave(*side);
-    }
+    while (has(0, 1)) pairing_.leave(0);
+    while (has(1, 1)) pairing_.leave(1);
     return std::nullopt;
-  }
-  void leave(Side& side) {
-    remark(remarks_, {&side == &left_ ? "left image without a right one" : "right image without a left one",
-                      1, number_text(side.waiting.front().index), true, false});
-    side.waiting.pop_front();
   }
 
   std::optional<SequenceFrame> advance() {
-    while (std::optional<Both> both = next_pair()) {
-      const std::string name = number_text(both->index);
-      if (!both->left.image || !both->right.image) {
-        const bool is_left = !both->left.image;
+    while (auto found = next_pair()) {
+      const std::size_t index = found->first;
+      Pairing::Pair& both = found->second;
+      const std::string name = number_text(index);
+      const Taken& left = both.left.value;
+      const Taken& right = both.right.value;
+      if (!left.image || !right.image) {
+        const bool is_left = !left.image;
         remark(remarks_, {"frame that cannot be read", 1,
-                          name + " (" + (is_left ? left_ : right_).channel.topic + " " +
-                              (is_left ? both->left : both->right).trouble + ")",
+                          name + " (" + sides_[is_left ? 0 : 1].channel.topic + " " +
+                              (is_left ? left : right).trouble + ")",
                           true, true});
         continue;
       }
-      const Stamp stamp = options_.rate_hz > 0 ? stamp_at(both->index, options_.rate_hz) : both->left.stamp;
-      SequenceFrame frame{name, both->index, stamp, {}, {}, false};
+      const Stamp stamp = options_.rate_hz > 0 ? stamp_at(index, options_.rate_hz) : both.left.stamp;
+      SequenceFrame frame{name, index, stamp, {}, {}, false};
       try {
-        PicturePair pair = pair_of(*both->left.image, *both->right.image, pool_, bits_);
+        PicturePair pair = pair_of(*left.image, *right.image, pool_, bits_);
         bits_ = pair.bits;
-        if (std::optional<Raster> grey = grey_at(both->left.stamp, pair.left.gray.size()))
+        if (std::optional<Raster> grey = grey_at(both.left.stamp, pair.left.gray.size()))
           pair.left.gray = std::move(pair_of(*grey, *grey, pool_).left.gray);
         pair = calibration_.rectified(std::move(pair), pool_);
         frame.left = std::move(pair.left);
@@ -385,12 +315,8 @@ class McapSequence : public Sequence {
   SourceOptions options_;
   Pool pool_;
   ros::McapReader reader_;
-  FrameWatch watch_;
-  SourceCalibration calibration_;
-  std::vector<SourceRemark> remarks_;
-  std::string ended_early_;
-  Side left_;
-  Side right_;
+  std::array<Side, 2> sides_;
+  Pairing pairing_;
   std::optional<std::uint16_t> grey_;
   std::deque<std::pair<Stamp, Raster>> greys_;
   std::size_t pairs_ = 0;

@@ -40,10 +40,14 @@ bool is_same(const std::optional<StereoRig>& a, const std::optional<StereoRig>& 
 }
 
 /// A sequence of image files.
-class FileSequence : public Sequence {
+class FileSequence : public SourceSequence {
  public:
   FileSequence(std::string name, FrameList list, const SourceOptions& options, Pool pool)
-      : name_(std::move(name)), list_(std::move(list)), pool_(std::move(pool)), watch_(options.max_gap_s) {
+      : SourceSequence(options.max_gap_s),
+        name_(std::move(name)),
+        list_(std::move(list)),
+        pool_(std::move(pool)) {
+    remarks_ = std::move(list_.remarks);
     const ListedFrame& first = list_.frames.front();
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
@@ -51,7 +55,7 @@ class FileSequence : public Sequence {
     if (each_has_own_) calib_bytes_ = read_file(calibration_.path, kMostTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
-    if (auto raw = calibration_.remark_on_raw(first.name)) list_.remarks.push_back(std::move(*raw));
+    if (auto raw = calibration_.remark_on_raw(first.name)) remarks_.push_back(std::move(*raw));
   }
 
   std::optional<SequenceFrame> next() override {
@@ -69,7 +73,7 @@ class FileSequence : public Sequence {
         // Only what cannot be decoded is left out: what is read and does not fit says that this is no
         // sequence.
         if (are_readable(files)) throw;
-        remark(list_.remarks,
+        remark(remarks_,
                {"frame that cannot be read", 1, files.name + " (" + error.what() + ")", true, true});
       }
     }
@@ -78,14 +82,7 @@ class FileSequence : public Sequence {
 
   [[nodiscard]] std::optional<std::size_t> size() const override { return list_.frames.size(); }
   [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
-  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
-  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
-  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
-  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] std::string stamps_from() const override { return list_.stamps_from; }
-  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return list_.remarks; }
-  [[nodiscard]] const std::string& ended_early() const override { return none_; }
 
  private:
   SequenceFrame load(const ListedFrame& files) {
@@ -101,7 +98,7 @@ class FileSequence : public Sequence {
     pair = calibration_.rectified(std::move(pair), pool_);
     SequenceFrame frame{
         files.name, files.index, files.stamp, std::move(pair.left), std::move(pair.right.gray), false};
-    watch_.see(frame, files.left.string(), list_.remarks);
+    watch_.see(frame, files.left.string(), remarks_);
     return frame;
   }
 
@@ -118,15 +115,12 @@ class FileSequence : public Sequence {
   std::string name_;
   FrameList list_;
   Pool pool_;
-  FrameWatch watch_;
-  SourceCalibration calibration_;
   bool each_has_own_ = false;
   std::string calib_bytes_;
   Size raw_size_;
   int bits_ = 8;
   std::optional<SequenceFrame> first_;
   std::size_t at_ = 0;
-  std::string none_;
 };
 
 bool exists(const fs::path& path) {

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "names_and_numbers.hpp"
+#include "stamp_pairing.hpp"
 #include "text_lines.hpp"
 
 namespace cairn::io {
@@ -186,26 +187,15 @@ void check_rising(std::span<const Stamp> stamps, std::span<const std::string> na
 }
 
 StampPairs pair_by_stamps(std::span<const Stamp> left, std::span<const Stamp> right, double max_skew_ms) {
-  const auto apart = [&](std::size_t l, std::size_t r) { return std::llabs(left[l].ns - right[r].ns); };
-  const double most_ns = max_skew_ms * 1e6;
   StampPairs found;
-  std::size_t l = 0;
-  std::size_t r = 0;
-  while (l < left.size() && r < right.size()) {
-    if (r + 1 < right.size() && apart(l, r + 1) < apart(l, r)) {
-      found.right_alone.push_back(r++);
-    } else if (l + 1 < left.size() && apart(l + 1, r) < apart(l, r)) {
-      found.left_alone.push_back(l++);
-    } else if (static_cast<double>(apart(l, r)) <= most_ns) {
-      found.pairs.push_back({l++, r++});
-    } else if (left[l] < right[r]) {
-      found.left_alone.push_back(l++);
-    } else {
-      found.right_alone.push_back(r++);
-    }
-  }
-  while (l < left.size()) found.left_alone.push_back(l++);
-  while (r < right.size()) found.right_alone.push_back(r++);
+  using Pairing = StampPairing<std::size_t>;
+  Pairing pairing(max_skew_ms, [&](std::size_t side, Pairing::Waiting&& alone) {
+    (side == 0 ? found.left_alone : found.right_alone).push_back(alone.value);
+  });
+  for (std::size_t i = 0; i < left.size(); ++i) pairing.push(0, left[i], i);
+  for (std::size_t i = 0; i < right.size(); ++i) pairing.push(1, right[i], i);
+  while (const auto pair = pairing.next()) found.pairs.push_back({pair->left.value, pair->right.value});
+  pairing.leave_all();
   return found;
 }
 

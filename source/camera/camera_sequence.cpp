@@ -33,22 +33,22 @@ std::string formatted(const char* form, Values... values) {
   return words.data();
 }
 
-class CameraSequence : public Sequence {
+class CameraSequence : public SourceSequence {
  public:
   CameraSequence(CameraNames names, std::vector<CameraMaker> makers, const SourceOptions& options, Pool pool,
                  CameraTimes times)
-      : names_(std::move(names)),
+      : SourceSequence(options.max_gap_s),
+        names_(std::move(names)),
         options_(options),
         pool_(std::move(pool)),
-        watch_(options.max_gap_s),
-        calibration_(open_calibration(options, std::nullopt, false, false)),
         pairer_(options.max_skew_ms) {
+    calibration_ = open_calibration(options, std::nullopt, false, false);
     const bool has_two = makers.size() > 1;
     for (std::size_t side = 0; side < makers.size(); ++side) {
       cameras_.push_back(std::make_unique<KeptCamera>(std::move(makers[side]), times,
                                                       [this, has_two, side](CameraImage&& image) {
                                                         if (has_two) {
-                                                          pair_up(static_cast<int>(side), std::move(image));
+                                                          pair_up(side, std::move(image));
                                                         } else {
                                                           offer(std::move(image));
                                                         }
@@ -85,14 +85,7 @@ class CameraSequence : public Sequence {
     return (*range.last_excluded - range.first + range.step - 1) / range.step;
   }
   [[nodiscard]] std::string name() const override { return names_.name; }
-  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
-  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
-  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
-  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
-  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] std::string stamps_from() const override { return names_.stamps_from; }
-  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
-  [[nodiscard]] const std::string& ended_early() const override { return none_; }
 
   void stop() override {
     is_stopped_ = true;
@@ -127,7 +120,7 @@ class CameraSequence : public Sequence {
     changed_.notify_one();
   }
 
-  void pair_up(int side, CameraImage&& image) {
+  void pair_up(std::size_t side, CameraImage&& image) {
     {
       const std::lock_guard lock(mutex_);
       std::optional<StampPairer::Pair> pair = pairer_.push(side, std::move(image));
@@ -319,10 +312,6 @@ class CameraSequence : public Sequence {
   CameraNames names_;
   SourceOptions options_;
   Pool pool_;
-  FrameWatch watch_;
-  SourceCalibration calibration_;
-  std::vector<SourceRemark> remarks_;
-  std::string none_;
   std::optional<Stamp> last_stamp_;
   std::size_t count_ = 0;
   bool is_after_gap_ = false;

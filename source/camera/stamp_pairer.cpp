@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 namespace cairn::io {
@@ -17,38 +16,22 @@ constexpr double kJumpMs = 3;
 
 }  // namespace
 
-std::int64_t StampPairer::apart(std::size_t left, std::size_t right) const {
-  return std::abs(waiting_[0][left].stamp.ns - waiting_[1][right].stamp.ns);
-}
+StampPairer::StampPairer(double max_skew_ms)
+    : pairing_(max_skew_ms, [this](std::size_t side, Pairing::Waiting&& alone) {
+        ++unpaired_[side];
+        const auto& others = pairing_.waiting(1 - side);
+        if (others.empty()) return;
+        const double ms = std::abs(static_cast<double>(alone.stamp.ns - others.front().stamp.ns)) * 1e-6;
+        nearest_unpaired_ms_ = std::min(nearest_unpaired_ms_.value_or(ms), ms);
+      }) {}
 
-std::optional<StampPairer::Pair> StampPairer::push(int side, CameraImage&& image) {
-  waiting_[index(side)].push_back(std::move(image));
-  if (waiting_[index(side)].size() > kMostWaiting) leave(side);
-  auto& [left, right] = waiting_;
-  while (!left.empty() && !right.empty()) {
-    // What waits behind may be nearer; what has not come yet is not waited for.
-    if (right.size() > 1 && apart(0, 1) < apart(0, 0)) {
-      leave(1);
-    } else if (left.size() > 1 && apart(1, 0) < apart(0, 0)) {
-      leave(0);
-    } else if (static_cast<double>(apart(0, 0)) > max_skew_ns_) {
-      const double ms = static_cast<double>(apart(0, 0)) * 1e-6;
-      nearest_unpaired_ms_ = std::min(nearest_unpaired_ms_.value_or(ms), ms);
-      leave(left.front().stamp < right.front().stamp ? 0 : 1);
-    } else {
-      Pair pair{std::move(left.front()), std::move(right.front())};
-      left.pop_front();
-      right.pop_front();
-      note_skew(pair.left.stamp, pair.right.stamp);
-      return pair;
-    }
-  }
-  return std::nullopt;
-}
-
-void StampPairer::leave(int side) {
-  waiting_[index(side)].pop_front();
-  ++unpaired_[index(side)];
+std::optional<StampPairer::Pair> StampPairer::push(std::size_t side, CameraImage&& image) {
+  const Stamp stamp = image.stamp;
+  pairing_.push_live(side, stamp, std::move(image), kMostWaiting);
+  auto pair = pairing_.next();
+  if (!pair) return std::nullopt;
+  note_skew(pair->left.stamp, pair->right.stamp);
+  return Pair{std::move(pair->left.value), std::move(pair->right.value)};
 }
 
 void StampPairer::note_skew(Stamp left, Stamp right) {

@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 
+#include "../stamp_pairing.hpp"
 #include "camera.hpp"
 
 namespace cairn::io {
@@ -14,17 +14,19 @@ namespace cairn::io {
 /// Pairs the images of two cameras by nearest stamp as they arrive. Not thread-safe.
 class StampPairer {
  public:
-  explicit StampPairer(double max_skew_ms) : max_skew_ns_(max_skew_ms * 1e6) {}
+  explicit StampPairer(double max_skew_ms);
+  StampPairer(const StampPairer&) = delete;
+  StampPairer& operator=(const StampPairer&) = delete;
 
   struct Pair {
     CameraImage left;
     CameraImage right;
   };
   /// `side`: 0 = left. Returns the pair that this image completes, if any.
-  std::optional<Pair> push(int side, CameraImage&& image);
+  std::optional<Pair> push(std::size_t side, CameraImage&& image);
 
   /// Number of images without a partner.
-  [[nodiscard]] std::uint64_t unpaired(int side) const { return unpaired_[index(side)]; }
+  [[nodiscard]] std::uint64_t unpaired(std::size_t side) const { return unpaired_[side]; }
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
 
   /// Right stamp minus left stamp, over the pairs.
@@ -39,13 +41,10 @@ class StampPairer {
   [[nodiscard]] std::optional<double> nearest_unpaired_ms() const { return nearest_unpaired_ms_; }
 
  private:
-  static std::size_t index(int side) { return static_cast<std::size_t>(side); }
-  [[nodiscard]] std::int64_t apart(std::size_t left, std::size_t right) const;
-  void leave(int side);
+  using Pairing = StampPairing<CameraImage>;
   void note_skew(Stamp left, Stamp right);
 
-  double max_skew_ns_;
-  std::array<std::deque<CameraImage>, 2> waiting_;
+  Pairing pairing_;
   std::array<std::uint64_t, 2> unpaired_{};
   std::uint64_t pairs_ = 0;
   std::optional<double> nearest_unpaired_ms_;

@@ -13,9 +13,9 @@
 #include "../frame_list.hpp"
 #include "../frame_watch.hpp"
 #include "../names_and_numbers.hpp"
-#include "pairing.hpp"
+#include "../ros_pictures.hpp"
+#include "../stamp_pairing.hpp"
 #include "participant.hpp"
-#include "ros_pictures.hpp"
 
 namespace cairn::dds {
 namespace {
@@ -38,21 +38,21 @@ std::string seconds_of(double seconds) {
   return words.data();
 }
 
-class Ros2Sequence : public io::Sequence {
+class Ros2Sequence : public io::SourceSequence {
  public:
   Ros2Sequence(std::string source, const io::SourceOptions& options, Pool pool)
-      : source_(std::move(source)),
+      : SourceSequence(options.max_gap_s),
+        source_(std::move(source)),
         prefix_(prefix_of(source_)),
         options_(options),
         pool_(std::move(pool)),
-        watch_(options.max_gap_s),
-        calibration_(io::open_calibration(options, std::nullopt, false, false)),
         topics_{topic("left"), topic("right")},
         images_{Reader<ros::Image>(participant_, topics_[0]), Reader<ros::Image>(participant_, topics_[1])},
         infos_{Reader<ros::CameraInfo>(participant_, prefix_ + "/left/camera_info"),
                Reader<ros::CameraInfo>(participant_, prefix_ + "/right/camera_info")},
         wait_(participant_, {&images_[0], &images_[1]}),
-        pairing_(static_cast<std::int64_t>(options.max_skew_ms * 1e6)) {
+        pairing_(options.max_skew_ms, [this](std::size_t, auto&&) { ++unpaired_; }) {
+    calibration_ = io::open_calibration(options, std::nullopt, false, false);
     first_ = opened();
   }
 
@@ -80,14 +80,7 @@ class Ros2Sequence : public io::Sequence {
     return (*range.last_excluded - range.first + range.step - 1) / range.step;
   }
   [[nodiscard]] std::string name() const override { return prefix_.empty() ? "/" : prefix_; }
-  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
-  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
-  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
-  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
-  [[nodiscard]] const io::Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] std::string stamps_from() const override { return "header.stamp of " + topics_[0]; }
-  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return remarks_; }
-  [[nodiscard]] const std::string& ended_early() const override { return none_; }
 
   /// next() looks every 50 ms: nothing of DDS is called, so that a signal's handler may call this.
   void stop() override { is_stopped_ = true; }
@@ -110,7 +103,10 @@ class Ros2Sequence : public io::Sequence {
     ros::Image image;
     Clock::time_point arrived;
   };
-  using Pair = std::pair<Received, Received>;
+  using Pairing = io::StampPairing<Received>;
+  using Pair = Pairing::Pair;
+
+  static constexpr std::size_t kMostWaiting = 4;  // of one side for the other
 
   static std::string prefix_of(const std::string& source) {
     const std::string name = source.substr(kPrefix.size());
@@ -136,8 +132,8 @@ class Ros2Sequence : public io::Sequence {
           is_idle = false;
           has_come_[side] = true;
           const Stamp stamp = ros::stamp_of(image->header.stamp);
-          std::optional<Pair> pair = pairing_.add(side, stamp, {std::move(*image), Clock::now()});
-          unpaired_ = pairing_.unpaired();
+          pairing_.push_live(side, stamp, {std::move(*image), Clock::now()}, kMostWaiting);
+          std::optional<Pair> pair = pairing_.next();
           if (!pair) continue;
           last_pair_ = Clock::now();
           return pair;
@@ -203,7 +199,8 @@ class Ros2Sequence : public io::Sequence {
   }
 
   void calibrate(const Pair& pair, bool needs_infos) {
-    const Size size{static_cast<int>(pair.first.image.width), static_cast<int>(pair.first.image.height)};
+    const Size size{static_cast<int>(pair.left.value.image.width),
+                    static_cast<int>(pair.left.value.image.height)};
     if (calibration_.rectifier || !needs_infos) {
       calibration_.suit(size);
     } else if (last_infos_[0] && last_infos_[1]) {
@@ -234,7 +231,7 @@ class Ros2Sequence : public io::Sequence {
 
   /// None where it is not one of the range, or not later than the one before.
   std::optional<io::SequenceFrame> frame_of(const Pair& pair) {
-    const Stamp stamp = ros::stamp_of(pair.first.image.header.stamp);
+    const Stamp stamp = ros::stamp_of(pair.left.value.image.header.stamp);
     if (last_stamp_ && stamp <= *last_stamp_) {
       io::remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
                             io::number_text(count_), true, false});
@@ -244,7 +241,7 @@ class Ros2Sequence : public io::Sequence {
     if (!io::is_in(options_.frames, index)) return std::nullopt;
     last_stamp_ = stamp;
     io::PicturePair pictures =
-        pictures_of(pair.first.image, topics_[0], pair.second.image, topics_[1], bits_, pool_);
+        io::pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
     bits_ = pictures.bits;
     pictures = calibration_.rectified(std::move(pictures), pool_);
     io::SequenceFrame frame{
@@ -254,7 +251,7 @@ class Ros2Sequence : public io::Sequence {
         std::move(pictures.left),
         std::move(pictures.right.gray),
         false,
-        std::max(pair.first.arrived, pair.second.arrived),
+        std::max(pair.left.value.arrived, pair.right.value.arrived),
     };
     watch_.see(frame, source_, remarks_);
     return frame;
@@ -280,18 +277,14 @@ class Ros2Sequence : public io::Sequence {
   std::string prefix_;
   io::SourceOptions options_;
   Pool pool_;
-  io::FrameWatch watch_;
-  io::SourceCalibration calibration_;
   std::array<std::string, 2> topics_;
   Participant participant_;
   std::array<Reader<ros::Image>, 2> images_;
   std::array<Reader<ros::CameraInfo>, 2> infos_;
   ReaderWait wait_;
-  Pairing<Received> pairing_;
+  Pairing pairing_;
   std::array<std::optional<ros::CameraInfo>, 2> last_infos_;
   std::array<bool, 2> has_come_{};
-  std::vector<io::SourceRemark> remarks_;
-  std::string none_;
   std::optional<Stamp> last_stamp_;
   std::size_t count_ = 0;
   int bits_ = 8;

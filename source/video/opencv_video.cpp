@@ -8,14 +8,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <deque>
 #include <io/dataset.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
 #include <source/frame_list.hpp>
 #include <source/frame_watch.hpp>
 #include <source/names_and_numbers.hpp>
-#include <source/stamps.hpp>
+#include <source/stamp_pairing.hpp>
 #include <system_error>
 
 namespace cairn::io {
@@ -134,10 +133,10 @@ Picture picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
 }
 
 /// What sequences of one and of two videos share.
-class VideoSequence : public Sequence {
+class VideoSequence : public SourceSequence {
  public:
   VideoSequence(std::string name, const fs::path& beside, const SourceOptions& options, Pool pool)
-      : name_(std::move(name)), options_(options), pool_(std::move(pool)), watch_(options.max_gap_s) {
+      : SourceSequence(options.max_gap_s), name_(std::move(name)), options_(options), pool_(std::move(pool)) {
     const std::optional<fs::path> found =
         calibration_in(beside.parent_path().empty() ? "." : beside.parent_path());
     calibration_ = open_calibration(options, found, false, false);
@@ -152,16 +151,9 @@ class VideoSequence : public Sequence {
     return advance();
   }
   [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
-  [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
-  [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
-  [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
-  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] std::string stamps_from() const override {
     return options_.rate_hz > 0 ? rate_text(options_.rate_hz) : "the video";
   }
-  [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
-  [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
 
  protected:
   /// Both images of the next frame that is asked for.
@@ -217,10 +209,6 @@ class VideoSequence : public Sequence {
   std::string name_;
   SourceOptions options_;
   Pool pool_;
-  FrameWatch watch_;
-  SourceCalibration calibration_;
-  std::vector<SourceRemark> remarks_;
-  std::string ended_early_;
   fs::path file_;
   std::optional<SequenceFrame> first_;
 };
@@ -269,90 +257,66 @@ class TwoVideos : public VideoSequence {
  public:
   TwoVideos(const fs::path& left, const fs::path& right, const SourceOptions& options, const Pool& pool)
       : VideoSequence(left.filename().string(), left, options, pool),
-        left_(left, options),
-        right_(right, options) {
+        videos_{VideoFile(left, options.rate_hz), VideoFile(right, options.rate_hz)},
+        pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::Waiting&& alone) {
+          remark_on({side == 0 ? "left image without a right one" : "right image without a left one", 1,
+                     number_text(alone.value.index), true, false});
+        }) {
     begin(left);
   }
   [[nodiscard]] std::optional<std::size_t> size() const override {
-    if (!left_.video.count() || !right_.video.count()) return std::nullopt;
-    return delivered_of(std::min(*left_.video.count(), *right_.video.count()));
+    if (!videos_[0].count() || !videos_[1].count()) return std::nullopt;
+    return delivered_of(std::min(*videos_[0].count(), *videos_[1].count()));
   }
 
  private:
-  /// A video with the frames that are still to be paired, at most two.
-  struct Side {
-    struct Taken {
-      std::size_t index = 0;
-      Stamp stamp;
-      std::optional<cv::Mat> image;
-    };
-    Side(const fs::path& path, const SourceOptions& options)
-        : video(path, options.rate_hz), first(options.frames.first) {}
-    bool has(std::size_t count) {
-      while (waiting.size() < count && video.advance()) {
-        // A pair's number is never above that of its frames, so earlier ones are not asked for.
-        waiting.push_back(
-            {video.index(), video.stamp(), video.index() < first ? std::nullopt : video.image()});
-      }
-      return waiting.size() >= count;
-    }
-    VideoFile video;
-    std::size_t first;
-    std::deque<Taken> waiting;
+  struct Taken {
+    std::size_t index = 0;
+    std::optional<cv::Mat> image;
   };
+  using Pairing = StampPairing<Taken>;
 
-  /// As pair_by_stamps() does it.
-  std::optional<Both> next_pair() override {
-    const auto apart = [&](std::size_t l, std::size_t r) {
-      return std::abs(left_.waiting[l].stamp.ns - right_.waiting[r].stamp.ns);
-    };
-    const double most_ns = options().max_skew_ms * 1e6;
-    while (left_.has(1) && right_.has(1)) {
-      if (right_.has(2) && apart(0, 1) < apart(0, 0)) {
-        leave(right_);
-      } else if (left_.has(2) && apart(1, 0) < apart(0, 0)) {
-        leave(left_);
-      } else if (static_cast<double>(apart(0, 0)) > most_ns) {
-        leave(left_.waiting[0].stamp < right_.waiting[0].stamp ? left_ : right_);
-      } else {
-        const Side::Taken left = std::move(left_.waiting.front());
-        const Side::Taken right = std::move(right_.waiting.front());
-        left_.waiting.pop_front();
-        right_.waiting.pop_front();
-        const std::size_t index = pairs_++;
-        if (is_past_range(index)) return std::nullopt;
-        if (is_in(options().frames, index)) return Both{index, left.stamp, pair_of(left.image, right.image)};
-      }
+  bool has(std::size_t side, std::size_t count) {
+    VideoFile& video = videos_[side];
+    while (pairing_.waiting(side).size() < count && video.advance()) {
+      // A pair's number is never above that of its frames, so earlier ones are not asked for.
+      const bool is_before = video.index() < options().frames.first;
+      pairing_.push(side, video.stamp(), {video.index(), is_before ? std::nullopt : video.image()});
     }
-    // What is left over of the longer one has no partner.
-    for (Side* side : {&left_, &right_}) {
-      while (side->has(1)) leave(*side);
-    }
-    const std::string left_words = left_.video.cut_off();
-    end_early(left_words.empty() ? right_.video.cut_off() : left_words);
-    return std::nullopt;
+    return pairing_.waiting(side).size() >= count;
   }
 
-  void leave(Side& side) {
-    remark_on({&side == &left_ ? "left image without a right one" : "right image without a left one", 1,
-               number_text(side.waiting.front().index), true, false});
-    side.waiting.pop_front();
+  std::optional<Both> next_pair() override {
+    while (has(0, 1) && has(1, 1)) {
+      const auto pair = pairing_.decide([&](std::size_t side) { return has(side, 2); });
+      if (!pair) continue;
+      const std::size_t index = pairs_++;
+      if (is_past_range(index)) return std::nullopt;
+      if (is_in(options().frames, index))
+        return Both{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
+    }
+    // What is left over of the longer one has no partner.
+    while (has(0, 1)) pairing_.leave(0);
+    while (has(1, 1)) pairing_.leave(1);
+    const std::string left_words = videos_[0].cut_off();
+    end_early(left_words.empty() ? videos_[1].cut_off() : left_words);
+    return std::nullopt;
   }
 
   std::optional<PicturePair> pair_of(const std::optional<cv::Mat>& left,
                                      const std::optional<cv::Mat>& right) {
     if (!left || !right) return std::nullopt;
     if (left->size() != right->size()) {
-      throw Error(right_.video.path().string() + ": is " + text(Size{right->cols, right->rows}) +
-                  ", expected " + text(Size{left->cols, left->rows}) + " as " + left_.video.path().string() +
+      throw Error(videos_[1].path().string() + ": is " + text(Size{right->cols, right->rows}) +
+                  ", expected " + text(Size{left->cols, left->rows}) + " as " + videos_[0].path().string() +
                   " is");
     }
-    return PicturePair{picture_of(*left, left_.video.is_grey(), pool()),
-                       picture_of(*right, right_.video.is_grey(), pool()), 8};
+    return PicturePair{picture_of(*left, videos_[0].is_grey(), pool()),
+                       picture_of(*right, videos_[1].is_grey(), pool()), 8};
   }
 
-  Side left_;
-  Side right_;
+  std::array<VideoFile, 2> videos_;
+  Pairing pairing_;
   std::size_t pairs_ = 0;
 };
 

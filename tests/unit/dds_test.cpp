@@ -11,10 +11,9 @@
 #include <io/image_files.hpp>
 #include <live/dds/ros2_sink.hpp>
 #include <nlohmann/json.hpp>
-#include <source/dds/pairing.hpp>
 #include <source/dds/participant.hpp>
 #include <source/dds/ros2_sequence.hpp>
-#include <source/dds/ros_pictures.hpp>
+#include <source/ros_pictures.hpp>
 
 #include "support/dds_domain.hpp"
 #include "support/type_hash.hpp"
@@ -350,34 +349,6 @@ TEST_F(Dds, AWriterDoesNotWaitForAReaderThatIsStuck) {
 
 // ---- what comes in ----
 
-TEST(Pairing, PutsTogetherWhatIsOfOneMoment) {
-  Pairing<int> pairing(5'000'000);
-  const auto at = [](int ms) { return Stamp{std::int64_t{ms} * 1'000'000}; };
-  EXPECT_FALSE(pairing.add(0, at(0), 1));
-  EXPECT_EQ(pairing.add(1, at(0), 10), (std::pair{1, 10}));
-  // The nearest that is there.
-  EXPECT_FALSE(pairing.add(1, at(30), 20));
-  EXPECT_FALSE(pairing.add(1, at(34), 21));
-  EXPECT_EQ(pairing.add(0, at(33), 2), (std::pair{2, 21}));
-  EXPECT_EQ(pairing.unpaired(), 1U);
-  // Too far apart, then one that fits: what lies before it is given up.
-  EXPECT_FALSE(pairing.add(0, at(60), 3));
-  EXPECT_FALSE(pairing.add(1, at(70), 30));
-  EXPECT_EQ(pairing.add(0, at(66), 4), (std::pair{4, 30}));
-  EXPECT_EQ(pairing.unpaired(), 2U);
-  // One side alone keeps a few only.
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(pairing.add(0, at(100 + 33 * i), i));
-  EXPECT_EQ(pairing.unpaired(), 8U);
-}
-
-TEST(Pairing, BeginsAnewWhereTheClockWasSetBack) {
-  Pairing<int> pairing(0);
-  EXPECT_FALSE(pairing.add(0, {1000}, 1));
-  EXPECT_FALSE(pairing.add(0, {500}, 2));
-  EXPECT_EQ(pairing.add(1, {500}, 3), (std::pair{2, 3}));
-  EXPECT_EQ(pairing.unpaired(), 1U);
-}
-
 ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step, ros::Bytes data) {
   ros::Image message;
   message.width = width;
@@ -389,7 +360,7 @@ ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t
 }
 
 io::PicturePair pictures(const ros::Image& left, const ros::Image& right, int bits = 8) {
-  return pictures_of(left, "/l", right, "/r", bits, {});
+  return io::pictures_of(left, "/l", right, "/r", bits, {});
 }
 
 TEST(RosPictures, RowsMayBeLongerThanTheImage) {
@@ -407,6 +378,13 @@ TEST(RosPictures, ColoursStandInTheirOrder) {
   EXPECT_EQ(pair.left.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
   EXPECT_EQ(pair.right.gray(0, 0), (77 * 10 + 150 * 20 + 29 * 30 + 128) >> 8);
   EXPECT_TRUE(pair.right.rgb.empty());
+}
+
+TEST(RosPictures, LeaveAlphaOut) {
+  const io::PicturePair pair =
+      pictures(image("rgba8", 1, 4, {10, 20, 30, 7}), image("bgra8", 1, 4, {10, 20, 30, 7}));
+  EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{10, 20, 30}));
+  EXPECT_EQ(pair.right.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
 }
 
 TEST(RosPictures, DeepImagesKeepTheirHighBits) {
@@ -427,25 +405,28 @@ TEST(RosPictures, RefusesWhatIsNoImage) {
   const ros::Image sound = image("mono8", 2, 2, {1, 2, 3, 4});
   ros::Image other = sound;
   other.encoding = "bayer_rggb8";
-  EXPECT_EQ(message_of([&] { pictures(sound, other); }),
-            "/r: found the encoding \"bayer_rggb8\", expected mono8, mono16, rgb8 or bgr8");
+  EXPECT_EQ(
+      message_of([&] { pictures(sound, other); }),
+      "/r: has the encoding bayer_rggb8, expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (debayer others "
+      "first)");
   other = sound;
   other.data.pop_back();
-  EXPECT_NE(message_of([&] { pictures(other, sound); }).find("/l: found 3 bytes for an image of 2 x 2"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of([&] { pictures(other, sound); }).find("/l: has 3 bytes in rows of 2, expected those of 2x2"),
+      std::string::npos);
   other = sound;
   other.width = 0xffffffff;
   EXPECT_NE(message_of([&] { pictures(other, sound); }).find("4294967295"), std::string::npos);
   EXPECT_NE(message_of([&] {
               pictures(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
-            }).find("/r: is 4x1"),
+            }).find("/r: the left image is 2x2, the right one 4x1"),
             std::string::npos)
       << message_of([&] {
            pictures(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
          });
   EXPECT_NE(message_of([&] {
               pictures(sound, image("mono16", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8}));
-            }).find("a pair has one scale"),
+            }).find("/r: the left image has 8 bits, the right one 16"),
             std::string::npos);
 }
 

@@ -8,6 +8,7 @@
 #include <io/image_files.hpp>
 #include <io/raw_calibration.hpp>
 #include <source/sequence.hpp>
+#include <source/stamp_pairing.hpp>
 #include <source/stamps.hpp>
 #include <support/collection.hpp>
 #include <support/temporary_folder.hpp>
@@ -113,6 +114,49 @@ TEST(Stamps, PairWhatIsEachOthersNearest) {
   EXPECT_EQ(pairs.pairs[2].left, 4U);
   EXPECT_EQ(pairs.left_alone, (std::vector<std::size_t>{2, 3}));
   EXPECT_EQ(pairs.right_alone, (std::vector<std::size_t>{1, 3}));
+}
+
+/// Two streams of numbers that go on, and what became of them.
+class LivePairs {
+ public:
+  explicit LivePairs(double max_skew_ms) : pairing_(max_skew_ms, [this](std::size_t, auto&&) { ++alone; }) {}
+  std::optional<std::pair<int, int>> push(std::size_t side, int ms, int value) {
+    pairing_.push_live(side, Stamp{std::int64_t{ms} * 1'000'000}, value, 4);
+    const auto pair = pairing_.next();
+    if (!pair) return std::nullopt;
+    return std::pair(pair->left.value, pair->right.value);
+  }
+  int alone = 0;
+
+ private:
+  StampPairing<int> pairing_;
+};
+
+TEST(StampPairing, PutsTogetherWhatIsOfOneMoment) {
+  LivePairs pairs(5);
+  EXPECT_FALSE(pairs.push(0, 0, 1));
+  EXPECT_EQ(pairs.push(1, 0, 10), (std::pair{1, 10}));
+  // The nearest that is there.
+  EXPECT_FALSE(pairs.push(1, 30, 20));
+  EXPECT_FALSE(pairs.push(1, 34, 21));
+  EXPECT_EQ(pairs.push(0, 33, 2), (std::pair{2, 21}));
+  EXPECT_EQ(pairs.alone, 1);
+  // Too far apart, then one that fits.
+  EXPECT_FALSE(pairs.push(0, 60, 3));
+  EXPECT_FALSE(pairs.push(1, 70, 30));
+  EXPECT_EQ(pairs.push(0, 66, 4), (std::pair{4, 30}));
+  EXPECT_EQ(pairs.alone, 2);
+  // One side alone keeps a few only.
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(pairs.push(0, 100 + 33 * i, i));
+  EXPECT_EQ(pairs.alone, 8);
+}
+
+TEST(StampPairing, BeginsAgainWhereTheClockWasSetBack) {
+  LivePairs pairs(0);
+  EXPECT_FALSE(pairs.push(0, 1000, 1));
+  EXPECT_FALSE(pairs.push(0, 500, 2));
+  EXPECT_EQ(pairs.push(1, 500, 3), (std::pair{2, 3}));
+  EXPECT_EQ(pairs.alone, 1);
 }
 
 TEST(FrameRanges, AreParsedOrRefused) {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "../tracking/pose.hpp"
+
+namespace cairn::io {
+
+/// Left and right of one moment among two streams that each come in order: each with the other's nearest, and
+/// not more than `max_skew_ms` apart. Sides: 0 is left, 1 is right.
+template <class T>
+class StampPairing {
+ public:
+  struct Waiting {
+    Stamp stamp;
+    T value;
+  };
+  struct Pair {
+    Waiting left;
+    Waiting right;
+  };
+  /// `alone` is given each image that gets no partner.
+  StampPairing(double max_skew_ms, std::function<void(std::size_t side, Waiting&&)> alone)
+      : max_skew_ns_(max_skew_ms * 1e6), alone_(std::move(alone)) {}
+
+  void push(std::size_t side, Stamp stamp, T value) { waiting_[side].push_back({stamp, std::move(value)}); }
+  /// Of a stream that goes on: no more than `most` wait, and a stamp that is not later than the one before on
+  /// its side begins both again, because the clock was set back.
+  void push_live(std::size_t side, Stamp stamp, T value, std::size_t most) {
+    if (last_[side] && stamp <= *last_[side]) leave_all();
+    last_[side] = stamp;
+    push(side, stamp, std::move(value));
+    if (waiting_[side].size() > most) leave(side);
+  }
+  [[nodiscard]] const std::deque<Waiting>& waiting(std::size_t side) const { return waiting_[side]; }
+
+  /// The next pair of those that wait; what has not come yet is not waited for.
+  std::optional<Pair> next() {
+    while (!waiting_[0].empty() && !waiting_[1].empty()) {
+      if (auto pair = decide([&](std::size_t side) { return waiting_[side].size() > 1; })) return pair;
+    }
+    return std::nullopt;
+  }
+
+  /// Decides about the two that wait longest, one of each side: they are a pair, or one of them is alone.
+  /// `has_two`: whether two of a side wait, after reading on where that is possible.
+  template <class HasTwo>
+  std::optional<Pair> decide(const HasTwo& has_two) {
+    auto& [left, right] = waiting_;
+    const bool is_exact = apart(0, 0) == 0;
+    if (!is_exact && has_two(1) && apart(0, 1) < apart(0, 0)) {
+      leave(1);
+    } else if (!is_exact && has_two(0) && apart(1, 0) < apart(0, 0)) {
+      leave(0);
+    } else if (static_cast<double>(apart(0, 0)) > max_skew_ns_) {
+      leave(left.front().stamp < right.front().stamp ? 0 : 1);
+    } else {
+      Pair pair{std::move(left.front()), std::move(right.front())};
+      left.pop_front();
+      right.pop_front();
+      return pair;
+    }
+    return std::nullopt;
+  }
+
+  /// The one that waits longest on a side is alone.
+  void leave(std::size_t side) {
+    Waiting alone = std::move(waiting_[side].front());
+    waiting_[side].pop_front();
+    alone_(side, std::move(alone));
+  }
+  void leave_all() {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      while (!waiting_[side].empty()) leave(side);
+    }
+  }
+
+  /// Between one of the left and one of the right; ns.
+  [[nodiscard]] std::int64_t apart(std::size_t left, std::size_t right) const {
+    const std::int64_t difference = waiting_[0][left].stamp.ns - waiting_[1][right].stamp.ns;
+    return difference < 0 ? -difference : difference;
+  }
+
+ private:
+  double max_skew_ns_;
+  std::function<void(std::size_t, Waiting&&)> alone_;
+  std::array<std::deque<Waiting>, 2> waiting_;
+  std::array<std::optional<Stamp>, 2> last_;
+};
+
+}  // namespace cairn::io
