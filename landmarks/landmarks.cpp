@@ -44,7 +44,7 @@ constexpr double kCentreSigmaUp = 0.1;  // of its height
 
 constexpr std::array<std::size_t, 4> kOfPose{0, 1, 2, 5};  // x y z yaw of a Covariance6
 
-struct Shown {
+struct VisibleArea {
   int pixels = 0;
   Rect box;
 };
@@ -194,7 +194,7 @@ bool may_be_recognised(const TrackEvidence& evidence, const Track& track, const 
 }
 
 /// An octant's colours, and the crop where this is the largest view so far.
-void show(Landmark& landmark, const Track& track, const Shown& shown, int octant,
+void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int octant,
           const LandmarkFrame& frame) {
   auto at = std::lower_bound(landmark.looks.begin(), landmark.looks.end(), octant,
                              [](const LandmarkLook& l, int wanted) { return l.octant < wanted; });
@@ -723,7 +723,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
   }
 
   // New ones, and what is known better now.
-  std::vector<Shown> shown(tracks.list.size());
+  std::vector<VisibleArea> shown(tracks.list.size());
   for (int y = 0; y < frame.ids.height(); ++y) {
     const TrackId* row = frame.ids.row(y);
     std::size_t at = 0;

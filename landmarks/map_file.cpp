@@ -176,7 +176,7 @@ std::string words_for(const SQLite::Exception& error) {
 }
 
 /// What was stored of a landmark, to tell what has changed.
-struct Stored {
+struct StoredLandmark {
   double log_odds = 0;
   int seen = 0;
   int expected = 0;
@@ -184,17 +184,17 @@ struct Stored {
   Point3 position_m;
   std::string name;
   std::vector<int> pixels;  // of the looks
-  friend bool operator==(const Stored&, const Stored&) = default;
+  friend bool operator==(const StoredLandmark&, const StoredLandmark&) = default;
 };
 
-Stored stored_of(const Landmark& landmark) {
-  Stored stored{landmark.log_odds,
-                landmark.seen,
-                landmark.expected,
-                landmark.is_gone,
-                landmark.position_m,
-                landmark.name,
-                {}};
+StoredLandmark stored_of(const Landmark& landmark) {
+  StoredLandmark stored{landmark.log_odds,
+                        landmark.seen,
+                        landmark.expected,
+                        landmark.is_gone,
+                        landmark.position_m,
+                        landmark.name,
+                        {}};
   for (const LandmarkLook& look : landmark.looks) stored.pixels.push_back(8 * look.pixels + look.octant);
   return stored;
 }
@@ -221,7 +221,7 @@ struct MapFile::Store {
   Stamp latest;
   bool is_open = false;  // a transaction
   std::optional<Pose> map_from_odom;
-  std::map<LandmarkId, Stored> stored;
+  std::map<LandmarkId, StoredLandmark> stored;
   std::vector<FloorCell> stored_floor;
   struct Thinning {
     int every = 1;
@@ -319,7 +319,7 @@ struct MapFile::Store {
   /// What differs from what is stored.
   void store(const LandmarkMap& map) {
     for (const Landmark& landmark : map.list) {
-      Stored now = stored_of(landmark);
+      StoredLandmark now = stored_of(landmark);
       const auto at = stored.find(landmark.id);
       if (at != stored.end() && at->second == now) continue;
       store_landmark(landmark);

@@ -89,7 +89,7 @@ double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covari
 }
 
 /// A pair that colours and sizes allow.
-struct Allowed {
+struct CompatiblePair {
   std::size_t candidate = 0;
   std::size_t landmark = 0;
   double score = 0;
@@ -97,9 +97,9 @@ struct Allowed {
 
 constexpr std::size_t kMostAllowed = 300;
 
-std::vector<Allowed> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                                   const LandmarksConfig& config) {
-  std::vector<Allowed> pairs;
+std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                                          const LandmarksConfig& config) {
+  std::vector<CompatiblePair> pairs;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     for (std::size_t l = 0; l < map.list.size(); ++l) {
       if (map.list[l].is_gone || !may_be(candidates[c], map.list[l])) continue;
@@ -109,7 +109,7 @@ std::vector<Allowed> allowed_pairs(const LandmarkMap& map, const std::vector<Can
   }
   if (pairs.size() > kMostAllowed) {
     std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const Allowed& a, const Allowed& b) { return a.score > b.score; });
+                     [](const CompatiblePair& a, const CompatiblePair& b) { return a.score > b.score; });
     pairs.resize(kMostAllowed);
   }
   return pairs;
@@ -125,12 +125,12 @@ struct Constellation {
 
 /// The rotation about z and the translation that bring the candidates onto the landmarks: least squares with
 /// one weight for each pair (Umeyama 1991, in the plane).
-Pose fit(const std::vector<std::size_t>& chosen, const std::vector<Allowed>& pairs,
+Pose fit(const std::vector<std::size_t>& chosen, const std::vector<CompatiblePair>& pairs,
          const std::vector<Candidate>& candidates, const LandmarkMap& map) {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   double weights = 0;
-  const auto weight_of = [&](const Allowed& pair) {
+  const auto weight_of = [&](const CompatiblePair& pair) {
     return 1.0 / (matrix(candidates[pair.candidate].covariance_m2).trace() +
                   matrix(map.list[pair.landmark].covariance_m2).trace());
   };
@@ -157,7 +157,7 @@ Pose fit(const std::vector<std::size_t>& chosen, const std::vector<Allowed>& pai
 }
 
 /// All pairs that the pose explains, each candidate and landmark once, the nearest first.
-Constellation explained(const Pose& pose, double slack, const std::vector<Allowed>& pairs,
+Constellation explained(const Pose& pose, double slack, const std::vector<CompatiblePair>& pairs,
                         const std::vector<Candidate>& candidates, const LandmarkMap& map, double gate) {
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -186,7 +186,7 @@ Constellation explained(const Pose& pose, double slack, const std::vector<Allowe
   return found;
 }
 
-bool agree(const Allowed& a, const Allowed& b, const std::vector<Candidate>& candidates,
+bool agree(const CompatiblePair& a, const CompatiblePair& b, const std::vector<Candidate>& candidates,
            const LandmarkMap& map) {
   constexpr double kShortest_m = 0.3;  // a shorter base tells no direction
   constexpr double kSigmas = 3;
@@ -256,13 +256,13 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
     result.refusal = RecognitionRefusal::no_candidates;
     return result;
   }
-  struct Offer {
+  struct PairCost {
     double cost;
     std::size_t candidate;
     std::size_t landmark;
     double score;
   };
-  std::vector<Offer> offers;
+  std::vector<PairCost> offers;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const Placed seen = landmarks::place(candidates[c], located);
     for (std::size_t l = 0; l < map.list.size(); ++l) {
@@ -279,15 +279,15 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
         offers.push_back({squared + kColours * (1 - score), c, l, score});
     }
   }
-  const auto is_best = [&](const Offer& offer) {
-    return std::none_of(offers.begin(), offers.end(), [&](const Offer& other) {
+  const auto is_best = [&](const PairCost& offer) {
+    return std::none_of(offers.begin(), offers.end(), [&](const PairCost& other) {
       if (other.candidate == offer.candidate && other.landmark == offer.landmark) return false;
       if (other.candidate != offer.candidate && other.landmark != offer.landmark) return false;
       return std::tie(other.cost, other.candidate, other.landmark) <
              std::tie(offer.cost, offer.candidate, offer.landmark);
     });
   };
-  for (const Offer& offer : offers) {
+  for (const PairCost& offer : offers) {
     if (is_best(offer))
       result.pairs.push_back({candidates[offer.candidate].track, map.list[offer.landmark].id, offer.score});
   }
@@ -303,7 +303,7 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
     result.refusal = RecognitionRefusal::no_candidates;
     return result;
   }
-  const std::vector<Allowed> pairs = allowed_pairs(map, candidates, config);
+  const std::vector<CompatiblePair> pairs = allowed_pairs(map, candidates, config);
   // χ² of 3 degrees of freedom, 0.95: a pair that is missing costs little, one that was moved bends the pose.
   constexpr double kTight = 7.81;
   const double gate = std::min(static_cast<double>(config.gate), kTight);

@@ -47,13 +47,13 @@ Json matrix(const Rows& rows) {
 }
 
 /// What a frame shows of its tracks: labelled with their ids, and where each lies.
-struct Shown {
+struct TrackLabels {
   Image<ObjectId> labels;
   std::map<std::int64_t, Rect> boxes;
 };
 
-Shown shown_in(const Step& step) {
-  Shown shown{Image<ObjectId>(step.ids.size()), {}};
+TrackLabels track_labels_of(const Step& step) {
+  TrackLabels shown{Image<ObjectId>(step.ids.size()), {}};
   for (int y = 0; y < step.ids.height(); ++y) {
     for (int x = 0; x < step.ids.width(); ++x)
       shown.labels(x, y) = ObjectId{static_cast<std::int32_t>(number(step.ids(x, y)))};
@@ -68,7 +68,7 @@ Shown shown_in(const Step& step) {
   return shown;
 }
 
-Rle rle_of(const Shown& shown, TrackId id) {
+Rle rle_of(const TrackLabels& shown, TrackId id) {
   return encode_rle(shown.labels, ObjectId{static_cast<std::int32_t>(number(id))},
                     shown.boxes.at(number(id)));
 }
@@ -108,7 +108,7 @@ Json reliability_json(const Reliability& reliability) {
   return j;
 }
 
-Json track_json(const Track& track, const Shown& shown, const Landmarked& marked) {
+Json track_json(const Track& track, const TrackLabels& shown, const Landmarked& marked) {
   Json j{{"id", number(track.id)},
          {"state", choice_name(track.state, kTrackStates)},
          {"moving", track.is_moving},
@@ -146,7 +146,7 @@ Json track_json(const Track& track, const Shown& shown, const Landmarked& marked
 }  // namespace
 
 std::string step_json(const Step& step, const std::string& name, const Landmarked& marked) {
-  const Shown shown = shown_in(step);
+  const TrackLabels shown = track_labels_of(step);
   Json tracks = Json::array();
   for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, shown, marked));
   const Json line{{"frame", step.index},
@@ -171,7 +171,7 @@ std::string pose_tum(const Step& step) {
 }
 
 std::string masks_mots(const Step& step) {
-  const Shown shown = shown_in(step);
+  const TrackLabels shown = track_labels_of(step);
   std::string lines;
   for (const Track& track : step.tracks.list) {
     if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
@@ -184,7 +184,7 @@ std::string masks_mots(const Step& step) {
 
 Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Step& step) {
   // Objects with their track's id in place of their own: the overlay draws and names them by it.
-  Shown shown = shown_in(step);
+  TrackLabels shown = track_labels_of(step);
   Objects tracked;
   std::vector<std::int64_t> drawn;
   for (const Track& track : step.tracks.list) {

@@ -33,7 +33,7 @@ struct Side {
   std::size_t seen = 0;
 };
 /// One that waits for the other camera's.
-struct Taken {
+struct WaitingImage {
   std::size_t index = 0;
   std::optional<Raster> image;  // none: cannot be read
   std::string trouble;
@@ -96,7 +96,7 @@ class McapSequence : public SourceSequence {
   }
 
  private:
-  using Pairing = StampPairing<Taken>;
+  using Pairing = StampPairing<WaitingImage>;
 
   /// The first message of a channel.
   template <class M>
@@ -194,29 +194,29 @@ class McapSequence : public SourceSequence {
 
   [[nodiscard]] std::size_t bytes_of(std::size_t side) const {
     std::size_t bytes = 0;
-    for (const auto& taken : pairing_.waiting(side))
-      bytes += taken.value.image ? taken.value.image->bytes.size() : 0;
+    for (const auto& waiting : pairing_.waiting(side))
+      bytes += waiting.value.image ? waiting.value.image->bytes.size() : 0;
     return bytes;
   }
 
   void take(std::size_t side, const ros::McapMessage& message) {
-    Taken taken{sides_[side].seen++, std::nullopt, {}};
+    WaitingImage waiting{sides_[side].seen++, std::nullopt, {}};
     Stamp stamp = message.logged;
     try {
       if (sides_[side].channel.type == ros::CompressedImage::kType) {
         const auto image = ros::decode<ros::CompressedImage>(message.bytes);
         stamp = stamp_of(image.header, message);
-        taken.image = decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
+        waiting.image = decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
                                     Palette::colours);
       } else {
         const auto image = ros::decode<ros::Image>(message.bytes);
         stamp = stamp_of(image.header, message);
-        taken.image = raster_of(image);
+        waiting.image = raster_of(image);
       }
     } catch (const Error& error) {
-      taken.trouble = error.what();
+      waiting.trouble = error.what();
     }
-    pairing_.push(side, stamp, std::move(taken));
+    pairing_.push(side, stamp, std::move(waiting));
   }
   void take_grey(const ros::McapMessage& message) {
     try {
@@ -261,8 +261,8 @@ class McapSequence : public SourceSequence {
       const std::size_t index = found->first;
       Pairing::Pair& both = found->second;
       const std::string name = number_text(index);
-      const Taken& left = both.left.value;
-      const Taken& right = both.right.value;
+      const WaitingImage& left = both.left.value;
+      const WaitingImage& right = both.right.value;
       if (!left.image || !right.image) {
         const bool is_left = !left.image;
         remark(remarks_, {"frame that cannot be read", 1,

@@ -22,7 +22,7 @@ constexpr float kInView = 0.5F;
 constexpr double kSteadyShare = 0.5;  // of a measurement's variance, which stays from frame to frame
 
 /// What a frame shows of a track, in the map: one object or the pieces of one.
-struct Seen {
+struct Observation {
   const Sighting* main = nullptr;
   std::vector<const Sighting*> all;
   Point3 position_m;
@@ -43,9 +43,9 @@ Covariance3 scaled(Covariance3 c, double times) {
   return c;
 }
 
-Seen seen_by(std::vector<const Sighting*> sightings, const Pose& map_from_camera,
-             const Covariance6& pose_covariance) {
-  Seen seen;
+Observation seen_by(std::vector<const Sighting*> sightings, const Pose& map_from_camera,
+                    const Covariance6& pose_covariance) {
+  Observation seen;
   seen.main = sightings.front();
   seen.all = std::move(sightings);
   seen.has_place = std::ranges::all_of(seen.all, [](const Sighting* s) { return s->has_place; });
@@ -86,7 +86,8 @@ void weigh_label(Track& track, float moving_against_static, const Place& place) 
 }
 
 /// The filters after a sighting, and what it says of the label.
-void update_place(Track& track, const Seen& seen, bool was_cut, Stamp now, const TrackingConfig& config) {
+void update_place(Track& track, const Observation& seen, bool was_cut, Stamp now,
+                  const TrackingConfig& config) {
   if (!track.has_place) {
     track.as_static = {seen.position_m, seen.covariance_m2};
     track.as_moving = moving_from(seen.position_m, seen.covariance_m2);
@@ -119,7 +120,7 @@ void blend(T& old, T fresh, float weight) {
   old += weight * (fresh - old);
 }
 
-void update_looks(Track& track, const Seen& seen) {
+void update_looks(Track& track, const Observation& seen) {
   // The mean of the first five, then a memory of about as many.
   const float weight = 1.0F / static_cast<float>(std::min(track.hits, 5));
   for (std::size_t i = 0; i < track.look.size(); ++i) blend(track.look.at(i), seen.main->look.at(i), weight);
@@ -131,7 +132,7 @@ void update_looks(Track& track, const Seen& seen) {
   blend(track.height_over_floor_m, seen.main->height_over_floor_m, weight);
 }
 
-void update(Track& track, const Seen& seen, bool is_joined, Stamp now, const TrackingConfig& config) {
+void update(Track& track, const Observation& seen, bool is_joined, Stamp now, const TrackingConfig& config) {
   const bool was_cut = track.is_cut;
   track.object = seen.main->object;
   for (std::size_t i = 1; i < seen.all.size(); ++i) track.parts.push_back(seen.all[i]->object);

@@ -273,14 +273,14 @@ Pose guess_turn(const cv::Mat& before, const cv::Mat& now, cv::Size full, const 
 // ---- priors ----
 
 /// What the prior says of the motion since the keyframe.
-struct Expected {
+struct PriorTerm {
   MotionTerm term;
   Matrix6 covariance = Matrix6::Zero();
 };
 
-Expected expected_from(const MotionPrior& prior, const Pose& before_from_key,
-                       const Covariance6& covariance_to_key) {
-  Expected out;
+PriorTerm expected_from(const MotionPrior& prior, const Pose& before_from_key,
+                        const Covariance6& covariance_to_key) {
+  PriorTerm out;
   out.term.now_from_key = prior.now_from_before * before_from_key;
   const Matrix6 a = adjoint(prior.now_from_before);
   out.covariance = matrix(prior.covariance) + a * matrix(covariance_to_key) * a.transpose();
@@ -306,7 +306,7 @@ bool is_usable(const MotionPrior& prior) {
 }
 
 /// Whether what was seen and what the prior says are farther apart than both allow.
-bool disagree(const MotionFit& seen, const Expected& expected, PriorKind kind) {
+bool disagree(const MotionFit& seen, const PriorTerm& expected, PriorKind kind) {
   const Vector6 off = difference(seen.now_from_key, expected.term.now_from_key);
   const Matrix6 sum = matrix(seen.covariance) + expected.covariance;
   if (kind == PriorKind::gyroscope) {
@@ -360,7 +360,7 @@ Covariance6 as_of_new_place(Covariance6 covariance) {
 // ---- one frame ----
 
 /// The present frame with all that is asked of it.
-struct Present {
+struct PresentFrame {
   View<const Gray> left;
   const DisparityMap& disparity;
   View<const float> confidence;
@@ -374,7 +374,7 @@ struct Attempt {
   MotionFit fit;
 };
 
-Attempt attempt(const Keyframe& key, const Keyframe& now, const Pose& start, const Present& present) {
+Attempt attempt(const Keyframe& key, const Keyframe& now, const Pose& start, const PresentFrame& present) {
   Attempt made;
   made.corners = follow(key, now, start, present.disparity, present.rig, present.config);
   made.fit = fit_motion(made.corners, present.rig, start, {}, present.config);
@@ -391,7 +391,7 @@ bool is_better(const Attempt& a, const Attempt& b) {
 
 /// Tries the expected motion as a start, then, where that finds little, the turn that the small images show.
 Attempt motion_from(const PlacedKeyframe& key, const OdometryState& state, const Keyframe& now,
-                    const Pose& expected_step, const Present& present) {
+                    const Pose& expected_step, const PresentFrame& present) {
   const Pose before_from_key = inverse(state.map_from_camera) * key.map_from_key;
   Attempt best = attempt(*key.frame, now, expected_step * before_from_key, present);
   constexpr double kFine = 0.5;
@@ -412,7 +412,7 @@ bool is_usable(const StereoRig& rig) {
          std::isfinite(rig.doffs_px);
 }
 
-bool is_usable(const Present& present) {
+bool is_usable(const PresentFrame& present) {
   constexpr int kLeast_px = 16;
   const Size size = present.left.size();
   return size.width >= kLeast_px && size.height >= kLeast_px &&
@@ -422,7 +422,7 @@ bool is_usable(const Present& present) {
 }
 
 /// The frame as a keyframe where it has corners enough, else none.
-std::shared_ptr<const Keyframe> as_keyframe(std::shared_ptr<Keyframe> frame, const Present& present) {
+std::shared_ptr<const Keyframe> as_keyframe(std::shared_ptr<Keyframe> frame, const PresentFrame& present) {
   find_corners(*frame, present.left, present.disparity, present.confidence, present.moving, present.rig,
                present.config);
   if (static_cast<int>(frame->corners.size()) < present.config.min_inliers) return nullptr;
@@ -447,7 +447,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
                               const DisparityMap& disparity, View<const float> confidence,
                               View<const std::uint8_t> moving, const StereoRig& rig,
                               const std::optional<MotionPrior>& given, const OdometryConfig& config) {
-  const Present present{left, disparity, confidence, moving, rig, config};
+  const PresentFrame present{left, disparity, confidence, moving, rig, config};
   const std::optional<MotionPrior> prior = given && is_usable(*given) ? given : std::nullopt;
   OdometryStep step{before, {}};
   OdometryState& state = step.state;
@@ -508,7 +508,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
   // ---- what the prior says of it ----
   const Pose before_from_key = inverse(before.map_from_camera) * state.key.map_from_key;
   if (prior && motion.refusal == MotionRefusal::none) {
-    const Expected expected = expected_from(*prior, before_from_key, state.covariance_to_key);
+    const PriorTerm expected = expected_from(*prior, before_from_key, state.covariance_to_key);
     if (disagree(fit, expected, prior->kind)) {
       const Pose seen_step = fit.now_from_key * inverse(before_from_key);
       const bool slips = prior->kind == PriorKind::wheels && stands_still(seen_step, fit.covariance) &&

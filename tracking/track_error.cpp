@@ -391,18 +391,18 @@ ScoredFrame scored_frame(View<const TrackId> ours, View<const TruthId> truth, co
 Steadiness steadiness(const std::vector<ScoredFrame>& frames) {
   Steadiness sum;
   double differences = 0;
-  struct Seen {
+  struct ObjectHistory {
     double iou = 0;
     bool was_found = false;  // since it came into view
     bool is_lost = false;
   };
-  std::map<std::int64_t, Seen> before;
+  std::map<std::int64_t, ObjectHistory> before;
   for (const ScoredFrame& frame : frames) {
-    std::map<std::int64_t, Seen> now;
+    std::map<std::int64_t, ObjectHistory> now;
     for (std::size_t i = 0; i < frame.truth.size(); ++i) {
       const double iou = best_similarity(frame, i);
       const bool is_found = iou >= kMatched;
-      Seen seen{iou, is_found, false};
+      ObjectHistory seen{iou, is_found, false};
       const auto earlier = before.find(frame.truth[i]);
       if (earlier != before.end()) {
         ++sum.pairs;

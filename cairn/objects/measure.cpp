@@ -210,11 +210,11 @@ float median(std::span<float> values, const Exec& exec) {
 }
 
 /// The valid disparities of an object, gathered run by run.
-class Gathered {
+class ObjectDisparities {
  public:
   /// How many floats an object needs.
   static std::size_t room_for(std::size_t pixels) { return pixels + kernels::kListSlack; }
-  Gathered(const Inputs& in, float* room, const Exec& exec)
+  ObjectDisparities(const Inputs& in, float* room, const Exec& exec)
       : in_(in), labels_(kernels::label_kernels(exec)), room_(room) {}
 
   void add(const Run& run) {
@@ -247,7 +247,7 @@ float confidence_of(const Object& object, Size image) {
 }
 
 /// nullopt where no pixel has a disparity.
-std::optional<Object> measured(const Outline& outline, const Gathered& gathered, Size image,
+std::optional<Object> measured(const Outline& outline, const ObjectDisparities& gathered, Size image,
                                const Exec& exec) {
   const std::span<float> disparities = gathered.disparities();
   if (disparities.empty()) return std::nullopt;
@@ -282,15 +282,15 @@ std::size_t pixels_of(const Candidate& candidate, const std::vector<Outline>& ou
 /// would fetch every row anew.
 void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std::vector<Outline>& outline,
                    std::span<Candidate> range, float* room, const Exec& exec) {
-  std::vector<Gathered> gathered;
+  std::vector<ObjectDisparities> gathered;
   gathered.reserve(range.size());
-  std::vector<Gathered*> of_region(outline.size(), nullptr);
+  std::vector<ObjectDisparities*> of_region(outline.size(), nullptr);
   for (const Candidate& candidate : range) {
     of_region[candidate.region] = &gathered.emplace_back(in, room + candidate.room, exec);
   }
   for (const Survey& band : bands) {
     for (const Run& run : band.runs()) {
-      if (Gathered* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
+      if (ObjectDisparities* const of = of_region[index(run.label)]; of != nullptr) of->add(run);
     }
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
@@ -327,7 +327,7 @@ Objects measure_those(const Inputs& in, MayBe may_be, Is is, const Exec& exec) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     if (!may_be(i, outline[i])) continue;
     found.push_back({i, room});
-    room += Gathered::room_for(pixels_of(found.back(), outline));
+    room += ObjectDisparities::room_for(pixels_of(found.back(), outline));
   }
   Scratch<float> lists(room, exec.pool);
   const std::vector<std::size_t> begins = shares(found, outline, exec);

@@ -26,10 +26,11 @@ std::pair<float, float> by_parting(std::span<float> values, std::size_t low, std
   return {lower, values[high]};
 }
 
-/// Values counted in buckets: a rank is looked for in one of them only.
-class Counted {
+/// Values counted in buckets: a rank is searched for in one of them only.
+class BucketCounts {
  public:
-  Counted(std::span<const float> values, const kernels::Buckets& buckets, const kernels::LabelKernels& run)
+  BucketCounts(std::span<const float> values, const kernels::Buckets& buckets,
+               const kernels::LabelKernels& run)
       : values_(values), buckets_(buckets), run_(run) {
     std::array<std::int32_t, 256> numbers;
     for (std::size_t i = 0; i < values.size(); i += numbers.size()) {
@@ -75,7 +76,7 @@ std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low
   const auto [least, most] = run.find_range(values.data(), values.size());
   const float scale = static_cast<float>(kBuckets) / (most - least);
   if (!std::isfinite(scale) || !(scale > 0)) return by_parting(values, low, high);
-  Counted counted(values, {least, scale, kBuckets - 1}, run);
+  BucketCounts counted(values, {least, scale, kBuckets - 1}, run);
   const float lower = counted.value_at(low);
   return {lower, counted.value_at(high)};
 }

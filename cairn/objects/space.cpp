@@ -16,10 +16,10 @@ constexpr float kRatherRight = 0.5F;
 constexpr std::int64_t kKnownPart = 5;  // a fifth of a superpixel
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// The planes behind the pixels of a row, px of disparity.
-class Behind {
+/// The disparities of floor and walls behind the pixels of a row, px.
+class BackgroundRow {
  public:
-  Behind(const SpaceCues& cues, const std::optional<StereoRig>& rig)
+  BackgroundRow(const SpaceCues& cues, const std::optional<StereoRig>& rig)
       : floor_(cues.ground.plane), infinity_(rig ? rig->doffs_px : 0.0F), width_(cues.objects.width()) {
     const auto& planes = cues.background.planes;
     walls_.assign(planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end());
@@ -76,7 +76,7 @@ struct Tally {
 };
 
 /// For each superpixel whether it is floor; none where there are no superpixels.
-std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px, Behind behind,
+std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px, BackgroundRow behind,
                                float margin) {
   if (cues.superpixels.empty()) return {};
   std::vector<Tally> pieces;
@@ -98,29 +98,29 @@ std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px,
   return floor;
 }
 
-/// A place that obstacles are counted at.
-struct Place {
+/// An obstacle pixel in the floor frame.
+struct FloorPoint {
   Vec3 in_floor_m;
   [[nodiscard]] float distance_m() const { return std::hypot(in_floor_m.x, in_floor_m.y); }
 };
 
-/// Calls visit(place) for every pixel of an obstacle that stands in the way.
+/// Calls visit(point) for every obstacle pixel within height and range.
 template <class Visit>
-void for_each_place(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
-                    const StereoRig& rig, const SpaceConfig& config, Visit visit) {
+void for_each_obstacle_point(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
+                             const StereoRig& rig, const SpaceConfig& config, Visit visit) {
   for (int y = 0; y < space.height(); ++y) {
     for (int x = 0; x < space.width(); ++x) {
       if (space(x, y) != Space::obstacle || std::isnan(disparity_px(x, y))) continue;
       const auto point =
           rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px(x, y));
       if (!point) continue;
-      const Place place{floor.to_floor(*point)};
+      const FloorPoint place{floor.to_floor(*point)};
       if (place.in_floor_m.z <= config.max_height && place.distance_m() <= config.range) visit(place);
     }
   }
 }
 
-/// Obstacles that are no objects: pixels with disparities of one surface.
+/// Obstacles that are not objects: connected pixels of one surface.
 struct RestRow {
   const Space* space;
   const ObjectId* object;
@@ -134,7 +134,7 @@ struct RestRow {
   [[nodiscard]] bool joins(const RestRow& above, int x) const { return std::abs(d[x] - above.d[x]) <= 1; }
 };
 
-struct Gathered {
+struct IslandStatistics {
   Rect box;
   std::int64_t pixels = 0;
   std::int64_t on_wall = 0;
@@ -150,12 +150,12 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
                          const GroundConfig& config, const Exec& exec) {
   const View<const float> disparity_px = cues.disparity.disparity_px;
   const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
-  const Behind planes(cues, rig);
+  const BackgroundRow planes(cues, rig);
   const std::vector<bool> pieces = floor_pieces(cues, seen_px, planes, config.margin);
   Image<Space> space(disparity_px.size(), exec.pool);
   const bool has_any = planes.has_any();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
-    Behind behind = planes;
+    BackgroundRow behind = planes;
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
       const ObjectId* const object = cues.objects.row(y);
@@ -215,7 +215,7 @@ ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity
   const int half = std::clamp(static_cast<int>(std::ceil(widest / kIncrement)), 1, 180);
   ObstacleScan scan{-kIncrement * static_cast<float>(half), kIncrement, config.range, {}};
   std::vector<std::vector<float>> ranges(slot(2 * half + 1));
-  for_each_place(space, disparity_px, floor, rig, config, [&](const Place& place) {
+  for_each_obstacle_point(space, disparity_px, floor, rig, config, [&](const FloorPoint& place) {
     const float bearing = std::atan2(place.in_floor_m.y, place.in_floor_m.x);
     const int bin = std::clamp(static_cast<int>(std::lround(bearing / kIncrement)) + half, 0, 2 * half);
     ranges[slot(bin)].push_back(place.distance_m());
@@ -260,7 +260,7 @@ ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_
   }
 
   std::vector<std::int32_t> counts(grid.cells.size());
-  for_each_place(space, disparity_px, floor, rig, config, [&](const Place& place) {
+  for_each_obstacle_point(space, disparity_px, floor, rig, config, [&](const FloorPoint& place) {
     const auto column = static_cast<int>(std::floor(place.in_floor_m.x / grid.cell_size_m));
     const auto row = static_cast<int>(std::floor((place.in_floor_m.y - grid.origin_y_m) / grid.cell_size_m));
     if (column >= 0 && row >= 0 && column < grid.width && row < grid.height) ++counts[at(column, row)];
@@ -276,14 +276,14 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
                                  const LeftOutLimits& limits, const Exec& exec) {
   constexpr double kLeastShare = 0.0005;
   const View<const float> d = cues.disparity.disparity_px;
-  Behind behind(cues, rig);
+  BackgroundRow behind(cues, rig);
   const auto rows = [&](int y) { return RestRow{space.row(y), cues.objects.row(y), d.row(y)}; };
   const Islands islands(space.size(), rows, exec);
-  std::vector<Gathered> found(islands.count());
+  std::vector<IslandStatistics> found(islands.count());
   for (int y = 0; y < space.height(); ++y) {
     behind.look_at(y);
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
-      Gathered& of = found[slot(island)];
+      IslandStatistics& of = found[slot(island)];
       of.box = united(of.box, {begin, y, end - begin, 1});
       const double run = end - begin;
       of.pixels += end - begin;
@@ -299,7 +299,7 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
   }
 
   std::vector<LeftOut> all;
-  for (const Gathered& of : found) {
+  for (const IslandStatistics& of : found) {
     if (static_cast<double>(of.pixels) < kLeastShare * static_cast<double>(space.size().area())) continue;
     const auto count = static_cast<double>(of.pixels);
     const auto x = static_cast<float>(of.x / count);

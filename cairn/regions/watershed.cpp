@@ -251,9 +251,9 @@ class Flooding {
 /// The ways that pixels flow, in stretches: what flows within a row to the same pixel of it, from where it
 /// leaves the row or goes no farther, lies side by side. Stretches are numbered along each row from
 /// y · width on.
-class Ways {
+class DrainagePaths {
  public:
-  Ways(const Bits& bits, Image<RegionId>& labels, const Exec& exec)
+  DrainagePaths(const Bits& bits, Image<RegionId>& labels, const Exec& exec)
       : bits_(bits),
         labels_(labels),
         exec_(exec),
@@ -421,7 +421,7 @@ Basins watershed(View<const std::uint16_t> gradient, const Exec& exec) {
   flow_beside(bits, exec);
   Flooding(bits, exec).run();
   Basins basins{Image<RegionId>(gradient.size(), exec.pool), 0};
-  basins.count = Ways(bits, basins.labels, exec).label();
+  basins.count = DrainagePaths(bits, basins.labels, exec).label();
   return basins;
 }
 

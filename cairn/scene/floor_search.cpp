@@ -184,12 +184,12 @@ struct Camera {
 
 /// What is seen about a place: a match of the disparity asked for, only such as lie farther away, or nothing
 /// that tells.
-enum class Sight : std::uint8_t { same, farther, none };
+enum class MatchAtPlace : std::uint8_t { same, farther, none };
 
 /// The matches by where they are, to ask whether one is at a place.
-class Places {
+class MatchIndex {
  public:
-  Places(const Points& points, Size image, int grid_step)
+  MatchIndex(const Points& points, Size image, int grid_step)
       : points_(points),
         cell_(std::max(kCell, 2 * grid_step)),
         columns_(image.width / cell_ + 1),
@@ -203,17 +203,18 @@ class Places {
   }
 
   /// Whether there is a match of this disparity about (x, y).
-  [[nodiscard]] Sight look(float x, float y, float d) const {
-    if (!(x >= 0 && y >= 0)) return Sight::none;
+  [[nodiscard]] MatchAtPlace look(float x, float y, float d) const {
+    if (!(x >= 0 && y >= 0)) return MatchAtPlace::none;
     const float column = x / static_cast<float>(cell_);
     const float row = y / static_cast<float>(cell_);
-    if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_))) return Sight::none;
+    if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
+      return MatchAtPlace::none;
     const auto cell = static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
-    Sight sight = first_[cell] == first_[cell + 1] ? Sight::none : Sight::farther;
+    MatchAtPlace sight = first_[cell] == first_[cell + 1] ? MatchAtPlace::none : MatchAtPlace::farther;
     for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
       const float above = points_.d[members_[k]] - d;
-      if (std::abs(above) <= kTolerance) return Sight::same;
-      if (above > 0) sight = Sight::none;  // it may be hidden
+      if (std::abs(above) <= kTolerance) return MatchAtPlace::same;
+      if (above > 0) sight = MatchAtPlace::none;  // it may be hidden
     }
     return sight;
   }
@@ -265,13 +266,13 @@ struct Reflections {
   int missing = 0;
 };
 
-Reflections reflections(const GroundPlane& plane, const Points& points, const Places& places,
+Reflections reflections(const GroundPlane& plane, const Points& points, const MatchIndex& places,
                         const Camera& camera, const Kernels& run) {
   Reflections found;
   for_each_original(plane, points, camera, run, [&](std::uint32_t, float x, float y, float d) {
-    const Sight sight = places.look(x, y, d);
-    found.seen += sight == Sight::same ? 1 : 0;
-    found.missing += sight == Sight::farther ? 1 : 0;
+    const MatchAtPlace sight = places.look(x, y, d);
+    found.seen += sight == MatchAtPlace::same ? 1 : 0;
+    found.missing += sight == MatchAtPlace::farther ? 1 : 0;
   });
   return found;
 }
@@ -279,15 +280,15 @@ Reflections reflections(const GroundPlane& plane, const Points& points, const Pl
 /// How much mirror images look like their originals: the correlation of the two, in standard deviations from
 /// what chance would make it. A wall that a plane cuts through has its lower part where the mirror image of
 /// the upper one would be; only the picture tells these apart.
-double likeness(const GroundPlane& plane, const Points& points, const Places& places, const Camera& camera,
-                View<const float> contrast, const Kernels& run) {
+double likeness(const GroundPlane& plane, const Points& points, const MatchIndex& places,
+                const Camera& camera, View<const float> contrast, const Kernels& run) {
   double pp = 0;
   double pq = 0;
   double qq = 0;
   int count = 0;
   for_each_original(plane, points, camera, run, [&](std::uint32_t i, float x, float y, float d) {
     const bool apart = std::abs(points.y[i] - y) > kApart;  // else both see the same pixels
-    if (!apart || places.look(x, y, d) != Sight::same) return;
+    if (!apart || places.look(x, y, d) != MatchAtPlace::same) return;
     const auto u = static_cast<int>(x + 0.5F);
     const auto v = static_cast<int>(y + 0.5F);
     if (!contrast.contains(u, v)) return;
@@ -309,7 +310,7 @@ std::uint64_t mixed(std::uint64_t n) {
   return n ^ (n >> 31U);
 }
 
-struct Guess {
+struct PlaneHypothesis {
   GroundPlane plane;
   std::size_t i;
   std::size_t j;
@@ -318,7 +319,7 @@ struct Guess {
 
 /// The plane through two matches, for an assumed roll: two are right together more often than three. Most
 /// cameras stand upright, the others are met within a step that refinement can bridge.
-Guess guess(const Points& points, std::uint64_t draw) {
+PlaneHypothesis guess(const Points& points, std::uint64_t draw) {
   constexpr std::array kRollTangents{0.0F,  0.0F,   0.0F,  0.0F,   0.0F,  0.0F,   0.06F, -0.06F,
                                      0.12F, -0.12F, 0.18F, -0.18F, 0.26F, -0.26F, 0.36F, -0.36F};
   const std::uint64_t bits = mixed(draw);
@@ -332,17 +333,17 @@ Guess guess(const Points& points, std::uint64_t draw) {
 }
 
 /// Possible floors, best first.
-std::vector<Guess> guesses(const Points& points, const Camera& camera, const Kernels& run) {
+std::vector<PlaneHypothesis> guesses(const Points& points, const Camera& camera, const Kernels& run) {
   const Points few = about(kScreening, points);
-  std::vector<Guess> list;
+  std::vector<PlaneHypothesis> list;
   for (int draw = 0; draw < kDraws && list.size() < kGuesses; ++draw) {
-    Guess next = guess(points, static_cast<std::uint64_t>(draw));
+    PlaneHypothesis next = guess(points, static_cast<std::uint64_t>(draw));
     if (!camera.may_stand_on(next.plane)) continue;
     next.score = tally(next.plane, few, camera.infinity, run).score();
     list.push_back(next);
   }
   std::stable_sort(list.begin(), list.end(),
-                   [](const Guess& p, const Guess& q) { return p.score > q.score; });
+                   [](const PlaneHypothesis& p, const PlaneHypothesis& q) { return p.score > q.score; });
   return list;
 }
 
@@ -414,11 +415,11 @@ struct Candidates {
 /// Refines guesses, the best first, and calls visit(plane) for each plane that is another than those before;
 /// `walls` may grow meanwhile.
 template <class Visit>
-void for_each_finalist(const std::vector<Guess>& list, const Points& points,
+void for_each_finalist(const std::vector<PlaneHypothesis>& list, const Points& points,
                        const std::vector<GroundPlane>& walls, const Kernels& run, Visit visit) {
   const Points some = about(kRefining, points);
   std::vector<GroundPlane> seen;
-  for (const Guess& next : list) {
+  for (const PlaneHypothesis& next : list) {
     if (seen.size() == kFinalists) break;
     const auto explains = [&](const GroundPlane& plane) {
       return points.on(plane, next.i) && points.on(plane, next.j);
@@ -436,8 +437,9 @@ void for_each_finalist(const std::vector<Guess>& list, const Points& points,
   }
 }
 
-Candidates candidates(View<const float> disparity_px, const std::vector<Guess>& list, const Points& points,
-                      const Places& places, const Camera& camera, const Kernels& run) {
+Candidates candidates(View<const float> disparity_px, const std::vector<PlaneHypothesis>& list,
+                      const Points& points, const MatchIndex& places, const Camera& camera,
+                      const Kernels& run) {
   Candidates found;
   for_each_finalist(list, points, found.walls, run, [&](const GroundPlane& plane) {
     Tally judged = tally(plane, points, camera.infinity, run);
@@ -456,17 +458,18 @@ Candidates candidates(View<const float> disparity_px, const std::vector<Guess>& 
 
 /// The floor that shows little but mirror images, by what these look like: of the planes that have matches of
 /// their own, the one with the most likeness.
-std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<Guess> list, const Points& points,
-                                  const std::vector<GroundPlane>& walls, const Places& places,
-                                  const Camera& camera, const Kernels& run, const Exec& exec) {
+std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<PlaneHypothesis> list,
+                                  const Points& points, const std::vector<GroundPlane>& walls,
+                                  const MatchIndex& places, const Camera& camera, const Kernels& run,
+                                  const Exec& exec) {
   const Points few = about(kMirrorScreening, points);
-  for (Guess& guess : list) {
+  for (PlaneHypothesis& guess : list) {
     const Tally judged = tally(guess.plane, few, camera.infinity, run);
     const Reflections found = reflections(guess.plane, few, places, camera, run);
     guess.score = judged.on - judged.beside + found.seen - found.missing;
   }
   std::stable_sort(list.begin(), list.end(),
-                   [](const Guess& p, const Guess& q) { return p.score > q.score; });
+                   [](const PlaneHypothesis& p, const PlaneHypothesis& q) { return p.score > q.score; });
   const Image<float> contrast = local_contrast(left, exec);
   const float nearest = *std::max_element(points.d.begin(), points.d.end());
   std::optional<GroundPlane> best;
@@ -576,9 +579,9 @@ Ground find_floor(View<const float> disparity_px, View<const Gray> left, const s
   if (points.size() < kFewestMatches) return refused(Refusal::too_few_matches);
 
   const Camera camera(disparity_px.size(), rig);
-  const Places places(points, disparity_px.size(), step);
+  const MatchIndex places(points, disparity_px.size(), step);
   const Kernels run(exec);
-  const std::vector<Guess> list = guesses(points, camera, run);
+  const std::vector<PlaneHypothesis> list = guesses(points, camera, run);
   const Candidates found = candidates(disparity_px, list, points, places, camera, run);
   std::optional<GroundPlane> best;
   if (!found.floors.empty()) {

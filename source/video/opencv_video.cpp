@@ -157,12 +157,12 @@ class VideoSequence : public SourceSequence {
 
  protected:
   /// Both images of the next frame that is asked for.
-  struct Both {
+  struct NextFrame {
     std::size_t index = 0;
     Stamp stamp;
     std::optional<PicturePair> pair;  // none: cannot be decoded
   };
-  virtual std::optional<Both> next_pair() = 0;
+  virtual std::optional<NextFrame> next_pair() = 0;
 
   /// To be called once by those who derive.
   void begin(const fs::path& file) {
@@ -191,7 +191,7 @@ class VideoSequence : public SourceSequence {
 
  private:
   std::optional<SequenceFrame> advance() {
-    while (std::optional<Both> both = next_pair()) {
+    while (std::optional<NextFrame> both = next_pair()) {
       const std::string name = number_text(both->index);
       if (!both->pair) {
         remark_on({"frame that cannot be read", 1, name, true, true});
@@ -222,11 +222,11 @@ class OneVideo : public VideoSequence {
   [[nodiscard]] std::optional<std::size_t> size() const override { return delivered_of(video_.count()); }
 
  private:
-  std::optional<Both> next_pair() override {
+  std::optional<NextFrame> next_pair() override {
     while (video_.advance()) {
       if (is_past_range(video_.index())) return std::nullopt;
       if (!is_in(options().frames, video_.index())) continue;
-      Both both{video_.index(), video_.stamp(), {}};
+      NextFrame both{video_.index(), video_.stamp(), {}};
       if (const std::optional<cv::Mat> image = video_.image()) both.pair = halves(*image);
       return both;
     }
@@ -270,11 +270,11 @@ class TwoVideos : public VideoSequence {
   }
 
  private:
-  struct Taken {
+  struct WaitingFrame {
     std::size_t index = 0;
     std::optional<cv::Mat> image;
   };
-  using Pairing = StampPairing<Taken>;
+  using Pairing = StampPairing<WaitingFrame>;
 
   bool has(std::size_t side, std::size_t count) {
     VideoFile& video = videos_[side];
@@ -286,14 +286,14 @@ class TwoVideos : public VideoSequence {
     return pairing_.waiting(side).size() >= count;
   }
 
-  std::optional<Both> next_pair() override {
+  std::optional<NextFrame> next_pair() override {
     while (has(0, 1) && has(1, 1)) {
       const auto pair = pairing_.decide([&](std::size_t side) { return has(side, 2); });
       if (!pair) continue;
       const std::size_t index = pairs_++;
       if (is_past_range(index)) return std::nullopt;
       if (is_in(options().frames, index))
-        return Both{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
+        return NextFrame{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
     }
     // What is left over of the longer one has no partner.
     while (has(0, 1)) pairing_.leave(0);
