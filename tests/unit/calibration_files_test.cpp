@@ -324,11 +324,11 @@ TEST_F(CalibrationFiles, RefusesWhatIsNoCalibration) {
   EXPECT_TRUE(has(refusal([&] { io::load_calibration(folder_.path()); }), {"is a folder", "calib.txt"}));
   EXPECT_TRUE(has(refused(""), {"empty"}));
   EXPECT_TRUE(has(refused(" \n\t\n"), {"empty"}));
-  EXPECT_TRUE(has(refused("hello world\n"), {"no calibration", "hello world"}));
-  EXPECT_TRUE(has(refused("- 1\n- 2\n"), {"no calibration"}));
+  EXPECT_TRUE(has(refused("hello world\n"), {"not a calibration", "hello world"}));
+  EXPECT_TRUE(has(refused("- 1\n- 2\n"), {"not a calibration"}));
   EXPECT_TRUE(has(refused("{unfinished: [1,"), {"not YAML"}));
   EXPECT_TRUE(has(refused("lens=wide\n"), {"fx fy cx cy"}));
-  EXPECT_TRUE(has(refused(std::string("fx=1\0", 5)), {"no text"}));
+  EXPECT_TRUE(has(refused(std::string("fx=1\0", 5)), {"not text"}));
   EXPECT_TRUE(has(refused("\x89PNG\r\n\x1a\n"), {""}));
   EXPECT_TRUE(has(refused(std::string((1U << 20) + 1, 'x')), {"more than"}));
   EXPECT_TRUE(has(refused(std::string(50000, '[')), {""}));

@@ -145,7 +145,7 @@ TEST_F(ConfigFiles, RefusesOtherShapes) {
   EXPECT_TRUE(has(refused("match:\n\twindow_size: 9\n"), {"not YAML"}));
   EXPECT_TRUE(has(refused("a: *nobody\n"), {"not YAML"}));
   EXPECT_TRUE(has(refused("match.window_size: 9\n---\nmatch.window_size: 7\n"), {"2 documents"}));
-  EXPECT_TRUE(has(refused(std::string("\0\0\0", 3)), {"no text"}));
+  EXPECT_TRUE(has(refused(std::string("\0\0\0", 3)), {"not text"}));
 }
 
 TEST_F(ConfigFiles, RefusesBombs) {

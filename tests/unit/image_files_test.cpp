@@ -251,7 +251,7 @@ TEST_F(ImageFiles, RefusesDamagedPnm) {
   EXPECT_TRUE(has(refused("P5 two 2 255\nabcd"), {"width"}));
   EXPECT_TRUE(has(refused("P5 2 2 255abcd"), {"white space"}));
   EXPECT_TRUE(has(refused("P2 2 2 15\n0 1 2 16"), {"16", "at most 15"}));
-  EXPECT_TRUE(has(refused("P2 2 2 255\n0 1 2 x"), {"no number"}));
+  EXPECT_TRUE(has(refused("P2 2 2 255\n0 1 2 x"), {"not a number"}));
   EXPECT_TRUE(has(refused("P2 2 2 255\n100 101 200"), {"truncated"}));
 }
 

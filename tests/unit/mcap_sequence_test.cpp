@@ -313,7 +313,7 @@ TEST_F(McapSequence, ACutOffRecordingSaysSoAtItsEnd) {
   while (sequence->next()) ++frames;
   EXPECT_GT(frames, 5);
   EXPECT_LT(frames, 15);
-  EXPECT_NE(sequence->ended_early().find("is cut off"), std::string::npos);
+  EXPECT_NE(sequence->ended_early().find("is truncated"), std::string::npos);
 }
 
 }  // namespace

@@ -511,7 +511,7 @@ TEST(SequenceOfTwo, FoldersArePairedByStampsNamesOrOrder) {
   EXPECT_TRUE(has(refusal([&] { (void)open_sequence(source, {}); }), {"within 5 ms", "0 s", "10.1 s"}));
   fs::remove(folder.path() / "r/stamps.txt");
   fs::remove(folder.path() / "r/b2.png");
-  EXPECT_TRUE(has(refusal([&] { (void)open_sequence(source, {}); }), {"2 images", "3", "not known"}));
+  EXPECT_TRUE(has(refusal([&] { (void)open_sequence(source, {}); }), {"2 images", "3", "cannot be paired"}));
 }
 
 TEST(SequencesOfTheCollection, AreOpened) {

@@ -285,7 +285,7 @@ TEST_F(V4l2, WhatCannotBeHadIsRefusedInOneLine) {
     EXPECT_TRUE(has(refused(), {words}));
   }
   device.refuses = {{VIDIOC_STREAMON, ENOSPC}};
-  EXPECT_TRUE(has(refused(), {"USB bus", "MJPG"}));
+  EXPECT_TRUE(has(refused(), {"USB bandwidth", "MJPG"}));
   device.refuses = {{VIDIOC_S_FMT, EBUSY}};
   EXPECT_TRUE(has(refused(), {"another program"}));
   device.refuses = {};

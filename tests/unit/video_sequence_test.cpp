@@ -109,7 +109,7 @@ TEST_F(Video, ThatIsCutOffEndsEarlyWithAWord) {
   while (sequence->next()) ++count;
   EXPECT_GT(count, 2U);
   EXPECT_LT(count, 10U);
-  EXPECT_TRUE(has(sequence->ended_early(), {"cut.mkv", "is cut off", "1.20 s"}));
+  EXPECT_TRUE(has(sequence->ended_early(), {"cut.mkv", "is truncated", "1.20 s"}));
 }
 
 TEST_F(Video, OfEachCameraArePairedByStamps) {
