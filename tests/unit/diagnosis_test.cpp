@@ -447,7 +447,7 @@ TEST(United, NamesTheOtherCameraOfOtherPairs) {
   const Finding left{FindingKind::blur, Severity::warning, 5, "left", {}, Camera::left};
   const Finding right{FindingKind::blur, Severity::warning, 6, "right", {}, Camera::right};
   EXPECT_EQ(united({{left}, {left}})[0].says, "left");
-  EXPECT_EQ(united({{left}, {right}})[0].says, "left; those of the right one in other pairs");
+  EXPECT_EQ(united({{left}, {right}})[0].says, "left; the right one's in other pairs");
 }
 
 // ---- sequences ----
