@@ -7,6 +7,7 @@
 #include <cmath>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
+#include <io/diagnosis_json.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr double kDegrees = 57.29577951308232;
 constexpr std::size_t kLongestSequence = 60;  // pairs in memory at a time
 constexpr std::size_t kMostSequences = 4;     // of a longer folder: its start, its end and between
 
@@ -303,64 +303,6 @@ Diagnosis examine_all(const DoctorOptions& options) {
 
 // ---- numbers ----
 
-/// NaN where it was not measured, as with all numbers.
-double of_brightness(const PairMeasures& measures, float number) {
-  return measures.brightness.is_measured() ? static_cast<double>(number) : std::nan("");
-}
-double width_of(const Sharpness& sharpness) {
-  return sharpness.edge_px > 0 ? static_cast<double>(sharpness.edge_px) : std::nan("");
-}
-
-/// One number of a pair: its key in JSON, its name and format on the terminal.
-struct Number {
-  const char* key;
-  const char* name;
-  const char* format;
-  double (*of)(const PairMeasures&);
-};
-
-constexpr std::array kNumbers{
-    Number{"textured_points", "textured points", "%.0f",
-           [](const PairMeasures& m) { return double(m.textured_points); }},
-    Number{"found_points", "found in both images", "%.0f",
-           [](const PairMeasures& m) { return double(m.rows.points); }},
-    Number{"agreeing_percent", "agree on one geometry, %", "%.0f",
-           [](const PairMeasures& m) { return 100 * m.rows.agreeing_share(); }},
-    Number{"offset_rows", "right image lower, rows", "%+.2f",
-           [](const PairMeasures& m) { return double(m.rows.offset_rows); }},
-    Number{"roll_degrees", "right image rotated, degrees", "%+.3f",
-           [](const PairMeasures& m) { return kDegrees * std::atan(double(m.rows.rows_per_px)); }},
-    Number{"left_over_rows", "remaining, rows", "%.2f",
-           [](const PairMeasures& m) { return double(m.rows.left_over_rows); }},
-    Number{"furthest_px", "disparity, 1 % below, px", "%.1f",
-           [](const PairMeasures& m) { return m.disparity_px(0.01); }},
-    Number{"median_px", "disparity, median, px", "%.1f",
-           [](const PairMeasures& m) { return m.disparity_px(0.5); }},
-    Number{"nearest_px", "disparity, 1 % above, px", "%.1f",
-           [](const PairMeasures& m) { return m.disparity_px(0.99); }},
-    Number{"gain", "gain, right to left", "%.3f",
-           [](const PairMeasures& m) { return of_brightness(m, m.brightness.gain); }},
-    Number{"offset", "offset, grey levels", "%+.1f",
-           [](const PairMeasures& m) { return of_brightness(m, m.brightness.offset); }},
-    Number{"brightness_difference", "brightness apart, grey levels", "%.1f",
-           [](const PairMeasures& m) { return of_brightness(m, m.brightness.median); }},
-    Number{"left_contrast", "contrast left, grey levels", "%.0f",
-           [](const PairMeasures& m) { return double(m.left_exposure.contrast); }},
-    Number{"right_contrast", "contrast right, grey levels", "%.0f",
-           [](const PairMeasures& m) { return double(m.right_exposure.contrast); }},
-    Number{"left_white_percent", "white left, %", "%.1f",
-           [](const PairMeasures& m) { return 100 * double(m.left_exposure.white); }},
-    Number{"right_white_percent", "white right, %", "%.1f",
-           [](const PairMeasures& m) { return 100 * double(m.right_exposure.white); }},
-    Number{"left_black_percent", "black left, %", "%.1f",
-           [](const PairMeasures& m) { return 100 * double(m.left_exposure.black); }},
-    Number{"right_black_percent", "black right, %", "%.1f",
-           [](const PairMeasures& m) { return 100 * double(m.right_exposure.black); }},
-    Number{"left_edge_px", "edges left, px", "%.2f",
-           [](const PairMeasures& m) { return width_of(m.left_sharpness); }},
-    Number{"right_edge_px", "edges right, px", "%.2f",
-           [](const PairMeasures& m) { return width_of(m.right_sharpness); }}};
-
 std::string numbers_text(const std::vector<ExaminedPair>& pairs) {
   const bool several = pairs.size() > 1;
   if (std::none_of(pairs.begin(), pairs.end(),
@@ -368,7 +310,7 @@ std::string numbers_text(const std::vector<ExaminedPair>& pairs) {
     return {};
   Table table(several ? std::vector<std::string>{"measured", "least", "median", "most"}
                       : std::vector<std::string>{"measured", ""});
-  for (const Number& number : kNumbers) {
+  for (const io::PairNumber& number : io::pair_numbers()) {
     std::vector<double> values;
     for (const ExaminedPair& pair : pairs) {
       if (pair.measures) values.push_back(number.of(*pair.measures));
@@ -512,29 +454,11 @@ std::string verdict(const Diagnosis& diagnosis, const std::vector<Omission>& omi
 
 // ---- JSON ----
 
-Json number_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json finding_json(const Finding& finding, const std::vector<ExaminedPair>& pairs) {
-  Json frames = Json::array();
-  for (const std::size_t i : finding.frames) frames.push_back(pairs[i].name);
-  const FindingInfo& known = info(finding.kind);
-  return {{"finding", known.name},
-          {"severity", name_of(finding.severity)},
-          {"value", number_json(finding.value)},
-          {"number", known.number},
-          {"unit", known.unit},
-          {"says", finding.says},
-          {"remedy", known.remedy},
-          {"pairs", frames}};
-}
-
 std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   Json j{{"cairn", CAIRN_VERSION}, {"broken", is_broken}, {"pairs_in_all", diagnosis.pairs_in_all}};
   j["findings"] = Json::array();
   for (const Finding& finding : diagnosis.findings)
-    j["findings"].push_back(finding_json(finding, diagnosis.pairs));
+    j["findings"].push_back(Json::parse(io::finding_json(finding, names_of(diagnosis.pairs))));
   j["not_checked"] = Json::array();
   for (const Omission& one : omissions(diagnosis)) {
     Json pairs = Json::array();
@@ -548,33 +472,13 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   j["pairs"] = Json::array();
   for (const ExaminedPair& pair : diagnosis.pairs) {
     Json one{{"name", pair.name}, {"width", pair.size->width}, {"height", pair.size->height}};
-    one["measured"] = nullptr;
-    if (pair.measures) {
-      for (const Number& number : kNumbers)
-        one["measured"][number.key] = number_json(number.of(*pair.measures));
-      one["measured"]["rows_histogram"] = pair.measures->rows.histogram;
-    }
+    one["measured"] = pair.measures ? Json::parse(io::measures_json(*pair.measures)) : Json(nullptr);
     j["pairs"].push_back(std::move(one));
   }
   j["synchrony"] = nullptr;
-  if (diagnosis.sequence && !diagnosis.sequence->names.empty()) {
-    const Synchrony& s = diagnosis.sequence->synchrony;
-    Json change = nullptr;
-    if (s.change) {
-      change = {{"from", diagnosis.sequence->names[static_cast<std::size_t>(s.change->from)]},
-                {"before", s.change->before},
-                {"after", s.change->after},
-                {"motion", s.change->motion}};
-    }
-    j["synchrony"] = {{"first", diagnosis.sequence->names.front()},
-                      {"frames", s.frames},
-                      {"lag", s.lag()},
-                      {"motion", s.motion},
-                      {"agreement", s.agreement},
-                      {"change", change},
-                      {"left_repeats", s.left_repeats},
-                      {"right_repeats", s.right_repeats}};
-  }
+  if (diagnosis.sequence && !diagnosis.sequence->names.empty())
+    j["synchrony"] =
+        Json::parse(io::synchrony_json(diagnosis.sequence->synchrony, diagnosis.sequence->names));
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

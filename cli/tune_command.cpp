@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <io/atomic_file.hpp>
 #include <io/config_files.hpp>
+#include <io/tuning_json.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -107,19 +108,9 @@ void require_writable(const std::string& file) {
 
 // ---- the search ----
 
-using Measures = std::vector<FrameMeasure>;
-
-std::string goal_word(TuningGoal goal) {
-  switch (goal) {
-    case TuningGoal::objects:
-      return "mean E";
-    case TuningGoal::disparities:
-      return "bad disparities";
-    case TuningGoal::consistency:
-      return "contradictions";
-  }
-  return {};
-}
+using io::goal_word;
+using io::Measures;
+using Figure = io::TuningFigure;
 
 /// What stands beside the bar.
 std::string words(const TuneProgress& now, const std::string& budget) {
@@ -154,68 +145,15 @@ Tuning tune_task(const Task& task, const TuneOptions& options, Seconds budget) {
 
 // ---- what is reported ----
 
-/// One line of the table: a number before and after.
-struct Figure {
-  std::string key;   // in JSON
-  std::string name;  // in the table
-  double value = 0;
-  bool is_share = true;
-};
-
-std::vector<Figure> object_figures(const Measures& measures) {
-  std::vector<FrameObjects> objects;
-  for (const FrameMeasure& m : measures) {
-    if (m.objects) objects.push_back(*m.objects);
-  }
-  const ObjectSummary s = summarise(objects);
-  return {{"median_error", "E, median", s.median_error},
-          {"recall_50", "found, IoU >= 0.5", s.recall_50()},
-          {"precision_50", "precision", s.precision_50()},
-          {"phantoms_per_frame", "phantoms per frame", s.phantoms_per_frame(), false}};
-}
-
-std::vector<Figure> disparity_figures(const Measures& measures) {
-  DisparityErrors all;
-  for (const FrameMeasure& m : measures) {
-    if (m.disparity) all += *m.disparity;
-  }
-  if (all.known == 0) return {};
-  return {{"bad_1_of_known", "bad-1 with holes", all.bad_of_known(1)},
-          {"bad_1_of_matched", "bad-1 of the matched", all.bad_of_matched(1)},
-          {"density", "density", all.density()}};
-}
-
-std::vector<Figure> consistency_figures(const Measures& measures) {
-  Consistency all;
-  Steadiness steady;
-  for (const FrameMeasure& m : measures) {
-    if (m.consistency) all += *m.consistency;
-    if (m.since_last) steady += *m.since_last;
-  }
-  return {{"density", "density", all.density()},
-          {"agreement", "right image agrees", all.agreement()},
-          {"photometric", "photometric difference", all.photometric()},
-          {"unsteady", "unsteady where still", steady.unsteady_share()}};
-}
-
-std::vector<Figure> figures_of(const Measures& measures, TuningGoal goal) {
-  if (measures.empty()) return {};
-  std::vector<Figure> all{{"loss", goal_word(goal), mean_loss(losses_of(measures))}};
-  const auto add = [&](const std::vector<Figure>& more) { all.insert(all.end(), more.begin(), more.end()); };
-  if (goal == TuningGoal::objects) add(object_figures(measures));
-  add(goal == TuningGoal::consistency ? consistency_figures(measures) : disparity_figures(measures));
-  return all;
-}
-
 std::string text_of(const Figure& figure) {
   return figure.is_share ? percent(figure.value) : cli::text_of("%.2f", figure.value);
 }
 
 std::string figure_table(const Tuning& tuned) {
-  const auto before = figures_of(tuned.before, tuned.goal);
-  const auto after = figures_of(tuned.after, tuned.goal);
-  const auto held_out_before = figures_of(tuned.held_out_before, tuned.goal);
-  const auto held_out_after = figures_of(tuned.held_out_after, tuned.goal);
+  const auto before = io::tuning_figures(tuned.before, tuned.goal);
+  const auto after = io::tuning_figures(tuned.after, tuned.goal);
+  const auto held_out_before = io::tuning_figures(tuned.held_out_before, tuned.goal);
+  const auto held_out_after = io::tuning_figures(tuned.held_out_after, tuned.goal);
   Table table({"", "before", "after", "held out: before", "after"});
   for (std::size_t i = 0; i < before.size(); ++i) {
     const bool known = i < held_out_before.size();
@@ -316,52 +254,10 @@ std::string config_file(const Task& task, const Tuning& tuned) {
   return head + io::changed_config_yaml(task.base.preset, tuned_config(task, tuned), also);
 }
 
-Json json_of(const std::vector<Figure>& before, const std::vector<Figure>& after, int frames) {
-  if (before.empty()) return nullptr;
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-  Json j{{"frames", frames}};
-  for (std::size_t i = 0; i < before.size(); ++i)
-    j[before[i].key] = {{"before", number(before[i].value)}, {"after", number(after[i].value)}};
-  return j;
-}
-
 std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions& options) {
-  constexpr std::array kGoals{"objects", "disparities", "consistency"};
-  constexpr std::array kEnds{"converged", "evaluations", "time", "interrupted"};
-  Json j;
-  j["cairn"] = CAIRN_VERSION;
-  j["goal"] = kGoals[static_cast<std::size_t>(tuned.goal)];
-  j["frames"] = task.frames.size();
-  j["sequence"] = tuned.sequence;
-  j["seed"] = options.seed;
-  j["options"] = tuned.tunables.size();
-  j["evaluations"] = tuned.search.evaluations;
-  j["seconds"] = tuned.seconds;
-  j["end"] = kEnds[static_cast<std::size_t>(tuned.end)];
-  j["tuned_on"] = json_of(figures_of(tuned.before, tuned.goal), figures_of(tuned.after, tuned.goal),
-                          static_cast<int>(tuned.before.size()));
-  j["held_out"] = json_of(figures_of(tuned.held_out_before, tuned.goal),
-                          figures_of(tuned.held_out_after, tuned.goal), held_out_frames(tuned));
-  const auto gain = [](const Measures& before, const Measures& after) {
-    if (before.empty()) return Json(nullptr);
-    const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-    const Gain g = gain_of(losses_of(before), losses_of(after));
-    return Json{{"mean", number(g.mean)}, {"low", number(g.low)}, {"high", number(g.high)}};
-  };
-  j["gain"] = {{"tuned_on", gain(tuned.before, tuned.after)},
-               {"held_out", gain(tuned.held_out_before, tuned.held_out_after)}};
-  j["held_out_frames"] = Json::array();
-  for (std::size_t i = 0; i < task.frames.size(); ++i) {
-    if (tuned.held_out[i]) j["held_out_frames"].push_back(task.frames[i].name);
-  }
-  j["kept_because"] = tuned.kept_because.empty() ? Json(nullptr) : Json(tuned.kept_because);
-  j["found"] = Json::object();
-  for (std::size_t i = 0; i < tuned.search.best.size(); ++i) {
-    const Setting& before = tuned.search.start[i];
-    const Setting& after = tuned.search.best[i];
-    if (before.value != after.value)
-      j["found"][before.option] = {{"before", before.value}, {"after", after.value}};
-  }
+  std::vector<std::string> names;
+  for (const TuningFrame& frame : task.frames) names.push_back(frame.name);
+  Json j = Json::parse(io::tuning_json(tuned, names, options.seed));
   j["config"] = options.output;
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -8,7 +8,6 @@
 #   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]` (or `# [NAME]`)
 #   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout, without the time it took;
 #                                           SCRATCH among ARGUMENTS is a folder for its files
-#   python/cairn/__init__.pyi               the Python module's types, where BUILD_DIR has one
 # Each marker is followed by a fenced block, which is what is replaced. docs/images is made with --pictures only: every new
 # picture stays in the repository's history for ever.
 set -euo pipefail
@@ -111,11 +110,6 @@ put() {  # FILE < its contents as they should be
 
 contents=$(options_page)
 put docs/options.md <<<"$contents"
-if compgen -G "$build_dir/python/cairn/_cairn.*" >/dev/null; then
-  python=$(sed -n 's/^Python_EXECUTABLE:[A-Z]*=//p' "$build_dir/CMakeCache.txt")
-  contents=$(PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$build_dir/python "${python:-python3}" python/tools/make_stubs.py)
-  put python/cairn/__init__.pyi <<<"$contents"
-fi
 while read -r page; do
   contents=$(page_anew "$page")
   put "$page" <<<"$contents"

@@ -32,7 +32,7 @@ struct Side {
   ros::McapChannel channel;
   std::size_t seen = 0;
 };
-/// One that waits for the other camera's.
+/// An image that waits for the other camera's.
 struct WaitingImage {
   std::size_t index = 0;
   std::optional<Raster> image;  // none: cannot be read

@@ -27,7 +27,7 @@ std::string described(const py::array& array) {
          py::str(array.dtype()).cast<std::string>();
 }
 
-/// An ndarray as it is; what only claims to be like one (a PIL picture) as an ndarray.
+/// An ndarray as it is; what only claims to be like one (a PIL image) as an ndarray.
 py::array array_like(const py::object& value, const char* name, const std::string& expected) {
   if (py::isinstance<py::array>(value)) return py::reinterpret_borrow<py::array>(value);
   const bool is_like = py::hasattr(value, "__array__") || py::hasattr(value, "__array_interface__") ||
@@ -73,45 +73,27 @@ bool is_kind(const py::array& array, const char* kinds) {
   return std::string(kinds).find(array.dtype().kind()) != std::string::npos;
 }
 
-/// What each number type is called, and which others stand for it.
+/// The kinds of other types, as numpy has them, that are converted.
 template <class T>
-struct Accepted {
-  using Number = T;
-  static constexpr const char* kKinds = "";  // of numpy: other types that are converted
-};
+constexpr const char* kConverted = "";
 template <>
-struct Accepted<float> {
-  using Number = float;
-  static constexpr const char* kKinds = "f";
-};
+constexpr const char* kConverted<float> = "f";
 template <>
-struct Accepted<std::int32_t> {
-  using Number = std::int32_t;
-  static constexpr const char* kKinds = "iu";
-};
+constexpr const char* kConverted<std::int32_t> = "iu";
 template <>
-struct Accepted<Reject> {
-  using Number = std::uint16_t;
-  static constexpr const char* kKinds = "";
-};
-template <>
-struct Accepted<std::uint8_t> {
-  using Number = std::uint8_t;
-  static constexpr const char* kKinds = "b";
-};
+constexpr const char* kConverted<std::uint8_t> = "b";
 
 }  // namespace
 
 template <class T>
 Borrowed<T>::Borrowed(const py::object& value, const char* name) {
-  using Number = typename Accepted<T>::Number;
+  using Number = typename NumbersOf<T>::Type;
   const auto type = py::str(py::dtype::of<Number>()).cast<std::string>();
   const std::string expected = "an array (height, width) of " + type;
   py::array array = array_like(value, name, expected);
   if (array.ndim() != 2) refuse(name, described(array), expected);
-  if (array.dtype().kind() == 'b' && std::is_same_v<T, std::uint8_t>) array = array.attr("view")("uint8");
   if (!py::isinstance<py::array_t<Number>>(array)) {
-    if (!is_kind(array, Accepted<T>::kKinds)) refuse(name, described(array), expected);
+    if (!is_kind(array, kConverted<T>)) refuse(name, described(array), expected);
     array = array.attr("astype")(type);
   }
   const Size size = size_of(array, name, expected);
@@ -125,8 +107,7 @@ template class Borrowed<std::int32_t>;
 template class Borrowed<float>;
 template class Borrowed<Reject>;
 
-BorrowedDisparities::BorrowedDisparities(const py::object& value, const char* name)
-    : Borrowed<float>(value, name) {
+Disparities::Disparities(const py::object& value, const char* name) : Floats(value, name) {
   const View<const float> px = view();
   for (int y = 0; y < px.height(); ++y) {
     const float* row = px.row(y);
@@ -139,12 +120,12 @@ BorrowedDisparities::BorrowedDisparities(const py::object& value, const char* na
   }
 }
 
-BorrowedMask::BorrowedMask(const py::object& value, const char* name) {
+Mask::Mask(const py::object& value, const char* name) {
   if (!value.is_none()) mask_.emplace(value, name);
 }
 
 Picture::Picture(const py::object& value, const char* name, bool bgr, const Pool& pool) {
-  const std::string expected = "a picture: an array (height, width) or (height, width, 3) of uint8";
+  const std::string expected = "an image: an array (height, width) or (height, width, 3) of uint8";
   py::array array = array_like(value, name, expected);
   if (array.ndim() == 3 && array.shape(2) == 1) array = array.attr("reshape")(array.shape(0), array.shape(1));
   const bool colour = array.ndim() == 3 && array.shape(2) == 3;
@@ -172,14 +153,28 @@ Picture::Picture(const py::object& value, const char* name, bool bgr, const Pool
   gray_ = own_gray_;
 }
 
-Array<std::uint8_t> Picture::copy() const {
+py::object Picture::copy() const {
   return rgb_.empty() ? array_from(copied(gray_)) : array_from(copied(rgb_));
 }
 
-void expect_size(Size found, const char* name, Size expected, const char* other) {
+DisparityInput::DisparityInput(const py::object& value, const char* name, const Exec& exec) {
+  if (py::isinstance<DisparityMap>(value)) {
+    keep_ = value;
+    borrowed_ = &value.cast<const DisparityMap&>();
+    return;
+  }
+  const Floats in(value, name);
+  own_ = released([&] { return external_disparity(in.view(), exec); });
+}
+
+DisparityMap DisparityInput::taken(const Exec& exec) {
+  if (own_) return std::move(*own_);
+  return {borrowed_->disparity_px.clone(exec.pool), borrowed_->reject.clone(exec.pool)};
+}
+
+void expect_size(Size found, const std::string& name, Size expected, const std::string& other) {
   if (found == expected) return;
-  throw Error(std::string(name) + ": is " + text(found) + ", expected " + text(expected) + " as " + other +
-              " is");
+  throw Error(name + ": is " + text(found) + ", expected " + text(expected) + " as " + other + " is");
 }
 
 }  // namespace cairn::python

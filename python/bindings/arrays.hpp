@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
-#include <cairn/disparity/reject.hpp>
+#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/objects/space.hpp>
 #include <cstdint>
 #include <memory>
@@ -17,52 +17,21 @@
 #include <utility>
 #include <vector>
 
-/// numpy arrays and the library's images. What comes in is borrowed wherever its rows lie in memory as the
-/// library wants them; what goes out is the library's own memory, kept alive by the array.
+/// numpy arrays and the library's images. An array is borrowed wherever its rows lie in memory as the library
+/// wants them; a result is the library's own memory, kept alive by its array.
 namespace cairn::python {
 
 namespace py = pybind11;
 
-/// Labels as the library has them.
-inline View<const RegionId> as_regions(View<const std::int32_t> labels) {
-  return {reinterpret_cast<const RegionId*>(labels.data()), labels.size(), labels.stride()};
-}
+// ---- in: each says with kType what the stubs call it ----
 
-// ---- what the signatures call the arguments ----
-
-inline bool is_anything(PyObject*) {
-  return true;
-}
-#define CAIRN_PYTHON_ARGUMENT(Name)                        \
-  class Name : public py::object {                         \
-   public:                                                 \
-    PYBIND11_OBJECT_DEFAULT(Name, py::object, is_anything) \
-  };
-CAIRN_PYTHON_ARGUMENT(ImageArgument)      // (H, W) or (H, W, 3) uint8
-CAIRN_PYTHON_ARGUMENT(FloatsArgument)     // (H, W) float32
-CAIRN_PYTHON_ARGUMENT(DisparityArgument)  // a DisparityMap, or floats
-CAIRN_PYTHON_ARGUMENT(MaskArgument)       // (H, W) uint8 or bool, or None
-CAIRN_PYTHON_ARGUMENT(LabelsArgument)     // (H, W) integers
-CAIRN_PYTHON_ARGUMENT(NumbersArgument)    // (H, W) of the types that the words of the function name
-CAIRN_PYTHON_ARGUMENT(RigArgument)        // a Rig, a Calibration, or None
-CAIRN_PYTHON_ARGUMENT(PairsArgument)      // of images (left, right)
-CAIRN_PYTHON_ARGUMENT(FramesArgument)     // of TuningFrame, or (left, right)
-#undef CAIRN_PYTHON_ARGUMENT
-
-/// An array of T, as the signatures show it.
-template <class T>
-class Array : public py::array {
- public:
-  explicit Array(py::array numbers) : py::array(std::move(numbers)) {}
-};
-
-// ---- in ----
-
-/// A two-dimensional array of numbers, borrowed where each row's numbers lie side by side, else copied.
-/// Throws Error that begins with `name` for another shape or type. The array must outlive the view.
+/// A two-dimensional array of numbers, borrowed where each row is contiguous, else copied. Throws Error that
+/// begins with `name` for another shape or type. uint8 takes bool, float other floating types, int32 other
+/// integers.
 template <class T>
 class Borrowed {
  public:
+  static constexpr const char* kType = "NumbersLike";
   Borrowed(const py::object& value, const char* name);
   [[nodiscard]] View<const T> view() const { return view_; }
   [[nodiscard]] Size size() const { return view_.size(); }
@@ -71,7 +40,6 @@ class Borrowed {
   py::array keep_;
   View<const T> view_;
 };
-// uint8: bool counts, too. float: other floating types are converted. int32: other integers are.
 extern template class Borrowed<std::uint8_t>;
 extern template class Borrowed<std::uint16_t>;
 extern template class Borrowed<std::int16_t>;
@@ -79,34 +47,54 @@ extern template class Borrowed<std::int32_t>;
 extern template class Borrowed<float>;
 extern template class Borrowed<Reject>;
 
-/// Disparities from outside: floats, each a hole (NaN, ±inf) or within ±kMaxDisparity. Throws Error.
-class BorrowedDisparities : public Borrowed<float> {
+class Floats : public Borrowed<float> {
  public:
-  BorrowedDisparities(const py::object& value, const char* name);
+  static constexpr const char* kType = "FloatsLike";
+  using Borrowed<float>::Borrowed;
+};
+
+/// Disparities from outside: floats, each a hole (NaN, ±inf) or within ±kMaxDisparity. Throws Error.
+class Disparities : public Floats {
+ public:
+  Disparities(const py::object& value, const char* name);
+};
+
+class Labels : public Borrowed<std::int32_t> {
+ public:
+  static constexpr const char* kType = "LabelsLike";
+  using Borrowed<std::int32_t>::Borrowed;
+  /// The same as ids of regions or objects.
+  template <class Id>
+  [[nodiscard]] View<const Id> as() const {
+    return {reinterpret_cast<const Id*>(view().data()), size(), view().stride()};
+  }
 };
 
 /// None: an empty view.
-class BorrowedMask {
+class Mask {
  public:
-  BorrowedMask(const py::object& value, const char* name);
+  static constexpr const char* kType = "MaskLike";
+  Mask(const py::object& value, const char* name);
   [[nodiscard]] View<const std::uint8_t> view() const {
     return mask_ ? mask_->view() : View<const std::uint8_t>();
   }
+  [[nodiscard]] Size size() const { return view().size(); }
 
  private:
   std::optional<Borrowed<std::uint8_t>> mask_;
 };
 
-/// A picture, grey or in colour, as the stages take it. Borrows grey rows, and colour in the order R, G, B;
+/// An image, grey or in colour, as the stages take it. Borrows grey rows, and colour in the order R, G, B;
 /// the grey of colours and the order B, G, R need an image of their own, from `pool`.
 class Picture {
  public:
+  static constexpr const char* kType = "ImageLike";
   Picture(const py::object& value, const char* name, bool bgr, const Pool& pool);
   [[nodiscard]] View<const Gray> gray() const { return gray_; }
   [[nodiscard]] View<const Rgb> rgb() const { return rgb_; }  // empty where it is grey
   [[nodiscard]] Size size() const { return gray_.size(); }
   /// Grey, or colour in the order R, G, B, as an array of its own.
-  [[nodiscard]] Array<std::uint8_t> copy() const;
+  [[nodiscard]] py::object copy() const;
 
  private:
   py::array keep_;
@@ -116,8 +104,24 @@ class Picture {
   View<const Rgb> rgb_;
 };
 
+/// A DisparityMap as a stage takes it: one of ours, or floats made into one.
+class DisparityInput {
+ public:
+  static constexpr const char* kType = "DisparityLike";
+  DisparityInput(const py::object& value, const char* name, const Exec& exec);
+  [[nodiscard]] const DisparityMap& map() const { return own_ ? *own_ : *borrowed_; }
+  [[nodiscard]] Size size() const { return map().disparity_px.size(); }
+  /// A map that a stage may take over.
+  [[nodiscard]] DisparityMap taken(const Exec& exec);
+
+ private:
+  py::object keep_;
+  std::optional<DisparityMap> own_;
+  const DisparityMap* borrowed_ = nullptr;
+};
+
 /// Throws Error unless both have the same size.
-void expect_size(Size found, const char* name, Size expected, const char* other);
+void expect_size(Size found, const std::string& name, Size expected, const std::string& other);
 
 // ---- out ----
 
@@ -132,27 +136,8 @@ Image<T> copied(View<const T> from, const Pool& pool = {}) {
 /// The numbers that a pixel is made of, as numpy knows them.
 template <class T>
 struct NumbersOf {
-  using Type = T;
-  static constexpr int kCount = 1;
-};
-template <>
-struct NumbersOf<Reject> {
-  using Type = std::uint16_t;
-  static constexpr int kCount = 1;
-};
-template <>
-struct NumbersOf<RegionId> {
-  using Type = std::int32_t;
-  static constexpr int kCount = 1;
-};
-template <>
-struct NumbersOf<Space> {
-  using Type = std::uint8_t;
-  static constexpr int kCount = 1;
-};
-template <>
-struct NumbersOf<ObjectId> {
-  using Type = std::int32_t;
+  using Type =
+      typename std::conditional_t<std::is_enum_v<T>, std::underlying_type<T>, std::type_identity<T>>::type;
   static constexpr int kCount = 1;
 };
 template <>
@@ -161,19 +146,15 @@ struct NumbersOf<Rgb> {
   static constexpr int kCount = 3;
 };
 
+/// The image's pixels as an array that keeps `owner` alive; None where there are none.
 template <class T>
-using ArrayOf = Array<typename NumbersOf<T>::Type>;
-
-/// The image's pixels as an array that keeps `owner` alive.
-template <class T>
-ArrayOf<T> array_over(const Image<T>& image, const py::object& owner, bool writable) {
+py::object array_over(const Image<T>& image, const py::object& owner, bool writable = false) {
+  if (image.empty()) return py::none();
   using Number = typename NumbersOf<T>::Type;
   constexpr py::ssize_t kCount = NumbersOf<T>::kCount;
   constexpr auto kBytes = static_cast<py::ssize_t>(sizeof(Number));
-  const py::ssize_t height = image.height();
-  const py::ssize_t width = image.width();
   const py::ssize_t stride = image.view().stride() * static_cast<py::ssize_t>(sizeof(T));
-  py::array::ShapeContainer shape{height, width};
+  py::array::ShapeContainer shape{image.height(), image.width()};
   py::array::StridesContainer strides{stride, kCount * kBytes};
   if constexpr (kCount > 1) {
     shape->push_back(kCount);
@@ -181,52 +162,38 @@ ArrayOf<T> array_over(const Image<T>& image, const py::object& owner, bool writa
   }
   py::array array(py::dtype::of<Number>(), shape, strides, image.view().data(), owner);
   if (!writable) py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return ArrayOf<T>(std::move(array));
+  return array;
 }
 
-/// The image itself becomes the array: moved, not copied.
+/// The value lives as long as the arrays over it.
 template <class T>
-ArrayOf<T> array_from(Image<T> image) {
-  auto owned = std::make_unique<Image<T>>(std::move(image));
-  const Image<T>& pixels = *owned;
-  const py::capsule owner(owned.get(), [](void* pointer) { delete static_cast<Image<T>*>(pointer); });
+std::pair<const T&, py::capsule> kept_alive(T value) {
+  auto owned = std::make_unique<T>(std::move(value));
+  const T& kept = *owned;
+  py::capsule owner(owned.get(), [](void* pointer) { delete static_cast<T*>(pointer); });
   owned.release();
+  return {kept, std::move(owner)};
+}
+
+/// The image itself becomes the array: moved, not copied. None where it is empty.
+template <class T>
+py::object array_from(Image<T> image) {
+  const auto [pixels, owner] = kept_alive(std::move(image));
   return array_over(pixels, owner, true);
 }
 
-/// The numbers themselves become a flat array: moved, not copied.
+/// Numbers that become an array of this shape, {}: a flat one.
 template <class T>
-Array<T> array_from(std::vector<T> numbers) {
-  auto owned = std::make_unique<std::vector<T>>(std::move(numbers));
-  const std::vector<T>& kept = *owned;
-  const py::capsule owner(owned.get(), [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
-  owned.release();
-  return Array<T>(py::array(py::dtype::of<T>(), static_cast<py::ssize_t>(kept.size()), kept.data(), owner));
-}
-
-/// An image as an array; None where it is empty.
+struct Numbers {
+  std::vector<T> values;
+  std::vector<py::ssize_t> shape{};
+};
 template <class T>
-std::optional<ArrayOf<T>> array_or_none(Image<T> image) {
-  if (image.empty()) return std::nullopt;
-  return array_from(std::move(image));
-}
-
-/// A property that shows an image of its object, read-only: what a stage relies on cannot be changed under
-/// it. None where the image is empty.
-template <class C, class T>
-auto shown(Image<T> C::*member) {
-  return [member](const py::object& self) -> std::optional<ArrayOf<T>> {
-    const Image<T>& image = self.cast<const C&>().*member;
-    if (image.empty()) return std::nullopt;
-    return array_over(image, self, false);
-  };
-}
-/// The same of an image that is always there.
-template <class C, class T>
-auto always_shown(Image<T> C::*member) {
-  return [member](const py::object& self) -> ArrayOf<T> {
-    return array_over(self.cast<const C&>().*member, self, false);
-  };
+py::object array_from(Numbers<T> numbers) {
+  if (numbers.shape.empty()) numbers.shape = {static_cast<py::ssize_t>(numbers.values.size())};
+  const std::vector<py::ssize_t> shape = numbers.shape;
+  const auto [kept, owner] = kept_alive(std::move(numbers));
+  return py::array(py::dtype::of<T>(), shape, kept.values.data(), owner);
 }
 
 /// Runs the work while other Python threads run theirs.
@@ -240,25 +207,17 @@ auto released(Work&& work) {
 
 namespace pybind11::detail {
 
-#define CAIRN_PYTHON_NAME(Type, Text)              \
-  template <>                                      \
-  struct handle_type_name<cairn::python::Type> {   \
-    static constexpr auto name = const_name(Text); \
-  };
-CAIRN_PYTHON_NAME(ImageArgument, "ImageLike")
-CAIRN_PYTHON_NAME(FloatsArgument, "FloatsLike")
-CAIRN_PYTHON_NAME(DisparityArgument, "DisparityLike")
-CAIRN_PYTHON_NAME(MaskArgument, "MaskLike")
-CAIRN_PYTHON_NAME(LabelsArgument, "LabelsLike")
-CAIRN_PYTHON_NAME(NumbersArgument, "NumbersLike")
-CAIRN_PYTHON_NAME(RigArgument, "RigLike")
-CAIRN_PYTHON_NAME(PairsArgument, "PairsLike")
-CAIRN_PYTHON_NAME(FramesArgument, "FramesLike")
-#undef CAIRN_PYTHON_NAME
-
+/// What a function returns, as an array.
 template <class T>
-struct handle_type_name<cairn::python::Array<T>> {
-  static constexpr auto name = const_name("NDArray[") + npy_format_descriptor<T>::name + const_name("]");
+struct as_array {
+  static handle cast(T made, return_value_policy, handle) {
+    return cairn::python::array_from(std::move(made)).release();
+  }
+  static constexpr auto name = const_name("NDArray");
 };
+template <class T>
+struct type_caster<cairn::Image<T>> : as_array<cairn::Image<T>> {};
+template <class T>
+struct type_caster<cairn::python::Numbers<T>> : as_array<cairn::python::Numbers<T>> {};
 
 }  // namespace pybind11::detail

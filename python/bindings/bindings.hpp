@@ -4,6 +4,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <io/image_files.hpp>
+
 namespace cairn::python {
 
 // One file each, in the order in which the types need each other.
@@ -21,5 +23,8 @@ void bind_diagnosis(pybind11::module_& m);   // what is wrong with a rig
 void bind_tuning(pybind11::module_& m);      // options that do best on frames
 void bind_io(pybind11::module_& m);          // files and pictures
 void bind_follow(pybind11::module_& m);      // sequences
+
+/// Colour where the file has it, else grey.
+pybind11::object picture_array(io::Picture picture);
 
 }  // namespace cairn::python

@@ -1,35 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <pybind11/stl/filesystem.h>
-
 #include <algorithm>
 #include <array>
-#include <cairn/core/error.hpp>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <source/follow_files.hpp>
 #include <source/sequence_run.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "bindings.hpp"
 #include "frame.hpp"
-#include "options.hpp"
-#include "pickling.hpp"
-#include "refusals.hpp"
-#include "rig.hpp"
 
 namespace cairn::python {
 
 template <>
-struct NumbersOf<TrackId> {
-  using Type = std::int64_t;
-  static constexpr int kCount = 1;
+struct Plain<Point3> {
+  static std::tuple<double, double, double> of(Point3 p) { return {p.x, p.y, p.z}; }
+};
+template <>
+struct Plain<Pose> {
+  static Numbers<double> of(const Pose& pose) {
+    const auto& r = pose.rotation;
+    const Point3 t = pose.translation_m;
+    return {{r[0], r[1], r[2], t.x, r[3], r[4], r[5], t.y, r[6], r[7], r[8], t.z, 0, 0, 0, 1}, {4, 4}};
+  }
 };
 CAIRN_PARTS(Stamp, ns)
 CAIRN_PARTS(Point3, x, y, z)
@@ -52,34 +46,13 @@ CAIRN_PARTS(Step, index, stamp, frame, ids, motion, map_from_camera, pose_covari
 namespace {
 
 namespace fs = std::filesystem;
-using TripleOfDoubles = std::tuple<double, double, double>;
-
-// ---- numbers ----
+using Matrix = Typed<"FloatsLike">;
 
 template <std::size_t N>
-Array<double> matrix(const std::array<double, N>& numbers) {
+Numbers<double> matrix(const std::array<double, N>& numbers) {
   constexpr py::ssize_t kSide = N == 9 ? 3 : 6;
   static_assert(kSide * kSide == N);
-  py::array_t<double> made({kSide, kSide});
-  std::copy(numbers.begin(), numbers.end(), made.mutable_data());
-  return Array<double>(std::move(made));
-}
-
-Array<double> matrix(const Pose& pose) {
-  py::array_t<double> made({4, 4});
-  auto to = made.mutable_unchecked<2>();
-  const std::array<double, 3> t{pose.translation_m.x, pose.translation_m.y, pose.translation_m.z};
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      const auto r = static_cast<std::size_t>(row);
-      if (row == 3) {
-        to(row, column) = column == 3 ? 1 : 0;
-      } else {
-        to(row, column) = column == 3 ? t[r] : pose.rotation[r * 3 + static_cast<std::size_t>(column)];
-      }
-    }
-  }
-  return Array<double>(std::move(made));
+  return {{numbers.begin(), numbers.end()}, {kSide, kSide}};
 }
 
 /// Throws Error unless it is a square of finite numbers.
@@ -124,8 +97,7 @@ Pose pose_from(const py::object& value, const std::string& name) {
   return pose;
 }
 
-MotionPrior make_prior(const py::object& now_from_before, const py::object& covariance,
-                       const std::string& kind) {
+MotionPrior make_prior(const Matrix& now_from_before, const Matrix& covariance, const std::string& kind) {
   MotionPrior prior;
   prior.now_from_before = pose_from(now_from_before, "now_from_before");
   const auto numbers = square(covariance, 6, "covariance");
@@ -134,10 +106,6 @@ MotionPrior make_prior(const py::object& now_from_before, const py::object& cova
     throw Error("kind: found '" + kind + "', expected 'wheels' or 'gyroscope'");
   prior.kind = kind == "wheels" ? PriorKind::wheels : PriorKind::gyroscope;
   return prior;
-}
-
-std::string name_of(PriorKind kind) {
-  return kind == PriorKind::wheels ? "wheels" : "gyroscope";
 }
 
 Stamp stamp_from(const py::object& stamp_ns, std::optional<double> seconds) {
@@ -172,7 +140,7 @@ struct Settings {
   }
 };
 
-Settings settings(const py::object& config, const std::string& preset, const py::kwargs& groups) {
+Settings settings(const Call& call) {
   Settings made;
   const auto elsewhere = [&](std::string_view name, std::string_view value) {
     if (!is_of_following(name)) return false;
@@ -180,9 +148,9 @@ Settings settings(const py::object& config, const std::string& preset, const py:
     made.own.emplace(name);
     return true;
   };
-  py::kwargs of_segmentation;
+  py::dict of_segmentation;
   std::vector<std::pair<std::string, std::string>> of_following;
-  for (const auto& [key, value] : groups) {
+  for (const auto& [key, value] : call.options) {
     const auto group = key.cast<std::string>();
     if (!is_of_following(group)) {
       of_segmentation[key] = value;
@@ -190,7 +158,7 @@ Settings settings(const py::object& config, const std::string& preset, const py:
       for (auto& setting : settings_of(group, value)) of_following.push_back(std::move(setting));
     }
   }
-  made.segmentation = config_of(config, preset, of_segmentation, elsewhere);
+  made.segmentation = config_of(call.given_config, call.preset, of_segmentation, elsewhere);
   for (const auto& [name, text] : of_following) elsewhere(name, text);
   return made;
 }
@@ -235,23 +203,19 @@ Image<Rgb> overlay(const PyStep& self) {
 
 class PyFollower {
  public:
-  PyFollower(const RigArgument& rig, const std::string& preset, const py::object& config,
-             const py::object& exec, const py::kwargs& options)
-      : PyFollower(calibration_of(rig), settings(config, preset, options), exec_of(exec)) {}
   PyFollower(PyCalibration calibration, const Settings& settings, const Exec& exec)
       : calibration_(std::move(calibration)),
         preset_(settings.segmentation.preset),
         pool_(exec.pool),
         follower_(settings.suited(calibration_.calibration), calibration_.calibration.rig, exec) {}
 
-  std::unique_ptr<PyStep> next(const ImageArgument& left, const ImageArgument& right,
-                               const py::object& stamp_ns, std::optional<double> seconds,
-                               const std::optional<MotionPrior>& prior, const py::object& pose, bool bgr) {
+  std::unique_ptr<PyStep> next(const py::object& left, const py::object& right, const py::object& stamp_ns,
+                               std::optional<double> seconds, const std::optional<MotionPrior>& prior,
+                               const py::object& pose, bool bgr) {
     Picture l(left, "left", bgr, pool_);
     const Picture r(right, "right", bgr, pool_);
     const auto pair = StereoPair::from(l.gray(), r.gray(), l.rgb());
-    io::check_size(calibration_.calibration, pair.size(), calibration_.path);
-    io::check_search_range(calibration_.calibration, calibration_.path);
+    calibration_.check(pair.size());
     const Stamp stamp = stamp_from(stamp_ns, seconds);
     std::optional<Pose> known;
     if (!pose.is_none()) known = pose_from(pose, "pose");
@@ -321,8 +285,7 @@ class Following {
       close();
       throw py::stop_iteration();
     }
-    const py::object left = frame->left.rgb.empty() ? py::object(array_from(std::move(frame->left.gray)))
-                                                    : py::object(array_from(std::move(frame->left.rgb)));
+    const py::object left = picture_array(std::move(frame->left));
     io::Provenance provenance{preset_, run_->config().segmentation, source_->rig(), {}};
     made->frame = frame_over(made->step, Picture(left, "left", false, {}), std::move(provenance));
     return made;
@@ -346,227 +309,187 @@ class Following {
   bool closed_ = false;
 };
 
-std::unique_ptr<Following> follow(const std::string& source, const std::optional<fs::path>& calib,
-                                  const std::string& layout, double rate_hz, const std::string& frames,
-                                  bool rectify, const io::CompanionFiles& files, const Settings& settings,
-                                  const Exec& exec) {
+std::unique_ptr<Following> follow(const Call& call, const fs::path& source,
+                                  const std::optional<fs::path>& calib, const std::string& layout,
+                                  double rate_hz, const std::string& frames, bool rectify,
+                                  const std::optional<fs::path>& odometry_file,
+                                  const std::optional<fs::path>& imu_file,
+                                  const std::optional<fs::path>& poses_file,
+                                  const std::optional<fs::path>& map_file, bool read_only) {
   io::SourceOptions options;
   if (calib) options.calib = calib->string();
   options.layout = layout;
   options.rate_hz = rate_hz;
   options.rectify = rectify;
   if (!frames.empty()) options.frames = io::parse_frame_range(frames);
-  auto opened = released([&] { return io::open_sequence(source, options, exec.pool); });
-  return std::make_unique<Following>(std::move(opened), source, files, settings, exec);
+  const Settings wanted = settings(call);
+  const io::CompanionFiles files{odometry_file, imu_file, poses_file, {}, map_file, read_only, {}};
+  auto opened = released([&] { return io::open_sequence(source.string(), options, call.exec.pool); });
+  return std::make_unique<Following>(std::move(opened), source.string(), files, wanted, call.exec);
 }
 
-// ---- what the classes show ----
-
-std::string decimal(const char* format, double value) {
-  return py::str(format).format(value).cast<std::string>();
-}
-std::string at_m(Point3 p) {
-  return "(" + decimal("{:.2f}, ", p.x) + decimal("{:.2f}, ", p.y) + decimal("{:.2f}) m", p.z);
-}
-
-TripleOfDoubles triple_of(Point3 p) {
-  return {p.x, p.y, p.z};
-}
-/// A property that is None where the track has no place in metres.
-template <class Show>
-auto if_placed(Show show) {
-  return [show](const Track& self) -> std::optional<decltype(show(self))> {
-    if (!self.has_place) return std::nullopt;
-    return show(self);
-  };
+std::string value_of(const PyFollower& self, const std::string& name) {
+  for (const OptionInfo& option : options(self.config())) {
+    if (option.name == name) return option.value;
+  }
+  FollowConfig copy;
+  set(copy, name, "");  // throws, with the nearest name
+  return {};
 }
 
-std::string track_repr(const Track& self) {
-  return "<cairn.Track " + std::to_string(number(self.id)) + ": " + choice_name(self.state, kTrackStates) +
-         (self.is_moving ? ", moving" : "") + (self.has_place ? ", at " + at_m(self.position_m) : "") + ">";
+// ---- classes ----
+
+/// A member that a track has only with a place in metres, else None.
+template <auto member>
+auto if_placed(const Track& self) {
+  return self.has_place ? std::optional(self.*member) : std::nullopt;
 }
 
-std::string step_repr(const PyStep& self) {
-  const Step& step = *self.step;
-  const auto seen =
-      std::ranges::count_if(step.tracks.list, [](const Track& t) { return t.object != ObjectId::none; });
-  return "<cairn.Step " + std::to_string(step.index) + " at " +
-         decimal("{:.3f} s", double(step.stamp.ns) * 1e-9) + ": " + std::to_string(seen) +
-         (seen == 1 ? " track in view" : " tracks in view") +
-         (step.is_lost ? ", place not known" : ", camera at " + at_m(step.map_from_camera.translation_m)) +
-         ">";
+/// A member of the library's step.
+template <auto member>
+const auto& of_step(const PyStep& self) {
+  return (*self.step).*member;
+}
+
+py::dict reliability_of(const PyStep& self) {
+  const Reliability& judged = self.step->reliability;
+  py::dict known;
+  for (const WitnessName& witness : kWitnesses)
+    known[py::str(std::string(witness.name))] = judged.witnesses.*witness.value;
+  known["value"] = judged.value;
+  known["weakest"] = judged.weakest;
+  known["steadiness"] = judged.steadiness;
+  known["is_unreliable"] = judged.is_unreliable;
+  return known;
+}
+
+py::tuple step_state(const PyStep& self) {
+  const auto& frame = self.frame.cast<const PyFrame&>();
+  return versioned(py::make_tuple(frame.left.copy(), state_of(*self.step), state_of(frame.provenance),
+                                  self.json, self.landmarks, self.events));
+}
+
+std::unique_ptr<PyStep> step_of(const py::tuple& state) {
+  const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
+  auto made = std::make_unique<PyStep>();
+  made->step = std::make_shared<Step>();
+  restore(parts[1], *made->step);
+  io::Provenance provenance;
+  restore(parts[2], provenance);
+  made->frame = frame_over(made->step, Picture(parts[0], "left", false, {}), std::move(provenance));
+  made->json = parts[3].cast<std::string>();
+  made->landmarks = parts[4].cast<decltype(made->landmarks)>();
+  made->events = parts[5].cast<decltype(made->events)>();
+  return made;
 }
 
 void bind_results(py::module_& m) {
   using py::literals::operator""_a;
-  py::class_<Track>(m, "Track",
-                    "An object over time. Metres are those of the map's frame: z up, its origin on the "
-                    "floor below the first frame's camera, x forward.")
-      .def_property_readonly(
-          "id", [](const Track& t) { return number(t.id); }, "from 1; never used twice in a run")
-      .def_property_readonly(
+  Class<Track>(m, "Track",
+               "An object over time. Metres are those of the map's frame: z up, its origin on the floor "
+               "below the first "
+               "frame's camera, x forward.")
+      .shows("id", &Track::id, "from 1; never used twice in a run")
+      .shows(
           "state", [](const Track& t) { return choice_name(t.state, kTrackStates); },
           "'tentative', 'confirmed', 'occluded', 'out_of_view', 'lost' or 'dead'")
-      .def_readonly("is_moving", &Track::is_moving, "by itself, not by the camera's motion")
-      .def_property_readonly(
-          "object", [](const Track& t) { return number(t.object); },
-          "id of its Object in this frame; 0 = not seen")
-      .def_property_readonly(
-          "parts",
-          [](const Track& t) {
-            std::vector<std::int32_t> ids;
-            for (const ObjectId id : t.parts) ids.push_back(number(id));
-            return ids;
-          },
-          "ids of further objects of this frame that are pieces of it")
-      .def_readonly("is_joined", &Track::is_joined, "this frame shows it as one object with another track")
-      .def_property_readonly("position_m", if_placed([](const Track& t) { return triple_of(t.position_m); }),
-                             "(x, y, z), m; None without a rig")
-      .def_property_readonly("covariance_m2",
-                             if_placed([](const Track& t) { return matrix(t.covariance_m2); }),
-                             "3 x 3 of position_m, m²; None without a rig")
-      .def_property_readonly("velocity_m_s",
-                             if_placed([](const Track& t) { return triple_of(t.velocity_m_s); }),
-                             "(x, y, z), m/s; 0 where it stands; None without a rig")
-      .def_property_readonly(
-          "extent_m", if_placed([](const Track& t) { return triple(t.extent_m); }),
-          "(x, y, z) in the camera's frame, m: the box around its points; None without a rig")
-      .def_readonly("confidence", &Track::confidence, "0 to 1, smoothed")
-      .def_readonly("hits", &Track::hits, "frames in which it was seen")
-      .def_readonly("misses", &Track::misses, "frames since then in which it should have been seen")
-      .def_property_readonly(
+      .shows("is_moving", &Track::is_moving, "by itself, not by the camera's motion")
+      .shows("object", &Track::object, "id of its Object in this frame; 0 = not seen")
+      .shows("parts", &Track::parts, "ids of further objects of this frame that are pieces of it")
+      .shows("is_joined", &Track::is_joined, "this frame shows it as one object with another track")
+      .shows("position_m", &if_placed<&Track::position_m>, "(x, y, z), m; None without a rig")
+      .shows(
+          "covariance_m2",
+          [](const Track& t) { return t.has_place ? std::optional(matrix(t.covariance_m2)) : std::nullopt; },
+          "3 x 3 of position_m, m²; None without a rig")
+      .shows("velocity_m_s", &if_placed<&Track::velocity_m_s>,
+             "(x, y, z), m/s; 0 where it stands; None without a rig")
+      .shows("extent_m", &if_placed<&Track::extent_m>,
+             "(x, y, z) in the camera's frame, m: the box around its points; None without a rig")
+      .shows("confidence", &Track::confidence, "0 to 1, smoothed")
+      .shows("hits", &Track::hits, "frames in which it was seen")
+      .shows("misses", &Track::misses, "frames since then in which it should have been seen")
+      .shows(
           "first_ns", [](const Track& t) { return t.first.ns; }, "stamp of its first frame, ns")
-      .def_property_readonly(
-          "last_ns", [](const Track& t) { return t.last.ns; }, "stamp when it was last seen, ns")
-      .def("__repr__", &track_repr)
-      .def(pickled<Track>());
+      .shows(
+          "last_ns", [](const Track& t) { return t.last.ns; }, "stamp when it was last seen, ns");
 
-  py::class_<Motion>(m, "Motion", "The camera's motion that one frame shows, or why it shows none.")
-      .def_property_readonly(
-          "now_from_before", [](const Motion& self) { return matrix(self.now_from_before); },
-          "4 x 4: points of the frame before go to this one; where refused, its stand-in")
-      .def_property_readonly(
+  Class<Motion>(m, "Motion", "The camera's motion that one frame shows, or why it shows none.")
+      .shows("now_from_before", &Motion::now_from_before,
+             "4 x 4: points of the frame before go to this one; where refused, its stand-in")
+      .shows(
           "covariance", [](const Motion& self) { return matrix(self.covariance); },
           "6 x 6 of the pose against the keyframe, translation (m) before rotation (rad)")
-      .def_property_readonly(
+      .shows(
           "refusal", [](const Motion& self) { return choice_name(self.refusal, kMotionRefusals); },
           "'none' where it was estimated, else why not: 'few_points', 'no_rig', …")
-      .def_readonly("is_new_keyframe", &Motion::is_new_keyframe,
-                    "whether the next motions are against this frame")
-      .def_readonly("is_new_segment", &Motion::is_new_segment,
-                    "whether only a guess ties what is seen from here on to what was seen before")
-      .def_readonly("followed", &Motion::followed, "corners that were followed")
-      .def_readonly("inliers", &Motion::inliers, "corners that agree")
-      .def_readonly("inlier_share", &Motion::inlier_share, "0 to 1: of the corners that were followed")
-      .def_readonly("chi2_per_dof", &Motion::chi2_per_dof, "1 where errors are as large as assumed")
-      .def("__repr__",
-           [](const Motion& self) {
-             return "<cairn.Motion " + choice_name(self.refusal, kMotionRefusals) + ", " +
-                    std::to_string(self.inliers) + " of " + std::to_string(self.followed) + " corners>";
-           })
-      .def(pickled<Motion>());
+      .shows("is_new_keyframe", &Motion::is_new_keyframe, "whether the next motions are against this frame")
+      .shows("is_new_segment", &Motion::is_new_segment,
+             "whether only a guess ties what is seen from here on to what was seen before")
+      .shows("followed", &Motion::followed, "corners that were followed")
+      .shows("inliers", &Motion::inliers, "corners that agree")
+      .shows("inlier_share", &Motion::inlier_share, "0 to 1: of the corners that were followed")
+      .shows("chi2_per_dof", &Motion::chi2_per_dof, "1 where errors are as large as assumed");
 
-  py::class_<MotionPrior>(m, "MotionPrior",
-                          "What another sensor says of the camera's motion since the frame before.")
-      .def(py::init(&make_prior), "now_from_before"_a, "covariance"_a, "kind"_a = "wheels",
-           "now_from_before: 4 x 4, takes points of the camera's frame then to its frame now. covariance: 6 "
-           "x 6, "
-           "translation (m) before rotation (rad). kind: 'wheels', or 'gyroscope', of which only the "
-           "rotation counts.")
-      .def_property_readonly(
-          "now_from_before", [](const MotionPrior& self) { return matrix(self.now_from_before); },
-          "4 x 4 float64")
-      .def_property_readonly(
+  Class<MotionPrior>(m, "MotionPrior",
+                     "What another sensor says of the camera's motion since the frame before.")
+      .made_by(
+          {},
+          "now_from_before: 4 x 4, takes points of the camera's frame then to its frame now. covariance: 6 x "
+          "6, "
+          "translation (m) before rotation (rad). kind: 'wheels', or 'gyroscope', of which only the rotation "
+          "counts.",
+          &make_prior, "now_from_before"_a, "covariance"_a, "kind"_a = "wheels")
+      .shows("now_from_before", &MotionPrior::now_from_before, "4 x 4 float64")
+      .shows(
           "covariance", [](const MotionPrior& self) { return matrix(self.covariance); }, "6 x 6 float64")
-      .def_property_readonly(
-          "kind", [](const MotionPrior& self) { return name_of(self.kind); }, "'wheels' or 'gyroscope'")
-      .def("__repr__",
-           [](const MotionPrior& self) { return "<cairn.MotionPrior of " + name_of(self.kind) + ">"; })
-      .def(pickled<MotionPrior>());
+      .shows(
+          "kind",
+          [](const MotionPrior& self) { return self.kind == PriorKind::wheels ? "wheels" : "gyroscope"; },
+          "'wheels' or 'gyroscope'");
 
-  py::class_<PyStep>(m, "Step", "All that is known after one frame of a sequence.")
-      .def_property_readonly(
-          "index", [](const PyStep& self) { return self.step->index; }, "the frame's number, from 0")
-      .def_property_readonly(
+  Class<PyStep>(m, "Step", "All that is known after one frame of a sequence.")
+      .shows("index", &of_step<&Step::index>, "the frame's number, from 0")
+      .shows(
           "stamp_ns", [](const PyStep& self) { return self.step->stamp.ns; }, "when it was taken, ns")
-      .def_property_readonly(
+      .shows(
           "seconds", [](const PyStep& self) { return double(self.step->stamp.ns) * 1e-9; },
           "when it was taken, s")
-      .def_property_readonly(
-          "frame", [](const PyStep& self) { return self.frame; }, "the Frame")
-      .def_property_readonly(
-          "ids",
-          [](const py::object& self) {
-            return array_over(self.cast<const PyStep&>().step->ids, self, false);
-          },
-          "(H, W) int64, read-only: the track that each pixel belongs to; 0 = none")
-      .def_property_readonly(
-          "tracks", [](const PyStep& self) { return self.step->tracks.list; },
-          "a list of Track by id, those out of view included")
-      .def_property_readonly(
-          "motion", [](const PyStep& self) { return self.step->motion; }, "the camera's Motion")
-      .def_property_readonly(
-          "map_from_camera", [](const PyStep& self) { return matrix(self.step->map_from_camera); },
-          "4 x 4 float64: where the left camera is; takes points of its frame to the map's")
-      .def_property_readonly(
+      .shows("is_lost", &of_step<&Step::is_lost>, "whether the camera's place is not known")
+      .shows("map_from_camera", &of_step<&Step::map_from_camera>,
+             "4 x 4 float64: where the left camera is; takes points of its frame to the map's")
+      .shows(
           "pose_covariance", [](const PyStep& self) { return matrix(self.step->pose_covariance); },
           "6 x 6 of map_from_camera, translation (m) before rotation (rad)")
-      .def_property_readonly(
-          "is_lost", [](const PyStep& self) { return self.step->is_lost; },
-          "whether the camera's place is not known")
-      .def_property_readonly(
-          "reliability",
-          [](const PyStep& self) {
-            const Reliability& judged = self.step->reliability;
-            py::dict known;
-            for (const WitnessName& witness : kWitnesses)
-              known[py::str(std::string(witness.name))] = judged.witnesses.*witness.value;
-            known["value"] = judged.value;
-            known["weakest"] = judged.weakest;
-            known["steadiness"] = judged.steadiness;
-            known["is_unreliable"] = judged.is_unreliable;
-            return known;
-          },
-          "how far the frame is to be trusted: value (0 ... 1 or None), the witnesses it is the mean of, and "
-          "the weakest one's name")
-      .def_property_readonly(
+      .shows("motion", &of_step<&Step::motion>, "the camera's Motion")
+      .shows(
+          "tracks", [](const PyStep& self) -> const auto& { return self.step->tracks.list; },
+          "a list of Track by id, those out of view included")
+      .shows("ids", &of_step<&Step::ids>,
+             "(H, W) int64, read-only: the track that each pixel belongs to; 0 = none")
+      .shows(
           "odometry_suspect", [](const PyStep& self) { return self.step->tracks.odometry_suspect; },
           "whether most tracks began to move at once: rather the camera's motion is wrong")
-      .def_readonly("landmarks", &PyStep::landmarks, "of follow(): landmark by track, both by id")
-      .def_readonly("events", &PyStep::events,
-                    "of follow(): (kind, landmark), kind 'new', 'moved', 'gone', 'back' or 'relocated'")
-      .def(
-          "to_json", [](const PyStep& self) { return self.json; },
-          "The frame's line of tracks.jsonl, as `cairn follow --json-lines` prints it (docs/formats.md).")
-      .def(
-          "overlay", [](const PyStep& self) { return array_from(overlay(self)); },
-          "The left picture with its tracks drawn in, each with its id: (h, w, 3) uint8, RGB.")
-      .def("_repr_png_",
-           [](const PyStep& self) {
-             const Image<Rgb> drawn = overlay(self);
-             return py::bytes(io::png_bytes(drawn));
-           })
-      .def("__repr__", &step_repr)
-      .def(py::pickle(
-          [](const PyStep& self) {
-            const auto& frame = self.frame.cast<const PyFrame&>();
-            return versioned(py::make_tuple(frame.left.copy(), state_of(*self.step),
-                                            state_of(frame.provenance), self.json, self.landmarks,
-                                            self.events));
-          },
-          [](const py::tuple& state) {
-            const auto parts = py::reinterpret_borrow<py::tuple>(of_this_version(state));
-            auto made = std::make_unique<PyStep>();
-            made->step = std::make_shared<Step>();
-            restore(parts[1], *made->step);
-            io::Provenance provenance;
-            restore(parts[2], provenance);
-            made->frame = frame_over(made->step, Picture(parts[0], "left", false, {}), std::move(provenance));
-            made->json = parts[3].cast<std::string>();
-            made->landmarks = parts[4].cast<decltype(made->landmarks)>();
-            made->events = parts[5].cast<decltype(made->events)>();
-            return made;
-          }));
+      .shows("reliability", &reliability_of,
+             "how far the frame is to be trusted: value (0 ... 1 or None), the witnesses it is the mean of, "
+             "and the "
+             "weakest one's name")
+      .shows("landmarks", &PyStep::landmarks, "of follow(): landmark by track, both by id")
+      .shows("events", &PyStep::events,
+             "of follow(): (kind, landmark), kind 'new', 'moved', 'gone', 'back' or 'relocated'")
+      .shows(
+          "frame", [](const PyStep& self) { return Typed<"Frame">(self.frame); }, "the Frame")
+      .method("to_json",
+              "The frame's line of tracks.jsonl, as `cairn follow --json-lines` prints it (docs/formats.md).",
+              [](const PyStep& self) { return self.json; })
+      .method("overlay", "The left image with its tracks drawn in, each with its id: (h, w, 3) uint8, RGB.",
+              &overlay)
+      .method("_repr_png_", "",
+              [](const PyStep& self) {
+                const Image<Rgb> drawn = overlay(self);
+                return py::bytes(io::png_bytes(drawn));
+              })
+      .def(py::pickle(&step_state, &step_of));
 }
 
 }  // namespace
@@ -574,63 +497,61 @@ void bind_results(py::module_& m) {
 void bind_follow(py::module_& m) {
   using py::literals::operator""_a;
   bind_results(m);
-  m.def("follow_options", &follow_options,
-        "Every option of sequences with its default, in the order of the stages; those of a frame are in "
-        "options().");
+  define(m, "follow_options",
+         "Every option of sequences with its default, in the order of the stages; those of a frame are in "
+         "options().",
+         &follow_options);
 
-  constexpr const char* kOptions =
+  const Options options{Keywords::by_group, follow_groups()};
+  const std::string about =
       " preset, config (a Config or a file's name) and options are those of segment(), with the groups of "
       "follow_options() besides: tracking={'min_hits': 2}.";
-  const std::string follower_doc =
-      std::string("Follows the camera and the objects through a sequence, pair by pair.") + kOptions +
-      " Without a rig there are ids, but no metres and no motion.";
-  py::class_<PyFollower>(m, "Follower", follower_doc.c_str())
-      .def(py::init<const RigArgument&, const std::string&, const py::object&, const py::object&,
-                    const py::kwargs&>(),
-           "rig"_a = py::none(), py::kw_only(), "preset"_a = "default", "config"_a = py::none(),
-           "exec"_a = py::none(),
-           "rig: a Rig, a Calibration or None. Raises cairn.Error for what cannot be used.")
-      .def("next", &PyFollower::next, "left"_a, "right"_a, "stamp_ns"_a = py::none(), py::kw_only(),
-           "seconds"_a = py::none(), "prior"_a = py::none(), "pose"_a = py::none(), "bgr"_a = false,
-           "The next frame: a Step. stamp_ns or seconds: when it was taken, later than the one before. "
-           "prior: a "
-           "MotionPrior since the frame before. pose: 4 x 4 map_from_camera of a robot that knows where it "
-           "is; then "
-           "no motion is estimated. Raises cairn.Error for another size than the first pair's and stamps "
-           "that do not "
-           "rise.")
-      .def_property_readonly(
+  Class<PyFollower>(m, "Follower", "Follows the camera and the objects through a sequence, pair by pair.")
+      .made_by(
+          options,
+          "rig: a Rig, a Calibration or None: then there are ids, but no metres and no motion. Raises "
+          "cairn.Error for "
+          "what cannot be used." +
+              about,
+          [](const Call& call, const KnownRig& rig) {
+            return std::make_unique<PyFollower>(rig, settings(call), call.exec);
+          },
+          "rig"_a = py::none())
+      .method(
+          "next",
+          "The next frame: a Step. stamp_ns or seconds: when it was taken, later than the one before. prior: "
+          "a "
+          "MotionPrior since the frame before. pose: 4 x 4 map_from_camera of a robot that knows where it "
+          "is; then no "
+          "motion is estimated. Raises cairn.Error for another size than the first pair's and stamps that do "
+          "not rise.",
+          [](PyFollower& self, const Typed<"ImageLike">& left, const Typed<"ImageLike">& right,
+             const Typed<"Optional[int]">& stamp_ns, std::optional<double> seconds,
+             const std::optional<MotionPrior>& prior, const Typed<"Optional[FloatsLike]">& pose,
+             bool bgr) { return self.next(left, right, stamp_ns, seconds, prior, pose, bgr); },
+          "left"_a, "right"_a, "stamp_ns"_a = py::none(), py::kw_only(), "seconds"_a = py::none(),
+          "prior"_a = py::none(), "pose"_a = py::none(), "bgr"_a = false)
+      .shows(
           "rig", [](const PyFollower& self) { return self.calibration().calibration.rig; },
           "the Rig that it measures with, or None")
-      .def(
-          "__getitem__",
-          [](const PyFollower& self, const std::string& name) {
-            for (const OptionInfo& option : options(self.config())) {
-              if (option.name == name) return option.value;
-            }
-            FollowConfig copy;
-            set(copy, name, "");  // throws, with the nearest name
-            return std::string();
-          },
-          "name"_a, "The value of an option by its full name, as text.")
-      .def("__repr__", [](const PyFollower& self) {
-        const auto& rig = self.calibration().calibration.rig;
-        return "<cairn.Follower, " + (rig ? py::repr(py::cast(*rig)).cast<std::string>() : "no rig") + ">";
-      });
-  note_groups(m, "Follower", follow_groups(), true);
+      .method("__getitem__", "The value of an option by its full name, as text.", &value_of, "name"_a);
 
-  py::class_<Following>(m, "Following", "What follow() returns: an iterator of Steps over a source.")
-      .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &Following::next)
-      .def("__enter__", [](const py::object& self) { return self; })
-      .def("__exit__", [](Following& self, const py::args&) { self.close(); })
-      .def("close", &Following::close, "Ends the run, in the map, too; reading to the end does so by itself.")
-      .def_property_readonly(
+  Class<Following>(m, "Following", "What follow() returns: an iterator of Steps over a source.")
+      .method("__iter__", "Itself.", [](const Typed<"Following">& self) { return self; })
+      .method("__next__", "The next Step.", [](Following& self) { return self.next(); })
+      .method("__enter__", "Itself.", [](const Typed<"Following">& self) { return self; })
+      .method(
+          "__exit__", "Ends the run.",
+          [](Following& self, const py::object&, const py::object&, const py::object&) { self.close(); },
+          "kind"_a, "error"_a, "trace"_a)
+      .method("close", "Ends the run, in the map, too; reading to the end does so by itself.",
+              [](Following& self) { self.close(); })
+      .shows(
           "rig", [](const Following& self) { return self.source().rig(); }, "the source's Rig, or None")
-      .def_property_readonly(
+      .shows(
           "size", [](const Following& self) { return self.source().size(); },
           "frames at most; None where it is not known")
-      .def_property_readonly(
+      .shows(
           "remarks",
           [](const Following& self) {
             std::vector<std::pair<std::string, std::size_t>> all;
@@ -639,40 +560,23 @@ void bind_follow(py::module_& m) {
             return all;
           },
           "what was noticed of the source's frames up to now: (words, frames)")
-      .def_property_readonly(
+      .shows(
           "ended_early", [](const Following& self) { return self.source().ended_early(); },
-          "why the source ended before its end; '' where it did not")
-      .def("__repr__",
-           [](const Following& self) { return "<cairn.Following " + self.source().name() + ">"; });
+          "why the source ended before its end; '' where it did not");
 
-  const std::string follow_doc =
-      std::string(
-          "Follows a whole sequence: an iterator of Steps.\n"
-          "source: a folder of frames, of KITTI's or EuRoC's, 'LEFT,RIGHT', or a video with layout "
-          "(docs/sequences.md). "
-          "calib: instead of the source's own. frames: 'A:B:STEP'. rectify: the pictures are raw. "
-          "odometry_file, imu_file, "
-          "poses_file: what other sensors say of the motion. map_file: landmarks to recognise and to add to; "
-          "read_only: it "
-          "stays as it is. These are the options of `cairn follow`, and the steps are its own.") +
-      kOptions;
-  m.def(
-      "follow",
-      [](const fs::path& source, const std::optional<fs::path>& calib, const std::string& layout,
-         double rate_hz, const std::string& frames, bool rectify,
-         const std::optional<fs::path>& odometry_file, const std::optional<fs::path>& imu_file,
-         const std::optional<fs::path>& poses_file, const std::optional<fs::path>& map_file, bool read_only,
-         const std::string& preset, const py::object& config, const py::object& exec,
-         const py::kwargs& options) {
-        return follow(source.string(), calib, layout, rate_hz, frames, rectify,
-                      {odometry_file, imu_file, poses_file, {}, map_file, read_only, {}},
-                      settings(config, preset, options), exec_of(exec));
-      },
-      "source"_a, py::kw_only(), "calib"_a = py::none(), "layout"_a = "", "rate_hz"_a = 0.0, "frames"_a = "",
-      "rectify"_a = false, "odometry_file"_a = py::none(), "imu_file"_a = py::none(),
-      "poses_file"_a = py::none(), "map_file"_a = py::none(), "read_only"_a = false, "preset"_a = "default",
-      "config"_a = py::none(), "exec"_a = py::none(), follow_doc.c_str());
-  note_groups(m, "follow", follow_groups(), true);
+  define(
+      m, "follow", options,
+      "Follows a whole sequence: an iterator of Steps.\n"
+      "source: a folder of frames, of KITTI's or EuRoC's, 'LEFT,RIGHT', or a video with layout "
+      "(docs/sequences.md). "
+      "calib: instead of the source's own. frames: 'A:B:STEP'. rectify: the images are raw. odometry_file, "
+      "imu_file, poses_file: what other sensors say of the motion. map_file: landmarks to recognise and to "
+      "add to; "
+      "read_only: it stays as it is. These are the options of `cairn follow`, and the steps are its own." +
+          about,
+      &follow, "source"_a, py::kw_only(), "calib"_a = py::none(), "layout"_a = "", "rate_hz"_a = 0.0,
+      "frames"_a = "", "rectify"_a = false, "odometry_file"_a = py::none(), "imu_file"_a = py::none(),
+      "poses_file"_a = py::none(), "map_file"_a = py::none(), "read_only"_a = false);
 }
 
 }  // namespace cairn::python

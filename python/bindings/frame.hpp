@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "arrays.hpp"
+#include "define.hpp"
 
 namespace cairn::python {
 

@@ -3,9 +3,8 @@
 #include <cairn/core/error.hpp>
 #include <string>
 
-#include "arrays.hpp"
 #include "bindings.hpp"
-#include "refusals.hpp"
+#include "options.hpp"
 
 namespace py = pybind11;
 
@@ -30,6 +29,8 @@ PYBIND11_MODULE(_cairn, m) {
   m.attr("__name__") = "cairn";
 
   need_numpy();
+  py::options docs;
+  docs.disable_function_signatures();  // define() writes them as the stubs want them
   py::register_exception<cairn::Error>(m, "Error", PyExc_ValueError);
   m.attr("Error").attr("__doc__") =
       "Bad input: what was found, what was expected, which argument, option or file. The command says the "
@@ -56,7 +57,5 @@ PYBIND11_MODULE(_cairn, m) {
   cairn::python::bind_tuning(m);
   cairn::python::bind_io(m);
   cairn::python::bind_follow(m);
-
-  cairn::python::refuse_plainly(m);
   m.attr("__name__") = own_name;
 }

@@ -13,7 +13,6 @@
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cairn/scene/floor_frame.hpp>
-#include <cairn/tuning/search.hpp>
 #include <filesystem>
 #include <io/results.hpp>
 #include <optional>
@@ -30,22 +29,9 @@
 /// What pickle and copy.deepcopy keep of a value: tuples, numbers, text and arrays; and the value of them.
 namespace cairn::python {
 
-/// What tune() found, without the single frames.
+/// What tune() found: what the command's report has, and the configuration to use.
 struct PyTuning {
-  std::string goal;
-  std::string end;
-  std::string kept_because;
-  int evaluations = 0;
-  double seconds = 0;
-  double before = 0;
-  double after = 0;
-  std::optional<double> held_out_before;
-  std::optional<double> held_out_after;
-  std::vector<int> held_out;
-  std::vector<std::string> options;
-  std::vector<std::string> not_judged;
-  std::vector<Setting> start;
-  std::vector<Setting> best;
+  std::string json;
   PyConfig config;
 };
 
@@ -123,40 +109,43 @@ CAIRN_PARTS(PairMeasures, size, identical, textured_points, rows, disparities, b
             right_exposure, left_sharpness, right_sharpness)
 CAIRN_PARTS(LagChange, from, before, after, motion)
 CAIRN_PARTS(Synchrony, frames, motion, agreement, left_repeats, right_repeats, change)
-CAIRN_PARTS(Setting, option, value_text)
-CAIRN_PARTS(PyTuning, goal, end, kept_because, evaluations, seconds, before, after, held_out_before,
-            held_out_after, held_out, options, not_judged, start, best, config)
+CAIRN_PARTS(PyTuning, json, config)
 CAIRN_PARTS(Finding, kind, severity, number, says, frames, camera)
-// follow.cpp goes on with it.
+// follow.cpp has those of sequences.
 
 // ---- to Python and back ----
 
 template <class T>
-inline constexpr bool is_image = false;
+inline constexpr bool kHasParts = requires(T& value) {
+  Parts<T>::of(value);
+};
+
 template <class T>
-inline constexpr bool is_image<Image<T>> = true;
+inline constexpr bool kIsImage = false;
 template <class T>
-inline constexpr bool is_optional = false;
+inline constexpr bool kIsImage<Image<T>> = true;
 template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
+inline constexpr bool kIsOptional = false;
 template <class T>
-inline constexpr bool is_vector = false;
+inline constexpr bool kIsOptional<std::optional<T>> = true;
 template <class T>
-inline constexpr bool is_vector<std::vector<T>> = true;
+inline constexpr bool kIsVector = false;
 template <class T>
-inline constexpr bool is_array = false;
+inline constexpr bool kIsVector<std::vector<T>> = true;
+template <class T>
+inline constexpr bool kIsArray = false;
 template <class T, std::size_t N>
-inline constexpr bool is_array<std::array<T, N>> = true;
+inline constexpr bool kIsArray<std::array<T, N>> = true;
 
 template <class T>
 py::object state_of(const T& value) {
-  if constexpr (is_image<T>) {
-    return value.empty() ? py::object(py::none()) : py::object(array_from(value.clone()));
+  if constexpr (kIsImage<T>) {
+    return array_from(value.clone());
   } else if constexpr (std::is_enum_v<T>) {
     return py::int_(static_cast<std::int64_t>(value));
-  } else if constexpr (is_optional<T>) {
+  } else if constexpr (kIsOptional<T>) {
     return value ? state_of(*value) : py::object(py::none());
-  } else if constexpr (is_vector<T> || is_array<T>) {
+  } else if constexpr (kIsVector<T> || kIsArray<T>) {
     py::list all;
     for (const auto& entry : value) all.append(state_of(entry));
     return all;
@@ -193,13 +182,13 @@ template <class T>
 void restore(const py::handle& state, T& value) {
   if constexpr (std::is_enum_v<T>) {
     value = static_cast<T>(state.cast<std::int64_t>());
-  } else if constexpr (is_optional<T>) {
+  } else if constexpr (kIsOptional<T>) {
     if (!state.is_none()) restore(state, value.emplace());
   } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
     value = state.cast<T>();  // its entries are no objects to restore into
-  } else if constexpr (is_vector<T> || is_array<T>) {
+  } else if constexpr (kIsVector<T> || kIsArray<T>) {
     const auto all = py::reinterpret_borrow<py::list>(state);
-    if constexpr (is_vector<T>) value.resize(all.size());
+    if constexpr (kIsVector<T>) value.resize(all.size());
     if (value.size() != all.size()) refuse_state(std::to_string(all.size()) + " numbers");
     for (std::size_t i = 0; i < all.size(); ++i) restore(all[i], value[i]);
   } else if constexpr (std::is_same_v<T, Config>) {

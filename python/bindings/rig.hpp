@@ -2,40 +2,33 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/core/stereo_pair.hpp>
+#include <pybind11/pybind11.h>
+
 #include <filesystem>
 #include <io/calibration_files.hpp>
 #include <optional>
-#include <tuple>
-
-#include "arrays.hpp"
 
 namespace cairn::python {
+
+namespace py = pybind11;
 
 /// A calibration and its file, for messages.
 struct PyCalibration {
   io::Calibration calibration;
   std::filesystem::path path;
+
+  /// Throws Error where it is for other images.
+  void check(Size size) const {
+    io::check_size(calibration, size, path);
+    io::check_search_range(calibration, path);
+  }
 };
 
 /// What a Rig, a Calibration or None says. Throws Error for anything else.
-PyCalibration calibration_of(const RigArgument& rig);
-/// Only the rig of it.
-std::optional<StereoRig> rig_of(const RigArgument& rig);
-
-using Triple = std::tuple<float, float, float>;
-inline Triple triple(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-inline std::optional<Triple> triple(const std::optional<Vec3>& v) {
-  if (!v) return std::nullopt;
-  return triple(*v);
-}
-
-/// x, y, width, height
-using Box = std::tuple<int, int, int, int>;
-inline Box box(Rect r) {
-  return {r.x, r.y, r.width, r.height};
-}
+struct KnownRig : PyCalibration {
+  static constexpr const char* kType = "RigLike";
+  KnownRig(const py::object& value, const char* name);
+  [[nodiscard]] const std::optional<StereoRig>& rig() const { return calibration.rig; }
+};
 
 }  // namespace cairn::python

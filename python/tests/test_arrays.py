@@ -132,13 +132,13 @@ def test_any_size_that_the_window_fits_is_taken_and_others_are_refused_by_name(h
 
 
 BAD_PICTURES = [
-    (None, "left: found None, expected a picture"),
+    (None, "left: found None, expected an image"),
     (3, "left: found a value of type int"),
     ("left.png", "left: found a value of type str"),
     (b"left", "left: found a value of type bytes"),
     ([[1, 2], [3, 4]], "left: found a value of type list"),
     (np.zeros((4, 5)), r"left: found an array of shape \(4, 5\) and type float64"),
-    (np.zeros((4, 5), np.uint16), "type uint16, expected a picture: an array .* of uint8"),
+    (np.zeros((4, 5), np.uint16), "type uint16, expected an image: an array .* of uint8"),
     (np.zeros((4, 5), np.int8), "type int8"),
     (np.zeros(5, np.uint8), r"left: found an array of shape \(5,\)"),
     (np.zeros((4, 5, 4), np.uint8), r"shape \(4, 5, 4\)"),

@@ -75,7 +75,7 @@ def test_an_option_without_effect_is_refused(preset, tmp_path):
         if option.active:
             cairn.Config(preset, **{option.group: {name: option.default}})
             continue
-        assert option.needs and f"read while {option.needs}" in repr(option)
+        assert option.needs and f"needs='{option.needs}', active=False" in repr(option)
         with pytest.raises(cairn.Error, match=f"^{option.name} has no effect with .*; set .* first$"):
             cairn.Config(preset, **{option.group: {name: option.default}})
     file = tmp_path / "config.yaml"

@@ -2,8 +2,6 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """Calls that cannot be are refused in one plain line that names the argument."""
 
-import pathlib
-
 import numpy as np
 import pytest
 
@@ -71,7 +69,7 @@ def test_a_whole_number_may_be_of_any_type(number):
 
 
 def test_every_function_and_method_refuses_so():
-    """None is left as pybind11 made it, whose refusals list every signature."""
+    """In one line, where pybind11 itself would list every signature."""
 
     class Odd:
         """Fits no argument."""
@@ -104,5 +102,4 @@ def test_an_error_inside_a_call_stays_what_it_is():
 
 def test_signatures_and_words_stay_with_the_functions():
     assert cairn.segment.__name__ == "segment" and cairn.segment.__module__ == "cairn"
-    assert cairn.segment.__doc__.startswith("segment(left: ImageLike, right: ImageLike = None, rig: RigLike = None")
-    assert "Invoked with" not in pathlib.Path(cairn.__file__).with_suffix(".pyi").read_text()
+    assert cairn.segment.__doc__.startswith("segment(left: ImageLike, right: Optional[ImageLike] = None, rig: RigLike = None")

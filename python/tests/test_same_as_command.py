@@ -86,7 +86,7 @@ def test_scores_are_those_of_the_command(command, folder, tmp_path):
     assert (errors.known, errors.matched) == (said["known_px"], said["matched_px"])
     assert errors.mean_absolute_px == said["mean_absolute_px"]
     assert list(errors.bad_of_matched.values()) == list(said["bad_of_matched"].values())
-    with pytest.raises(cairn.Error, match="ours_px: is 319x240, expected 320x240 as truth_px is"):
+    with pytest.raises(cairn.Error, match="truth_px: is 320x240, expected 319x240 as ours_px is"):
         cairn.disparity_errors(frame.disparity[:, 1:], frame.disparity)
 
 

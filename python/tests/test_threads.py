@@ -19,7 +19,7 @@ def test_a_segmenter_gives_what_segment_gives(sample):
     segmenter = cairn.Segmenter(sample.calibration, exec=cairn.Exec(2))
     assert same_frame(segmenter.segment(sample.left, sample.right), sample.frame)
     assert segmenter.rig == sample.calibration.rig and segmenter.config == cairn.Config()
-    assert repr(segmenter).startswith("<cairn.Segmenter Config('default'), Rig(focal_px=")
+    assert repr(segmenter).startswith("Segmenter(config=Config('default'), rig=Rig(focal_px=")
     by_paper = cairn.Segmenter(preset="paper", match={"num_disparities": 32}).segment(sample.left, sample.right)
     assert same_frame(by_paper, cairn.segment(sample.left, sample.right, preset="paper", match={"num_disparities": 32}))
     with pytest.raises(cairn.Error, match="match.window_size"):
