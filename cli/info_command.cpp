@@ -46,7 +46,8 @@ int show(const ExecOptions& options) {
             << built_in("recordings (MCAP), packed batch results", CAIRN_WITH_ZSTD != 0, "libzstd-dev")
             << built_in("live views: live --view", CAIRN_WITH_VIEW != 0, "libboost-dev libssl-dev")
             << built_in("topics of ROS 2 (Cyclone DDS)", CAIRN_WITH_DDS != 0, "cyclonedds-dev")
-            << built_in("manual pages", CAIRN_WITH_MANUAL != 0, "help2man");
+            << built_in("manual pages", CAIRN_WITH_MANUAL != 0, "help2man")
+            << built_in("Python module", CAIRN_WITH_PYTHON != 0, "python3-dev pybind11-dev, CAIRN_PYTHON=ON");
   return 0;
 }
 
