@@ -2,19 +2,19 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "live_record.hpp"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cairn/core/error.hpp>
+#include <cerrno>
 #include <csignal>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <ros/mcap.hpp>
+#include <string>
 #include <system_error>
 
 namespace cairn::cli {
-
-namespace fs = std::filesystem;
 
 void add_record_options(CLI::App& app, LiveRecordOptions& options) {
   app.add_option("--record", options.file, "new recording (MCAP) of images and objects, usable as SOURCE")
@@ -45,15 +45,16 @@ RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options
   if (is_told || !ros::has_mcap() || !ros::is_mcap(source)) return;
   const auto text = ros::attachment_of(ros::McapReader(source), "config.yaml");
   if (!text) return;
-  std::string pattern = (fs::temp_directory_path() / "recorded-config-XXXXXX").string();
-  const int file = ::mkstemp(pattern.data());
-  if (file < 0) throw Error(pattern + ": cannot be written, expected free space in the temporary folder");
-  ::close(file);
-  file_ = pattern;
+  // Without a name, so that no other program can find or replace it.
+  descriptor_ = ::memfd_create("config.yaml", MFD_CLOEXEC);
+  if (descriptor_ < 0)
+    throw Error(source +
+                ": config.yaml: cannot be kept in memory: " + std::generic_category().message(errno));
+  file_ = "/proc/self/fd/" + std::to_string(descriptor_);
   std::ofstream copy(file_, std::ios::binary);
   copy << *text;
   copy.close();
-  if (!copy) throw Error(file_ + ": cannot be written, expected free space in the temporary folder");
+  if (!copy) throw Error(source + ": config.yaml: cannot be kept in memory, expected room for it");
   options.file = file_;
 }
 
@@ -69,8 +70,7 @@ std::string RecordedConfig::named(std::string message) const {
 }
 
 RecordedConfig::~RecordedConfig() {
-  std::error_code ignored;
-  if (!file_.empty()) fs::remove(file_, ignored);
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace cairn::cli

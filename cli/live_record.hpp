@@ -26,7 +26,8 @@ std::unique_ptr<live::Recorder> open_recorder(const LiveRecordOptions& options, 
 /// run. Throws Error.
 void begin_recording(const LiveRecordOptions& options, live::Recorder& recorder);
 
-/// The configuration stored in a recording, as the file of --config, during its lifetime.
+/// The configuration stored in a recording, as the file of --config, during its lifetime. The file is in
+/// memory, in no folder.
 class RecordedConfig {
  public:
   /// Empty if `source` is not a recording, or one without a configuration, or if --preset or --config is
@@ -42,7 +43,8 @@ class RecordedConfig {
 
  private:
   std::string source_;
-  std::string file_;
+  std::string file_;  // of this process
+  int descriptor_ = -1;
 };
 
 }  // namespace cairn::cli

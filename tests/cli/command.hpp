@@ -45,10 +45,9 @@ inline void write(const fs::path& path, const std::string& bytes) {
 class CommandTest : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    root_ = fs::temp_directory_path() /
-            (std::string("cairn_command_") + test->test_suite_name() + "_" + test->name());
-    fs::remove_all(root_);
+    std::string name = (fs::temp_directory_path() / "cairn-command-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    root_ = name;
     fs::create_directories(root_ / "work");
   }
   void TearDown() override { fs::remove_all(root_); }

@@ -9,7 +9,7 @@ cairn=$1
 bad=0
 complain() { echo "$*"; bad=1; }
 
-for name in "" segment follow live disparity evaluate bench tune doctor calibrate rectify record map odometry config info help; do
+for name in "" segment follow live batch disparity evaluate bench tune doctor calibrate rectify record map odometry config info help; do
   if ! answer=$("$cairn" ${name:+"$name"} --help 2>/dev/null); then
     complain "cairn $name --help: exit code is not 0"
   fi

@@ -43,6 +43,7 @@ cairn_contract(headers_define_no_foreign_macro ${here}/no_foreign_macros.sh ${CM
 cairn_contract(io_headers_hold_where_they_are_installed ${here}/io_headers_move.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(no_include_runs_upwards ${here}/no_upward_includes.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(links_of_the_pages_exist ${here}/links_exist.sh ${PROJECT_SOURCE_DIR})
+cairn_contract(no_temporaries_in_shared_folders ${here}/no_shared_temporaries.sh ${PROJECT_SOURCE_DIR})
 # No generator expression: the comma of "address,undefined" would part its arguments.
 set(consumer_flags)
 if(CAIRN_SANITIZE)
