@@ -25,7 +25,7 @@ struct LiveOptions {
   // Playback speed of files relative to their stamps; 0 = as fast as possible.
   double pace = 1;
   std::optional<std::chrono::nanoseconds> duration;
-  // Called before each frame, and often while waiting for one: true ends the run.
+  // Called before each frame and often while waiting for one, by two threads at once: true ends the run.
   std::function<bool()> is_ended;
 };
 

@@ -2,12 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cairn/cairn.hpp>
 #include <cairn/core/target.hpp>
 #include <cstdint>
+#include <functional>
+#include <latch>
 #include <string>
 #include <support/samples.hpp>
+#include <thread>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -97,8 +102,9 @@ void expect_same(const Frame& a, const Frame& b) {
   expect_same_objects(a.objects, b.objects);
 }
 
-/// Segments a sample with every thread count and target and compares all that comes out with one scalar
-/// thread's. A target that this machine has not falls back to one that it has.
+/// Segments a sample with every target of this machine and 1 to 16 threads, also more than there are
+/// processors and a count that no image height is a multiple of, and compares all that comes out with one
+/// scalar thread's.
 void expect_exec_changes_nothing(const std::string& name, const Config& preset) {
   const samples::Sample sample = samples::load(name);
   const Config config = sample.suited(preset);
@@ -107,9 +113,8 @@ void expect_exec_changes_nothing(const std::string& name, const Config& preset) 
   };
   const Frame expected = run(1, Target::scalar);
   EXPECT_FALSE(expected.objects.list.empty()) << "there is little to compare";
-  for (const Target target :
-       {Target::best, Target::scalar, Target::sse4, Target::avx2, Target::avx512, Target::neon}) {
-    for (const int threads : {1, 2, 8}) {
+  for (const Target target : supported_targets()) {
+    for (const int threads : {1, 2, 3, 8, 16}) {
       SCOPED_TRACE(name + ", " + std::to_string(threads) + " threads, target " +
                    std::string(cairn::name(target)));
       expect_same(run(threads, target), expected);
@@ -123,6 +128,71 @@ TEST(ExecLaw, ThreadsAndTargetsChangeNoBitOfTheDefaultPreset) {
 
 TEST(ExecLaw, ThreadsAndTargetsChangeNoBitOfThePaperPreset) {
   expect_exec_changes_nothing("glossy_floor", Config::paper());
+}
+
+TEST(ExecLaw, ATargetThatThisMachineLacksChangesNoBit) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const Frame expected = segment(sample.pair(), sample.calibration.rig, sample.suited(), {});
+  for (const Target target : {Target::sse4, Target::avx2, Target::avx512, Target::neon}) {
+    const Exec exec = Exec::with_threads(2, target);
+    if (active_target(exec) == target) continue;
+    SCOPED_TRACE(name(target));
+    expect_same(segment(sample.pair(), sample.calibration.rig, sample.suited(), exec), expected);
+  }
+}
+
+/// Lets `users` threads begin at the same moment, each with its number.
+void all_at_once(int users, const std::function<void(int)>& use) {
+  std::latch begin(users);
+  std::vector<std::jthread> threads;
+  for (int user = 0; user < users; ++user) {
+    threads.emplace_back([&, user] {
+      begin.arrive_and_wait();
+      use(user);
+    });
+  }
+}
+
+TEST(ExecLaw, SegmentersThatWorkAtTheSameTimeChangeNoBitOfEachOther) {
+  const samples::Sample sample = samples::load("overlap");
+  const std::vector<Config> configs = {sample.suited(), sample.suited(Config::paper())};
+  std::vector<Frame> expected;
+  for (const Config& config : configs)
+    expected.push_back(segment(sample.pair(), sample.calibration.rig, config, {}));
+  std::vector<std::vector<Frame>> found(4);
+  all_at_once(4, [&](int user) {
+    // Both presets, with one thread and with several.
+    const Segmenter segmenter(configs.at(static_cast<std::size_t>(user % 2)), sample.calibration.rig,
+                              Exec::with_threads(1 + user / 2 * 2));
+    for (int i = 0; i < 3; ++i)
+      found.at(static_cast<std::size_t>(user)).push_back(segmenter.segment(sample.pair()));
+  });
+  for (std::size_t user = 0; user < found.size(); ++user) {
+    SCOPED_TRACE(user);
+    for (const Frame& frame : found[user]) expect_same(frame, expected[user % 2]);
+  }
+}
+
+TEST(ExecLaw, OneSegmenterGivesSeveralThreadsWhatItGivesOne) {
+  const std::array different{samples::load("overlap"), samples::load("four_in_a_row")};
+  for (const Config& preset : {Config(), Config::paper()}) {
+    const Segmenter segmenter(different[0].suited(preset), different[0].calibration.rig,
+                              Exec::with_threads(2));
+    std::vector<Frame> expected;
+    expected.reserve(different.size());
+    for (const samples::Sample& sample : different) expected.push_back(segmenter.segment(sample.pair()));
+    std::vector<std::vector<Frame>> found(4);
+    all_at_once(4, [&](int user) {
+      for (int i = 0; i < 3; ++i) {
+        found.at(static_cast<std::size_t>(user))
+            .push_back(segmenter.segment(different.at(static_cast<std::size_t>(user + i) % 2).pair()));
+      }
+    });
+    for (std::size_t user = 0; user < found.size(); ++user) {
+      ASSERT_EQ(found[user].size(), 3U);
+      for (std::size_t i = 0; i < 3; ++i) expect_same(found[user][i], expected[(user + i) % 2]);
+    }
+  }
 }
 
 TEST(ExecLaw, APoolAndAnObserverChangeNoBit) {

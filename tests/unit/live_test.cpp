@@ -78,10 +78,12 @@ class Notebook : public Sink {
  public:
   void offer(const LiveFramePtr& frame) override {
     frames.push_back(frame);
+    ++count;
     if (then) then(*frame);
   }
   void finish() override { is_finished = true; }
   std::vector<LiveFramePtr> frames;
+  std::atomic<int> count = 0;  // of them, for other threads
   std::function<void(const LiveFrame&)> then;
   bool is_finished = false;
 };
@@ -234,7 +236,7 @@ TEST(Runner, ItEndsWithItsTimeAndWhenItIsTold) {
   EXPECT_LT(run(endless, options, notebook).seconds, 5);
   Camera other(1'000'000, 1ms, true);
   LiveOptions told;
-  told.is_ended = [&] { return notebook.frames.size() > 5; };
+  told.is_ended = [&] { return notebook.count > 5; };
   EXPECT_LT(run(other, told, notebook).seconds, 5);
 }
 
