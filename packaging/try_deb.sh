@@ -66,11 +66,41 @@ done
 if compgen -G "$packages/libcairn-sequences*.deb" >/dev/null; then
   inside cairn follow /usr/share/doc/cairn/sequences/rolling_ball -o /tmp/followed
   [[ $(wc -l <"$root/tmp/followed/tracks.jsonl") == 6 ]] || fail "cairn follow left no six frames"
+  inside cairn live /usr/share/doc/cairn/sequences/rolling_ball --pace 0 --every-frame --record /tmp/run.mcap
+  inside cairn follow /tmp/run.mcap -o /tmp/recorded
+  [[ $(wc -l <"$root/tmp/recorded/tracks.jsonl") == 6 ]] || fail "the recording of cairn live has no six frames"
 fi
+inside cairn batch plan /usr/share/doc/cairn/examples -o /tmp/archive
+inside cairn batch work /tmp/archive
+inside cairn batch merge /tmp/archive -o /tmp/archive.jsonl
+[[ $(wc -l <"$root/tmp/archive.jsonl") == "$(ls -d "$source_dir"/samples/*/ | wc -l)" ]] || fail "cairn batch left other rows"
+[[ -x $root/usr/share/doc/cairn/examples/batch/parallel.sh ]] || fail "no examples of batch runs"
 inside cairn evaluate /tmp/demo/four_in_a_row /usr/share/doc/cairn/examples/four_in_a_row
 [[ -s $root/usr/share/man/man1/cairn-segment.1.gz ]] || fail "no manual page"
 inside bash -c 'source /usr/share/bash-completion/completions/cairn && complete -p cairn' >/dev/null ||
   fail "bash completion cannot be sourced"
+
+# expect_refusal WORDS ARGUMENTS...: cairn ends with exit code 2 and one line with WORDS: the module was loaded and asked.
+expect_refusal() {
+  local words=$1 code=0 said
+  shift
+  said=$(inside cairn "$@" 2>&1 >/dev/null) || code=$?
+  [[ $code == 2 && $said == *"$words"* && $(wc -l <<<"$said") == 1 ]] || fail "cairn $*: exit code $code, $said"
+}
+# try_module PACKAGE WORDS ARGUMENTS...: without its package cairn names it, with it the module answers.
+try_module() {
+  local package=$1
+  compgen -G "$packages/${package}_*.deb" >/dev/null || return 0
+  expect_refusal "$package" "${@:3}"
+  install_inside "$(packages_named "$package")"
+  expect_refusal "${@:2}"
+  echo "$package"
+}
+say "modules"
+echo "no video" >"$root/tmp/broken.mp4"
+try_module cairn-video "cannot be opened as a video" follow /tmp/broken.mp4 --layout side_by_side
+try_module cairn-gstreamer 'no element "no_such_element"' follow gst:no_such_element
+try_module cairn-ros2 "nothing came on /nothing" follow ros2:/nothing --open-timeout 1
 
 say "headers and libraries for C++"
 install_inside "$(packages_named libcairn-dev)" g++ cmake make pkg-config libopencv-core-dev
