@@ -27,7 +27,7 @@ struct Step {
 
 /// Tracks camera and objects through a sequence by calling the stages in order. The origin of the map frame
 /// is on the floor below the first camera, x forward, y left, z up (ROS REP 103); without a floor it is at
-/// the camera, whose view is assumed to be level.
+/// the camera, whose view is assumed to be level. Not thread-safe.
 class Follower {
  public:
   /// Throws Error if validate(config) or the validate() of the rig does. Without a rig there are ids, but no

@@ -10,7 +10,8 @@ namespace cairn {
 /// The method for video: keeps what the frames of one camera share, above all the pool of image buffers, so
 /// that from the second frame on no image is allocated (once earlier frames have been destroyed). The only
 /// class of the library with state; the state never changes a result: every call returns the result of
-/// segment().
+/// segment(). Several threads may call one Segmenter at once: their frames share its workers and buffers, and
+/// an observer in its Exec is called from all of these threads.
 class Segmenter {
  public:
   /// Throws Error like validate(config) or the validate() of the rig. Buffers come from its own pool, not
