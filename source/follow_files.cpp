@@ -108,7 +108,7 @@ Json reliability_json(const Reliability& reliability) {
   return j;
 }
 
-Json track_json(const Track& track, const TrackLabels& shown, const Landmarked& marked) {
+Json track_json(const Track& track, const Step& step, const TrackLabels& shown, const Landmarked& marked) {
   Json j{{"id", number(track.id)},
          {"state", choice_name(track.state, kTrackStates)},
          {"moving", track.is_moving},
@@ -122,7 +122,7 @@ Json track_json(const Track& track, const TrackLabels& shown, const Landmarked& 
          {"misses", track.misses}};
   if (track.has_place) {
     j["position_m"] = json(track.position_m);
-    j["covariance_m2"] = matrix(track.covariance_m2);
+    j["covariance_m2"] = matrix(covariance_in_map(track, step.map_from_camera, step.pose_covariance));
     j["velocity_m_s"] = json(track.velocity_m_s);
     j["extent_m"] = {rounded(track.extent_m.x), rounded(track.extent_m.y), rounded(track.extent_m.z)};
   }
@@ -148,7 +148,7 @@ Json track_json(const Track& track, const TrackLabels& shown, const Landmarked& 
 std::string step_json(const Step& step, const std::string& name, const Landmarked& marked) {
   const TrackLabels shown = track_labels_of(step);
   Json tracks = Json::array();
-  for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, shown, marked));
+  for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, step, shown, marked));
   const Json line{{"frame", step.index},
                   {"name", name},
                   {"stamp_ns", step.stamp.ns},

@@ -244,6 +244,34 @@ Track founded(TrackId id, const Sighting& sighting, const Pose& map_from_camera,
 
 }  // namespace
 
+Covariance3 covariance_in_map(const Track& track, const Pose& map_from_camera,
+                              const Covariance6& pose_covariance) {
+  const Covariance3 of_pose =
+      in_map({}, inverse(map_from_camera)(track.position_m), map_from_camera, pose_covariance);
+  return sum(track.covariance_m2, of_pose, 1);
+}
+
+Tracks tied_to_key(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
+                   bool is_new_segment) {
+  for (Track& track : tracks.list) {
+    if (is_new_segment) {
+      track.against_label = 0;
+      track.places.clear();
+    }
+    if (!track.has_place) continue;
+    const Pose camera_from_map = inverse(map_from_camera);
+    const auto tie = [&](Point3 position_m) {
+      return in_map({}, camera_from_map(position_m), map_from_camera, key_covariance);
+    };
+    track.as_static.covariance_m2 = sum(track.as_static.covariance_m2, tie(track.as_static.position_m), 1);
+    const Covariance3 grown = tie(track.as_moving.position_m);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) track.as_moving.covariance.at(i * 6 + j) += grown.at(i * 3 + j);
+    }
+  }
+  return tracks;
+}
+
 Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
                       const std::vector<Match>& matches, const Overlaps& overlaps,
                       const Pose& map_from_camera, const Covariance6& pose_covariance, bool is_lost,

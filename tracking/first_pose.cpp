@@ -17,6 +17,12 @@ Pose level_pose() {
   return {{0, 0, 1, -1, 0, 0, 0, -1, 0}, {}};
 }
 
+/// The turn about the vertical.
+Pose heading_of(const Pose& map_from_camera) {
+  const Point3 ahead = map_from_camera.rotated({0, 0, 1});
+  return rotation_about({0, 0, std::atan2(ahead.y, ahead.x)});
+}
+
 }  // namespace
 
 Pose first_pose(const Ground& ground, const std::optional<StereoRig>& rig) {
@@ -28,10 +34,17 @@ Pose first_pose(const Ground& ground, const std::optional<StereoRig>& rig) {
   return {{x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z}, {0, 0, double{floor->camera_height_m}}};
 }
 
+std::optional<Pose> levelled(const Pose& map_from_camera, const Ground& ground,
+                             const std::optional<StereoRig>& rig) {
+  if (!floor_frame(ground, rig)) return std::nullopt;
+  Pose level = heading_of(map_from_camera) * first_pose(ground, rig);
+  level.translation_m.x = map_from_camera.translation_m.x;
+  level.translation_m.y = map_from_camera.translation_m.y;
+  return level;
+}
+
 Pose camera_from_level(const Pose& map_from_camera) {
-  const Point3 ahead = map_from_camera.rotated({0, 0, 1});
-  const double heading = std::atan2(ahead.y, ahead.x);
-  Pose turned = rotation_about({0, 0, heading}) * level_pose();
+  Pose turned = heading_of(map_from_camera) * level_pose();
   Pose camera_from_map = inverse(map_from_camera);
   camera_from_map.translation_m = {};
   return camera_from_map * turned;

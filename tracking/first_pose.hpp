@@ -13,6 +13,11 @@ namespace cairn {
 /// up (ROS REP 103). Without a floor the origin is the camera, whose view is assumed to be level.
 Pose first_pose(const Ground& ground, const std::optional<StereoRig>& rig);
 
+/// The camera's pose with height, roll and pitch from the floor, in a map whose z = 0 is the floor; x, y and
+/// heading stay. nullopt without a floor.
+std::optional<Pose> levelled(const Pose& map_from_camera, const Ground& ground,
+                             const std::optional<StereoRig>& rig);
+
 /// The rotation from a level camera with the same heading (x right, y down, z forward) to this one.
 /// `map_from_camera`: z of the map is up.
 Pose camera_from_level(const Pose& map_from_camera);

@@ -103,7 +103,10 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   const Image<float>& confidence = has_tree ? grown.confidence : step.frame.confidence;
 
   // … how the camera moved …
-  if (frames_ == 0) odometry_ = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
+  if (frames_ == 0) {
+    odometry_ = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
+    is_over_floor_ = !map_from_camera && ground.plane.has_value();
+  }
   if (map_from_camera) {
     step.motion.refusal = MotionRefusal::off;
     step.motion.now_from_before = inverse(*map_from_camera) * odometry_.map_from_camera;
@@ -116,14 +119,24 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
                         *rig_, pair.size(), exec_);
     OdometryStep moved = advance_odometry(odometry_, pair.left(), disparity, confidence, moving, *rig_, prior,
                                           config_.odometry);
+    const Pose before = odometry_.map_from_camera;
     odometry_ = std::move(moved.state);
     step.motion = moved.motion;
+    if (step.motion.is_new_segment && is_over_floor_) {
+      if (const auto level = levelled(odometry_.map_from_camera, ground, rig_)) {
+        odometry_ = stood_on_floor(std::move(odometry_), *level);
+        step.motion.now_from_before = inverse(*level) * before;
+      }
+    }
   } else {
     step.motion.refusal = MotionRefusal::no_rig;
   }
   const Pose& pose = step.map_from_camera = odometry_.map_from_camera;
   step.pose_covariance = odometry_.covariance;
   step.is_lost = odometry_.lost;
+
+  const Covariance6 since_key = covariance_since_key(odometry_);
+  tracks_ = tied_to_key(std::move(tracks_), pose, odometry_.key_covariance, step.motion.is_new_segment);
 
   // … where the tracks should show, which helps to choose objects …
   const Image<std::int16_t> best_right = std::move(grown.cut.scene.matches.best_right);
@@ -147,11 +160,11 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   // … and which of them are which track.
   const Overlaps overlaps = overlaps_of(warped, tracks_, frame.objects, frame.disparity);
   const auto sightings = sight(frame, pair.left(), pair.left_rgb(), rig_, config_.tracking);
-  const auto matches = step.is_lost ? std::vector<Match>{}
-                                    : associate(tracks_, sightings, overlaps, pose, step.pose_covariance,
-                                                stamp, config_.tracking);
-  tracks_ = advance_tracks(std::move(tracks_), sightings, matches, overlaps, pose, step.pose_covariance,
-                           step.is_lost, stamp, config_.tracking);
+  const auto matches =
+      step.is_lost ? std::vector<Match>{}
+                   : associate(tracks_, sightings, overlaps, pose, since_key, stamp, config_.tracking);
+  tracks_ = advance_tracks(std::move(tracks_), sightings, matches, overlaps, pose, since_key, step.is_lost,
+                           stamp, config_.tracking);
   remembered_ = remember(std::move(remembered_), tracks_, frame.objects, frame.disparity, pose, stamp, rig);
   step.tracks = tracks_;
   step.ids = ids_of(tracks_, frame.objects, exec_);

@@ -57,6 +57,7 @@ class Follower {
   Exec exec_;
   std::optional<Size> size_;
   int frames_ = 0;
+  bool is_over_floor_ = false;  // the map's z = 0 is the floor
   Stamp before_;
   OdometryState odometry_;
   Tracks tracks_;

@@ -132,6 +132,9 @@ struct OdometryState {
   Pose map_from_camera;             // of the frame before
   Covariance6 covariance{};         // of map_from_camera; grows
   Covariance6 covariance_to_key{};  // of the frame before relative to `key`, in the camera frame then
+  // Covariance of `key` relative to the keyframe before it, if it is new with this frame; else 0. Along the
+  // map's axes.
+  Covariance6 key_covariance{};
   Pose last_step;                   // now_from_before of the frame before
   int refused_in_a_row = 0;
   bool is_after_gap = false;  // see after_gap()
@@ -150,6 +153,13 @@ struct OdometryStep {
 
 /// The state before the first frame: `map_from_camera` is the start of the run.
 OdometryState begin_odometry(const Pose& map_from_camera);
+
+/// The position of a new segment is a guess, but its height, roll and pitch follow from the floor: `level`
+/// (see levelled()) replaces the present pose, and the keyframe moves with it.
+OdometryState stood_on_floor(OdometryState state, const Pose& level);
+
+/// Covariance of the present pose relative to the keyframe, along the map's axes.
+Covariance6 covariance_since_key(const OdometryState& state);
 
 /// Announces a gap before the next frame, during which the camera motion is unknown. Unless the keyframe is
 /// found again or wheels report, the pose then has standard deviations of 1 m and 30° per axis.

@@ -109,7 +109,8 @@ struct Track {
   std::vector<ObjectId> parts;       // further objects of this frame that are parts of the same object
   bool is_joined = false;            // merged with another track in this frame: no position
   bool has_place = false;            // whether it has a position, in metres
-  // In the map frame; from the filter selected by the label.
+  // In the map frame; from the filter selected by the label. The covariance is relative to the camera's path;
+  // covariance_in_map() adds the uncertainty of the path.
   Point3 position_m;
   Covariance3 covariance_m2{};
   Point3 velocity_m_s;
@@ -134,6 +135,10 @@ struct Track {
   Covariance3 measured_m2{};  // of the last detection
   Point3 seen_from_m;         // camera position at the last detection
 };
+
+/// Track::covariance_m2 with what the camera's pose leaves uncertain. `pose_covariance`: see Step.
+Covariance3 covariance_in_map(const Track& track, const Pose& map_from_camera,
+                              const Covariance6& pose_covariance);
 
 struct Tracks {
   std::vector<Track> list;  // by id, rising
@@ -167,9 +172,15 @@ struct Match {
   ObjectId object = ObjectId::none;
 };
 
+/// The tracks relative to a new keyframe, which has `key_covariance` relative to the one before (0 while it is
+/// the same). In a new segment, earlier sightings are no evidence of movement.
+Tracks tied_to_key(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
+                   bool is_new_segment);
+
 /// Assigns objects to tracks: minimum cost (Kuhn 1955) over position, size, appearance and overlap, in two
 /// rounds, objects of high confidence first (Zhang et al. 2022, "ByteTrack"). Ties: the lower track, then the
 /// lower object. A track detected in parts has several matches, the main one first. By track, ascending.
+/// `pose_covariance`: of the pose relative to the keyframe, along the map's axes.
 /// (docs/stages/tracking.md)
 std::vector<Match> associate(const Tracks& tracks, const std::vector<Sighting>& sightings,
                              const Overlaps& overlaps, const Pose& map_from_camera,

@@ -278,6 +278,46 @@ TEST(Odometry, GoesOnInANewSegmentWhereItSeesAnotherPlaceWhileLost) {
   EXPECT_GE(on.state.covariance[0], 1);
 }
 
+TEST(Odometry, TiesEachKeyframeToTheOneBefore) {
+  OdometryState state = step(begin_odometry({}), look({})).state;
+  bool has_changed = false;
+  for (int k = 1; k <= 12; ++k) {
+    const OdometryStep next = step(state, look(at(0, 0.02 * k, 3 * k)));
+    ASSERT_EQ(next.motion.refusal, MotionRefusal::none);
+    const double moved = sum_of_diagonal(next.motion.covariance);
+    has_changed |= next.motion.is_new_keyframe;
+    EXPECT_NEAR(sum_of_diagonal(next.state.key_covariance), next.motion.is_new_keyframe ? moved : 0, 1e-12);
+    EXPECT_NEAR(sum_of_diagonal(covariance_since_key(next.state)), next.motion.is_new_keyframe ? 0 : moved,
+                1e-12);
+    state = next.state;
+  }
+  EXPECT_TRUE(has_changed);
+}
+
+TEST(Odometry, OverTheFloorANewSegmentIsUnsureOfItsPlaceAndHeadingAlone) {
+  OdometryState state = step(begin_odometry({}), look({})).state;
+  for (int k = 0; k < 8; ++k) state = step(state, all_of(0)).state;
+  OdometryStep begun;
+  for (int k = 0; k < 3; ++k) {
+    begun = step(state, look(at(0, 0.02 * k, 180)));
+    state = begun.state;
+  }
+  ASSERT_TRUE(begun.motion.is_new_segment);
+  EXPECT_GE(state.key_covariance[0], 1);
+  EXPECT_GE(state.key_covariance[35], 900 * kDegrees * kDegrees);
+  Pose level = state.map_from_camera;
+  level.translation_m.z = 0.8;
+  const OdometryState stood = stood_on_floor(state, level);
+  EXPECT_EQ(stood.map_from_camera.translation_m, level.translation_m);
+  EXPECT_LT(metres_apart(stood.key.map_from_key, level), 1e-9);
+  for (const std::size_t k : {2U, 3U, 4U}) EXPECT_LT(stood.covariance[7 * k], 0.01) << k;
+  for (const std::size_t k : {0U, 1U}) EXPECT_GE(stood.covariance[7 * k], 1) << k;
+  EXPECT_GE(stood.covariance[35], 900 * kDegrees * kDegrees);
+  const OdometryStep on = step(stood, look(at(0, 0.06, 180)));
+  EXPECT_EQ(on.motion.refusal, MotionRefusal::none);
+  EXPECT_NEAR(on.state.map_from_camera.translation_m.z, 0.8, 0.05);
+}
+
 TEST(Odometry, StaysLostWhileNoTwoFramesShowTheSame) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   for (int k = 0; k < 20; ++k) {

@@ -23,6 +23,51 @@ Stamp seconds(double s) {
   return {std::llround(s * 1e9)};
 }
 
+// ---- a path that is uncertain ----
+
+Track standing(Point3 at_m) {
+  Track track;
+  track.id = TrackId{1};
+  track.has_place = true;
+  track.position_m = at_m;
+  track.as_static = {at_m, variances(0.01)};
+  track.as_moving = {at_m, {}, variances(0.01, 1)};
+  track.covariance_m2 = variances(0.01);
+  track.against_label = 3;
+  track.places.resize(4);
+  return track;
+}
+
+TEST(Tracks, AreAsUnsureAgainstANewKeyframeAsItIsTied) {
+  Covariance6 key{};
+  key[0] = 0.04;   // x
+  key[35] = 0.01;  // about z
+  const Pose camera{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1}};
+  const Tracks before{{standing({0, 2, 1})}, 2, {}, false};
+  const Track same = tied_to_key(before, camera, {}, false).list[0];
+  EXPECT_EQ(same.as_static.covariance_m2, before.list[0].as_static.covariance_m2);
+  EXPECT_EQ(same.places.size(), 4U);
+
+  const Track tied = tied_to_key(before, camera, key, true).list[0];
+  EXPECT_NEAR(tied.as_static.covariance_m2[0], 0.01 + 0.04 + 4 * 0.01, 1e-12);  // 2 m away, turned
+  EXPECT_NEAR(tied.as_static.covariance_m2[4], 0.01, 1e-12);
+  EXPECT_NEAR(tied.as_moving.covariance[0], 0.01 + 0.04 + 4 * 0.01, 1e-12);
+  EXPECT_NEAR(tied.as_moving.covariance[21], 1, 1e-12);
+  EXPECT_EQ(tied.as_static.position_m, before.list[0].as_static.position_m);
+  EXPECT_TRUE(tied.places.empty()) << "the jump is the camera's";
+  EXPECT_EQ(tied.against_label, 0);
+}
+
+TEST(Tracks, HaveThePosesUncertaintyInTheMapOnly) {
+  Covariance6 pose{};
+  pose[7] = 0.09;
+  pose[21] = 0.01;  // about x: lifts what is ahead along y
+  const Covariance3 in_map_m2 = covariance_in_map(standing({0, 3, 0}), {}, pose);
+  EXPECT_NEAR(in_map_m2[0], 0.01, 1e-12);
+  EXPECT_NEAR(in_map_m2[4], 0.1, 1e-12);
+  EXPECT_NEAR(in_map_m2[8], 0.01 + 9 * 0.01, 1e-12);
+}
+
 // ---- the filters ----
 
 TEST(Filter3, WandersWithTimeAndMeetsAMeasurementHalfWay) {
