@@ -39,6 +39,14 @@ inline std::array<double, 16> rows_of(const Matrix4& m) {
 /// A rotation about z by `yaw_rad`, then a translation.
 Pose turned(double yaw_rad, Point3 translation_m);
 
+/// Covariance of a camera's x, y, z and yaw after it moved by `way_m`: the uncertainty of the heading shifts it.
+inline Matrix4 carried(const Matrix4& covariance, Point3 way_m) {
+  Matrix4 lever = Matrix4::Identity();
+  lever(0, 3) = -way_m.y;
+  lever(1, 3) = way_m.x;
+  return lever * covariance * lever.transpose();
+}
+
 /// A position in the map of something in the odometry frame: uncertain by itself and by the pose of that
 /// frame.
 struct Placed {

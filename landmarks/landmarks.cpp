@@ -15,6 +15,7 @@ namespace {
 
 using landmarks::matrix;
 using landmarks::Matrix3;
+using landmarks::Matrix4;
 using landmarks::Placed;
 using landmarks::point;
 using landmarks::Pull;
@@ -141,7 +142,7 @@ void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& fr
   }
   if (evidence.frames == 0) {
     evidence.first_camera_m = camera;
-    evidence.first = evidence.was_moving ? frame.stamp : track.first;
+    if (evidence.was_moving) evidence.first = frame.stamp;
   }
   ++evidence.frames;
   evidence.cut_ago = is_cut ? 0 : evidence.cut_ago + 1;
@@ -191,6 +192,12 @@ bool may_be_recognised(const TrackEvidence& evidence, const Track& track, const 
   return track.state == TrackState::confirmed && !track.is_moving && track.object != ObjectId::none &&
          evidence.frames >= std::max(2, config.min_frames / 2) && evidence.cut_ago > 0 &&
          evidence.centres >= 2;
+}
+
+/// A pose asks for sure places, but not that all of them are in view at once.
+bool may_tell_place(const TrackEvidence& evidence, const Track& track, const LandmarksConfig& config) {
+  return track.state != TrackState::tentative && !track.is_moving && evidence.frames >= config.min_frames &&
+         evidence.cut_ago > 0 && evidence.centres >= 2;
 }
 
 /// An octant's colours, and the crop where this is the largest view so far.
@@ -412,21 +419,67 @@ std::vector<LandmarkEvent> report_new(LandmarksState& state, const LandmarkFrame
   return events;
 }
 
-void grow_uncertainty(LandmarksState& state, const LandmarkFrame& frame) {
-  std::array<double, 4> grown{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double now = frame.pose_covariance[kOfPose[i] * 7];
-    grown[i] = std::max(0.0, now - state.pose_covariance_before[i * 5]);
-    state.pose_covariance_before[i * 5] = now;
+Matrix4 of_pose(const Covariance6& covariance) {
+  Matrix4 part;
+  for (std::size_t r = 0; r < 4; ++r) {
+    for (std::size_t c = 0; c < 4; ++c)
+      part(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
+          covariance[kOfPose[r] * 6 + kOfPose[c]];
   }
-  // Odometry's axes are not the map's; about the vertical they agree.
-  const Covariance3 in_map =
-      rotated(state.located.map_from_odom, Covariance3{grown[0], 0, 0, 0, grown[1], 0, 0, 0, grown[2]});
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) state.located.covariance[r * 4 + c] += in_map[r * 3 + c];
-  }
-  state.located.covariance[15] += grown[3];
+  return part;
+}
+
+/// What odometry added since the anchor comes on top of what was uncertain there. Differences of its
+/// covariances, not sums of their growth: they fall again when the keyframe is seen after a few dark frames.
+void place_camera(LandmarksState& state, const LandmarkFrame& frame) {
   state.located.camera_in_odom_m = frame.odom_from_camera.translation_m;
+  const Point3 way = state.located.camera_in_odom_m - state.anchor.camera_in_odom_m;
+  const Matrix4 added =
+      of_pose(frame.pose_covariance) - landmarks::carried(of_pose(state.anchor_pose_covariance), way);
+  // Rounding, and a pose that was seen better than at the anchor, may make it negative in some direction.
+  const Eigen::SelfAdjointEigenSolver<Matrix4> parts(added);
+  const Matrix4 grown =
+      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
+  // Odometry's axes are not the map's; about the vertical they agree.
+  Matrix4 turn = Matrix4::Identity();
+  turn.topLeftCorner<3, 3>() = Eigen::Map<const Matrix3>(state.located.map_from_odom.rotation.data());
+  state.located.covariance = landmarks::rows_of(
+      Matrix4(landmarks::carried(matrix(state.anchor.covariance), state.located.map_from_odom.rotated(way)) +
+              turn * grown * turn.transpose()));
+}
+
+/// `state.located` is known by more than odometry.
+void anchor_here(LandmarksState& state, const LandmarkFrame& frame) {
+  state.anchor = state.located;
+  state.anchor_pose_covariance = frame.pose_covariance;
+}
+
+/// A guess alone ties what is seen from here on to the map.
+void begin_segment(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config) {
+  state.segment_began = frame.stamp;
+  state.tracks.clear();
+  state.closure.reset();
+  if (!state.is_located) return;
+  int present = 0;
+  bool is_of_this_run = true;
+  for (const Landmark& landmark : state.map.list) {
+    present += landmark.is_gone ? 0 : 1;
+    is_of_this_run &= std::binary_search(state.found.begin(), state.found.end(), landmark.id);
+  }
+  if (present >= std::min(config.relocation_pairs, std::max(2, config.min_pairs)) || !is_of_this_run) {
+    state.is_located = false;
+    state.has_guess = true;
+    return;
+  }
+  // Too few landmarks ever to say where this is: the map is of this segment from now on.
+  const std::int64_t next = state.map.next;
+  state.map = {};
+  state.map.next = next;
+  state.found.clear();
+  state.unreported.clear();
+  state.vanished.clear();
+  state.located.covariance = {};
+  anchor_here(state, frame);
 }
 
 /// The landmarks that were recognised together after a while correct the pose.
@@ -446,14 +499,15 @@ void correct(LandmarksState& state, const LandmarkFrame& frame, const LandmarksC
   }
   if (pulls.size() < static_cast<std::size_t>(config.min_pairs)) return;
   state.located = landmarks::corrected(before, pulls);
+  anchor_here(state, frame);
 }
 
 void bind(LandmarksState& state, const LandmarkPair& pair, const LandmarkFrame& frame,
           std::vector<LandmarkEvent>& events) {
   TrackEvidence& evidence = *evidence_of(state, pair.track);
   Landmark& landmark = *find_in(state.map, pair.landmark);
-  const bool is_long_unseen =
-      landmark.run != state.run || seconds_between(landmark.last, evidence.first) >= kLongUnseen_s;
+  const bool is_long_unseen = landmark.run != state.run || landmark.last < state.segment_began ||
+                              seconds_between(landmark.last, evidence.first) >= kLongUnseen_s;
   evidence.landmark = pair.landmark;
   evidence.is_recognised = true;
   evidence.score = pair.score;
@@ -529,6 +583,7 @@ LandmarkFrame landmark_frame(const Step& step, const StereoRig& rig, View<const 
   frame.motion_refusal = step.motion.refusal;
   frame.odometry_suspect = step.tracks.odometry_suspect;
   frame.is_keyframe = step.motion.is_new_keyframe;
+  frame.is_new_segment = step.motion.is_new_segment;
   frame.tracks = &step.tracks;
   frame.ids = step.ids.view();
   frame.disparity_px = step.frame.disparity.disparity_px.view();
@@ -645,7 +700,8 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     result.state = std::move(state);
     return result;
   }
-  grow_uncertainty(state, frame);
+  place_camera(state, frame);
+  if (frame.is_new_segment) begin_segment(state, frame, config);
   if (is_guessed(frame)) {
     // A dark picture shows neither a thing nor what is behind it, and from a guessed pose all seems moved.
     for (const Track& track : tracks.list) {
@@ -667,8 +723,9 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     if (at == state.tracks.end() || at->track != track.id) {
       TrackEvidence fresh;
       fresh.track = track.id;
-      fresh.first = track.first;
-      fresh.floor_before = floor_frames_at(state.map, state.located.map_from_odom(track.position_m));
+      fresh.first = std::max(track.first, state.segment_began);
+      if (state.is_located)
+        fresh.floor_before = floor_frames_at(state.map, state.located.map_from_odom(track.position_m));
       state.tracks.insert(at, fresh);
     }
     if (track.object == ObjectId::none) continue;
@@ -683,29 +740,33 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     const Track& track = *track_of(tracks, evidence.track);
     if (evidence.landmark != LandmarkId::none) {
       if (track.object != ObjectId::none) taken.push_back(evidence.landmark);
-    } else if (may_be_recognised(evidence, track, config) &&
-               (state.is_located || evidence.frames >= config.min_frames)) {  // a pose wants sure places
+    } else if (state.is_located ? may_be_recognised(evidence, track, config)
+                                : may_tell_place(evidence, track, config)) {
       candidates.push_back(candidate_of(evidence, track));
     }
   }
   bool has_change = false;
   if (!state.is_located) {
     ++state.frames_not_located;
-    Recognition found = relocate(state.map, candidates, config);
+    const std::optional<Located> guess = state.has_guess ? std::optional(state.located) : std::nullopt;
+    Recognition found = relocate(state.map, candidates, config, guess);
     if (found.map_from_odom && !is_contradicted(state, found, frame)) {
+      const Point3 guessed = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
       state.is_located = true;
+      state.has_guess = false;
       state.located.map_from_odom = *found.map_from_odom;
       // Not known at all but for the landmarks, which now say it.
       state.located.covariance = {};
       for (const std::size_t i : {0U, 5U, 10U}) state.located.covariance[i] = 1;
       state.located.covariance[15] = 0.1;
+      anchor_here(state, frame);
       for (const LandmarkPair& pair : found.pairs) bind(state, pair, frame, result.events);
       correct(state, frame, config);
       LandmarkEvent event;
       event.kind = LandmarkEventKind::relocated;
       event.stamp = frame.stamp;
       event.position_m = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
-      event.moved_by_m = event.position_m - frame.odom_from_camera.translation_m;
+      event.moved_by_m = event.position_m - guessed;
       double product = 1;
       for (const LandmarkPair& pair : found.pairs) product *= 1 - pair.score;
       event.probability = 1 - product;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cairn/core/stereo_pair.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ enum class LandmarkRefusal : std::uint8_t {
   uncertain,       // standard deviation > max_sigma
   unsteady,        // cut by the image's border within its last five frames
   beside_known,    // its position is taken by another landmark
-  not_located,     // unknown camera pose in a loaded map
+  not_located,     // unknown camera pose in the map: a loaded one, or after a new segment of odometry
   map_full         // max_known
 };
 inline constexpr std::array kLandmarkRefusals{Choice{"none", LandmarkRefusal::none},
@@ -157,10 +158,11 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
                       const LandmarksConfig& config);
 
 /// The same with an unknown pose: the largest constellation of pairs with consistent mutual distances, of at
-/// least `relocation_pairs`, with twice as many consistent distances as at any other place. The pose is a
-/// rotation about z and a translation. Otherwise a refusal.
+/// least `relocation_pairs`, with twice as many consistent distances as at any other place. `guess`: a
+/// probable pose; a place within its 95 % needs only `min_pairs`. The pose is a rotation about z and a
+/// translation. Otherwise a refusal.
 Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config);
+                     const LandmarksConfig& config, const std::optional<Located>& guess = std::nullopt);
 
 /// The input of landmarks for one frame. Views are borrowed for the call.
 struct LandmarkFrame {
@@ -172,6 +174,7 @@ struct LandmarkFrame {
   MotionRefusal motion_refusal = MotionRefusal::none;
   bool odometry_suspect = false;  // most tracks contradict the motion
   bool is_keyframe = false;
+  bool is_new_segment = false;  // see Motion
   const Tracks* tracks = nullptr;
   std::vector<TrackId> cut;  // touch the image border
   View<const TrackId> ids;
@@ -245,7 +248,11 @@ struct LandmarksState {
   std::int64_t run = 0;
   bool is_located = true;
   Located located;
-  std::array<double, 16> pose_covariance_before{};
+  // The last pose known from more than odometry, and odometry's own covariance of its pose then.
+  Located anchor;
+  Covariance6 anchor_pose_covariance{};
+  Stamp segment_began{std::numeric_limits<std::int64_t>::min()};
+  bool has_guess = false;             // not located, but `located` is a guess: a new segment of odometry
   std::vector<TrackEvidence> tracks;  // by id, ascending
   struct Closure {                    // landmarks recognised together
     Located before;
@@ -282,7 +289,9 @@ struct Landmarked {
   std::vector<LandmarkEvent> events;    // of this frame
 };
 
-/// The map after this frame; unchanged if the frame is lost or is_guessed().
+/// The map after this frame; unchanged if the frame is lost or is_guessed(). After a new segment of odometry,
+/// tracks belong to the map again once enough landmarks locate the segment in it; a map that is too small to
+/// do so, if it is entirely of this run, starts again.
 /// (docs/stages/landmarks.md)
 Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame, const LandmarksConfig& config);
 

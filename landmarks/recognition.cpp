@@ -221,6 +221,16 @@ bool is_same_place(const Pose& a, const Pose& b, Point3 where) {
   return length(a(where) - b(where)) < kApart_m && angle_of(inverse(a) * b) < kApart_rad;
 }
 
+/// Whether a pose in the map lies within the 95 % of a guess.
+bool suits(const Pose& map_from_odom, const Located& guess) {
+  constexpr double kChi2Of4At95 = 9.488;
+  const Pose apart = map_from_odom * inverse(guess.map_from_odom);
+  Eigen::Vector4d off;
+  off << vector(map_from_odom(guess.camera_in_odom_m) - guess.map_from_odom(guess.camera_in_odom_m)),
+      std::atan2(apart.rotation[3], apart.rotation[0]);
+  return off.dot(matrix(guess.covariance).ldlt().solve(off)) <= kChi2Of4At95;
+}
+
 }  // namespace
 
 const Landmark* find(const LandmarkMap& map, LandmarkId id) {
@@ -296,10 +306,13 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
 }
 
 Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config) {
+                     const LandmarksConfig& config, const std::optional<Located>& guess) {
   Recognition result;
   const auto enough = static_cast<std::size_t>(config.relocation_pairs);
-  if (candidates.size() < enough) {
+  // Two at least: one tells no direction.
+  const std::size_t enough_near =
+      guess ? std::min(enough, static_cast<std::size_t>(std::max(2, config.min_pairs))) : enough;
+  if (candidates.size() < enough_near) {
     result.refusal = RecognitionRefusal::no_candidates;
     return result;
   }
@@ -336,10 +349,14 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
       }
     }
   }
+  std::erase_if(places, [&](const Constellation& place) {
+    const bool is_near = guess && suits(place.map_from_odom, *guess);
+    return place.pairs.size() < (is_near ? enough_near : enough);
+  });
   std::stable_sort(places.begin(), places.end(), [](const Constellation& a, const Constellation& b) {
     return std::make_tuple(a.pairs.size(), -a.squares) > std::make_tuple(b.pairs.size(), -b.squares);
   });
-  if (places.empty() || places.front().pairs.size() < enough) {
+  if (places.empty()) {
     result.refusal = RecognitionRefusal::too_few_pairs;
     return result;
   }

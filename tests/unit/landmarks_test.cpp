@@ -32,11 +32,28 @@ class Excursion {
   bool dark = false;  // matching then invents far disparities, and there are no objects
   MotionRefusal motion = MotionRefusal::none;
   bool suspect = false;
+  double unsure_m2 = 0;  // that odometry says of its pose on top of its drift
+  double unsure_rad2 = 0;
   LandmarksConfig config;
 
   explicit Excursion(LandmarkMap map = {}, std::int64_t run = 1,
                      const std::optional<Pose>& start = std::nullopt)
       : state(begin_landmarks(std::move(map), run, start)) {}
+
+  /// Odometry breaks, and goes on from a guess: the camera turned by `turned_rad` and moved by `moved_m`, as
+  /// it thinks, since the frame before.
+  void break_odometry(double turned_rad, Point3 moved_m) {
+    const Point3 here = odom_.translation_m;
+    odom_.rotation = (rotation_about({0, 0, turned_rad}) * odom_).rotation;
+    odom_.translation_m = here + moved_m;
+    constexpr double kRad = 30 * kTurn / 360;
+    unsure_m2 += 1;
+    unsure_rad2 += kRad * kRad;
+    for (Track& track : tracks_.tracks.list) {  // as tied_to_key() has it
+      for (const std::size_t k : {0U, 4U, 8U}) track.covariance_m2[k] += 1;
+    }
+    is_new_segment_ = true;
+  }
 
   void frame(const DrawnRoom& room, const Pose& map_from_camera) {
     const DrawnView view = support::draw(room, map_from_camera, random_);
@@ -44,13 +61,24 @@ class Excursion {
       odom_ = odom_from_map * map_from_camera;
     } else {
       Pose step = inverse(*before_) * map_from_camera;
-      way_ += length(step.translation_m);
       const Pose turn = rotation_about({0, 0, drift_rad});
       const Point3 here = odom_.translation_m;
       odom_ = odom_ * step;
       const Point3 there = odom_.translation_m;
       odom_.rotation = (turn * odom_).rotation;
       odom_.translation_m = here + turn.rotated(there - here);
+      // As odometry's grows: 7 cm and 1° in a lap, and what is unsure of the heading shifts the place.
+      const double way_m = length(step.translation_m);
+      const Point3 moved = odom_.translation_m - here;
+      for (std::size_t c = 0; c < 4; ++c) {
+        covariance_[0][c] -= moved.y * covariance_[3][c];
+        covariance_[1][c] += moved.x * covariance_[3][c];
+      }
+      for (auto& row : covariance_) {
+        row[0] -= moved.y * row[3];
+        row[1] += moved.x * row[3];
+      }
+      for (std::size_t k = 0; k < 4; ++k) covariance_[k][k] += way_m * (k < 3 ? 6e-4 : 3.5e-5);
     }
     before_ = map_from_camera;
     const Stamp now{std::int64_t{index} * 200'000'000};
@@ -78,9 +106,14 @@ class Excursion {
     frame.index = index;
     frame.stamp = now;
     frame.odom_from_camera = odom_;
-    const double sigma = 0.001 + 0.01 * way_;
-    for (const std::size_t k : {0U, 7U, 14U}) frame.pose_covariance[k] = sigma * sigma;
-    frame.pose_covariance[35] = std::pow(0.0005 + 0.002 * way_, 2);
+    constexpr std::array<std::size_t, 4> kOfPose{0, 1, 2, 5};
+    for (std::size_t r = 0; r < 4; ++r) {
+      for (std::size_t c = 0; c < 4; ++c)
+        frame.pose_covariance[kOfPose[r] * 6 + kOfPose[c]] = covariance_[r][c];
+      frame.pose_covariance[kOfPose[r] * 7] += 1e-6 + (r < 3 ? unsure_m2 : unsure_rad2);
+    }
+    frame.is_new_segment = is_new_segment_;
+    is_new_segment_ = false;
     frame.motion_refusal = motion;
     frame.odometry_suspect = suspect;
     frame.tracks = &tracks_.tracks;
@@ -131,7 +164,8 @@ class Excursion {
   std::set<TrackId> recognised_;
   std::optional<Pose> before_;
   Pose odom_;
-  double way_ = 0;
+  std::array<std::array<double, 4>, 4> covariance_{};  // of odom_: x, y, z, yaw
+  bool is_new_segment_ = false;
   std::mt19937 random_{11};
 };
 
@@ -356,6 +390,102 @@ TEST(Landmarks, CorrectAPathThatDrifts) {
     }
   }
   EXPECT_LT(with, 0.7 * without);
+}
+
+TEST(Landmarks, TellWhereASegmentOfOdometryLiesAndHoldItApartUntilThen) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const DrawnRoom room = DrawnRoom::random(seed, 12);
+    for (const double side : {-1.0, 1.0}) {
+      Excursion run;
+      run.lap(room);
+      const std::size_t known = run.state.map.list.size();
+      ASSERT_GE(known, 6U);
+      run.break_odometry(0.35 * side, {0.5 * side, -0.4, 0});
+      run.frame(room, Excursion::on_lap(1));
+      EXPECT_FALSE(run.state.is_located);
+      EXPECT_GT(run.state.located.covariance[0], 0.9);
+      int waited = 1;
+      for (; waited < Excursion::kLap && !run.state.is_located; ++waited) {
+        EXPECT_EQ(run.state.map.list.size(), known) << "held apart";
+        run.frame(room, Excursion::on_lap(1 + kTurn * waited / Excursion::kLap));
+      }
+      ASSERT_TRUE(run.state.is_located) << "room " << seed;
+      EXPECT_LT(run.pose_error_m(), 0.3) << "room " << seed;
+      EXPECT_EQ(run.of_kind(LandmarkEventKind::relocated).size(), 1U);
+      // As sure as the landmarks make it, of 1 m and 30 degrees.
+      EXPECT_LT(std::sqrt(run.state.located.covariance[0]), 0.25);
+      EXPECT_LT(std::sqrt(run.state.located.covariance[15]), 6 * kTurn / 360);
+      run.lap(room, 1);
+      EXPECT_LT(run.pose_error_m(), 0.25) << "room " << seed;
+      std::map<int, int> landmarks_of;
+      for (const Landmark& landmark : run.state.map.list) {
+        ASSERT_EQ(run.things_of[landmark.id].size(), 1U) << "landmark " << number(landmark.id);
+        EXPECT_EQ(++landmarks_of[*run.things_of[landmark.id].begin()], 1) << "no thing twice";
+      }
+      EXPECT_TRUE(changes_of(run.events).empty()) << "room " << seed;
+    }
+  }
+}
+
+TEST(Landmarks, OfOnePlaceAreLeftAloneByASegmentInAnother) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    Excursion run;
+    run.lap(DrawnRoom::random(seed, 12));
+    const LandmarkMap known = run.state.map;
+    run.break_odometry(0.2, {0.3, 0, 0});
+    run.lap(DrawnRoom::random(100 + seed, 12));
+    EXPECT_FALSE(run.state.is_located) << "room " << seed;
+    ASSERT_EQ(run.state.map.list.size(), known.list.size());
+    for (std::size_t i = 0; i < known.list.size(); ++i) {
+      EXPECT_EQ(run.state.map.list[i].position_m, known.list[i].position_m);
+      EXPECT_EQ(run.state.map.list[i].log_odds, known.list[i].log_odds);
+    }
+    EXPECT_EQ(run.state.map.floor, known.floor);
+    EXPECT_TRUE(run.of_kind(LandmarkEventKind::relocated).empty());
+    EXPECT_TRUE(changes_of(run.events).empty());
+    EXPECT_GT(run.refusals[LandmarkRefusal::not_located], 0);
+  }
+}
+
+TEST(Landmarks, TooFewToTellAPlaceAreGivenUpByANewSegment) {
+  const DrawnRoom room = DrawnRoom::random(2, 12);
+  Excursion run;
+  int i = 0;
+  while (i < Excursion::kLap && run.state.map.list.empty())
+    run.frame(room, Excursion::on_lap(kTurn * i++ / Excursion::kLap));
+  ASSERT_EQ(run.state.map.list.size(), 1U);
+  const std::int64_t next = run.state.map.next;
+  run.break_odometry(0.3, {0.5, 0, 0});
+  run.frame(room, Excursion::on_lap(kTurn * i++ / Excursion::kLap));
+  EXPECT_TRUE(run.state.is_located);
+  EXPECT_TRUE(run.state.map.list.empty());
+  EXPECT_EQ(run.state.map.next, next) << "no id twice";
+  EXPECT_LT(run.state.located.covariance[0], 1e-3);
+  for (; i < Excursion::kLap; ++i) run.frame(room, Excursion::on_lap(kTurn * i / Excursion::kLap));
+  EXPECT_GE(run.state.map.list.size(), 4U);
+  EXPECT_TRUE(changes_of(run.events).empty());
+
+  // A map that was loaded is not of this run to give up.
+  Excursion second(run.state.map, 2, Pose{});
+  second.state.map.list.resize(1);
+  second.break_odometry(0, {});
+  second.frame(room, Excursion::on_lap(0));
+  EXPECT_FALSE(second.state.is_located);
+  EXPECT_EQ(second.state.map.list.size(), 1U);
+}
+
+TEST(Landmarks, AreAsUnsureAsThePathAfterAFewDarkFramesAndNoLonger) {
+  const DrawnRoom room = DrawnRoom::random(1, 10);
+  Excursion run;
+  run.config.min_pairs = 20;  // no corrections
+  for (int i = 0; i < 10; ++i) run.frame(room, Excursion::on_lap(0.01 * i));
+  const double before = run.state.located.covariance[0];
+  for (int i = 0; i < 10; ++i) {
+    run.unsure_m2 = i % 2 == 0 ? 0.05 : 0;  // the keyframe is lost and found
+    run.motion = i % 2 == 0 ? MotionRefusal::few_points : MotionRefusal::none;
+    run.frame(room, Excursion::on_lap(0.1 + 0.01 * i));
+  }
+  EXPECT_LT(run.state.located.covariance[0], before + 0.001);
 }
 
 TEST(Landmarks, TellWhereARunBeginsThatDoesNotKnow) {

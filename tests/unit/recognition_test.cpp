@@ -90,6 +90,28 @@ TEST(Relocation, FindsThePoseOfAConstellation) {
   EXPECT_EQ(relocate(map, candidates, {}).refusal, RecognitionRefusal::too_few_pairs);
 }
 
+TEST(Relocation, NeedsTwoPairsWhereAGuessSaysNearWhere) {
+  LandmarkMap map;
+  map.list = {known(1, {1, 0, 0.25}, 1), known(2, {2.5, 1, 0.25}, 2)};
+  Pose truth = rotation_about({0, 0, 0.3});
+  truth.translation_m = {0.4, -0.3, 0};
+  const std::vector<Candidate> candidates{seen(11, inverse(truth)({1, 0, 0.25}), 1),
+                                          seen(12, inverse(truth)({2.5, 1, 0.25}), 2)};
+  EXPECT_EQ(relocate(map, candidates, {}).refusal, RecognitionRefusal::no_candidates);
+
+  Located guess;
+  for (const std::size_t i : {0U, 5U, 10U}) guess.covariance[i] = 1;
+  guess.covariance[15] = 0.27;
+  const Recognition found = relocate(map, candidates, {}, guess);
+  ASSERT_TRUE(found.map_from_odom.has_value());
+  EXPECT_LT(length(found.map_from_odom->translation_m - truth.translation_m), 0.05);
+  EXPECT_EQ(found.pairs.size(), 2U);
+
+  guess.map_from_odom.translation_m = {8, 0, 0};
+  EXPECT_EQ(relocate(map, candidates, {}, guess).refusal, RecognitionRefusal::too_few_pairs)
+      << "not near there";
+}
+
 TEST(Relocation, SaysAmbiguousInARoomThatRepeatsItself) {
   LandmarkMap map;
   std::vector<Candidate> candidates;
