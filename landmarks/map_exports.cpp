@@ -16,6 +16,8 @@
 namespace cairn {
 namespace {
 
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
 [[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
   std::array<char, 512> text{};
   std::va_list values;
@@ -50,13 +52,41 @@ landmarks::Matrix3 information_of(const Covariance3& covariance) {
   return (landmarks::matrix(covariance) + kLeast * landmarks::Matrix3::Identity()).inverse();
 }
 
-/// What the pose's covariance grew by, which is what the step adds: along the map's axes, from `first` on.
-Covariance3 growth(const Covariance6& before, const Covariance6& now, std::size_t first) {
-  constexpr double kLeast = 1e-6;  // 1 mm, 1 mrad
-  Covariance3 grown{};
-  for (std::size_t k = 0; k < 3; ++k)
-    grown[k * 4] = std::max(kLeast, now[(first + k) * 7] - before[(first + k) * 7]);
-  return grown;
+/// Of the motion between two poses of a run, along the map's axes: what the second has more than the first
+/// carried on. A correction by landmarks between the two makes it less; the step is then as uncertain as both
+/// poses together.
+Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
+  constexpr double kLeast = 1e-6;                            // 1 mm, 1 mrad
+  constexpr double kRounding = 1e-3;                         // of the larger one
+  constexpr std::array<Eigen::Index, 4> kPlace{0, 1, 2, 5};  // x, y, z, yaw
+  constexpr std::array<Eigen::Index, 2> kTilt{3, 4};
+  const Eigen::Map<const Matrix6> a(before.covariance.data());
+  const Eigen::Map<const Matrix6> b(now.covariance.data());
+  const landmarks::Matrix4 carried = landmarks::carried(
+      a(kPlace, kPlace), now.map_from_camera.translation_m - before.map_from_camera.translation_m);
+  const landmarks::Matrix4 grown = b(kPlace, kPlace) - carried;
+  const double smallest =
+      Eigen::SelfAdjointEigenSolver<landmarks::Matrix4>(grown, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const bool is_corrected = smallest < -kRounding * carried.trace() - kLeast;
+  Matrix6 step = Matrix6::Zero();
+  step(kPlace, kPlace) = is_corrected ? landmarks::Matrix4(b(kPlace, kPlace) + carried) : grown;
+  step(kTilt, kTilt) = is_corrected ? Eigen::Matrix2d(b(kTilt, kTilt) + a(kTilt, kTilt))
+                                    : Eigen::Matrix2d(b(kTilt, kTilt) - a(kTilt, kTilt));
+  const Eigen::SelfAdjointEigenSolver<Matrix6> parts(step);
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(kLeast).asDiagonal() *
+         parts.eigenvectors().transpose();
+}
+
+/// EDGE_SE3:QUAT's: its error is (t, q) of the deviation along the axes of the camera that the edge leads to,
+/// q the vector part of the quaternion, hence half the angle (g2o, types/slam3d/isometry3d_mappings.h,
+/// toVectorMQT).
+Matrix6 information_of_step(const MapPose& before, const MapPose& now) {
+  const Pose camera_from_map = inverse(now.map_from_camera);
+  const Eigen::Map<const landmarks::Matrix3> turn(camera_from_map.rotation.data());
+  Matrix6 to_error = Matrix6::Zero();
+  to_error.topLeftCorner<3, 3>() = turn;
+  to_error.bottomRightCorner<3, 3>() = turn / 2;
+  return Matrix6(to_error * covariance_of_step(before, now) * to_error.transpose()).inverse();
 }
 
 }  // namespace
@@ -126,17 +156,9 @@ std::string as_g2o(const MapFile& file) {
              l.position_m.x, l.position_m.y, l.position_m.z);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (poses[i].run != poses[i - 1].run) continue;
-    // The edge's error lies along the axes of the camera that it leads to.
-    const Pose camera_from_map = inverse(poses[i].map_from_camera);
-    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> information;
-    information.setZero();
-    information.topLeftCorner<3, 3>() =
-        information_of(rotated(camera_from_map, growth(poses[i - 1].covariance, poses[i].covariance, 0)));
-    information.bottomRightCorner<3, 3>() =
-        information_of(rotated(camera_from_map, growth(poses[i - 1].covariance, poses[i].covariance, 3)));
     text += line("EDGE_SE3:QUAT %zu %zu ", i - 1, i) +
             numbers_of(inverse(poses[i - 1].map_from_camera) * poses[i].map_from_camera) +
-            information_text<6>(information) + "\n";
+            information_text<6>(information_of_step(poses[i - 1], poses[i])) + "\n";
   }
   for (const MapObservation& one : file.observations()) {
     const auto pose = at.find({one.run, one.stamp.ns});
