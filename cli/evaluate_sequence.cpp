@@ -141,7 +141,8 @@ Json summary_json(const SequenceScores& s) {
            {{"in_map", places_json(s.places.in_map_m)},
             {"in_camera", places_json(s.places.in_camera_m)},
             {"with_covariance", s.places.stated},
-            {"inside_95", json(share(s.places.inside, s.places.stated))}}},
+            {"inside_95", json(share(s.places.inside, s.places.stated))},
+            {"median_nees", json(percentile(s.places.normalised, 0.5))}}},
           {"moving", moving_json(s.moving)},
           {"landmarks", landmarks_json(s.landmarks)},
           {"changes", changes_json(s.changes)},
@@ -241,7 +242,8 @@ std::string place_lines(const PlaceErrors& places) {
          metres(percentile(places.in_camera_m, 0.95)) + "\n";
   if (places.stated > 0)
     all += "                    in the ellipsoid stated to hold 95 %: " +
-           percent(share(places.inside, places.stated)) + "\n";
+           percent(share(places.inside, places.stated)) + "   NEES: median " +
+           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 where it is right)\n";
   return all;
 }
 

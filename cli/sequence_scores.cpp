@@ -165,7 +165,8 @@ PlaceErrors place_errors(const std::vector<Pair>& pairs, const SequenceScores& s
     errors.in_map_m.push_back(length(error));
     if (!track.covariance_m2) return;
     ++errors.stated;
-    errors.inside += squared_mahalanobis(error, *track.covariance_m2) <= kChi2Of3At95 ? 1 : 0;
+    errors.normalised.push_back(squared_mahalanobis(error, *track.covariance_m2));
+    errors.inside += errors.normalised.back() <= kChi2Of3At95 ? 1 : 0;
   });
   return errors;
 }

@@ -27,6 +27,7 @@ struct PlaceErrors {
   std::vector<double> in_camera_m;  // without the error of the camera pose
   int stated = 0;                   // of in_map_m, those with a covariance
   int inside = 0;
+  std::vector<double> normalised;  // squared errors of these, eᵀ·C⁻¹·e
 };
 
 struct MovingErrors {

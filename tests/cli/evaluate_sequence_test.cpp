@@ -174,6 +174,7 @@ TEST_F(DrawnSequence, ObjectsPlacesAndMotionAreScored) {
   EXPECT_NEAR(places.at("in_map").at("median_m"), 0.2, 1e-6);  // 12 of 23
   EXPECT_NEAR(places.at("in_camera").at("p95_m"), 0.2, 1e-6);
   EXPECT_NEAR(places.at("inside_95"), 11.0 / 23, 1e-9);  // 0.2 m are 4 σ
+  EXPECT_NEAR(places.at("median_nees"), 16, 1e-3);
   const Json& moving = all.at("moving");
   EXPECT_EQ(moving.at("frames_to_detect"), (Json{{"2", 3}}));
   EXPECT_EQ(moving.at("moving"), 8);
