@@ -183,6 +183,61 @@ TEST_F(Follow, KnownPosesAreTakenAsTheyAre) {
   refuses({"follow", path("in"), "--poses", path("p.tum")}, {"p.tum", "stamp"});
 }
 
+TEST_F(Follow, AScanJudgesTheDisparities) {
+  standing(3);
+  write(at("in/stamps.txt"), "0\n0.1\n0.2\n");
+  // 41 beams from 0.4 rad to the right on, to a wall 0.3 m away that no disparity shows; none at 0.2 s.
+  std::string scan = "t_s,angle_min,angle_increment";
+  for (int i = 0; i < 41; ++i) scan += ",r" + std::to_string(i);
+  for (const char* stamp : {"0", "0.1"}) {
+    scan += std::string("\n") + stamp + ",-0.4,0.02";
+    for (int i = 0; i < 41; ++i) scan += ",0.3";
+  }
+  write(at("scan.csv"), scan + "\n");
+  const Outcome outcome = run({"follow", path("in"), "--scan", path("scan.csv"), "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<Json> lines = lines_of(at("out/tracks.jsonl"));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_LT(lines[0]["reliability"]["scan"].get<double>(), 0.1);
+  EXPECT_EQ(lines[0]["reliability"]["weakest"], "scan");
+  EXPECT_LT(lines[1]["reliability"]["scan"].get<double>(), 0.1);
+  EXPECT_TRUE(lines[2]["reliability"]["scan"].is_null()) << "none within 50 ms";
+  EXPECT_LT(lines[1]["reliability"]["value"], lines[2]["reliability"]["value"]);
+
+  refuses({"follow", path("in"), "--scan", path("none.csv")}, {"none.csv"});
+  write(at("scan.csv"), "t_s,angle_min,angle_increment,r0\n0,-0.4,zero,1\n");
+  refuses({"follow", path("in"), "--scan", path("scan.csv")}, {"scan.csv:2", "'zero'"});
+  for (int i = 0; i < 3; ++i) fs::remove(at("in/" + std::to_string(i) + "/calib.txt"));
+  refuses({"follow", path("in"), "--scan", path("scan.csv")}, {"--scan", "calibration"});
+}
+
+TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
+  standing(30);
+  // As in tests/unit/control_test.cpp: one object of the scene is found only when the least area is halved.
+  const std::vector<std::string> off{"follow", path("in"), "--set", "objects.min_area=4"};
+  std::vector<std::string> usual = off;
+  usual.insert(usual.end(), {"-o", path("off")});
+  ASSERT_EQ(run(usual).code, 0);
+  std::vector<std::string> watch = off;
+  for (const char* setting :
+       {"control.method=watch", "control.budget=1", "control.window=3", "control.hold=1"})
+    watch.insert(watch.end(), {"--set", setting});
+  watch.insert(watch.end(), {"-o", path("watch")});
+  const Outcome outcome = run(watch);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(content(at("watch/tracks.jsonl")), content(at("off/tracks.jsonl")));
+  const std::vector<Json> events = lines_of(at("watch/events.jsonl"));
+  const auto found = std::find_if(events.begin(), events.end(),
+                                  [](const Json& event) { return event["kind"] == "option_better"; });
+  ASSERT_NE(found, events.end()) << outcome.err;
+  EXPECT_NE((*found)["from"], (*found)["to"]);
+  EXPECT_GT((*found)["lead"].get<double>(), 0.1);
+  EXPECT_NE(outcome.err.find("steadier would be " + (*found)["option"].get<std::string>() + "="),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(content(at("off/events.jsonl")).find("option_better"), std::string::npos);
+}
+
 TEST_F(Follow, AMapKeepsWhatWasSeen) {
   standing(10);
   write(at("in/stamps.txt"), "5\n5.1\n5.2\n5.3\n5.4\n5.5\n5.6\n5.7\n5.8\n5.9\n");

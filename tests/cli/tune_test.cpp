@@ -95,6 +95,28 @@ TEST_F(Tune, TheSameNumberOfEvaluationsGivesTheSameFileOnAnyNumberOfThreads) {
   EXPECT_EQ(files[0], files[1]);
 }
 
+TEST_F(Tune, OfASequenceItMendsWhatMakesObjectsUnsteadyWithoutTruth) {
+  for (int i = 0; i < 10; ++i) {
+    const fs::path frame = at("in/" + std::to_string(i));
+    fs::create_directories(frame);
+    for (const char* file : {"left.png", "right.png", "calib.txt"})
+      fs::copy_file(fs::path(samples()) / "four_in_a_row" / file, frame / file);
+  }
+  const Outcome outcome =
+      run({"tune", path("in"), "--sequence", "--budget", "10m", "--evaluations", "6", "--holdout", "0",
+           "--set", "objects.min_area=4", "--options", "objects.min_area", "-o", path("tuned.yaml")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("steadiness: 0"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("  objects.min_area: 4 -> "), std::string::npos) << outcome.out;
+  EXPECT_LT(tuned().objects.min_area, 2.9F);  // its smaller object has 2.9 %
+
+  for (int i = 2; i < 10; ++i) fs::remove_all(at("in/" + std::to_string(i)));
+  refuses({"tune", path("in"), "--sequence", "-o", path("new.yaml")}, {"has 2 frames"});
+  refuses({"tune", path("in"), "--sequence", "--json", path("found.json"), "-o", path("new.yaml")},
+          {"--json", "--sequence"});
+  EXPECT_FALSE(fs::exists(at("new.yaml")));
+}
+
 TEST_F(Tune, HoldsOutTheShareAskedForAndJudgesIt) {
   ASSERT_EQ(
       tune(samples(), {"--truth", "--options", "superpixels.count", "--evaluations", "3", "--holdout", "0.5"})
