@@ -340,16 +340,20 @@ std::string describe(const EpipolarOffset& epipolar) {
 }
 
 std::string Table::text() const {
-  std::vector<std::size_t> widths(rows_.front().size(), 0);
-  std::vector<bool> used(rows_.front().size(), false);
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    for (std::size_t c = 0; c < rows_[r].size(); ++c) {
-      widths[c] = std::max(widths[c], width_of(rows_[r][c]));
-      if (r > 0 && !rows_[r][c].empty()) used[c] = true;
+  std::vector<std::vector<std::string>> rows = rows_;
+  for (auto& row : rows) {
+    for (std::string& cell : row) cell = on_one_line(cell);
+  }
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  std::vector<bool> used(rows.front().size(), false);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < rows[r].size(); ++c) {
+      widths[c] = std::max(widths[c], width_of(rows[r][c]));
+      if (r > 0 && !rows[r][c].empty()) used[c] = true;
     }
   }
   std::string all;
-  for (const auto& row : rows_) {
+  for (const auto& row : rows) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
       if (c > 0 && !used[c]) continue;
@@ -363,9 +367,7 @@ std::string Table::text() const {
 }
 
 void LeftOut::add(const std::string& frame, const std::string& why) {
-  std::string line = "cairn: frame " + frame + " is skipped: " + why;
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  std::cerr << line << "\n";
+  std::cerr << "cairn: " << on_one_line("frame " + frame + " is skipped: " + why) << "\n";
   frames_.push_back(frame);
 }
 
@@ -389,7 +391,7 @@ void Progress::clear() const {
 void Progress::at(std::size_t index, const std::string& name) const {
   if (count_ < 2) return;
   bar(static_cast<double>(index) / static_cast<double>(count_),
-      std::to_string(index + 1) + "/" + std::to_string(count_) + " " + name);
+      std::to_string(index + 1) + "/" + std::to_string(count_) + " " + on_one_line(name));
 }
 
 void Progress::bar(double share, const std::string& words) const {

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "keep_inputs.hpp"
 #include "refusals.hpp"
 
 namespace cairn::cli {
@@ -87,6 +88,7 @@ int estimate(const DisparityOptions& options) {
   if (!options.confidence.empty()) check_png(options.confidence, "the confidence");
   if (!options.view.empty()) check_png(options.view, "the view");
   if (!options.ply.empty()) check_ply(options.ply, loaded);
+  keep_inputs({options.output, options.confidence, options.view, options.ply}, frames.front(), options.input);
   const Stopwatch watch(exec);
   const SceneDisparity scene = estimate_disparity(
       StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);

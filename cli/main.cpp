@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
 #include <cctype>
+#include <cstdlib>
+#include <exception>
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app.hpp"
@@ -92,9 +98,33 @@ int guarded(int argc, const char* const* argv) {
   }
 }
 
+/// Memory may end where no exception can leave: in a destructor of a library's, in another thread.
+[[noreturn]] void end_in_one_line() {
+  try {
+    if (const std::exception_ptr why = std::current_exception()) std::rethrow_exception(why);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view kLine = "cairn: not enough memory\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
+    ::_exit(kFailed);
+  } catch (...) {
+    std::abort();
+  }
+  std::abort();
+}
+
+/// Whoever calls with stdout closed would find it in the first file that is opened. Nothing can be written to
+/// what is opened instead, which is noticed as any other stdout that takes nothing.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDONLY);  // gets the lowest free number
+  }
+}
+
 }  // namespace
 }  // namespace cairn::cli
 
 int main(int argc, char** argv) {
+  cairn::cli::hold_standard_streams();
+  std::set_terminate(cairn::cli::end_in_one_line);
   return cairn::cli::guarded(argc, argv);
 }

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "keep_inputs.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -32,6 +33,13 @@ void save(const fs::path& path, const io::Picture& picture) {
 int rectify(const RectifyOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   const io::Rectifier rectify_pair(io::load_raw_calibration(options.input.calib));
+  const auto folder_of = [&](const io::FrameFiles& files) {
+    return frames.size() == 1 ? fs::path(options.output) : options.output / fs::path(files.name);
+  };
+  for (const io::FrameFiles& files : frames) {
+    const fs::path folder = folder_of(files);
+    keep_inputs({folder / "left.png", folder / "right.png", folder / "calib.txt"}, files, options.input);
+  }
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
@@ -42,8 +50,7 @@ int rectify(const RectifyOptions& options) {
     } catch (const Error& error) {
       throw Error(options.input.calib + ": " + error.what());
     }
-    const fs::path folder =
-        frames.size() == 1 ? fs::path(options.output) : options.output / fs::path(frames[i].name);
+    const fs::path folder = folder_of(frames[i]);
     io::make_folder(folder);
     save(folder / "left.png", rectified.left);
     save(folder / "right.png", rectified.right);

@@ -205,7 +205,7 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
     report.out = io::objects_json(frame, provenance);
     return report;
   }
-  report.out = files.name + ": " + summary(report.totals) + "\n";
+  report.out = on_one_line(files.name) + ": " + summary(report.totals) + "\n";
   if (frame.epipolar.outcome == EpipolarOutcome::corrected) report.out += describe(frame.epipolar) + "\n";
   if (one_of_many && !folder.empty()) return report;
   const Reject in_force = reasons_in_force(loaded.config, loaded.given.has_value());

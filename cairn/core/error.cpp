@@ -11,11 +11,13 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
 
-std::string on_one_line(const std::string& says) {
-  if (std::none_of(says.begin(), says.end(), is_control)) return says;
+}  // namespace
+
+std::string on_one_line(const std::string& text) {
+  if (std::none_of(text.begin(), text.end(), is_control)) return text;
   constexpr const char* kDigits = "0123456789abcdef";
   std::string line;
-  for (const char c : says) {
+  for (const char c : text) {
     if (c == '\n') {
       line += "\\n";
     } else if (is_control(c)) {
@@ -27,8 +29,6 @@ std::string on_one_line(const std::string& says) {
   }
   return line;
 }
-
-}  // namespace
 
 Error::Error(const std::string& says) : std::runtime_error(on_one_line(says)) {}
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common.hpp"
+
+namespace cairn::cli {
+
+/// Throws Error where a file to be written is one of those that are read, whatever links lead there.
+void keep_inputs(const std::vector<std::filesystem::path>& outputs, const io::FrameFiles& files,
+                 const InputOptions& options);
+
+}  // namespace cairn::cli
