@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
 #include <io/config_files.hpp>
 #include <io/dataset.hpp>
@@ -34,6 +35,7 @@
 #include <source/trajectory_files.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <support/small_pictures.hpp>
 #include <tracking/follower.hpp>
 
 namespace cairn::fuzz {
@@ -67,9 +69,16 @@ class Place {
 
 fs::path written(const char* name, std::string_view bytes) {
   static const Place place;
-  const fs::path file = place.path() / name;
-  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  fs::path file = place.path() / name;
+  io::write_file(file, bytes);
   return file;
+}
+
+/// The text up to `end`, which is taken from it.
+std::string_view taken_until(char end, std::string_view& text) {
+  const std::string_view part = text.substr(0, text.find(end));
+  text.remove_prefix(std::min(part.size() + 1, text.size()));
+  return part;
 }
 
 /// An Error says in one line what is wrong.
@@ -114,15 +123,16 @@ std::string jpeg_of(const io::PixelRows& rows) {
 }
 
 std::vector<std::string> pictures() {
-  return {encoded(1, 1, io::encode_png),
-          encoded(3, 1, io::encode_png),
-          encoded(1, 2, io::encode_png),
-          encoded(1, 1, jpeg_of),
-          encoded(3, 1, jpeg_of),
-          "P2\n# grey\n3 2\n255\n0 10 20\n30 40 255\n",
-          "P3\n2 1\n255\n1 2 3 4 5 6\n",
-          std::string("P5\n2 2\n65535\n\0\1\2\3\4\5\6\7", 20),
-          std::string("P6\n1 2\n255\n\1\2\3\4\5\6", 17)};
+  return {encoded(1, 1, io::encode_png), encoded(3, 1, io::encode_png), encoded(1, 2, io::encode_png),
+          encoded(1, 1, jpeg_of), encoded(3, 1, jpeg_of), "P2\n# grey\n3 2\n255\n0 10 20\n30 40 255\n",
+          "P3\n2 1\n255\n1 2 3 4 5 6\n", std::string("P5\n2 2\n65535\n\0\1\2\3\4\5\6\7", 20),
+          std::string("P6\n1 2\n255\n\1\2\3\4\5\6", 17),
+          // What is read and not written here.
+          support::decoded(support::kPalettePng), support::decoded(support::kOneBitPng),
+          support::decoded(support::kGreyAlphaPng), support::decoded(support::kColourAlpha16Png),
+          support::decoded(support::kInterlacedPng), support::decoded(support::kProgressiveJpeg),
+          support::decoded(support::kGrey16Tiff), support::decoded(support::kColourLzwTiff),
+          support::decoded(support::kPaletteTiff), support::decoded(support::kTiledWhiteIsZeroTiff)};
 }
 
 bool picture(std::string_view bytes) {
@@ -136,7 +146,12 @@ std::vector<std::string> disparities() {
   const float values[] = {1.5F, 2.5F, 64.0F, 0.25F};
   std::string pfm = "Pf\n2 2\n-1.0\n";
   pfm.append(reinterpret_cast<const char*>(values), sizeof values);
-  return {encoded(1, 2, io::encode_png), encoded(1, 1, io::encode_png), pfm};
+  std::string npy = "\x93NUMPY\1";
+  npy += std::string("\0\x46\0", 3) + "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2), }";
+  npy.resize(79, ' ');
+  npy += '\n';
+  npy.append(reinterpret_cast<const char*>(values), sizeof values);
+  return {encoded(1, 2, io::encode_png), encoded(1, 1, io::encode_png), pfm, npy};
 }
 
 /// Their form is told by the name.
@@ -227,6 +242,57 @@ std::vector<std::string> run_length_texts() {
   const std::string size{3, 3};
   return {size + io::counts_to_text({16}), size + io::counts_to_text({3, 5, 8}),
           size + io::counts_to_text({0, 16})};
+}
+
+// ---- folders ----
+
+/// A path that stays in its folder.
+std::optional<fs::path> inner_path(std::string_view text) {
+  constexpr std::string_view kKnown = "abcdefghijklmnopqrstuvwxyzDEGILNT0123456789_-./";
+  const fs::path path = text;
+  if (text.empty() || text.size() > 60 || !path.has_filename() || path.is_absolute() ||
+      text.find_first_not_of(kKnown) != std::string_view::npos)
+    return std::nullopt;
+  for (const fs::path& part : path) {
+    if (part == ".." || part == ".") return std::nullopt;
+  }
+  return path;
+}
+
+/// "PATH=CONTENT" in each line: the layouts of data sets, whose names are all that is looked at first.
+bool dataset(std::string_view bytes) {
+  const Place place;
+  for (int files = 0; files < 24 && !bytes.empty(); ++files) {
+    std::string_view line = taken_until('\n', bytes);
+    const std::optional<fs::path> path = inner_path(taken_until('=', line));
+    // A file may lie where a folder is wanted.
+    (void)is_taken([&] {
+      if (!path) return;
+      io::make_folder((place.path() / *path).parent_path());
+      io::write_file(place.path() / *path, line);
+    });
+  }
+  std::vector<io::FrameFiles> frames;
+  bool taken = is_taken([&] { frames = io::find_frames(place.path()); });
+  taken |= is_taken([&] { (void)io::find_frames(place.path(), io::Cameras::raw); });
+  taken |= is_taken([&] { (void)io::find_pairs(place.path()); });
+  taken |= is_taken([&] { (void)io::find_truth(place.path()); });
+  for (const io::FrameFiles& frame : frames) (void)is_taken([&] { (void)io::find_truth(frame); });
+  taken |= is_taken([&] { (void)io::open_sequence(place.path().string(), {}); });
+  return taken;
+}
+std::vector<std::string> datasets() {
+  const std::string grey = "=P2 2 2 255 0 10 20 30\n";
+  return {"left.pgm" + grey + "right.pgm" + grey + "calib.txt=focal_px: 500\nobjects.png=\ndisp_left.pfm=\n",
+          "a/left.pgm" + grey + "a/right.pgm" + grey + "b/left.pgm" + grey + "b/right.pgm" + grey +
+              "gt/calib.txt=\nstamps.txt=0.5\n",
+          "left01.pgm" + grey + "right01.pgm" + grey + "left02.pgm" + grey + "right02.pgm" + grey,
+          "scene/im0.png=\nscene/im1.png=\nscene/disp0GT.pfm=\nscene/mask0nocc.png=\nscene/calib.txt=\n",
+          "image_2/000000_10.png=\nimage_3/000000_10.png=\ncalib/000000.txt=\ndisp_occ_0/000000_10.png=\n"
+          "disp_noc_0/000000_10.png=\n",
+          "image_0/000000.png" + grey + "image_1/000000.png" + grey + "times.txt=0.0\ncalib.txt=P0: 1\n",
+          "mav0/cam0/data/1.png" + grey + "mav0/cam1/data/1.png" + grey +
+              "mav0/cam0/sensor.yaml=resolution: [2, 2]\nmav0/cam1/sensor.yaml=\n"};
 }
 
 // ---- sequences ----
@@ -402,16 +468,14 @@ bool request(std::string_view bytes) {
     options.token = "a-token-of-the-fuzzer";
     return options;
   }());
-  std::vector<std::string> lines(4);
-  std::istringstream text{std::string(bytes)};
-  for (std::string& line : lines) std::getline(text, line);
-  const std::size_t blank = std::min(lines[0].find(' '), lines[0].size());
+  std::string_view rest = bytes;
+  std::string_view line = taken_until('\n', rest);
   live::ViewRequest asked;
-  asked.method = std::string_view(lines[0]).substr(0, blank);
-  asked.target = std::string_view(lines[0]).substr(std::min(blank + 1, lines[0].size()));
-  asked.host = lines[1];
-  asked.origin = lines[2];
-  asked.cookie = lines[3];
+  asked.method = taken_until(' ', line);
+  asked.target = line;
+  asked.host = taken_until('\n', rest);
+  asked.origin = taken_until('\n', rest);
+  asked.cookie = taken_until('\n', rest);
   asked.is_upgrade = bytes.size() % 2 == 0;
   const live::ViewVerdict verdict = access.judge(asked);
   if (verdict.status < 400 && bytes.find("a-token-of-the-fuzzer") == std::string_view::npos)
@@ -581,6 +645,7 @@ const std::vector<Target>& targets() {
       {"config", configuration, configurations},
       {"objects", objects, objects_files},
       {"rle", run_lengths, run_length_texts},
+      {"dataset", dataset, datasets},
       {"json", json, json_texts},
       {"frames", frame_range, ranges},
       {"stamps", stamps, stamp_files},

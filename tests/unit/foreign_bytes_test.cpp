@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <fuzz/targets.hpp>
+#include <iostream>
 #include <random>
 #include <sstream>
 
@@ -79,13 +80,18 @@ std::string changed(std::string bytes, const std::vector<std::string>& others, s
   return bytes;
 }
 
-/// The same numbers in every run, so that a fault is found again; CAIRN_FUZZ_SECONDS makes it longer.
+/// Other inputs in every run, all targets together for about two minutes; CAIRN_FUZZ_SECONDS=60 makes it
+/// longer, and CAIRN_FUZZ_SEED, which is printed, finds a fault again.
 TEST_P(ForeignBytes, AnyChangeOfThemEndsInAResultOrInOneLine) {
   std::vector<std::string> inputs = GetParam().seeds();
   for (std::string& bytes : found_once(GetParam().name)) inputs.push_back(std::move(bytes));
   const char* const asked = std::getenv("CAIRN_FUZZ_SECONDS");
-  const double seconds = asked != nullptr ? std::atof(asked) : 0.6;
-  std::mt19937 random(20261123);
+  const double seconds = asked != nullptr ? std::atof(asked) : 5;
+  const char* const seed = std::getenv("CAIRN_FUZZ_SEED");
+  const auto first =
+      seed != nullptr ? static_cast<std::mt19937::result_type>(std::atoll(seed)) : std::random_device()();
+  std::cout << "CAIRN_FUZZ_SEED=" << first << std::endl;  // before a crash
+  std::mt19937 random(first);
   const auto began = std::chrono::steady_clock::now();
   int tried = 0;
   while (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() < seconds) {
