@@ -7,6 +7,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
 #include <cctype>
+#include <cerrno>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -100,16 +101,18 @@ int guarded(int argc, const char* const* argv) {
 
 /// Memory may end where no exception can leave: in a destructor of a library's, in another thread.
 [[noreturn]] void end_in_one_line() {
+  bool is_memory = errno == ENOMEM;  // an exception that finds no way out at all is not current
   try {
     if (const std::exception_ptr why = std::current_exception()) std::rethrow_exception(why);
   } catch (const std::bad_alloc&) {
-    constexpr std::string_view kLine = "cairn: not enough memory\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
-    ::_exit(kFailed);
+    is_memory = true;
   } catch (...) {
-    std::abort();
+    is_memory = false;
   }
-  std::abort();
+  if (!is_memory) std::abort();
+  constexpr std::string_view kLine = "cairn: not enough memory\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
+  ::_exit(kFailed);
 }
 
 /// Whoever calls with stdout closed would find it in the first file that is opened. Nothing can be written to

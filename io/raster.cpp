@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cerrno>
 #include <io/raster.hpp>
 #include <io/read_file.hpp>
 #include <new>
@@ -34,14 +35,16 @@ void check_sides(std::int64_t width, std::int64_t height) {
               std::to_string(kMostPixelsPerSide) + " per side and at most " + std::to_string(kMostPixels));
 }
 
+void check_memory() {
+  if (errno == ENOMEM) throw std::bad_alloc();
+}
+
 Raster read_raster(const std::filesystem::path& path, Palette palette) {
   const std::string file = read_file(path, kMostPictureBytes);
   try {
     return decode_raster(file, palette);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
-  } catch (const std::bad_alloc&) {
-    throw Error(path.string() + ": not enough memory for this image");
   }
 }
 

@@ -52,7 +52,11 @@ Raster decode_raster(std::string_view file, Palette palette);
 /// Both reduced to 8 bits as in load_pair(). Throws Error, without file names, if sizes or depths differ.
 PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits = 8);
 
-// One function per form; they throw Error without a file name.
+/// Call after a C library has failed: throws std::bad_alloc if the cause is missing memory (errno, which the
+/// caller set to 0 before), which is no fault of the file.
+void check_memory();
+
+// One function per format; they throw Error without a file name.
 Raster decode_png(std::string_view file, Palette palette);
 Raster decode_jpeg(std::string_view file);
 Raster decode_pnm(std::string_view file);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cerrno>
 #include <csetjmp>
 #include <exception>
 #include <io/raster.hpp>
@@ -38,6 +39,7 @@ void judge(j_common_ptr jpeg, int level) {
 void keep_quiet(j_common_ptr) {}
 
 jpeg_error_mgr* prepared(Complaints& complaints) {
+  errno = 0;
   jpeg_std_error(&complaints.manager);
   complaints.manager.error_exit = complain;
   complaints.manager.emit_message = judge;
@@ -73,7 +75,10 @@ void make_room(j_compress_ptr jpeg, std::size_t used) {
   } catch (const std::exception&) {
     has_room = false;
   }
-  if (!has_room) ERREXIT1(jpeg, JERR_OUT_OF_MEMORY, 0);
+  if (!has_room) {
+    errno = ENOMEM;
+    ERREXIT1(jpeg, JERR_OUT_OF_MEMORY, 0);
+  }
   Destination& to = destination(jpeg);
   to.manager.next_output_byte = reinterpret_cast<JOCTET*>(to.file.data()) + used;
   to.manager.free_in_buffer = to.file.size() - used;
@@ -106,10 +111,13 @@ struct Writer {
 };
 
 /// Runs `steps`, which must own nothing: libjpeg leaves them by longjmp. Everything that lives on is the
-/// caller's.
+/// caller's. False where libjpeg complained, not of memory.
 template <class Steps>
 bool succeeds(Complaints& complaints, const Steps& steps) {
-  if (setjmp(complaints.way_out) != 0) return false;  // NOLINT(cert-err52-cpp): libjpeg's only way out
+  if (setjmp(complaints.way_out) != 0) {  // NOLINT(cert-err52-cpp): libjpeg's only way out
+    check_memory();
+    return false;
+  }
   steps();
   return true;
 }
@@ -118,6 +126,15 @@ void run(Reader& reader, const auto& steps) {
   if (!succeeds(reader.complaints, steps)) {
     throw Error(std::string("is a truncated or damaged JPEG: ") + reader.complaints.text);
   }
+}
+
+/// Each block of 8x8 samples takes a bit at the least, so a short file with a great claim is refused before
+/// it costs memory. Arithmetic coding, which hardly any program writes, may take less.
+void check_plausible(const jpeg_decompress_struct& jpeg, std::size_t file_bytes) {
+  const auto samples = std::size_t{jpeg.image_width} * jpeg.image_height;
+  if (jpeg.arith_code || samples / 64 / 8 <= file_bytes) return;
+  throw Error("is a truncated or damaged JPEG: " + std::to_string(file_bytes) + " bytes cannot hold " +
+              std::to_string(jpeg.image_width) + "x" + std::to_string(jpeg.image_height) + " pixels");
 }
 
 }  // namespace
@@ -135,6 +152,7 @@ Raster decode_jpeg(std::string_view file) {
     throw Error("is a JPEG with " + std::to_string(jpeg.num_components) +
                 " channels, expected 1 (grey) or 3 (colour)");
   }
+  check_plausible(jpeg, file.size());
   Raster raster;
   raster.size = {static_cast<int>(jpeg.image_width), static_cast<int>(jpeg.image_height)};
   raster.channels = jpeg.num_components;

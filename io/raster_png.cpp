@@ -5,17 +5,25 @@
 
 #include <bit>
 #include <cairn/core/error.hpp>
+#include <cerrno>
 #include <csetjmp>
+#include <cstdio>
 #include <cstring>
 #include <io/raster.hpp>
+#include <new>
 #include <string>
 
 // libpng itself rather than OpenCV's use of it: here its complaints can be caught instead of printed.
 namespace cairn::io {
 namespace {
 
+struct Complaint {
+  char text[200] = {};
+};
+
 void complain(png_structp png, png_const_charp message) {
-  *static_cast<std::string*>(png_get_error_ptr(png)) = message;
+  Complaint& complaint = *static_cast<Complaint*>(png_get_error_ptr(png));
+  std::snprintf(complaint.text, sizeof complaint.text, "%s", message);
   png_longjmp(png, 1);
 }
 void keep_quiet(png_structp, png_const_charp) {}
@@ -27,8 +35,17 @@ void read_bytes(png_structp png, png_bytep out, std::size_t count) {
   rest.remove_prefix(count);
 }
 
+/// No exception may cross libpng, and its longjmp no destructor.
 void append_bytes(png_structp png, png_bytep bytes, std::size_t count) {
-  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
+  bool has_room = true;
+  try {
+    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
+  } catch (const std::exception&) {
+    has_room = false;
+  }
+  if (has_room) return;
+  errno = ENOMEM;
+  png_error(png, "no room for the file");
 }
 void flush_nothing(png_structp) {}
 
@@ -36,14 +53,18 @@ struct Reader {
   explicit Reader(std::string_view& rest)
       : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint, complain, keep_quiet)),
         info(png != nullptr ? png_create_info_struct(png) : nullptr) {
-    if (info == nullptr) throw Error("cannot be read: libpng does not start");
+    if (info == nullptr) {
+      png_destroy_read_struct(&png, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
     png_set_read_fn(png, &rest, read_bytes);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    errno = 0;
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
-  std::string complaint;
+  Complaint complaint;
   png_structp png;
   png_infop info;
 };
@@ -52,28 +73,36 @@ struct Writer {
   explicit Writer(std::string& file)
       : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, complain, keep_quiet)),
         info(png != nullptr ? png_create_info_struct(png) : nullptr) {
-    if (info == nullptr) throw Error("cannot be written: libpng does not start");
+    if (info == nullptr) {
+      png_destroy_write_struct(&png, nullptr);
+      throw std::bad_alloc();
+    }
     png_set_write_fn(png, &file, append_bytes, flush_nothing);
+    errno = 0;
   }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   ~Writer() { png_destroy_write_struct(&png, &info); }
-  std::string complaint;
+  Complaint complaint;
   png_structp png;
   png_infop info;
 };
 
 /// Runs `steps`, which must own nothing: libpng leaves them by longjmp. Everything that lives on is the
-/// caller's.
+/// caller's. False where libpng complained, not of memory.
 template <class Steps>
 bool succeeds(png_structp png, const Steps& steps) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's only way out
+  if (setjmp(png_jmpbuf(png)) != 0) {  // NOLINT(cert-err52-cpp): libpng's only way out
+    check_memory();
+    return false;
+  }
   steps();
   return true;
 }
 
 void run(const Reader& reader, const auto& steps) {
-  if (!succeeds(reader.png, steps)) throw Error("is a truncated or damaged PNG: " + reader.complaint);
+  if (!succeeds(reader.png, steps))
+    throw Error(std::string("is a truncated or damaged PNG: ") + reader.complaint.text);
 }
 
 /// Deflate packs at most 1032:1, so a short file with a great claim is refused before it costs memory.
@@ -149,7 +178,9 @@ std::string encode_png(const PixelRows& rows) {
     for (int y = 0; y < rows.size.height; ++y) png_write_row(writer.png, rows.first + y * rows.stride_bytes);
     png_write_end(writer.png, nullptr);
   };
-  if (!succeeds(writer.png, steps)) throw Error("cannot be encoded as PNG: " + writer.complaint);
+  if (!succeeds(writer.png, steps)) {
+    throw Error(std::string("cannot be encoded as PNG: ") + writer.complaint.text);
+  }
   return file;
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <type_traits>
@@ -236,6 +237,7 @@ struct MapFile::Store {
     try {
       return work();
     } catch (const SQLite::Exception& error) {
+      if (error.getErrorCode() == SQLITE_NOMEM) throw std::bad_alloc();
       throw Error(path.string() + ": " + words_for(error));
     } catch (const Error& error) {
       throw Error(path.string() + ": " + error.what());

@@ -5,10 +5,12 @@
 #include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <set>
 
 #include "mcap_format.hpp"
@@ -113,6 +115,7 @@ Bytes unpacked(const Bytes& content) {
       throw Error("a chunk does not have the length it claims");
     records.resize(length);
     const std::size_t got = ::ZSTD_decompress(records.data(), records.size(), stored.data(), stored.size());
+    if (::ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation) throw std::bad_alloc();
     if (::ZSTD_isError(got) != 0 || got != length) throw Error("a chunk cannot be unpacked");
   }
   if (crc != 0 && ::crc32_z(0, records.data(), records.size()) != crc)

@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
+#include <new>
 #include <set>
-#include <sstream>
+#include <string_view>
 
 namespace cairn::io {
 namespace {
@@ -96,12 +98,26 @@ TrackFrame frame_of(const Json& json) {
   return frame;
 }
 
+/// The words between blanks. (A stream that gets no memory for one reads on as if there were none.)
+std::vector<std::string> words_of(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\v\f";
+  std::vector<std::string> words;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    if (text.empty()) return words;
+    const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+    words.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+}
+
 /// Calls visit(text, number, has_end) for each line that is not empty.
 void each_line(const fs::path& path,
                const std::function<void(const std::string&, std::size_t, bool)>& visit) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw Error(path.string() + ": is a folder, expected a file");
   std::ifstream file(path, std::ios::binary);
+  if (!file && errno == ENOMEM) throw std::bad_alloc();
   if (!file) throw Error(path.string() + ": no such file, or it cannot be read");
   std::string text;
   std::size_t line = 0;
@@ -189,11 +205,8 @@ TrackFile load_mots(const fs::path& path) {
   constexpr std::int64_t kIgnored = 10;
   std::map<std::int64_t, std::map<std::int64_t, TrackRecord>> masks;
   each_line(path, [&](const std::string& text, std::size_t, bool) {
-    std::istringstream words(text);
-    std::array<std::string, 6> word;
-    for (std::string& one : word) words >> one;
-    std::string more;
-    if (word.back().empty() || words >> more)
+    const std::vector<std::string> word = words_of(text);
+    if (word.size() != 6)
       throw Error("found `" + text.substr(0, kMostShown) + "`, expected `frame id class height width rle`");
     const std::int64_t frame = number_in(word[0], "the frame", 0, kMostOfMots);
     const std::int64_t id = number_in(word[1], "the id", 1, (std::int64_t{1} << 31) - 1);

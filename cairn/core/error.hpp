@@ -7,7 +7,8 @@
 
 namespace cairn {
 
-/// `text` with its control characters, which would break a line or steer a terminal, as escapes ("\n", "\x1b").
+/// `text` with its control characters, which would break a line or steer a terminal, as escapes ("\n",
+/// "\x1b").
 std::string on_one_line(const std::string& text);
 
 /// Bad input from outside. One sentence: what was found, what was expected, in which file or option. Thrown
