@@ -299,7 +299,7 @@ TEST_F(V4l2, ARateThatIsNotHadIsNoted) {
   request.fps = 30;
   EXPECT_TRUE(open(request)->notes().empty());
   fake_.devices[kDevice].gives_fps = 25;
-  EXPECT_EQ(open(request)->notes(), std::vector<std::string>{"fps: found 25, asked for 30"});
+  EXPECT_EQ(open(request)->notes(), std::vector<std::string>{"fps: found 25, expected 30"});
   fake_.devices[kDevice].refuses = {{VIDIOC_S_PARM, ENOTTY}};
   EXPECT_EQ(open(request)->notes().size(), 1U);
 }
