@@ -23,15 +23,21 @@ FRAMES = 5  # of each program in a round
 SAMPLE = pathlib.Path(__file__).resolve().parent.parent / "samples" / "four_in_a_row"
 
 
+def refuse(why):
+    print(f"against: {why}", file=sys.stderr)
+    sys.exit(2)
+
+
 def run(program, *arguments):
-    try:
-        return subprocess.run([program, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True).stdout
-    except (OSError, subprocess.CalledProcessError) as error:
-        sys.exit(f"against: {program}: {'failed' if isinstance(error, subprocess.CalledProcessError) else 'cannot be run'}")
+    done = subprocess.run([program, *map(str, arguments)], stdout=subprocess.PIPE, text=True)
+    return done.stdout if done.returncode == 0 else refuse(f"{program}: failed")
 
 
 def knows_bench(program):
-    return subprocess.run([program, "bench", "--help"], capture_output=True).returncode == 0
+    try:
+        return subprocess.run([program, "bench", "--help"], capture_output=True).returncode == 0
+    except OSError:
+        refuse(f"{program}: cannot be run")
 
 
 def times_of_bench(program, folder, options, scratch):
@@ -65,7 +71,7 @@ def main():
     programs, words, rounds, folder = words[:2], words[2:], 15, SAMPLE
     if words[:1] == ["--rounds"]:
         if not (len(words) > 1 and words[1].isdigit() and int(words[1]) > 0):
-            sys.exit("against: --rounds: expected a positive number")
+            refuse("--rounds: expected a positive number")
         rounds, words = int(words[1]), words[2:]
     if words and not words[0].startswith("-"):
         folder, words = pathlib.Path(words[0]), words[1:]
@@ -81,7 +87,8 @@ def main():
     stages = dict.fromkeys([*found[0][0], *found[1][0]])
     for stage in [*(s for s in stages if s != "frame"), "frame"]:
         first, second = (np.array([times.get(stage, np.nan) for times in of]) for of in found)
-        low, middle, high = np.quantile(second / first, [0.25, 0.5, 0.75], method="inverted_cdf")
+        with np.errstate(divide="ignore", invalid="ignore"):  # a stage may take no time that is measured
+            low, middle, high = np.quantile(second / first, [0.25, 0.5, 0.75], method="inverted_cdf")
         print(f"{stage:22} {np.median(first):12.3f} {np.median(second):12.3f} {middle:8.3f}   {low:.3f} ... {high:.3f}")
     print(f"The median of {rounds} rounds of {FRAMES} frames each; ratio: second to first, below 1 is quicker.")
 

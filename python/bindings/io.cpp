@@ -36,7 +36,7 @@ void bind_io(py::module_& m) {
   using py::literals::operator""_a;
   define(
       m, "load_picture",
-      "A PNG, JPEG, PGM, PPM or TIFF file: (H, W) uint8 where it is grey, (H, W, 3) RGB where it is in "
+      "A PNG, JPEG, PGM or PPM file: (H, W) uint8 where it is grey, (H, W, 3) RGB where it is in "
       "colour. Of "
       "deeper images the low bits are dropped.",
       [](const fs::path& path) {
