@@ -435,8 +435,8 @@ Work declare_bench(CLI::App& app) {
       ->check(CLI::Range(0.0, kMostSeconds).name(""))
       ->type_name("S");
   app.add_option("--truth", options->truth,
-                 "true disparity of the left picture (.png, .pfm), or a folder with disp_left and perhaps "
-                 "occlusion.png: says how accurate each is")
+                 "true disparity of the left image (.png, .pfm), or a folder with disp_left and optionally "
+                 "occlusion.png, to report accuracy")
       ->type_name("PATH");
   app.add_flag("--no-opencv", options->no_opencv, "leave OpenCV's matchers out");
   app.add_option("--json", options->json, "also write all that was measured into this file, as JSON")

@@ -146,7 +146,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
   }
   if (result.disparity && truth.disparity) score_disparity(result, truth, options.skip_left, score);
   if (!score.objects && !score.all) {
-    throw Error(truth.folder.string() + ": has no truth for the result " + result.name + " holds");
+    throw Error(truth.folder.string() + ": has no truth for what the result " + result.name + " contains");
   }
   if (options.wants_times() && result.json) score.times = load_times(*result.json);
   if (options.html) score.page = encode_frame(result, truth);

@@ -99,7 +99,9 @@ int guarded(int argc, const char* const* argv) {
   }
 }
 
-/// Memory may end where no exception can leave: in a destructor of a library's, in another thread.
+std::terminate_handler usual_terminate = std::abort;
+
+/// Memory may end where no exception can leave: in a library's destructor, in another thread.
 [[noreturn]] void end_in_one_line() {
   bool is_memory = errno == ENOMEM;  // an exception that finds no way out at all is not current
   try {
@@ -109,7 +111,10 @@ int guarded(int argc, const char* const* argv) {
   } catch (...) {
     is_memory = false;
   }
-  if (!is_memory) std::abort();
+  if (!is_memory) {
+    usual_terminate();  // says what was thrown
+    std::abort();
+  }
   constexpr std::string_view kLine = "cairn: not enough memory\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
   ::_exit(kFailed);
@@ -128,6 +133,6 @@ void hold_standard_streams() {
 
 int main(int argc, char** argv) {
   cairn::cli::hold_standard_streams();
-  std::set_terminate(cairn::cli::end_in_one_line);
+  cairn::cli::usual_terminate = std::set_terminate(cairn::cli::end_in_one_line);
   return cairn::cli::guarded(argc, argv);
 }

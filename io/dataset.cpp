@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A TIFF is found, so that reading it says what to do.
+// A TIFF is found, so that reading it says what to do. Files are looked for by these very names.
 constexpr std::array kPictureExtensions = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff",
                                            ".PNG", ".JPG", ".JPEG", ".PGM", ".PPM", ".PNM", ".TIF", ".TIFF"};
 constexpr std::array kCalibrations = {"calib.txt", "calib.yaml", "calib.yml",           "calib.json",

@@ -351,6 +351,17 @@ struct MapFile::Store {
       cell.bind(3, now.frames);
       cell.exec();
     }
+    // A map that began again in a new segment has left its floor behind.
+    SQLite::Statement drop(*database, "DELETE FROM floor WHERE x=? AND y=?");
+    auto now = map.floor.begin();
+    for (const FloorCell& was : stored_floor) {
+      while (now != map.floor.end() && std::tie(now->x, now->y) < std::tie(was.x, was.y)) ++now;
+      if (now != map.floor.end() && now->x == was.x && now->y == was.y) continue;
+      drop.reset();
+      drop.bind(1, was.x);
+      drop.bind(2, was.y);
+      drop.exec();
+    }
     stored_floor = map.floor;
   }
 

@@ -100,7 +100,7 @@ say "modules"
 echo "no video" >"$root/tmp/broken.mp4"
 try_module cairn-video "cannot be opened as a video" follow /tmp/broken.mp4 --layout side_by_side
 try_module cairn-gstreamer 'no element "no_such_element"' follow gst:no_such_element
-try_module cairn-ros2 "nothing came on /nothing" follow ros2:/nothing --open-timeout 1
+try_module cairn-ros2 "received nothing on /nothing" follow ros2:/nothing --open-timeout 1
 
 say "headers and libraries for C++"
 install_inside "$(packages_named libcairn-dev)" g++ cmake make pkg-config libopencv-core-dev

@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <array>
-#include <chrono>
-#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -29,15 +26,6 @@ inline std::string compiler() {
 #else
   return "unknown compiler";
 #endif
-}
-
-inline std::string today() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> buffer{};
-  std::strftime(buffer.data(), buffer.size(), "%F", &utc);
-  return buffer.data();
 }
 
 }  // namespace cairn::report

@@ -480,6 +480,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
   OdometryStep step{before, {}};
   OdometryState& state = step.state;
   Motion& motion = step.motion;
+  state.key_covariance = {};
   if (config.method == OdometryMethod::off || !is_usable(rig)) {
     motion.refusal = config.method == OdometryMethod::off ? MotionRefusal::off : MotionRefusal::no_rig;
     return step;
@@ -489,7 +490,6 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
   if (is_usable(present)) now = look_at(left, config);
   state.seen = now;
   state.is_after_gap = false;
-  state.key_covariance = {};
 
   if (!before.has_begun) {
     state.has_begun = true;

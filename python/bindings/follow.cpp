@@ -463,7 +463,13 @@ void bind_results(py::module_& m) {
           "6 x 6 of map_from_camera, translation (m) before rotation (rad)")
       .shows("motion", &of_step<&Step::motion>, "the camera's Motion")
       .shows(
-          "tracks", [](const PyStep& self) -> const auto& { return self.step->tracks.list; },
+          "tracks",
+          [](const PyStep& self) {  // with the covariance in the map, as in tracks.jsonl
+            std::vector<Track> tracks = self.step->tracks.list;
+            for (Track& track : tracks)
+              track.covariance_m2 = covariance_in_map(track, self.step->map_from_camera, self.step->pose_covariance);
+            return tracks;
+          },
           "a list of Track by id, those out of view included")
       .shows("ids", &of_step<&Step::ids>,
              "(H, W) int64, read-only: the track that each pixel belongs to; 0 = none")

@@ -152,7 +152,7 @@ class CameraSequence : public SourceSequence {
 
   [[nodiscard]] std::string trouble_of(const KeptCamera& camera, const KeptCamera::State& state) const {
     if (cameras_.size() < 2 || state.trouble.empty()) return state.trouble;
-    return (&camera == cameras_.front().get() ? "the left camera " : "the right camera ") + state.trouble;
+    return (&camera == cameras_.front().get() ? "the left camera: " : "the right camera: ") + state.trouble;
   }
 
   [[nodiscard]] bool is_past_range() const {

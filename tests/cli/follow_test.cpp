@@ -232,7 +232,7 @@ TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
   ASSERT_NE(found, events.end()) << outcome.err;
   EXPECT_NE((*found)["from"], (*found)["to"]);
   EXPECT_GT((*found)["lead"].get<double>(), 0.1);
-  EXPECT_NE(outcome.err.find("steadier would be " + (*found)["option"].get<std::string>() + "="),
+  EXPECT_NE(outcome.err.find("steadier setting: " + (*found)["option"].get<std::string>() + "="),
             std::string::npos)
       << outcome.err;
   EXPECT_EQ(content(at("off/events.jsonl")).find("option_better"), std::string::npos);

@@ -8,7 +8,7 @@
 #include <limits>
 
 // Takes the place of the C library's malloc() in the one program whose main file includes this, and so of
-// operator new and of what libpng, libjpeg, libtiff, OpenCV, SQLite and zlib allocate.
+// operator new and of what libpng, libjpeg, OpenCV, SQLite and zlib allocate.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);

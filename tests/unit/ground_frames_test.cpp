@@ -74,11 +74,12 @@ TEST_P(GroundFrames, AreWithinHalfAPixelButForTwo) {
     if (!ground.plane) continue;
     const Size size = io::load_picture(entry.path() / "left.png").gray.size();
     const float off = off_px(*ground.plane, truth(entry.path() / "ground.txt"), size);
-    EXPECT_LE(off, GetParam().farthest_px) << entry.path();
+    // Two of the twelve floors have hardly a match of their own.
+    const bool is_hard = entry.path().filename() == "dev_s04" || entry.path().filename() == "dev_s08";
+    EXPECT_LE(off, is_hard ? GetParam().farthest_px : 0.5F) << entry.path();
     right += off <= 0.5F ? 1 : 0;
   }
   EXPECT_GT(frames, 2) << folder;
-  // Two of the twelve floors, dev_s04 and dev_s08, have hardly a match of their own.
   EXPECT_GE(right, frames - 2);
 }
 

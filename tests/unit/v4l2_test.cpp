@@ -611,7 +611,7 @@ TEST_F(TwoDevices, ThatAreNeverTogetherSayHowFarTheyAreApart) {
   right.events = {silence()};
   EXPECT_TRUE(has(refusal([&] { (void)sequence(kBoth, options); }), {"no frame of the right camera"}));
   fake_.devices.erase("/dev/video2");
-  EXPECT_TRUE(has(refusal([&] { (void)sequence(kBoth, options); }), {"the right camera no such device"}));
+  EXPECT_TRUE(has(refusal([&] { (void)sequence(kBoth, options); }), {"the right camera: no such device"}));
 }
 
 TEST_F(TwoDevices, OfDifferentSizesAreRefused) {
