@@ -207,7 +207,7 @@ class McapSequence : public SourceSequence {
         const auto image = ros::decode<ros::CompressedImage>(message.bytes);
         stamp = stamp_of(image.header, message);
         waiting.image = decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
-                                    Palette::colours);
+                                      Palette::colours);
       } else {
         const auto image = ros::decode<ros::Image>(message.bytes);
         stamp = stamp_of(image.header, message);

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <io/raster.hpp>
 #include <string>
 
+#include "../io/raster.hpp"
 #include "../ros/messages.hpp"
 
 namespace cairn::io {

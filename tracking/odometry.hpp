@@ -135,7 +135,7 @@ struct OdometryState {
   // Covariance of `key` relative to the keyframe before it, if it is new with this frame; else 0. Along the
   // map's axes.
   Covariance6 key_covariance{};
-  Pose last_step;                   // now_from_before of the frame before
+  Pose last_step;  // now_from_before of the frame before
   int refused_in_a_row = 0;
   bool is_after_gap = false;  // see after_gap()
   int slipping = 0;           // consecutive frames without motion while the wheels turned

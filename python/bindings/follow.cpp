@@ -467,7 +467,8 @@ void bind_results(py::module_& m) {
           [](const PyStep& self) {  // with the covariance in the map, as in tracks.jsonl
             std::vector<Track> tracks = self.step->tracks.list;
             for (Track& track : tracks)
-              track.covariance_m2 = covariance_in_map(track, self.step->map_from_camera, self.step->pose_covariance);
+              track.covariance_m2 =
+                  covariance_in_map(track, self.step->map_from_camera, self.step->pose_covariance);
             return tracks;
           },
           "a list of Track by id, those out of view included")

@@ -200,7 +200,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
     prints("density           " + percent(d.at("density")) + " of " + d.at("known_px").dump() + " pixels");
     prints("bad-0.5 " + percent(d.at("bad_of_matched").at("0.5")) + "   bad-1 " +
            percent(d.at("bad_of_matched").at("1")));
-    prints("with holes  bad-0.5 " + percent(d.at("bad_of_known").at("0.5")));
+    prints("with holes        bad-0.5 " + percent(d.at("bad_of_known").at("0.5")));
     prints("mean " + text_of("%.3f px", d.at("mean_absolute_px")) + "   RMS " +
            text_of("%.3f px", d.at("root_mean_square_px")) + "   within 1 px RMS " +
            text_of("%.3f px", d.at("sigma_px")));

@@ -172,8 +172,7 @@ TEST_F(Faults, AClosedOutputIsNoticedAndNoResultTakesItsPlace) {
   ASSERT_EQ(run(with("segment", pair, {"-o", path("alone")})).code, 0);
   const Outcome outcome = run_after([] { ::close(STDOUT_FILENO); }, arguments);
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_EQ(outcome.err.substr(outcome.err.rfind("cairn: ")),
-            "cairn: standard output: cannot be written\n");
+  EXPECT_EQ(outcome.err.substr(outcome.err.rfind("cairn: ")), "cairn: standard output: cannot be written\n");
   EXPECT_EQ(results_in("out"), results_in("alone"));
   const Outcome silent = run_after(
       [] {

@@ -78,9 +78,10 @@ TEST_F(ConfigFiles, WhatMovedToTheCalibrationSaysSo) {
 }
 
 TEST_F(ConfigFiles, OptionsOfStagesThatAreGoneAreRefusedWithTheirLine) {
-  EXPECT_TRUE(has(refused("facets:\n  edge_min: 2\n"), {"line 2", "facets.edge_min is gone", "scores"}));
-  EXPECT_TRUE(has(refused("match.window_size: 9\nfigure.margin: 1\n"), {"line 2", "figure.margin is gone"}));
-  EXPECT_TRUE(has(refused("\ngroup:\n  step: 20\n  min_area: 1\n"), {"line 3", "group.step is gone"}));
+  EXPECT_TRUE(has(refused("facets:\n  edge_min: 2\n"), {"line 2", "facets.edge_min was removed", "scores"}));
+  EXPECT_TRUE(
+      has(refused("match.window_size: 9\nfigure.margin: 1\n"), {"line 2", "figure.margin was removed"}));
+  EXPECT_TRUE(has(refused("\ngroup:\n  step: 20\n  min_area: 1\n"), {"line 3", "group.step was removed"}));
 }
 
 std::vector<std::string> active_values_of(const Config& config) {
