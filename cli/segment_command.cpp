@@ -241,12 +241,31 @@ struct Outcome {
   int exit_code = 0;
 };
 
+/// Where the result of a frame goes; empty without -o.
+fs::path result_folder(const SegmentOptions& options, const io::FrameFiles& frame, bool many) {
+  if (options.output.empty()) return {};
+  return many ? fs::path(options.output) / frame.name : fs::path(options.output);
+}
+
+/// Throws Error where a result would replace an objects.png that is none of ours: the truth of a data set has
+/// this name, and lies with the images.
+void keep_truth(const fs::path& folder) {
+  std::error_code unknown;
+  if (folder.empty() || !fs::exists(folder / "objects.png", unknown)) return;
+  if (fs::exists(folder / "objects.json", unknown)) return;
+  throw Error(
+      (folder / "objects.png").string() +
+      ": exists without an objects.json, so it is not a result of cairn (the truth?); expected another "
+      "folder for -o");
+}
+
 Outcome segment_all(const SegmentOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   (void)resolve(options.input.config);  // what is bad for all frames is so before any of them
   if (!options.input.calib.empty()) (void)io::load_calibration(options.input.calib);
   Exec exec = make_exec(options.exec);
   const bool many = is_folder_of_frames(options.input.left, frames);
+  for (const io::FrameFiles& frame : frames) keep_truth(result_folder(options, frame, many));
   const Progress progress(frames.size());
   std::vector<io::EncodedFrame> encoded;
   std::set<std::string> remarks;
@@ -257,8 +276,7 @@ Outcome segment_all(const SegmentOptions& options) {
   Totals totals;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
-    fs::path folder = options.output;
-    if (many && !options.output.empty()) folder /= frames[i].name;
+    const fs::path folder = result_folder(options, frames[i], many);
     std::optional<LoadedFrame> loaded;
     try {
       loaded = load(frames[i], options, exec);

@@ -211,6 +211,17 @@ TEST_F(Faults, AReaderThatStopsLeavesWholeResults) {
   for (const auto& [name, bytes] : written) EXPECT_EQ(bytes, expected.at(name)) << name;
 }
 
+TEST_F(Faults, TheTruthBesideTheImagesIsNoOlderResult) {
+  const auto pair = pair_in("pair");
+  fs::copy_file(pair[0], at("pair/objects.png"));
+  const std::string truth = content(path("pair/objects.png"));
+  refuses({"segment", path("pair"), "-o", path("pair")}, {"objects.png", "objects.json", "-o"});
+  EXPECT_EQ(content(path("pair/objects.png")), truth);
+  EXPECT_FALSE(fs::exists(at("pair/objects.json")));
+  fs::remove(at("pair/objects.png"));
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(run({"segment", path("pair"), "-o", path("pair")}).code, 0);
+}
+
 TEST_F(Faults, WhatIsReadIsNotWritten) {
   const auto pair = pair_in("pair");
   const std::string left = content(pair[0]);
