@@ -238,11 +238,8 @@ class McapSequence : public SourceSequence {
 
   /// The next pair of the range, and its number among all.
   std::optional<std::pair<std::size_t, Pairing::Pair>> next_pair() {
-    while (has(0, 1) && has(1, 1)) {
-      // Reading on for the one may have let go of the other.
-      if (pairing_.waiting(0).empty()) continue;
-      auto both = pairing_.decide([&](std::size_t side) { return has(side, 2); });
-      if (!both) continue;
+    const auto reading_on = [this](std::size_t side, std::size_t count) { return has(side, count); };
+    while (auto both = pairing_.next(reading_on)) {
       const std::size_t index = pairs_++;
       const FrameRange& range = options_.frames;
       if (range.last_excluded && index >= *range.last_excluded) {
@@ -251,8 +248,7 @@ class McapSequence : public SourceSequence {
       }
       if (is_in(range, index)) return std::pair(index, std::move(*both));
     }
-    while (has(0, 1)) pairing_.leave(0);
-    while (has(1, 1)) pairing_.leave(1);
+    pairing_.leave_all(reading_on);
     return std::nullopt;
   }
 

@@ -42,23 +42,42 @@ class StampPairing {
   }
   [[nodiscard]] const std::deque<Waiting>& waiting(std::size_t side) const { return waiting_[side]; }
 
-  /// The next pair of those that wait; what has not come yet is not waited for.
-  std::optional<Pair> next() {
-    while (!waiting_[0].empty() && !waiting_[1].empty()) {
-      if (auto pair = decide([&](std::size_t side) { return waiting_[side].size() > 1; })) return pair;
+  /// The next pair; nothing once a side has run out. `has(side, count)`: whether so many of a side wait, after
+  /// reading on where that is possible; reading on leaves each side one of those that wait.
+  template <class Has>
+  std::optional<Pair> next(const Has& has) {
+    while (has(0, 1) && has(1, 1)) {
+      if (auto pair = decide(has)) return pair;
     }
     return std::nullopt;
   }
+  /// The next pair of those that wait; what has not come yet is not waited for.
+  std::optional<Pair> next() { return next(waits()); }
 
+  /// The one that waits longest on a side is alone.
+  void leave(std::size_t side) {
+    Waiting alone = std::move(waiting_[side].front());
+    waiting_[side].pop_front();
+    alone_(side, std::move(alone));
+  }
+  /// All that wait or that reading on still finds, see next().
+  template <class Has>
+  void leave_all(const Has& has) {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      while (has(side, 1)) leave(side);
+    }
+  }
+  void leave_all() { leave_all(waits()); }
+
+ private:
   /// Decides about the two that wait longest, one of each side: they are a pair, or one of them is alone.
-  /// `has_two`: whether two of a side wait, after reading on where that is possible.
-  template <class HasTwo>
-  std::optional<Pair> decide(const HasTwo& has_two) {
+  template <class Has>
+  std::optional<Pair> decide(const Has& has) {
     auto& [left, right] = waiting_;
     const bool is_exact = apart(0, 0) == 0;
-    if (!is_exact && has_two(1) && apart(0, 1) < apart(0, 0)) {
+    if (!is_exact && has(1, 2) && apart(0, 1) < apart(0, 0)) {
       leave(1);
-    } else if (!is_exact && has_two(0) && apart(1, 0) < apart(0, 0)) {
+    } else if (!is_exact && has(0, 2) && apart(1, 0) < apart(0, 0)) {
       leave(0);
     } else if (static_cast<double>(apart(0, 0)) > max_skew_ns_) {
       leave(left.front().stamp < right.front().stamp ? 0 : 1);
@@ -71,25 +90,17 @@ class StampPairing {
     return std::nullopt;
   }
 
-  /// The one that waits longest on a side is alone.
-  void leave(std::size_t side) {
-    Waiting alone = std::move(waiting_[side].front());
-    waiting_[side].pop_front();
-    alone_(side, std::move(alone));
-  }
-  void leave_all() {
-    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-      while (!waiting_[side].empty()) leave(side);
-    }
-  }
-
   /// Between one of the left and one of the right; ns.
   [[nodiscard]] std::int64_t apart(std::size_t left, std::size_t right) const {
     const std::int64_t difference = waiting_[0][left].stamp.ns - waiting_[1][right].stamp.ns;
     return difference < 0 ? -difference : difference;
   }
 
- private:
+  /// `has` of next() without reading on.
+  auto waits() const {
+    return [this](std::size_t side, std::size_t count) { return waiting_[side].size() >= count; };
+  }
+
   double max_skew_ns_;
   std::function<void(std::size_t, Waiting&&)> alone_;
   std::array<std::deque<Waiting>, 2> waiting_;

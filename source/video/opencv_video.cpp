@@ -287,17 +287,15 @@ class TwoVideos : public VideoSequence {
   }
 
   std::optional<NextFrame> next_pair() override {
-    while (has(0, 1) && has(1, 1)) {
-      const auto pair = pairing_.decide([&](std::size_t side) { return has(side, 2); });
-      if (!pair) continue;
+    const auto reading_on = [this](std::size_t side, std::size_t count) { return has(side, count); };
+    while (const auto pair = pairing_.next(reading_on)) {
       const std::size_t index = pairs_++;
       if (is_past_range(index)) return std::nullopt;
       if (is_in(options().frames, index))
         return NextFrame{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
     }
     // What is left over of the longer one has no partner.
-    while (has(0, 1)) pairing_.leave(0);
-    while (has(1, 1)) pairing_.leave(1);
+    pairing_.leave_all(reading_on);
     const std::string left_words = videos_[0].cut_off();
     end_early(left_words.empty() ? videos_[1].cut_off() : left_words);
     return std::nullopt;
