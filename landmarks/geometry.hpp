@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <vector>
 
 #include "landmarks.hpp"
@@ -12,12 +13,16 @@ namespace cairn::landmarks {
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 inline Matrix3 matrix(const Covariance3& rows) {
   return Eigen::Map<const Matrix3>(rows.data());
 }
 inline Matrix4 matrix(const std::array<double, 16>& rows) {
   return Eigen::Map<const Matrix4>(rows.data());
+}
+inline Matrix6 matrix(const Covariance6& rows) {
+  return Eigen::Map<const Matrix6>(rows.data());
 }
 inline Eigen::Vector3d vector(Point3 p) {
   return {p.x, p.y, p.z};
@@ -38,6 +43,20 @@ inline std::array<double, 16> rows_of(const Matrix4& m) {
 
 /// A rotation about z by `yaw_rad`, then a translation.
 Pose turned(double yaw_rad, Point3 translation_m);
+
+/// Rows and columns of x, y, z and yaw in a Covariance6.
+inline constexpr std::array<Eigen::Index, 4> kPositionAndYaw{0, 1, 2, 5};
+inline Matrix4 position_and_yaw(const Covariance6& covariance) {
+  return matrix(covariance)(kPositionAndYaw, kPositionAndYaw);
+}
+
+/// The symmetric matrix with eigenvalues below `least` raised to it.
+template <class Matrix>
+Matrix with_clamped_eigenvalues(const Matrix& symmetric, double least) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> parts(symmetric);
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() *
+         parts.eigenvectors().transpose();
+}
 
 /// Covariance of a camera's x, y, z and yaw after it moved by `way_m`: the uncertainty of the heading shifts it.
 inline Matrix4 carried(const Matrix4& covariance, Point3 way_m) {

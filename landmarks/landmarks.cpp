@@ -13,11 +13,14 @@
 namespace cairn {
 namespace {
 
+using landmarks::kPositionAndYaw;
 using landmarks::matrix;
 using landmarks::Matrix3;
 using landmarks::Matrix4;
+using landmarks::Matrix6;
 using landmarks::Placed;
 using landmarks::point;
+using landmarks::position_and_yaw;
 using landmarks::Pull;
 using landmarks::vector;
 
@@ -42,8 +45,6 @@ constexpr double kUnique = 0.05;  // of score
 constexpr double kBehind = 0.26;
 constexpr double kCentreSigma = 0.14;
 constexpr double kCentreSigmaUp = 0.1;  // of its height
-
-constexpr std::array<std::size_t, 4> kOfPose{0, 1, 2, 5};  // x y z yaw of a Covariance6
 
 struct VisibleArea {
   int pixels = 0;
@@ -419,27 +420,16 @@ std::vector<LandmarkEvent> report_new(LandmarksState& state, const LandmarkFrame
   return events;
 }
 
-Matrix4 of_pose(const Covariance6& covariance) {
-  Matrix4 part;
-  for (std::size_t r = 0; r < 4; ++r) {
-    for (std::size_t c = 0; c < 4; ++c)
-      part(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
-          covariance[kOfPose[r] * 6 + kOfPose[c]];
-  }
-  return part;
-}
-
 /// What odometry added since the anchor comes on top of what was uncertain there. Differences of its
 /// covariances, not sums of their growth: they fall again when the keyframe is seen after a few dark frames.
 void place_camera(LandmarksState& state, const LandmarkFrame& frame) {
   state.located.camera_in_odom_m = frame.odom_from_camera.translation_m;
   const Point3 way = state.located.camera_in_odom_m - state.anchor.camera_in_odom_m;
-  const Matrix4 added =
-      of_pose(frame.pose_covariance) - landmarks::carried(of_pose(state.anchor_pose_covariance), way);
   // Rounding, and a pose that was seen better than at the anchor, may make it negative in some direction.
-  const Eigen::SelfAdjointEigenSolver<Matrix4> parts(added);
-  const Matrix4 grown =
-      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
+  const Matrix4 grown = landmarks::with_clamped_eigenvalues(
+      Matrix4(position_and_yaw(frame.pose_covariance) -
+              landmarks::carried(position_and_yaw(state.anchor_pose_covariance), way)),
+      0);
   // Odometry's axes are not the map's; about the vertical they agree.
   Matrix4 turn = Matrix4::Identity();
   turn.topLeftCorner<3, 3>() = Eigen::Map<const Matrix3>(state.located.map_from_odom.rotation.data());
@@ -547,18 +537,12 @@ bool is_contradicted(const LandmarksState& state, const Recognition& found, cons
 
 Covariance6 camera_covariance(const Located& located, const Covariance6& pose_covariance) {
   // What ties roll and pitch to the others is odometry's, and need not suit what recognition made of them.
-  Covariance3 attitude{};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) attitude[r * 3 + c] = pose_covariance[(r + 3) * 6 + c + 3];
-  }
-  attitude = rotated(located.map_from_odom, attitude);
+  const Matrix3 attitude = matrix(pose_covariance).bottomRightCorner<3, 3>();
   Covariance6 all{};
-  for (std::size_t r = 0; r < 2; ++r) {
-    for (std::size_t c = 0; c < 2; ++c) all[(r + 3) * 6 + c + 3] = attitude[r * 3 + c];
-  }
-  for (std::size_t r = 0; r < 4; ++r) {
-    for (std::size_t c = 0; c < 4; ++c) all[kOfPose[r] * 6 + kOfPose[c]] = located.covariance[r * 4 + c];
-  }
+  Eigen::Map<Matrix6> rows(all.data());
+  rows.block<2, 2>(3, 3) =
+      matrix(rotated(located.map_from_odom, landmarks::rows_of(attitude))).topLeftCorner<2, 2>();
+  rows(kPositionAndYaw, kPositionAndYaw) = matrix(located.covariance);
   return all;
 }
 

@@ -16,7 +16,11 @@
 namespace cairn {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using landmarks::kPositionAndYaw;
+using landmarks::Matrix3;
+using landmarks::Matrix4;
+using landmarks::Matrix6;
+using landmarks::position_and_yaw;
 
 [[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
   std::array<char, 512> text{};
@@ -47,34 +51,33 @@ std::string information_text(const Eigen::Matrix<double, N, N, Eigen::RowMajor>&
   return text;
 }
 
-landmarks::Matrix3 information_of(const Covariance3& covariance) {
+Matrix3 information_of(const Covariance3& covariance) {
   constexpr double kLeast = 1e-8;  // 0.1 mm: an exact place would have no inverse
-  return (landmarks::matrix(covariance) + kLeast * landmarks::Matrix3::Identity()).inverse();
+  return (landmarks::matrix(covariance) + kLeast * Matrix3::Identity()).inverse();
 }
 
 /// Of the motion between two poses of a run, along the map's axes: what the second has more than the first
 /// carried on. A correction by landmarks between the two makes it less; the step is then as uncertain as both
 /// poses together.
 Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
-  constexpr double kLeast = 1e-6;                            // 1 mm, 1 mrad
-  constexpr double kRounding = 1e-3;                         // of the larger one
-  constexpr std::array<Eigen::Index, 4> kPlace{0, 1, 2, 5};  // x, y, z, yaw
+  constexpr double kLeast = 1e-6;     // 1 mm, 1 mrad
+  constexpr double kRounding = 1e-3;  // of the larger one
   constexpr std::array<Eigen::Index, 2> kTilt{3, 4};
-  const Eigen::Map<const Matrix6> a(before.covariance.data());
-  const Eigen::Map<const Matrix6> b(now.covariance.data());
-  const landmarks::Matrix4 carried = landmarks::carried(
-      a(kPlace, kPlace), now.map_from_camera.translation_m - before.map_from_camera.translation_m);
-  const landmarks::Matrix4 grown = b(kPlace, kPlace) - carried;
+  const Matrix6 a = landmarks::matrix(before.covariance);
+  const Matrix6 b = landmarks::matrix(now.covariance);
+  const Matrix4 placed = position_and_yaw(now.covariance);
+  const Matrix4 carried =
+      landmarks::carried(position_and_yaw(before.covariance),
+                         now.map_from_camera.translation_m - before.map_from_camera.translation_m);
+  const Matrix4 grown = placed - carried;
   const double smallest =
-      Eigen::SelfAdjointEigenSolver<landmarks::Matrix4>(grown, Eigen::EigenvaluesOnly).eigenvalues()[0];
+      Eigen::SelfAdjointEigenSolver<Matrix4>(grown, Eigen::EigenvaluesOnly).eigenvalues()[0];
   const bool is_corrected = smallest < -kRounding * carried.trace() - kLeast;
   Matrix6 step = Matrix6::Zero();
-  step(kPlace, kPlace) = is_corrected ? landmarks::Matrix4(b(kPlace, kPlace) + carried) : grown;
+  step(kPositionAndYaw, kPositionAndYaw) = is_corrected ? Matrix4(placed + carried) : grown;
   step(kTilt, kTilt) = is_corrected ? Eigen::Matrix2d(b(kTilt, kTilt) + a(kTilt, kTilt))
                                     : Eigen::Matrix2d(b(kTilt, kTilt) - a(kTilt, kTilt));
-  const Eigen::SelfAdjointEigenSolver<Matrix6> parts(step);
-  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(kLeast).asDiagonal() *
-         parts.eigenvectors().transpose();
+  return landmarks::with_clamped_eigenvalues(step, kLeast);
 }
 
 /// EDGE_SE3:QUAT's: its error is (t, q) of the deviation along the axes of the camera that the edge leads to,
@@ -82,7 +85,7 @@ Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
 /// toVectorMQT).
 Matrix6 information_of_step(const MapPose& before, const MapPose& now) {
   const Pose camera_from_map = inverse(now.map_from_camera);
-  const Eigen::Map<const landmarks::Matrix3> turn(camera_from_map.rotation.data());
+  const Eigen::Map<const Matrix3> turn(camera_from_map.rotation.data());
   Matrix6 to_error = Matrix6::Zero();
   to_error.topLeftCorner<3, 3>() = turn;
   to_error.bottomRightCorner<3, 3>() = turn / 2;
