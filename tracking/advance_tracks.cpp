@@ -253,16 +253,16 @@ Covariance3 covariance_in_map(const Track& track, const Pose& map_from_camera,
 
 Tracks tied_to_key(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
                    bool is_new_segment) {
+  const Pose camera_from_map = inverse(map_from_camera);
+  const auto tie = [&](Point3 position_m) {
+    return in_map({}, camera_from_map(position_m), map_from_camera, key_covariance);
+  };
   for (Track& track : tracks.list) {
     if (is_new_segment) {
       track.against_label = 0;
       track.places.clear();
     }
     if (!track.has_place) continue;
-    const Pose camera_from_map = inverse(map_from_camera);
-    const auto tie = [&](Point3 position_m) {
-      return in_map({}, camera_from_map(position_m), map_from_camera, key_covariance);
-    };
     track.as_static.covariance_m2 = sum(track.as_static.covariance_m2, tie(track.as_static.position_m), 1);
     const Covariance3 grown = tie(track.as_moving.position_m);
     for (std::size_t i = 0; i < 3; ++i) {
