@@ -15,7 +15,6 @@ class Cameras : public CommandTest {
       "gst:videotestsrc is-live=true pattern=snow ! "
       "video/x-raw,format=YUY2,width=320,height=120,framerate=30/1";
   void SetUp() override {
-    CommandTest::SetUp();
     const Outcome outcome = run({"record", "gst:videotestsrc num-buffers=1", "-o", path("probe")});
     if (outcome.code != 0) GTEST_SKIP() << "install gstreamer1.0-plugins-base: " << outcome.err;
   }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cairn/core/image.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <io/image_files.hpp>
@@ -20,6 +19,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "support/temporary_folder.hpp"
 
 /// The command as others run it: a process with arguments, an exit code, and what it wrote.
 namespace cairn::command {
@@ -44,13 +45,7 @@ inline void write(const fs::path& path, const std::string& bytes) {
 /// A folder of the test's own, gone after it, and the command run from inside.
 class CommandTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "cairn-command-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    root_ = name;
-    fs::create_directories(root_ / "work");
-  }
-  void TearDown() override { fs::remove_all(root_); }
+  CommandTest() { fs::create_directories(root_ / "work"); }
 
   /// Where inputs and outputs of the test live.
   [[nodiscard]] fs::path at(const std::string& name) const { return root_ / "work" / name; }
@@ -143,7 +138,8 @@ class CommandTest : public testing::Test {
   }
 
  private:
-  fs::path root_;
+  support::TemporaryFolder folder_;
+  fs::path root_ = folder_.path();
 };
 
 /// A PFM file of these values, rows bottom-up, little endian.

@@ -35,7 +35,6 @@ void fill(Image<std::uint16_t>& image, Rect box, std::uint16_t value) {
 class EvaluateJson : public CommandTest {
  protected:
   void SetUp() override {
-    CommandTest::SetUp();
     for (const char* name : {"truth/a", "truth/b", "truth/c", "result/a", "result/b"})
       fs::create_directories(at(name));
     write_objects_of_a();

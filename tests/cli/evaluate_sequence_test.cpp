@@ -125,7 +125,6 @@ class EvaluateSequence : public CommandTest {
 class DrawnSequence : public EvaluateSequence {
  protected:
   void SetUp() override {
-    CommandTest::SetUp();
     for (int k = 0; k < 12; ++k) {
       const double way = 0.05 * std::max(0, k - 2);
       add(k, {{1, k < 6 ? 1 : 7, {2, 2, 20, 15}, {1, 2, 0.3}, {0.2, 0, 0}, k == 2, 0, "confirmed"},

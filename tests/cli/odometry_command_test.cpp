@@ -21,7 +21,6 @@ class OdometryCommand : public CommandTest {
   }
 
   void SetUp() override {
-    CommandTest::SetUp();
     for (int k = 0; k < kFrames; ++k) {
       const std::string folder = "frames/00" + std::to_string(k) + "/";
       fs::create_directories(at(folder));

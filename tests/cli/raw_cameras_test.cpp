@@ -28,7 +28,6 @@ bool is_built_in() {
 class RawCameras : public CommandTest {
  protected:
   void SetUp() override {
-    CommandTest::SetUp();
     if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
   }
 

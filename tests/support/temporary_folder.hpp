@@ -19,6 +19,7 @@ namespace cairn::support {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
+    // mkdtemp() replaces the six X.
     std::string name = (std::filesystem::temp_directory_path() / "cairn-test-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = name;
