@@ -98,15 +98,11 @@ class Planner {
     const bool is_one = found.size() == 1 && fs::equivalent(found.front().folder, input, unknown);
     const std::size_t before = frames_.size();
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (is_wanted(i)) add_files(is_one && !name.empty() ? name : joined(name, found[i].name), found[i]);
+      if (range_.contains(i))
+        add_files(is_one && !name.empty() ? name : joined(name, found[i].name), found[i]);
     }
     if (frames_.size() == before)
       throw Error(input + ": has " + std::to_string(found.size()) + " frames, and none is in --frames");
-  }
-
-  [[nodiscard]] bool is_wanted(std::size_t index) const {
-    return index >= range_.first && (!range_.last_excluded || index < *range_.last_excluded) &&
-           (index - range_.first) % range_.step == 0;
   }
 
   void add_files(const std::string& name, const io::FrameFiles& files) {

@@ -194,7 +194,7 @@ StampPairs pair_by_keys(const std::vector<Key>& left, const std::vector<Key>& ri
 /// What is common to all: the range, the order of stamps.
 FrameList finished(FrameList list, const SourceOptions& options, const std::string& source) {
   const std::size_t all = list.frames.size();
-  std::erase_if(list.frames, [&](const ListedFrame& frame) { return !is_in(options.frames, frame.index); });
+  std::erase_if(list.frames, [&](const ListedFrame& frame) { return !options.frames.contains(frame.index); });
   if (list.frames.empty()) {
     throw Error(source + ": has " + std::to_string(all) + (all == 1 ? " frame" : " frames") +
                 ", and none of them is in --frames");
@@ -371,7 +371,7 @@ FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& fra
   list.grey_cameras = frames.front().grey_cameras;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!frames[i].right) {
-      if (is_in(options.frames, i))
+      if (options.frames.contains(i))
         remark(list.remarks, {"left image without a right one", 1, frames[i].name, true, false});
       continue;
     }
@@ -420,11 +420,6 @@ void remark(std::vector<SourceRemark>& remarks, const SourceRemark& of_one) {
   } else {
     known->count += of_one.count;
   }
-}
-
-bool is_in(const FrameRange& range, std::size_t index) {
-  return index >= range.first && (!range.last_excluded || index < *range.last_excluded) &&
-         (index - range.first) % range.step == 0;
 }
 
 double rate_of(const SourceOptions& options) {

@@ -41,9 +41,6 @@ bool is_pattern(const std::string& name);
 /// Counts one more frame with this remark.
 void remark(std::vector<SourceRemark>& remarks, const SourceRemark& of_one);
 
-/// Whether `index` is in the range.
-bool is_in(const FrameRange& range, std::size_t index);
-
 /// The description of stamps from a rate, and the stamp of a frame.
 double rate_of(const SourceOptions& options);
 std::string rate_text(double rate_hz);

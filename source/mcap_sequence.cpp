@@ -85,10 +85,7 @@ class McapSequence : public SourceSequence {
     const auto left = counts.find(sides_[0].channel.id);
     const auto right = counts.find(sides_[1].channel.id);
     if (left == counts.end() || right == counts.end()) return std::nullopt;
-    const FrameRange& range = options_.frames;
-    const std::size_t count = std::min(left->second, right->second);
-    const std::size_t end = std::min(count, range.last_excluded.value_or(count));
-    return end <= range.first ? 0 : (end - range.first + range.step - 1) / range.step;
+    return options_.frames.count_of(std::min(left->second, right->second));
   }
   [[nodiscard]] std::string name() const override { return file_.filename().string(); }
   [[nodiscard]] std::string stamps_from() const override {
@@ -241,12 +238,11 @@ class McapSequence : public SourceSequence {
     const auto reading_on = [this](std::size_t side, std::size_t count) { return has(side, count); };
     while (auto both = pairing_.next(reading_on)) {
       const std::size_t index = pairs_++;
-      const FrameRange& range = options_.frames;
-      if (range.last_excluded && index >= *range.last_excluded) {
+      if (options_.frames.is_past(index)) {
         is_past_range_ = true;
         return std::nullopt;
       }
-      if (is_in(range, index)) return std::pair(index, std::move(*both));
+      if (options_.frames.contains(index)) return std::pair(index, std::move(*both));
     }
     pairing_.leave_all(reading_on);
     return std::nullopt;

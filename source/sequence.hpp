@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <cairn/core/pool.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <chrono>
@@ -48,6 +49,17 @@ struct FrameRange {
   std::size_t first = 0;
   std::optional<std::size_t> last_excluded;  // nullopt: to the end
   std::size_t step = 1;
+
+  [[nodiscard]] bool contains(std::size_t index) const {
+    return index >= first && !is_past(index) && (index - first) % step == 0;
+  }
+  /// Whether it has neither this index nor a later one.
+  [[nodiscard]] bool is_past(std::size_t index) const { return last_excluded && index >= *last_excluded; }
+  /// The number of frames that it has of `count`.
+  [[nodiscard]] std::size_t count_of(std::size_t count) const {
+    const std::size_t end = std::min(count, last_excluded.value_or(count));
+    return end <= first ? 0 : (end - first + step - 1) / step;
+  }
 };
 /// "A:B[:STEP]" with A and B optional, or "N" for the first N frames. Throws Error if it is invalid or empty.
 FrameRange parse_frame_range(std::string_view text);

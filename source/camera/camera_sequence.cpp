@@ -66,7 +66,7 @@ class CameraSequence : public SourceSequence {
     if (first_) {
       frame = std::exchange(first_, std::nullopt);
     } else {
-      while (!is_stopped_ && !frame && !is_past_range()) {
+      while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
         if (std::optional<CameraImage> image = taken()) {
           frame = frame_of(std::move(*image));
         } else if (has_ended()) {
@@ -80,9 +80,9 @@ class CameraSequence : public SourceSequence {
   }
 
   [[nodiscard]] std::optional<std::size_t> size() const override {
-    if (!options_.frames.last_excluded) return std::nullopt;
     const FrameRange& range = options_.frames;
-    return (*range.last_excluded - range.first + range.step - 1) / range.step;
+    if (!range.last_excluded) return std::nullopt;
+    return range.count_of(*range.last_excluded);
   }
   [[nodiscard]] std::string name() const override { return names_.name; }
   [[nodiscard]] std::string stamps_from() const override { return names_.stamps_from; }
@@ -155,9 +155,6 @@ class CameraSequence : public SourceSequence {
     return (&camera == cameras_.front().get() ? "the left camera: " : "the right camera: ") + state.trouble;
   }
 
-  [[nodiscard]] bool is_past_range() const {
-    return options_.frames.last_excluded && count_ >= *options_.frames.last_excluded;
-  }
 
   /// One camera without images is no pair.
   bool has_ended() {
@@ -240,7 +237,7 @@ class CameraSequence : public SourceSequence {
       return std::nullopt;
     }
     const std::size_t index = count_++;
-    if (!is_in(options_.frames, index)) return std::nullopt;
+    if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = image.stamp;
     PicturePair pair =
         calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);

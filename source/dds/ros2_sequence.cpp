@@ -61,7 +61,7 @@ class Ros2Sequence : public io::SourceSequence {
     if (first_) {
       frame = std::exchange(first_, std::nullopt);
     } else {
-      while (!is_stopped_ && !frame && !is_past_range()) {
+      while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
         if (const auto pair = taken()) {
           frame = frame_of(*pair);
         } else {
@@ -75,9 +75,9 @@ class Ros2Sequence : public io::SourceSequence {
   }
 
   [[nodiscard]] std::optional<std::size_t> size() const override {
-    if (!options_.frames.last_excluded) return std::nullopt;
     const io::FrameRange& range = options_.frames;
-    return (*range.last_excluded - range.first + range.step - 1) / range.step;
+    if (!range.last_excluded) return std::nullopt;
+    return range.count_of(*range.last_excluded);
   }
   [[nodiscard]] std::string name() const override { return prefix_.empty() ? "/" : prefix_; }
   [[nodiscard]] std::string stamps_from() const override { return "header.stamp of " + topics_[0]; }
@@ -116,9 +116,6 @@ class Ros2Sequence : public io::SourceSequence {
     return prefix_ + "/" + side + (options_.rectify ? "/image_raw" : "/image_rect");
   }
   [[nodiscard]] std::uint64_t lost() const { return images_[0].lost() + images_[1].lost(); }
-  [[nodiscard]] bool is_past_range() const {
-    return options_.frames.last_excluded && count_ >= *options_.frames.last_excluded;
-  }
 
   /// The pair that the next image completes; none where there is no image. What cannot be a message is left
   /// out: anybody may write on a topic.
@@ -238,7 +235,7 @@ class Ros2Sequence : public io::SourceSequence {
       return std::nullopt;
     }
     const std::size_t index = count_++;
-    if (!io::is_in(options_.frames, index)) return std::nullopt;
+    if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = stamp;
     io::PicturePair pictures =
         io::pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);

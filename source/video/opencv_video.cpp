@@ -177,15 +177,6 @@ class VideoSequence : public SourceSequence {
   }
   [[nodiscard]] const SourceOptions& options() const { return options_; }
   [[nodiscard]] const Pool& pool() const { return pool_; }
-  [[nodiscard]] bool is_past_range(std::size_t index) const {
-    return options_.frames.last_excluded && index >= *options_.frames.last_excluded;
-  }
-  [[nodiscard]] std::optional<std::size_t> delivered_of(std::optional<std::size_t> count) const {
-    const FrameRange& range = options_.frames;
-    if (!count) return std::nullopt;
-    const std::size_t end = std::min(*count, range.last_excluded.value_or(*count));
-    return end <= range.first ? 0 : (end - range.first + range.step - 1) / range.step;
-  }
   void remark_on(const SourceRemark& of_one) { remark(remarks_, of_one); }
   void end_early(std::string why) { ended_early_ = std::move(why); }
 
@@ -219,13 +210,16 @@ class OneVideo : public VideoSequence {
       : VideoSequence(file.filename().string(), file, options, pool), video_(file, options.rate_hz) {
     begin(file);
   }
-  [[nodiscard]] std::optional<std::size_t> size() const override { return delivered_of(video_.count()); }
+  [[nodiscard]] std::optional<std::size_t> size() const override {
+    if (!video_.count()) return std::nullopt;
+    return options().frames.count_of(*video_.count());
+  }
 
  private:
   std::optional<NextFrame> next_pair() override {
     while (video_.advance()) {
-      if (is_past_range(video_.index())) return std::nullopt;
-      if (!is_in(options().frames, video_.index())) continue;
+      if (options().frames.is_past(video_.index())) return std::nullopt;
+      if (!options().frames.contains(video_.index())) continue;
       NextFrame both{video_.index(), video_.stamp(), {}};
       if (const std::optional<cv::Mat> image = video_.image()) both.pair = halves(*image);
       return both;
@@ -266,7 +260,7 @@ class TwoVideos : public VideoSequence {
   }
   [[nodiscard]] std::optional<std::size_t> size() const override {
     if (!videos_[0].count() || !videos_[1].count()) return std::nullopt;
-    return delivered_of(std::min(*videos_[0].count(), *videos_[1].count()));
+    return options().frames.count_of(std::min(*videos_[0].count(), *videos_[1].count()));
   }
 
  private:
@@ -290,8 +284,8 @@ class TwoVideos : public VideoSequence {
     const auto reading_on = [this](std::size_t side, std::size_t count) { return has(side, count); };
     while (const auto pair = pairing_.next(reading_on)) {
       const std::size_t index = pairs_++;
-      if (is_past_range(index)) return std::nullopt;
-      if (is_in(options().frames, index))
+      if (options().frames.is_past(index)) return std::nullopt;
+      if (options().frames.contains(index))
         return NextFrame{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
     }
     // What is left over of the longer one has no partner.

@@ -171,6 +171,18 @@ TEST(FrameRanges, AreParsedOrRefused) {
     EXPECT_TRUE(has(refusal([&] { (void)parse_frame_range(text); }), {"--frames", "FIRST:END"})) << text;
 }
 
+TEST(FrameRanges, KnowTheirMembersTheirEndAndTheirCount) {
+  const FrameRange range = parse_frame_range("3:10:4");
+  std::vector<std::size_t> members;
+  for (std::size_t i = 0; i < 20; ++i) {
+    if (range.contains(i)) members.push_back(i);
+    EXPECT_EQ(range.is_past(i), i >= 10) << i;
+    EXPECT_EQ(range.count_of(i + 1), members.size()) << i;
+  }
+  EXPECT_EQ(members, (std::vector<std::size_t>{3, 7}));
+  EXPECT_FALSE(parse_frame_range("5:").is_past(1'000'000));
+}
+
 TEST(SequenceOfFolders, DeliversItsFramesInOrderWithTheirCalibration) {
   const TemporaryFolder folder;
   // 9 comes before 10, though not by bytes.
