@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../io/calibration_files.hpp"
@@ -67,6 +68,9 @@ class FrameWatch {
 /// them.
 class SourceSequence : public Sequence {
  public:
+  std::optional<SequenceFrame> next() override {
+    return first_ ? std::exchange(first_, std::nullopt) : advance();
+  }
   [[nodiscard]] Size image_size() const override { return watch_.image_size(); }
   [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
   [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
@@ -77,7 +81,10 @@ class SourceSequence : public Sequence {
 
  protected:
   explicit SourceSequence(double max_gap_s) : watch_(max_gap_s) {}
+  /// Reads the next frame.
+  virtual std::optional<SequenceFrame> advance() = 0;
 
+  std::optional<SequenceFrame> first_;  // was read when the sequence was opened
   FrameWatch watch_;
   SourceCalibration calibration_;
   std::vector<SourceRemark> remarks_;

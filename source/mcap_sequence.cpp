@@ -60,7 +60,7 @@ class McapSequence : public SourceSequence {
     grey_ = topics.left_grey;
     reader_.rewind();
     reader_.only(wanted);
-    first_ = advance();
+    first_ = McapSequence::advance();
     if (!first_) {
       if (!remarks_.empty())
         throw Error(file_.string() + ": " + remarks_.front().what + ": " + remarks_.front().first);
@@ -72,14 +72,6 @@ class McapSequence : public SourceSequence {
     calibration_.suit(watch_.image_size());
   }
 
-  std::optional<SequenceFrame> next() override {
-    if (first_) {
-      SequenceFrame frame = std::move(*first_);
-      first_.reset();
-      return frame;
-    }
-    return advance();
-  }
   [[nodiscard]] std::optional<std::size_t> size() const override {
     const auto& counts = reader_.counts();
     const auto left = counts.find(sides_[0].channel.id);
@@ -248,7 +240,7 @@ class McapSequence : public SourceSequence {
     return std::nullopt;
   }
 
-  std::optional<SequenceFrame> advance() {
+  std::optional<SequenceFrame> advance() override {
     while (auto found = next_pair()) {
       const std::size_t index = found->first;
       Pairing::Pair& both = found->second;
@@ -315,7 +307,6 @@ class McapSequence : public SourceSequence {
   int bits_ = 8;
   bool is_past_range_ = false;
   bool is_ended_ = false;
-  std::optional<SequenceFrame> first_;
 };
 
 }  // namespace

@@ -58,13 +58,12 @@ class FileSequence : public SourceSequence {
     if (auto raw = calibration_.remark_on_raw(first.name)) remarks_.push_back(std::move(*raw));
   }
 
-  std::optional<SequenceFrame> next() override {
-    if (first_) {
-      SequenceFrame frame = std::move(*first_);
-      first_.reset();
-      at_ = 1;
-      return frame;
-    }
+  [[nodiscard]] std::optional<std::size_t> size() const override { return list_.frames.size(); }
+  [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] std::string stamps_from() const override { return list_.stamps_from; }
+
+ private:
+  std::optional<SequenceFrame> advance() override {
     while (at_ < list_.frames.size()) {
       const ListedFrame& files = list_.frames[at_++];
       try {
@@ -80,11 +79,6 @@ class FileSequence : public SourceSequence {
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<std::size_t> size() const override { return list_.frames.size(); }
-  [[nodiscard]] std::string name() const override { return name_; }
-  [[nodiscard]] std::string stamps_from() const override { return list_.stamps_from; }
-
- private:
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
     PicturePair pair = load_pair(files.left, files.right, pool_, bits_);
@@ -119,8 +113,7 @@ class FileSequence : public SourceSequence {
   std::string calib_bytes_;
   Size raw_size_;
   int bits_ = 8;
-  std::optional<SequenceFrame> first_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 1;  // of the list; the first is read when it is opened
 };
 
 bool exists(const fs::path& path) {

@@ -62,18 +62,7 @@ class CameraSequence : public SourceSequence {
   }
 
   std::optional<SequenceFrame> next() override {
-    std::optional<SequenceFrame> frame;
-    if (first_) {
-      frame = std::exchange(first_, std::nullopt);
-    } else {
-      while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
-        if (std::optional<CameraImage> image = taken()) {
-          frame = frame_of(std::move(*image));
-        } else if (has_ended()) {
-          break;
-        }
-      }
-    }
+    std::optional<SequenceFrame> frame = SourceSequence::next();
     note_losses(frame ? frame->name : number_text(count_));
     if (is_stopped_) return std::nullopt;
     return frame;
@@ -144,6 +133,18 @@ class CameraSequence : public SourceSequence {
 
   // ---- on the thread of whoever takes the frames ----
 
+  std::optional<SequenceFrame> advance() override {
+    std::optional<SequenceFrame> frame;
+    while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
+      if (std::optional<CameraImage> image = taken()) {
+        frame = frame_of(std::move(*image));
+      } else if (has_ended()) {
+        break;
+      }
+    }
+    return frame;
+  }
+
   std::optional<CameraImage> taken() {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, kNotice, [&] { return newest_.has_value(); });
@@ -154,7 +155,6 @@ class CameraSequence : public SourceSequence {
     if (cameras_.size() < 2 || state.trouble.empty()) return state.trouble;
     return (&camera == cameras_.front().get() ? "the left camera: " : "the right camera: ") + state.trouble;
   }
-
 
   /// One camera without images is no pair.
   bool has_ended() {
@@ -322,7 +322,6 @@ class CameraSequence : public SourceSequence {
   StampPairer pairer_;
 
   std::vector<std::unique_ptr<KeptCamera>> cameras_;
-  std::optional<SequenceFrame> first_;
 };
 
 }  // namespace

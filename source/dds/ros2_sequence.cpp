@@ -57,18 +57,7 @@ class Ros2Sequence : public io::SourceSequence {
   }
 
   std::optional<io::SequenceFrame> next() override {
-    std::optional<io::SequenceFrame> frame;
-    if (first_) {
-      frame = std::exchange(first_, std::nullopt);
-    } else {
-      while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
-        if (const auto pair = taken()) {
-          frame = frame_of(*pair);
-        } else {
-          wait_.wait(kNotice);
-        }
-      }
-    }
+    std::optional<io::SequenceFrame> frame = SourceSequence::next();
     note_losses(frame ? frame->name : io::number_text(count_));
     if (is_stopped_) return std::nullopt;
     return frame;
@@ -116,6 +105,18 @@ class Ros2Sequence : public io::SourceSequence {
     return prefix_ + "/" + side + (options_.rectify ? "/image_raw" : "/image_rect");
   }
   [[nodiscard]] std::uint64_t lost() const { return images_[0].lost() + images_[1].lost(); }
+
+  std::optional<io::SequenceFrame> advance() override {
+    std::optional<io::SequenceFrame> frame;
+    while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
+      if (const auto pair = taken()) {
+        frame = frame_of(*pair);
+      } else {
+        wait_.wait(kNotice);
+      }
+    }
+    return frame;
+  }
 
   /// The pair that the next image completes; none where there is no image. What cannot be a message is left
   /// out: anybody may write on a topic.
@@ -285,7 +286,6 @@ class Ros2Sequence : public io::SourceSequence {
   std::optional<Stamp> last_stamp_;
   std::size_t count_ = 0;
   int bits_ = 8;
-  std::optional<io::SequenceFrame> first_;
   std::atomic<bool> is_stopped_ = false;
   std::atomic<std::uint64_t> unpaired_ = 0;
   std::atomic<Clock::time_point> last_pair_ = Clock::now();

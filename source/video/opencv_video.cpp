@@ -142,14 +142,6 @@ class VideoSequence : public SourceSequence {
     calibration_ = open_calibration(options, found, false, false);
   }
 
-  std::optional<SequenceFrame> next() override {
-    if (first_) {
-      SequenceFrame frame = std::move(*first_);
-      first_.reset();
-      return frame;
-    }
-    return advance();
-  }
   [[nodiscard]] std::string name() const override { return name_; }
   [[nodiscard]] std::string stamps_from() const override {
     return options_.rate_hz > 0 ? rate_text(options_.rate_hz) : "the video";
@@ -181,7 +173,7 @@ class VideoSequence : public SourceSequence {
   void end_early(std::string why) { ended_early_ = std::move(why); }
 
  private:
-  std::optional<SequenceFrame> advance() {
+  std::optional<SequenceFrame> advance() override {
     while (std::optional<NextFrame> both = next_pair()) {
       const std::string name = number_text(both->index);
       if (!both->pair) {
@@ -201,7 +193,6 @@ class VideoSequence : public SourceSequence {
   SourceOptions options_;
   Pool pool_;
   fs::path file_;
-  std::optional<SequenceFrame> first_;
 };
 
 class OneVideo : public VideoSequence {
