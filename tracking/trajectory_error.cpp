@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "twist.hpp"
+
 namespace cairn {
 namespace {
 
@@ -173,10 +175,7 @@ TrajectoryError trajectory_error(const std::vector<TimedPose>& estimated, const 
 
 double normalised_error(const Pose& now_from_before, const Covariance6& covariance,
                         const Pose& true_now_from_before) {
-  const Pose off = now_from_before * inverse(true_now_from_before);
-  const Point3 turn = rotation_vector(off);
-  Eigen::Matrix<double, 6, 1> xi;
-  xi << off.translation_m.x, off.translation_m.y, off.translation_m.z, turn.x, turn.y, turn.z;
+  const Vector6 xi = difference(now_from_before, true_now_from_before);
   const Eigen::Matrix<double, 6, 6> p =
       Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance.data());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factors(p);
