@@ -43,10 +43,10 @@ class StatusLine : public live::Sink {
   void offer(const live::LiveFramePtr& frame) override {
     if (frame->done - shown_ < std::chrono::seconds(1)) return;
     shown_ = frame->done;
-    const double age = std::chrono::duration<double, std::milli>(frame->done - frame->arrived).count();
     const std::string words =
         frame->pair->name + ": " + std::to_string(frame->step.frame.objects.list.size()) + " objects, " +
-        text_of("%.1f Hz, ", frame->rate_hz) + text_of("%.0f ms from image to objects", age) +
+        text_of("%.1f Hz, ", frame->rate_hz) +
+        text_of("%.0f ms from image to objects", live::ms_between(frame->arrived, frame->done)) +
         (frame->source.is_connected ? "" : ", NOT CONNECTED: " + frame->source.trouble);
     progress_.bar(0, words);
   }

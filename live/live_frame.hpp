@@ -17,6 +17,11 @@ namespace cairn::live {
 
 using Clock = std::chrono::steady_clock;
 
+/// The time from the earlier to the later point, in ms.
+inline double ms_between(Clock::time_point earlier, Clock::time_point later) {
+  return std::chrono::duration<double, std::milli>(later - earlier).count();
+}
+
 /// Pairs dropped since the start, by reason.
 struct Drops {
   std::uint64_t at_source = 0;  // SourceStatus::dropped and unpaired

@@ -205,16 +205,13 @@ void Recording::add_objects(const LiveFrame& frame, const ros::Header& header) {
           ros::String{io::objects_json(frame.step.frame,
                                        {run_.preset, frame.config->segmentation, run_.rig, {}, false})});
   }
-  const auto ms = [](Clock::duration time) {
-    return std::chrono::duration<double, std::milli>(time).count();
-  };
   Json stages = Json::object();
   for (const io::StageTime& stage : frame.stages) stages[stage.stage] = stage.milliseconds;
   const Json stats{{"name", frame.pair->name},
                    {"index", frame.pair->index},
                    {"rate_hz", frame.rate_hz},
-                   {"waited_ms", ms(frame.started - frame.arrived)},
-                   {"worked_ms", ms(frame.done - frame.started)},
+                   {"waited_ms", ms_between(frame.arrived, frame.started)},
+                   {"worked_ms", ms_between(frame.started, frame.done)},
                    {"stages_ms", stages},
                    {"not_worked_on",
                     {{"at_source", frame.drops.at_source},

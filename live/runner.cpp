@@ -178,7 +178,7 @@ LiveFramePtr Runner::work(PairPtr pair) {
     frame->rate_hz = static_cast<double>(recent_.size() - 1) /
                      std::chrono::duration<double>(recent_.back() - recent_.front()).count();
   }
-  latencies_.add(std::chrono::duration<double, std::milli>(frame->done - frame->arrived).count());
+  latencies_.add(ms_between(frame->arrived, frame->done));
   return frame;
 }
 

@@ -180,10 +180,6 @@ class Ros2Sink : public live::Sink {
   std::thread thread_;  // of work(); begins when all else is there
 };
 
-double ms_between(live::Clock::time_point earlier, live::Clock::time_point later) {
-  return std::chrono::duration<double, std::milli>(later - earlier).count();
-}
-
 }  // namespace
 
 std::string stats_json(const live::LiveFrame& frame, std::uint64_t skipped) {
@@ -195,8 +191,8 @@ std::string stats_json(const live::LiveFrame& frame, std::uint64_t skipped) {
                                     {"objects", frame.step.frame.objects.list.size()},
                                     {"tracks", frame.step.tracks.list.size()},
                                     {"rate_hz", frame.rate_hz},
-                                    {"waited_ms", ms_between(frame.arrived, frame.started)},
-                                    {"worked_ms", ms_between(frame.started, frame.done)},
+                                    {"waited_ms", live::ms_between(frame.arrived, frame.started)},
+                                    {"worked_ms", live::ms_between(frame.started, frame.done)},
                                     {"stages_ms", stages},
                                     {"dropped",
                                      {{"at_source", frame.drops.at_source},

@@ -31,10 +31,6 @@ Json json(Point3 p) {
   return Json::array({json(p.x), json(p.y), json(p.z)});
 }
 
-double ms_between(Clock::time_point earlier, Clock::time_point later) {
-  return std::chrono::duration<double, std::milli>(later - earlier).count();
-}
-
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
