@@ -42,6 +42,7 @@ inline constexpr std::array kCommands{
     Command{"segment", "find the objects of a stereo pair, or of a folder of pairs",
             "cairn segment left.png right.png --calib calib.txt -o result\n"
             "cairn segment frames/ --html -o results\n"
+            "cairn segment frames/ --ply --ply-objects -o results\n"
             "cairn segment left.png right.png --preset paper --set match.window_size=11\n",
             declare_segment},
     Command{"follow", "follow the camera and the objects through a sequence",

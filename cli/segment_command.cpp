@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/diagnosis/diagnose.hpp>
 #include <cairn/pipeline/segment.hpp>
@@ -30,6 +31,7 @@ struct SegmentOptions {
   std::string output;
   bool json = false;
   bool ply = false;
+  bool ply_objects = false;
   bool depth = false;
   bool grid = false;
   bool html = false;
@@ -152,6 +154,14 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   return io::encode_frame(shown);
 }
 
+/// The files that are made on request and are in metres, by their flags.
+std::array<std::pair<bool, const char*>, 4> metric_outputs(const SegmentOptions& options) {
+  return {{{options.ply, "--ply"},
+           {options.ply_objects, "--ply-objects"},
+           {options.depth, "--depth"},
+           {options.grid, "--grid"}}};
+}
+
 std::string no_metres(const std::string& flag, const io::FrameFiles& files) {
   return flag + ": needs metres, but " + files.left.string() +
          " has no calibration with a baseline; give one with --calib";
@@ -165,8 +175,7 @@ void remove_older_page(const fs::path& folder) {
 
 LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, const Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
-  for (const auto& [asked, name] :
-       {std::pair{options.ply, "--ply"}, {options.depth, "--depth"}, {options.grid, "--grid"}}) {
+  for (const auto& [asked, name] : metric_outputs(options)) {
     if (asked && !loaded.rig) throw Error(no_metres(name, files));
   }
   return loaded;
@@ -193,7 +202,10 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOpt
   if (!folder.empty()) {
     remove_older_page(options.output);
     io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
-                     {.point_cloud = options.ply, .depth = options.depth, .grid = options.grid});
+                     {.point_cloud = options.ply,
+                      .object_clouds = options.ply_objects,
+                      .depth = options.depth,
+                      .grid = options.grid});
     if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
       report.note = "cairn: " + (folder / "disparity.pfm").string() +
                     ": written instead of disparity.png, which cannot hold disparities below 0 or from 256 "
@@ -228,12 +240,11 @@ bool is_folder_of_frames(const fs::path& input, const std::vector<io::FrameFiles
 /// Files that are asked for without a folder for them.
 void require_output(const SegmentOptions& options) {
   if (!options.output.empty()) return;
-  for (const auto& [asked, name] : {std::pair{options.ply, "--ply"},
-                                    {options.depth, "--depth"},
-                                    {options.grid, "--grid"},
-                                    {options.html, "--html"}}) {
+  const auto require = [](bool asked, const char* name) {
     if (asked) throw Error(std::string(name) + ": needs -o DIR, the folder for output");
-  }
+  };
+  for (const auto& [asked, name] : metric_outputs(options)) require(asked, name);
+  require(options.html, "--html");
 }
 
 struct Outcome {
@@ -385,6 +396,8 @@ Work declare_segment(CLI::App& app) {
   app.add_flag("--json", options->json, "objects.json on standard output instead of a table");
   app.add_flag("--ply", options->ply,
                "cloud.ply in DIR: coloured points in metres with their objects; needs a calibration");
+  app.add_flag("--ply-objects", options->ply_objects,
+               "objects/1.ply, 2.ply, ... in DIR: the points of each object; needs a calibration");
   app.add_flag("--depth", options->depth,
                "depth.png (16 bits, mm, 0 = none) and depth.npy (m) in DIR; needs a calibration");
   app.add_flag("--grid", options->grid,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <io/atomic_file.hpp>
 #include <io/point_cloud.hpp>
+#include <map>
 #include <string>
 
 namespace cairn::io {
@@ -36,26 +37,56 @@ std::string header(std::size_t points, bool with_objects) {
   return text + "end_header\n";
 }
 
-}  // namespace
-
-void save_ply(const std::filesystem::path& path, View<const Gray> left, View<const Rgb> left_rgb,
-              View<const float> disparity_px, View<const ObjectId> objects, const StereoRig& rig) {
-  std::string points;
+struct Vertices {
+  std::string bytes;
   std::size_t count = 0;
+
+  void add(Vec3 at, Rgb colour) {
+    for (const float coordinate : {at.x, at.y, at.z}) append(bytes, coordinate);
+    append(bytes, colour);
+    ++count;
+  }
+};
+
+/// visit(x, y, point, colour) for each pixel that has a point, in raster order.
+template <class Visit>
+void for_each_point(View<const Gray> left, View<const Rgb> left_rgb, View<const float> disparity_px,
+                    const StereoRig& rig, const Visit& visit) {
   for (int y = 0; y < disparity_px.height(); ++y) {
     for (int x = 0; x < disparity_px.width(); ++x) {
       if (std::isnan(disparity_px(x, y))) continue;
       const auto point =
           rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px(x, y));
       if (!point) continue;
-      ++count;
-      for (const float coordinate : {point->x, point->y, point->z}) append(points, coordinate);
       const Gray grey = left(x, y);
-      append(points, left_rgb.empty() ? Rgb{grey, grey, grey} : left_rgb(x, y));
-      if (!objects.empty()) append(points, static_cast<std::uint32_t>(number(objects(x, y))));
+      visit(x, y, *point, left_rgb.empty() ? Rgb{grey, grey, grey} : left_rgb(x, y));
     }
   }
-  write_file(path, header(count, !objects.empty()) + points);
+}
+
+}  // namespace
+
+void save_ply(const std::filesystem::path& path, View<const Gray> left, View<const Rgb> left_rgb,
+              View<const float> disparity_px, View<const ObjectId> objects, const StereoRig& rig) {
+  Vertices all;
+  for_each_point(left, left_rgb, disparity_px, rig, [&](int x, int y, Vec3 at, Rgb colour) {
+    all.add(at, colour);
+    if (!objects.empty()) append(all.bytes, static_cast<std::uint32_t>(number(objects(x, y))));
+  });
+  write_file(path, header(all.count, !objects.empty()) + all.bytes);
+}
+
+void save_object_plys(const std::filesystem::path& folder, View<const Gray> left, View<const Rgb> left_rgb,
+                      View<const float> disparity_px, const Objects& objects, const StereoRig& rig) {
+  std::map<ObjectId, Vertices> clouds;
+  for (const Object& object : objects.list) clouds[object.id];
+  for_each_point(left, left_rgb, disparity_px, rig, [&](int x, int y, Vec3 at, Rgb colour) {
+    const auto own = clouds.find(objects.labels(x, y));
+    if (own != clouds.end()) own->second.add(at, colour);
+  });
+  make_folder(folder);
+  for (const auto& [id, cloud] : clouds)
+    write_file(folder / (std::to_string(number(id)) + ".ply"), header(cloud.count, false) + cloud.bytes);
 }
 
 }  // namespace cairn::io

@@ -419,14 +419,50 @@ constexpr std::array kResultFiles{
                  write_file(path, objects_json(r.frame, r.provenance));
                }}};
 
+/// The folder with a file for each object.
+constexpr const char* kObjectClouds = "objects";
+
+bool wants_object_clouds(const Result& r) {
+  return r.extras.object_clouds && r.provenance.rig.has_value();
+}
+
 void write_files(const fs::path& folder, const Result& result) {
   for (const ResultFile& file : kResultFiles) {
     if (file.is_wanted(result)) file.write(folder / file.name, result);
   }
+  if (wants_object_clouds(result)) {
+    save_object_plys(folder / kObjectClouds, result.left, result.left_rgb,
+                     result.frame.disparity.disparity_px, result.frame.objects, *result.provenance.rig);
+  }
+}
+
+/// Whether it has a name that save_object_plys() gives.
+bool is_object_cloud(const fs::path& path) {
+  const std::string name = path.stem().string();
+  return path.extension() == ".ply" &&
+         std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// As replace(); other files in the folder stay.
+void replace_object_clouds(const fs::path& made, const fs::path& folder) {
+  std::vector<fs::path> older;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (is_object_cloud(entry.path())) older.push_back(entry.path());
+  }
+  for (const fs::path& path : older) fs::remove(path);
+  if (!fs::exists(made)) {
+    if (!older.empty()) fs::remove(folder, ignored);  // unless others have files in it
+    return;
+  }
+  fs::create_directory(folder);
+  for (const auto& entry : fs::directory_iterator(made))
+    fs::rename(entry.path(), folder / entry.path().filename());
 }
 
 /// Moves a complete result over an older one, file by file.
 void replace(const fs::path& made, const fs::path& folder) {
+  replace_object_clouds(made / kObjectClouds, folder / kObjectClouds);
   for (const ResultFile& file : kResultFiles) {
     if (fs::exists(made / file.name)) {
       fs::rename(made / file.name, folder / file.name);
@@ -496,6 +532,9 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
   try {
     if (fs::exists(folder)) {
       if (!fs::is_directory(folder)) throw Error(given_folder.string() + ": is a file, expected a folder");
+      const fs::path clouds = folder / kObjectClouds;
+      if (extras.object_clouds && fs::exists(clouds) && !fs::is_directory(clouds))
+        throw Error(clouds.string() + ": is a file, expected a folder");
       const TemporaryFolder made(folder);  // inside: a folder beside might lie on another disk
       write_files(made.path(), {left, left_rgb, frame, provenance, extras});
       replace(made.path(), folder);

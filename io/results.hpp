@@ -50,9 +50,10 @@ void save_confidence(const std::filesystem::path& path, View<const float> confid
 
 /// Optional files of a result.
 struct Extras {
-  bool point_cloud = false;  // cloud.ply, see save_ply(); needs provenance.rig
-  bool depth = false;        // depth.png (16 bits, mm) and depth.npy (m); needs provenance.rig
-  bool grid = false;         // grid.pgm, grid.yaml: the obstacles as a ROS map; also needs a ground
+  bool point_cloud = false;    // cloud.ply, see save_ply(); needs provenance.rig
+  bool object_clouds = false;  // objects/1.ply and so on, see save_object_plys(); needs provenance.rig
+  bool depth = false;          // depth.png (16 bits, mm) and depth.npy (m); needs provenance.rig
+  bool grid = false;           // grid.pgm, grid.yaml: the obstacles as a ROS map; also needs a ground
 };
 
 /// Atomically writes the files of a frame's result as listed in docs/formats.md, as far as the frame has the

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// --html and --ply of the commands: where their files go, and what they refuse. What is in them:
+// --html, --ply and --ply-objects of the commands: where their files go, and what they refuse. What is in them:
 // unit/html_page_test.cpp, unit/point_cloud_test.cpp, cli/page_in_browser.py.
 #include <gtest/gtest.h>
+
+#include <cstring>
+#include <io/results.hpp>
+#include <map>
+#include <support/samples.hpp>
 
 #include "command.hpp"
 
@@ -39,6 +44,66 @@ TEST_F(PageAndCloudTest, AFolderOfFramesHasOnePageAndACloudForEach) {
   EXPECT_FALSE(fs::exists(at("out/a/segment.html")));
 }
 
+/// The points of a .ply of cairn, each with its colour as the file has it; of a whole cloud only those of
+/// objects, by their id.
+std::map<std::int32_t, std::vector<std::string>> points_by_object(const std::string& ply) {
+  constexpr std::size_t kPoint = 15;  // bytes: three floats, three colours
+  const std::size_t end = ply.find("end_header\n") + 11;
+  const std::size_t vertex = ply.find("property int object") < end ? kPoint + 4 : kPoint;
+  std::map<std::int32_t, std::vector<std::string>> points;
+  for (std::size_t at = end; at + vertex <= ply.size(); at += vertex) {
+    std::int32_t object = -1;  // of a file without them
+    if (vertex > kPoint) std::memcpy(&object, ply.data() + at + kPoint, sizeof object);
+    if (object != 0) points[object].push_back(ply.substr(at, kPoint));
+  }
+  return points;
+}
+
+TEST_F(PageAndCloudTest, CloudsOfObjectsAreTogetherTheLabelledPointsOfTheWhole) {
+  const std::string in = samples::folder("four_in_a_row").string();
+  ASSERT_EQ(run({"segment", in, "--ply", "--ply-objects", "-o", path("out")}).code, 0);
+  const auto whole = points_by_object(content(at("out/cloud.ply")));
+  ASSERT_GE(whole.size(), 2U);
+  for (const auto& [object, points] : whole) {
+    const auto own = points_by_object(content(at("out/objects") / (std::to_string(object) + ".ply")));
+    ASSERT_EQ(own.size(), 1U) << object;
+    EXPECT_EQ(own.at(-1), points) << object;
+  }
+  const auto files = std::distance(fs::directory_iterator(at("out/objects")), fs::directory_iterator());
+  EXPECT_EQ(static_cast<std::size_t>(files), io::load_confidences(at("out/objects.json")).size());
+}
+
+TEST_F(PageAndCloudTest, CloudsOfObjectsOfAnOlderResultGoAndOtherFilesStay) {
+  const std::string in = samples::folder("four_in_a_row").string();
+  ASSERT_EQ(run({"segment", in, "--ply-objects", "-o", path("out")}).code, 0);
+  EXPECT_FALSE(fs::exists(at("out/cloud.ply")));
+  const auto before = everything();
+  write(at("out/objects/900.ply"), "of an older result");
+  ASSERT_EQ(run({"segment", in, "--ply-objects", "-o", path("out")}).code, 0);
+  EXPECT_EQ(everything(), before);
+  write(at("out/objects/chair.ply"), "mine");
+  ASSERT_EQ(run({"segment", in, "-o", path("out")}).code, 0);
+  EXPECT_EQ(content(at("out/objects/chair.ply")), "mine");
+  EXPECT_FALSE(fs::exists(at("out/objects/1.ply")));
+  fs::remove(at("out/objects/chair.ply"));
+  ASSERT_EQ(run({"segment", in, "--ply-objects", "-o", path("out")}).code, 0);
+  ASSERT_EQ(run({"segment", in, "-o", path("out")}).code, 0);
+  EXPECT_FALSE(fs::exists(at("out/objects")));
+}
+
+TEST_F(PageAndCloudTest, CloudsOfObjectsNeedAFolderOfTheirOwn) {
+  const std::string in = samples::folder("four_in_a_row").string();
+  ASSERT_EQ(run({"segment", in, "-o", path("out")}).code, 0);
+  write(at("out/objects"), "a file");
+  refuses({"segment", in, "--ply-objects", "-o", path("out")},
+          {path("out/objects"), "is a file, expected a folder"});
+  write(at("file"), "");
+  refuses({"segment", in, "--ply-objects", "-o", path("file")},
+          {path("file"), "is a file, expected a folder"});
+  ASSERT_EQ(run({"segment", in, "-o", path("out")}).code, 0);
+  EXPECT_EQ(content(at("out/objects")), "a file");
+}
+
 TEST_F(PageAndCloudTest, APageHasTheRightPictureWhereOneWasMatched) {
   pair_in("frame");
   write(at("given.pfm"), pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
@@ -64,11 +129,13 @@ TEST_F(PageAndCloudTest, BothNeedAFolderToWriteInto) {
   pair_in("frame");
   refuses({"segment", path("frame"), "--html"}, {"--html", "-o DIR"});
   refuses({"segment", path("frame"), "--ply"}, {"--ply", "-o DIR"});
+  refuses({"segment", path("frame"), "--ply-objects"}, {"--ply-objects", "-o DIR"});
 }
 
 TEST_F(PageAndCloudTest, ACloudNeedsACalibration) {
   const auto pair = pair_in("frame");
-  refuses({"segment", path("frame"), "--ply", "-o", path("out")}, {"--ply", "left.png", "--calib"});
+  for (const char* flag : {"--ply", "--ply-objects"})
+    refuses({"segment", path("frame"), flag, "-o", path("out")}, {flag, "left.png", "--calib"});
   refuses(with("disparity", pair, {"--ply", path("cloud.ply")}), {"--ply", "--calib"});
 }
 

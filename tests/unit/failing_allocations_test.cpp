@@ -265,13 +265,12 @@ int fail_each_write(const char* name, const std::function<void(const fs::path&)>
 }
 
 TEST(WriteWithoutMemory, AFolderOfResultsIsWholeOrNotThere) {
-  EXPECT_GT(
-      fail_each_write(
-          "result",
-          [](const fs::path& path) {
-            io::write_result(path, made().left, {}, made().frame, made().provenance, {true, true, true});
-          }),
-      100);
+  EXPECT_GT(fail_each_write("result",
+                            [](const fs::path& path) {
+                              io::write_result(path, made().left, {}, made().frame, made().provenance,
+                                               {true, true, true, true});
+                            }),
+            100);
 }
 
 TEST(WriteWithoutMemory, DisparitiesCloudsAndPagesAreWholeOrNotThere) {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cairn/core/error.hpp>
 #include <cmath>
@@ -131,6 +132,35 @@ TEST_F(PointCloud, LeavesOutRefusedPixelsAndThoseAtInfinity) {
     EXPECT_TRUE(std::isfinite(v.at.z));
     EXPECT_GT(v.at.z, 0);
   }
+}
+
+TEST_F(PointCloud, OfEachObjectHasThePointsThatTheWholeGivesIt) {
+  disparity_(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  Objects objects;
+  objects.labels = Image<ObjectId>(kSize);
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) objects.labels(x, y) = x < 4 ? ObjectId{1 + x / 2} : ObjectId::none;
+  }
+  objects.list.resize(3);
+  for (int id = 1; id <= 3; ++id) objects.list[static_cast<std::size_t>(id - 1)].id = ObjectId{id};
+  const std::filesystem::path folder = path_.string() + ".d";
+  save_ply(path_, left_, rgb_, disparity_, objects.labels, kRig);
+  save_object_plys(folder, left_, rgb_, disparity_, objects, kRig);
+  const std::vector<Vertex> all = read_ply(path_).vertices;
+  for (int id = 1; id <= 3; ++id) {
+    const Ply own = read_ply(folder / (std::to_string(id) + ".ply"));
+    EXPECT_EQ(own.properties.size(), 6U);
+    std::vector<Vertex> expected;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(expected),
+                 [&](const Vertex& v) { return v.object == id; });
+    ASSERT_EQ(own.vertices.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(own.vertices[i].at, expected[i].at);
+      EXPECT_EQ(own.vertices[i].colour, expected[i].colour);
+    }
+    EXPECT_EQ(own.vertices.size(), id == 1 ? 5U : id == 2 ? 6U : 0U);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST_F(PointCloud, IsGreyWithoutColourAndHasNoObjectsWithoutLabels) {
