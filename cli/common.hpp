@@ -66,6 +66,10 @@ void add_input_options(CLI::App& app, InputOptions& options);
 
 /// The frames from the options: one pair, one folder, or a folder of folders.
 std::vector<io::FrameFiles> frames_of(const InputOptions& options);
+/// The stamp of each frame in ns, where the folder's files or the frames' names have stamps. Files of stamps
+/// that do not fit the frames are reported on stderr, and no frame has a stamp then.
+std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
+                                                   const std::vector<io::FrameFiles>& frames);
 /// Throws Error if the frame has no right image.
 const std::filesystem::path& right_of(const io::FrameFiles& files);
 

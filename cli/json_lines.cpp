@@ -95,8 +95,8 @@ std::string JsonLines::line_of(const live::LiveFrame& frame) const {
     return io::step_json(frame.step, frame.pair->name, marked);
   }
   Json line{{"name", frame.pair->name}, {"stamp_ns", frame.step.stamp.ns}};
-  line.update(Json::parse(
-      io::objects_json(frame.step.frame, {preset_, frame.config->segmentation, rig_, {}, false})));
+  line.update(Json::parse(io::objects_json(
+      frame.step.frame, {preset_, frame.config->segmentation, rig_, {}, false, frame.step.stamp.ns})));
   return line.dump() + "\n";
 }
 

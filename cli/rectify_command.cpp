@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
@@ -30,6 +31,19 @@ void save(const fs::path& path, const io::Picture& picture) {
   }
 }
 
+/// Of a folder of frames whose stamps are all known: in ascending order, which is that of the frames.
+void save_stamps(const fs::path& path, const std::vector<std::optional<std::int64_t>>& stamps) {
+  std::vector<std::int64_t> known;
+  for (const auto& stamp : stamps) {
+    if (stamp) known.push_back(*stamp);
+  }
+  if (known.size() < 2 || known.size() < stamps.size()) return;
+  std::sort(known.begin(), known.end());
+  std::string text = "# ns\n";
+  for (const std::int64_t stamp : known) text += std::to_string(stamp) + "\n";
+  io::write_file(path, text);
+}
+
 int rectify(const RectifyOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   const io::Rectifier rectify_pair(io::load_raw_calibration(options.input.calib));
@@ -58,6 +72,7 @@ int rectify(const RectifyOptions& options) {
     io::save_calibration(folder / "calib.txt", rectify_pair.rig(), size,
                          io::disparities_down_to(options.nearest_m, rectify_pair.rig(), size.width));
   }
+  save_stamps(fs::path(options.output) / "stamps.txt", stamps_of(options.input, frames));
   progress.clear();
   std::cout << "rectified " << frames.size() << (frames.size() == 1 ? " pair into " : " pairs into ")
             << options.output << ": left.png, right.png, calib.txt\n";

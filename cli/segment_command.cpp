@@ -182,16 +182,17 @@ LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, con
 }
 
 /// One frame from its pictures to results.
-Report work_on(LoadedFrame loaded, const io::FrameFiles& files, const SegmentOptions& options,
-               const fs::path& folder, bool one_of_many, bool may_measure, Exec& exec) {
+Report work_on(LoadedFrame loaded, const io::FrameFiles& files, std::optional<std::int64_t> stamp_ns,
+               const SegmentOptions& options, const fs::path& folder, bool one_of_many, bool may_measure,
+               Exec& exec) {
   Report report;
   report.remark = remark_on_calibration(loaded);
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
   report.totals = {1, frame.objects.list.size(), valid_share(frame.disparity), frame.ground.plane ? 1 : 0,
                    watch.total_ms()};
-  const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, watch.times(),
-                                  loaded.given.has_value()};
+  const io::Provenance provenance{
+      loaded.preset, loaded.config, loaded.rig, watch.times(), loaded.given.has_value(), stamp_ns};
   const DiagnosisConfig limits;
   report.findings = diagnose(frame, loaded.left.gray, loaded.right, loaded.rig, loaded.config, limits);
   report.is_doubtful = !loaded.given && is_doubtful(frame);
@@ -277,6 +278,7 @@ Outcome segment_all(const SegmentOptions& options) {
   Exec exec = make_exec(options.exec);
   const bool many = is_folder_of_frames(options.input.left, frames);
   for (const io::FrameFiles& frame : frames) keep_truth(result_folder(options, frame, many));
+  const auto stamps = stamps_of(options.input, frames);
   const Progress progress(frames.size());
   std::vector<io::EncodedFrame> encoded;
   std::set<std::string> remarks;
@@ -298,8 +300,8 @@ Outcome segment_all(const SegmentOptions& options) {
       continue;
     }
     try {
-      Report report =
-          work_on(std::move(*loaded), frames[i], options, folder, many, doubtful < kMostMeasured, exec);
+      Report report = work_on(std::move(*loaded), frames[i], stamps[i], options, folder, many,
+                              doubtful < kMostMeasured, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
       totals += report.totals;
       progress.clear();

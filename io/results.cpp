@@ -482,6 +482,7 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   Json j;
   j["cairn"] = CAIRN_VERSION;
   j["schema"] = kObjectsSchema;
+  j["stamp_ns"] = provenance.stamp_ns ? Json(*provenance.stamp_ns) : Json(nullptr);
   j["image"] = size_json(frame);
   j["rig"] = json(provenance.rig);
   j["preset"] = provenance.preset;
@@ -495,11 +496,10 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   return j.dump(1) + "\n";
 }
 
-std::string frame_row(const std::string& name, std::optional<std::int64_t> stamp_ns, const Frame& frame,
-                      const Provenance& provenance) {
+std::string frame_row(const std::string& name, const Frame& frame, const Provenance& provenance) {
   Json j;
   j["frame"] = name;
-  if (stamp_ns) j["stamp_ns"] = *stamp_ns;
+  if (provenance.stamp_ns) j["stamp_ns"] = *provenance.stamp_ns;
   j["image"] = size_json(frame);
   j["rig"] = json(provenance.rig);
   add_findings(j, frame, provenance);

@@ -23,6 +23,7 @@ struct Provenance {
   std::optional<StereoRig> rig;
   std::vector<StageTime> timings;
   bool external_disparity = false;  // the disparity was given, not matched
+  std::optional<std::int64_t> stamp_ns = {};
 };
 
 /// All options that `config` reads by section, as a JSON object.
@@ -30,7 +31,7 @@ std::string config_json(const Config& config);
 
 /// The version of objects.json: a reader of 1.x may rely on everything in docs/schema/objects.schema.json for
 /// 1.0; additions increase the number after the dot.
-inline constexpr const char* kObjectsSchema = "1.1";
+inline constexpr const char* kObjectsSchema = "1.2";
 
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);
@@ -38,8 +39,7 @@ std::string objects_json(const Frame& frame, const Provenance& provenance);
 /// A frame as one line of a run (docs/batch.md), without a newline: its name, its stamp if it has one, and
 /// objects.json except for what is common to the run (version, preset, options) and the times, so that the
 /// line depends on images, calibration and options only.
-std::string frame_row(const std::string& name, std::optional<std::int64_t> stamp_ns, const Frame& frame,
-                      const Provenance& provenance);
+std::string frame_row(const std::string& name, const Frame& frame, const Provenance& provenance);
 
 /// The disparity file of a result: "disparity.png", or "disparity.pfm" if 16 bits cannot hold the search
 /// range (for a given disparity: its values).

@@ -202,8 +202,9 @@ void Recording::add_objects(const LiveFrame& frame, const ros::Header& header) {
     write(frames_, stamp, ros::String{io::step_json(frame.step, frame.pair->name, marked)});
   } else {
     write(frames_, stamp,
-          ros::String{io::objects_json(frame.step.frame,
-                                       {run_.preset, frame.config->segmentation, run_.rig, {}, false})});
+          ros::String{io::objects_json(
+              frame.step.frame,
+              {run_.preset, frame.config->segmentation, run_.rig, {}, false, frame.step.stamp.ns})});
   }
   Json stages = Json::object();
   for (const io::StageTime& stage : frame.stages) stages[stage.stage] = stage.milliseconds;

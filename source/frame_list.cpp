@@ -102,7 +102,9 @@ std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>
   constexpr std::size_t kFewestDigits = 16;
   std::vector<Stamp> stamps;
   for (const std::string& name : names) {
-    const std::optional<Stamp> stamp = name.size() >= kFewestDigits ? parse_stamp(name) : std::nullopt;
+    // A number with zeros before it counts frames.
+    const bool may_be = name.size() >= kFewestDigits && name.front() != '0';
+    const std::optional<Stamp> stamp = may_be ? parse_stamp(name) : std::nullopt;
     if (!stamp || !std::all_of(name.begin(), name.end(), is_digit)) return std::nullopt;
     stamps.push_back(*stamp);
   }
@@ -307,17 +309,56 @@ FrameList list_euroc(const fs::path& camera, const SourceOptions& options) {
   return list;
 }
 
+struct Stamps {
+  std::vector<Stamp> all;
+  std::string from;
+};
+
+/// Stamps of frames in folders of their own.
+std::optional<Stamps> stamps_of(const fs::path& source, const std::vector<std::string>& names) {
+  if (const auto path = first_file({source / "stamps.txt", source / "times.txt"}))
+    return Stamps{stamps_by_line(*path, names), path->string()};
+  for (const char* name : {"trajectory.csv", "odometry.csv"}) {
+    if (!is_file(source / name)) continue;
+    if (const auto rows = load_frame_stamps(source / name))
+      return Stamps{stamps_by_frame(source / name, *rows, names), (source / name).string()};
+  }
+  if (auto stamps = stamps_in_names(names)) return Stamps{std::move(*stamps), "the frames' names"};
+  return std::nullopt;
+}
+
+/// The images of the left camera in a folder of their own.
+Side left_side(const fs::path& source, const fs::path& folder) {
+  Side left = side_in(folder);
+  if (const auto path = first_file({source / "stamps.txt", source / "times.txt"})) {
+    left.stamps = stamps_by_line(*path, stems_of(left.files));
+    left.stamps_from = path->string();
+  }
+  return left;
+}
+
+void sort_by_name(std::vector<FrameFiles>& frames) {
+  std::sort(frames.begin(), frames.end(),
+            [](const FrameFiles& a, const FrameFiles& b) { return in_natural_order(a.name, b.name); });
+}
+
+std::vector<std::string> names_of(const std::vector<FrameFiles>& frames) {
+  std::vector<std::string> names;
+  for (const FrameFiles& files : frames) names.push_back(files.name);
+  return names;
+}
+
+bool is_in_two_folders(const FrameFiles& frame) {
+  return frame.left.parent_path() != frame.folder;
+}
+
 /// KITTI's raw recordings stamp each camera; its odometry benchmark has times.txt for both.
 FrameList list_two_subfolders(const fs::path& source, const std::vector<FrameFiles>& frames,
                               const SourceOptions& options) {
   const fs::path left_folder = frames.front().left.parent_path();
   const fs::path right_folder = frames.front().expected_right.parent_path();
-  Side left = side_in(left_folder);
+  const Side left = left_side(source, left_folder);
   const Side right = is_folder(right_folder) ? Side{images_in(right_folder), {}, {}} : Side{};
-  if (const auto path = first_file({source / "stamps.txt", source / "times.txt"})) {
-    left.stamps = stamps_by_line(*path, stems_of(left.files));
-    left.stamps_from = path->string();
-  }
   const StampPairs pairs = pair_by_keys(stems_of(left.files), stems_of(right.files));
   if (pairs.pairs.empty()) {
     throw Error(left_folder.string() + ": no image has a right one, expected " +
@@ -333,27 +374,6 @@ FrameList list_two_subfolders(const fs::path& source, const std::vector<FrameFil
   return paired(left, right, pairs, options);
 }
 
-/// Stamps of frames in folders of their own.
-void give_stamps(const fs::path& source, const std::vector<std::string>& names, const SourceOptions& options,
-                 FrameList& list, std::vector<Stamp>& stamps) {
-  if (const auto path = first_file({source / "stamps.txt", source / "times.txt"})) {
-    list.stamps_from = path->string();
-    stamps = stamps_by_line(*path, names);
-    return;
-  }
-  for (const char* name : {"trajectory.csv", "odometry.csv"}) {
-    if (!is_file(source / name)) continue;
-    const auto rows = load_frame_stamps(source / name);
-    if (!rows) continue;
-    list.stamps_from = (source / name).string();
-    stamps = stamps_by_frame(source / name, *rows, names);
-    return;
-  }
-  const double rate = rate_of(options);
-  list.stamps_from = rate_text(rate);
-  for (std::size_t i = 0; i < names.size(); ++i) stamps.push_back(stamp_at(i, rate));
-}
-
 FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& frames,
                       const SourceOptions& options) {
   if (std::none_of(frames.begin(), frames.end(), [](const FrameFiles& files) { return files.right; })) {
@@ -363,10 +383,9 @@ FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& fra
                      : ", expected " + frames.front().expected_right.string()));
   }
   FrameList list;
-  std::vector<std::string> names;
-  for (const FrameFiles& files : frames) names.push_back(files.name);
-  std::vector<Stamp> stamps;
-  give_stamps(source, names, options, list, stamps);
+  const std::optional<Stamps> stamps = stamps_of(source, names_of(frames));
+  const double rate = rate_of(options);
+  list.stamps_from = stamps ? stamps->from : rate_text(rate);
   list.calib = calibration_in(source);
   list.grey_cameras = frames.front().grey_cameras;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -375,7 +394,8 @@ FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& fra
         remark(list.remarks, {"left image without a right one", 1, frames[i].name, true, false});
       continue;
     }
-    list.frames.push_back({frames[i].name, i, frames[i].left, *frames[i].right, frames[i].calib, stamps[i]});
+    list.frames.push_back({frames[i].name, i, frames[i].left, *frames[i].right, frames[i].calib,
+                           stamps ? stamps->all[i] : stamp_at(i, rate)});
   }
   return list;
 }
@@ -386,10 +406,9 @@ FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
   if (const std::optional<fs::path> camera = euroc_camera_in(folder))
     return finished(list_euroc(*camera, options), options, folder.string());
   std::vector<FrameFiles> frames = find_frames(folder);
-  std::sort(frames.begin(), frames.end(),
-            [](const FrameFiles& a, const FrameFiles& b) { return in_natural_order(a.name, b.name); });
+  sort_by_name(frames);
   const FrameFiles& first = frames.front();
-  const bool in_two_folders = first.left.parent_path() != first.folder;
+  const bool in_two_folders = is_in_two_folders(first);
   FrameList list =
       in_two_folders ? list_two_subfolders(folder, frames, options) : list_frames(folder, frames, options);
   if (in_two_folders) {
@@ -397,6 +416,21 @@ FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
     list.grey_cameras = first.grey_cameras;
   }
   return finished(std::move(list), options, folder.string());
+}
+
+std::map<fs::path, Stamp> stamps_in(const fs::path& folder, std::vector<FrameFiles> frames) {
+  sort_by_name(frames);
+  std::map<fs::path, Stamp> by_image;
+  if (is_in_two_folders(frames.front())) {
+    const Side left = left_side(folder, frames.front().left.parent_path());
+    if (!left.stamps) return by_image;
+    check_rising(*left.stamps, stems_of(left.files), left.stamps_from);
+    for (std::size_t i = 0; i < left.files.size(); ++i) by_image[left.files[i]] = (*left.stamps)[i];
+  } else if (const std::optional<Stamps> stamps = stamps_of(folder, names_of(frames))) {
+    check_rising(stamps->all, names_of(frames), stamps->from);
+    for (std::size_t i = 0; i < frames.size(); ++i) by_image[frames[i].left] = stamps->all[i];
+  }
+  return by_image;
 }
 
 FrameList list_two(const std::string& left, const std::string& right, const SourceOptions& options) {

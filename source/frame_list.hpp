@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "../io/dataset.hpp"
 #include "sequence.hpp"
 
 /// Lists the files of a source before any image is decoded; internal to source.
@@ -34,6 +36,11 @@ struct FrameList {
 FrameList list_folder(const std::filesystem::path& folder, const SourceOptions& options);
 /// The frames of two folders of images, or of two patterns such as left_%04d.png.
 FrameList list_two(const std::string& left, const std::string& right, const SourceOptions& options);
+
+/// The stamps of the frames of a folder, by the path of the left image: from files as for list_folder(), or
+/// from the frames' names; empty if there are none. Throws Error if a file of stamps does not fit the frames, or as check_rising().
+std::map<std::filesystem::path, Stamp> stamps_in(const std::filesystem::path& folder,
+                                                 std::vector<FrameFiles> frames);
 
 /// Whether the name is a pattern: left_%04d.png.
 bool is_pattern(const std::string& name);

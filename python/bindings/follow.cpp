@@ -225,7 +225,8 @@ class PyFollower {
       return std::make_shared<Step>(follower_.next(pair, stamp, prior, known));
     });
     made->json = io::step_json(*made->step, std::to_string(made->step->index));
-    io::Provenance provenance{preset_, config().segmentation, calibration_.calibration.rig, {}};
+    io::Provenance provenance{preset_, config().segmentation, calibration_.calibration.rig, {},
+                              false,   made->step->stamp.ns};
     made->frame = frame_over(made->step, std::move(l), std::move(provenance));
     return made;
   }
@@ -286,7 +287,8 @@ class Following {
       throw py::stop_iteration();
     }
     const py::object left = picture_array(std::move(frame->left));
-    io::Provenance provenance{preset_, run_->config().segmentation, source_->rig(), {}};
+    io::Provenance provenance{preset_, run_->config().segmentation, source_->rig(), {},
+                              false,   made->step->stamp.ns};
     made->frame = frame_over(made->step, Picture(left, "left", false, {}), std::move(provenance));
     return made;
   }

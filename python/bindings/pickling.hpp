@@ -93,7 +93,7 @@ CAIRN_PARTS(ObstacleGrid, cell_size, width, height, origin_x, origin_y, cells)
 CAIRN_PARTS(Frame, disparity, ground, floor, by_intensity, by_disparity, fusion, superpixels, groups, objects,
             space, left_out, epipolar, confidence)
 CAIRN_PARTS(io::StageTime, stage, milliseconds)
-CAIRN_PARTS(io::Provenance, preset, config, rig, timings, external_disparity)
+CAIRN_PARTS(io::Provenance, preset, config, rig, timings, external_disparity, stamp_ns)
 CAIRN_PARTS(DisparityErrors, known, matched, bad, absolute_sum, square_sum, square_sum_within_1)
 CAIRN_PARTS(TrueObjectScore, id, pixel_count, found, iou, boundary_f, over_segmented, under_segmented)
 CAIRN_PARTS(FoundObjectScore, id, pixel_count, best, iou, share_on_objects, mostly_dont_care, phantom)

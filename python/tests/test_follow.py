@@ -62,6 +62,7 @@ def test_pair_by_pair_is_the_same_as_the_sequence(steps, pairs, rig):
         np.testing.assert_array_equal(step.map_from_camera, steps[i].map_from_camera)
         assert step.frame.to_json().split('"objects"')[1] == steps[i].frame.to_json().split('"objects"')[1]
         assert (step.stamp_ns, step.index) == (steps[i].stamp_ns, i)
+        assert json.loads(step.frame.to_json())["stamp_ns"] == step.stamp_ns
 
 
 def test_a_step_shows_the_camera_and_what_it_sees(steps):

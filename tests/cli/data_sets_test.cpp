@@ -20,6 +20,10 @@ class DataSets : public CommandTest {
       fs::copy_file(from, at(to));
     }
   }
+  /// objects.json's stamp of this frame in out/.
+  [[nodiscard]] Json stamp_of(const std::string& frame) const {
+    return Json::parse(content(at("out/" + frame + "/objects.json"))).at("stamp_ns");
+  }
   [[nodiscard]] double baseline_of(const std::string& result) const {
     return Json::parse(content(at(result + "/objects.json"))).at("rig").at("baseline_m").get<double>();
   }
@@ -109,6 +113,52 @@ TEST_F(DataSets, EurocIsRectifiedByItsSensors) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(content(at("out/calib.txt")).find("baseline=0.11"), std::string::npos);
   EXPECT_EQ(run({"segment", path("out")}).code, 0);
+}
+
+TEST_F(DataSets, StampsOfAFolderAreInItsResults) {
+  for (const std::string name : {"9", "10", "11"})
+    pair_as("frames/" + name + "/left.png", "frames/" + name + "/right.png");
+  ASSERT_EQ(run({"segment", path("frames"), "-o", path("out")}).code, 0);
+  EXPECT_TRUE(stamp_of("9").is_null());
+  write(at("frames/times.txt"), "1.5\n1.75\n1403715274.312143104\n");  // in natural order
+  const Outcome outcome = run({"segment", path("frames"), "-o", path("out")});
+  EXPECT_EQ(outcome.err.find("times.txt"), std::string::npos) << outcome.err;
+  EXPECT_EQ(stamp_of("9"), 1'500'000'000);
+  EXPECT_EQ(stamp_of("10"), 1'750'000'000);
+  EXPECT_EQ(stamp_of("11"), 1'403'715'274'312'143'104);
+}
+
+TEST_F(DataSets, StampsThatDoNotFitAreReportedAndLeftOut) {
+  for (const std::string name : {"a", "b"})
+    pair_as("frames/" + name + "/left.png", "frames/" + name + "/right.png");
+  for (const auto& [stamps, word] : {std::pair{"1.5\n", "has 1 stamps"},
+                                     {"1403715274\n1403715275\n", "less than 1 us"},
+                                     {"2.5\n1.5\n", "frame b"},
+                                     {"2.5\nsoon\n", "times.txt:2"}}) {
+    write(at("frames/times.txt"), stamps);
+    const Outcome outcome = run({"segment", path("frames"), "-o", path("out")});
+    EXPECT_EQ(outcome.code, 0) << stamps;
+    EXPECT_TRUE(outcome.err.starts_with("cairn: " + path("frames/times.txt"))) << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("; the results have no stamps\n"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(stamp_of("a").is_null()) << stamps;
+  }
+}
+
+TEST_F(DataSets, StampsThatAreTheImagesNamesAreInTheResults) {
+  for (const std::string name : {"1403636579763555584", "1403636579813555456"}) {
+    pair_as("kitti/image_2/" + name + ".png", "kitti/image_3/" + name + ".png");
+    pair_as("folders/left/" + name + ".png", "folders/right/" + name + ".png");
+    pair_as("frames/" + name + "/left.png", "frames/" + name + "/right.png");
+  }
+  pair_as("counted/0000000000000007/left.png", "counted/0000000000000007/right.png");
+  for (const std::string in : {"kitti", "folders", "frames"}) {
+    ASSERT_EQ(run({"segment", path(in), "-o", path("out")}).code, 0) << in;
+    EXPECT_EQ(stamp_of("1403636579763555584"), 1'403'636'579'763'555'584) << in;
+    EXPECT_EQ(stamp_of("1403636579813555456"), 1'403'636'579'813'555'456) << in;
+  }
+  ASSERT_EQ(run({"segment", path("counted"), "-o", path("out")}).code, 0);
+  EXPECT_TRUE(stamp_of("0000000000000007").is_null());
 }
 
 }  // namespace

@@ -139,14 +139,19 @@ TEST_F(RawCameras, RefuseTheCalibrationOfARectifiedPair) {
 
 using Rectify = CommandTest;
 
-TEST_F(Rectify, WritesTheDisparitiesDownToTheNearestDistance) {
-  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+/// Cameras of 160 x 96 px that need no rectification.
+io::RawCalibration aligned_cameras() {
   io::RawCalibration raw{{160, 96}, {}, {}, {}, {}};
   raw.left.matrix = raw.right.matrix = {200, 0, 79.5, 0, 200, 47.5, 0, 0, 1};
   raw.left.rotation = raw.right.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   raw.left.projection = {200, 0, 79.5, 0, 0, 200, 47.5, 0, 0, 0, 1, 0};
   raw.right.projection = {200, 0, 79.5, -20, 0, 200, 47.5, 0, 0, 0, 1, 0};
-  io::save_raw_calibration(at("raw.yaml"), raw, {});
+  return raw;
+}
+
+TEST_F(Rectify, WritesTheDisparitiesDownToTheNearestDistance) {
+  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+  io::save_raw_calibration(at("raw.yaml"), aligned_cameras(), {});
   const auto pair = pair_in("raw", {160, 96});
   const auto range = [&](const std::vector<std::string>& more) {
     const Outcome outcome =
@@ -160,6 +165,37 @@ TEST_F(Rectify, WritesTheDisparitiesDownToTheNearestDistance) {
   EXPECT_EQ(run({"segment", path("out")}).code, 0);
   refuses(with("rectify", pair, {"--calib", path("raw.yaml"), "--nearest", "0", "-o", path("other")}),
           {"--nearest"});
+}
+
+TEST_F(Rectify, StampsOfEurocAndOfAFileGoOn) {
+  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+  io::save_raw_calibration(at("raw.yaml"), aligned_cameras(), {});
+  const auto pair = pair_in("pair", {160, 96});
+  const auto copy = [&](std::size_t side, const fs::path& to) {
+    fs::create_directories(to.parent_path());
+    fs::copy_file(pair.at(side), to);
+  };
+  const std::vector<std::string> stamps{"1403636579763555584", "1403636579813555456"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      copy(side, at("mav0/cam" + std::to_string(side) + "/data/" + stamps[i] + ".png"));
+      copy(side, at("named/" + std::to_string(i + 9)) / (side == 0 ? "left.png" : "right.png"));
+    }
+  }
+  write(at("named/times.txt"), "1403636579.763555584\n1403636579.813555456\n");
+  for (const char* source : {"mav0", "named"}) {
+    const std::string rectified = path(std::string("of_") + source);
+    Outcome outcome = run({"rectify", path(source), "--calib", path("raw.yaml"), "-o", rectified});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(content(fs::path(rectified) / "stamps.txt"), "# ns\n" + stamps[0] + "\n" + stamps[1] + "\n");
+    const std::string out = path(std::string("out_") + source);
+    outcome = run({"segment", rectified, "-o", out});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::string last = std::string(source) == "mav0" ? stamps[1] : "10";
+    EXPECT_NE(content(fs::path(out) / last / "objects.json").find("\"stamp_ns\": " + stamps[1]),
+              std::string::npos)
+        << source;
+  }
 }
 
 TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {

@@ -223,6 +223,15 @@ TEST(SequenceOfFolders, TakesStampsFromAFileATableOrTheRate) {
   EXPECT_TRUE(frames[2].after_gap);
 }
 
+TEST(SequenceOfFolders, NamedByTheirStampsHasThem) {
+  const TemporaryFolder folder;
+  save_frame(folder, "1403636579763555584", 0);
+  save_frame(folder, "1403636579813555456", 1);
+  const auto sequence = open(folder);
+  EXPECT_EQ(sequence->stamps_from(), "the frames' names");
+  EXPECT_EQ(stamps_of(all_of(*sequence)), (Numbers{1403636579763555584, 1403636579813555456}));
+}
+
 TEST(SequenceOfFolders, DeliversTheFramesOfARangeOnly) {
   const TemporaryFolder folder;
   save_frames(folder, 6);
