@@ -178,7 +178,7 @@ struct TrackRows::State {
         return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
       const io::SequenceFrame frame = *std::exchange(read_ahead, std::nullopt);
       const Step step = run->next(frame);
-      auto line = batch::Json::parse(io::step_json(step, name, run->marked()));
+      auto line = batch::Json::parse(io::step_json(step, name, run->marked(), frame.frame_id));
       line["frame"] = name;
       line.erase("name");
       return line.dump();

@@ -291,7 +291,7 @@ struct Outputs {
 
 void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& frame,
           const FollowOptions& options, Outputs& outputs, Run& run) {
-  if (outputs.files) outputs.files->add(step, frame.name, marked);
+  if (outputs.files) outputs.files->add(step, frame.name, marked, frame.frame_id);
   if (outputs.page) {
     outputs.page->add(
         io::encode_step(step, frame.name, frame.left.gray, frame.left.rgb, run.milliseconds.back(), marked));
@@ -303,7 +303,7 @@ void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& f
     io::save_png(folder / "tracks.png", drawn);
   }
   if (options.json_lines) {
-    std::cout << io::step_json(step, frame.name, marked) << std::flush;
+    std::cout << io::step_json(step, frame.name, marked, frame.frame_id) << std::flush;
   } else {
     std::cout << line_of(step, frame.name) << "\n";
   }

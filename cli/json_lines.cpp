@@ -92,12 +92,13 @@ std::string JsonLines::line_of(const live::LiveFrame& frame) const {
     Landmarked marked;
     marked.tracks = frame.landmarks;
     marked.events = frame.events;
-    return io::step_json(frame.step, frame.pair->name, marked);
+    return io::step_json(frame.step, frame.pair->name, marked, frame.pair->frame_id);
   }
   Json line{{"name", frame.pair->name}, {"stamp_ns", frame.step.stamp.ns}};
+  if (!frame.pair->frame_id.empty()) line["frame_id"] = frame.pair->frame_id;
   line.update(Json::parse(io::objects_json(
       frame.step.frame, {preset_, frame.config->segmentation, rig_, {}, false, frame.step.stamp.ns})));
-  return line.dump() + "\n";
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void JsonLines::work() {

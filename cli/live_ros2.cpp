@@ -12,7 +12,8 @@ void add_ros2_options(CLI::App& app, Ros2CommandOptions& options) {
       app.add_option("--ros2", options.name_space, "namespace of published ROS 2 topics (default: cairn)")
           ->type_name("NAME")
           ->expected(0, 1);
-  app.add_option("--ros2-frame", options.frame, "frame_id of the left camera (default: cairn_camera)")
+  app.add_option("--ros2-frame", options.frame,
+                 "frame_id of the left camera (default: that of the source, else cairn_camera)")
       ->type_name("NAME");
   app.add_option("--ros2-holes", options.holes, "value of holes: nan (default) or ros (min_disparity - 1)")
       ->type_name("NAME");
@@ -28,7 +29,7 @@ std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, co
     throw Error("--ros2-holes: found " + options.holes + ", expected nan or ros");
   live::Ros2Options how;
   if (!options.name_space.empty()) how.name_space = options.name_space;
-  if (!options.frame.empty()) how.frames.camera = options.frame;
+  how.camera_frame = options.frame;
   how.marks_holes_as_ros = options.holes == "ros";
   return live::publish_ros2(how, source.rig());
 }

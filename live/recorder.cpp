@@ -50,7 +50,7 @@ bool is_same(View<const Gray> a, View<const Gray> b) {
 class Recording {
  public:
   Recording(const std::filesystem::path& path, const RecordedRun& run, const RecorderOptions& options)
-      : run_(run), what_(options.what), names_(options.names), file_(path) {
+      : run_(run), what_(options.what), file_(path) {
     file_.metadata("cairn", {{"version", CAIRN_VERSION},
                              {"source", run.source},
                              {"stamps_from", run.stamps_from},
@@ -110,7 +110,7 @@ class Recording {
 
   RecordedRun run_;
   RecordWhat what_;
-  ros::FrameNames names_;
+  ros::FrameNames names_;  // of the last frame
   ros::McapWriter file_;
   std::optional<std::uint64_t> revision_;
   // Channels; 0: none.
@@ -135,6 +135,7 @@ class Recording {
 
 void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) {
   const Stamp stamp = frame.step.stamp;
+  names_ = ros::frame_names(frame.pair->frame_id);
   const ros::Header header = ros::header_of(stamp, names_.camera);
   add_config(frame);
   if (skipped_before > 0)
@@ -199,7 +200,8 @@ void Recording::add_objects(const LiveFrame& frame, const ros::Header& header) {
     Landmarked marked;
     marked.tracks = frame.landmarks;
     marked.events = frame.events;
-    write(frames_, stamp, ros::String{io::step_json(frame.step, frame.pair->name, marked)});
+    write(frames_, stamp,
+          ros::String{io::step_json(frame.step, frame.pair->name, marked, frame.pair->frame_id)});
   } else {
     write(frames_, stamp,
           ros::String{io::objects_json(

@@ -47,7 +47,6 @@ struct RecorderOptions {
   RecordWhat what{.input = true, .objects = true};
   std::size_t most_waiting = 16;  // frames; further ones are skipped, and the recording notes that
   bool waits = false;             // wait instead of skipping: offer() then blocks
-  ros::FrameNames names;
   // Called once if a recording ends because it cannot be written, with one line.
   std::function<void(const std::string&)> on_trouble = {};
 };

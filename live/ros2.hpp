@@ -14,8 +14,8 @@ namespace cairn::live {
 
 struct Ros2Options {
   std::string name_space = "cairn";  // of the topics: /cairn/objects and so on
-  ros::FrameNames frames;
-  bool marks_holes_as_ros = false;  // min_disparity − 1 instead of NaN
+  std::string camera_frame;          // frame_id; empty: the source's, else cairn_camera
+  bool marks_holes_as_ros = false;   // min_disparity − 1 instead of NaN
 };
 
 /// Opens sockets, and publishes topics with subscribers on its own thread; slow subscribers skip frames.

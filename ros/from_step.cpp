@@ -83,6 +83,16 @@ std::array<double, 36> covariance_of(const Object& object, Vec3 position, const 
 
 }  // namespace
 
+FrameNames frame_names(const std::string& camera) {
+  FrameNames names;
+  if (!camera.empty()) names.camera = camera;
+  return names;
+}
+
+std::string camera_of(const Header& header) {
+  return header.frame_id == FrameNames().camera ? "" : header.frame_id;
+}
+
 Header header_of(Stamp stamp, const std::string& frame_id) {
   return {time_of(stamp), frame_id};
 }

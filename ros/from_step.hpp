@@ -19,6 +19,11 @@ struct FrameNames {
   std::string floor = "cairn_floor";
   std::string map = "cairn_map";
 };
+/// These names with the camera's as given, unless that is empty.
+FrameNames frame_names(const std::string& camera);
+/// The frame_id of an image that says which camera took it; empty where it is the name that cairn gives by
+/// itself, so that a recording gives no more than its source did.
+std::string camera_of(const Header& header);
 
 Header header_of(Stamp stamp, const std::string& frame_id);
 

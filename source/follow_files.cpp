@@ -145,18 +145,18 @@ Json track_json(const Track& track, const Step& step, const TrackLabels& shown, 
 
 }  // namespace
 
-std::string step_json(const Step& step, const std::string& name, const Landmarked& marked) {
+std::string step_json(const Step& step, const std::string& name, const Landmarked& marked,
+                      const std::string& frame_id) {
   const TrackLabels shown = track_labels_of(step);
   Json tracks = Json::array();
   for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, step, shown, marked));
-  const Json line{{"frame", step.index},
-                  {"name", name},
-                  {"stamp_ns", step.stamp.ns},
-                  {"pose", pose_json(step)},
-                  {"motion", motion_json(step.motion)},
-                  {"reliability", reliability_json(step.reliability)},
-                  {"objects", step.frame.objects.list.size()},
-                  {"tracks", tracks}};
+  Json line{{"frame", step.index}, {"name", name}, {"stamp_ns", step.stamp.ns}};
+  if (!frame_id.empty()) line["frame_id"] = frame_id;
+  line.update({{"pose", pose_json(step)},
+               {"motion", motion_json(step.motion)},
+               {"reliability", reliability_json(step.reliability)},
+               {"objects", step.frame.objects.list.size()},
+               {"tracks", tracks}});
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -224,8 +224,9 @@ void FollowFiles::append(std::ofstream& file, const char* name, const std::strin
     throw Error((folder_ / name).string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
-void FollowFiles::add(const Step& step, const std::string& name, const Landmarked& marked) {
-  append(tracks_, "tracks.jsonl", step_json(step, name, marked));
+void FollowFiles::add(const Step& step, const std::string& name, const Landmarked& marked,
+                      const std::string& frame_id) {
+  append(tracks_, "tracks.jsonl", step_json(step, name, marked, frame_id));
   append(poses_, "poses.tum", pose_tum(step));
   append(masks_, "tracks.mots.txt", masks_mots(step));
 }

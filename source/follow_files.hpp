@@ -14,7 +14,8 @@
 namespace cairn::io {
 
 /// A frame of tracks.jsonl (docs/formats.md): one line of JSON, with the newline.
-std::string step_json(const Step& step, const std::string& name, const Landmarked& marked = {});
+std::string step_json(const Step& step, const std::string& name, const Landmarked& marked = {},
+                      const std::string& frame_id = {});
 
 /// A line of poses.tum: "t x y z qx qy qz qw", t in s; empty if the pose is unknown.
 std::string pose_tum(const Step& step);
@@ -34,7 +35,8 @@ class FollowFiles {
   explicit FollowFiles(std::filesystem::path folder);
 
   /// Throws Error (names the file) if it cannot be written.
-  void add(const Step& step, const std::string& name, const Landmarked& marked = {});
+  void add(const Step& step, const std::string& name, const Landmarked& marked = {},
+           const std::string& frame_id = {});
   /// A line of events.jsonl, with the newline.
   void add_event(const std::string& line);
 

@@ -37,6 +37,7 @@ struct WaitingImage {
   std::size_t index = 0;
   std::optional<Raster> image;  // none: cannot be read
   std::string trouble;
+  std::string frame_id;
 };
 
 class McapSequence : public SourceSequence {
@@ -189,17 +190,19 @@ class McapSequence : public SourceSequence {
   }
 
   void take(std::size_t side, const ros::McapMessage& message) {
-    WaitingImage waiting{sides_[side].seen++, std::nullopt, {}};
+    WaitingImage waiting{sides_[side].seen++, std::nullopt, {}, {}};
     Stamp stamp = message.logged;
     try {
       if (sides_[side].channel.type == ros::CompressedImage::kType) {
         const auto image = ros::decode<ros::CompressedImage>(message.bytes);
         stamp = stamp_of(image.header, message);
+        waiting.frame_id = ros::camera_of(image.header);
         waiting.image = decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
                                       Palette::colours);
       } else {
         const auto image = ros::decode<ros::Image>(message.bytes);
         stamp = stamp_of(image.header, message);
+        waiting.frame_id = ros::camera_of(image.header);
         waiting.image = raster_of(image);
       }
     } catch (const Error& error) {
@@ -257,6 +260,7 @@ class McapSequence : public SourceSequence {
       }
       const Stamp stamp = options_.rate_hz > 0 ? stamp_at(index, options_.rate_hz) : both.left.stamp;
       SequenceFrame frame{name, index, stamp, {}, {}, false};
+      frame.frame_id = left.frame_id;
       try {
         PicturePair pair = pair_of(*left.image, *right.image, pool_, bits_);
         bits_ = pair.bits;

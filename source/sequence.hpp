@@ -31,6 +31,8 @@ struct SequenceFrame {
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
   // For cameras: the arrival time by the steady clock of this computer; nullopt for files.
   std::optional<std::chrono::steady_clock::time_point> arrived = {};
+  // ROS' name of the left camera's frame, from the image's header; empty where the source has none.
+  std::string frame_id = {};
 };
 
 /// The status of a camera; for files all counts are 0 and it is connected.

@@ -118,21 +118,22 @@ class Ros2Sink : public live::Sink {
     const Step& step = live.step;
     const Frame& frame = step.frame;
     const Config& config = live.config->segmentation;
-    const ros::Header header = ros::header_of(step.stamp, options_.frames.camera);
+    const ros::FrameNames names =
+        ros::frame_names(options_.camera_frame.empty() ? live.pair->frame_id : options_.camera_frame);
+    const ros::Header header = ros::header_of(step.stamp, names.camera);
     const auto cloud_of = [&](Space space) {
       return std::optional(
           ros::cloud_of(header, frame, space, rig_, live.pair->left.gray.view(), live.pair->left.rgb.view()));
     };
     transforms_.publish([&]() -> std::optional<ros::TFMessage> {
-      const auto floor = ros::floor_transform_of(step.stamp, options_.frames, frame.ground, rig_);
+      const auto floor = ros::floor_transform_of(step.stamp, names, frame.ground, rig_);
       if (!floor) return std::nullopt;
       return ros::TFMessage{{*floor}};
     });
     objects_.publish([&] { return std::optional(ros::detections_of(header, step, rig_)); });
     stats_.publish([&] { return std::optional(ros::String{stats_json(live, slot_.replaced())}); });
-    grid_.publish([&] {
-      return ros::grid_of(ros::header_of(step.stamp, options_.frames.floor), frame, rig_, config.space);
-    });
+    grid_.publish(
+        [&] { return ros::grid_of(ros::header_of(step.stamp, names.floor), frame, rig_, config.space); });
     labels_.publish([&] { return std::optional(ros::labels_of(header, step)); });
     reject_.publish([&] { return std::optional(ros::reject_of(header, frame)); });
     disparity_.publish([&] {

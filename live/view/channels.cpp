@@ -70,7 +70,8 @@ ViewMessage encode(Channel channel, const LiveFrame& frame, const std::optional<
                    const ViewState& state) {
   const Step& step = frame.step;
   const io::Picture& left = frame.pair->left;
-  const auto header = [&] { return ros::header_of(step.stamp, ros::FrameNames().camera); };
+  const ros::FrameNames names = ros::frame_names(frame.pair->frame_id);
+  const auto header = [&] { return ros::header_of(step.stamp, names.camera); };
   ViewMessage message{
       channel, 0, static_cast<std::uint64_t>(std::max<std::int64_t>(0, step.stamp.ns)), {}, 0};
   auto& payload = message.payload;
@@ -105,7 +106,7 @@ ViewMessage encode(Channel channel, const LiveFrame& frame, const std::optional<
       payload = bytes_of(stats_json(frame, rig, state));
       break;
     case Channel::tf:
-      payload = ros::encode(ros::transforms_of({}, step, rig));
+      payload = ros::encode(ros::transforms_of(names, step, rig));
       break;
   }
   return message;

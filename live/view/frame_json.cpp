@@ -203,7 +203,8 @@ std::string words_of(const ShownObject& shown) {
   return words;
 }
 
-Json entity_json(const ShownObject& shown, const Box& box, const Json& stamp) {
+Json entity_json(const ShownObject& shown, const Box& box, const Json& stamp,
+                 const std::string& camera_frame) {
   const Json size{{"x", json(double{box.size_m.x})},
                   {"y", json(double{box.size_m.y})},
                   {"z", json(double{box.size_m.z})}};
@@ -220,7 +221,7 @@ Json entity_json(const ShownObject& shown, const Box& box, const Json& stamp) {
   const Json none = Json::array();
   // An object that is seen no more is gone with its lifetime, whatever became of it.
   return {{"timestamp", stamp},
-          {"frame_id", ros::FrameNames().camera},
+          {"frame_id", camera_frame},
           {"id", std::to_string(shown.id)},
           {"lifetime", {{"sec", 1}, {"nsec", 0}}},
           {"frame_locked", false},
@@ -283,9 +284,11 @@ std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& r
   const auto floor = floor_frame(frame.step.frame.ground, rig);
   const ros::Time time = ros::time_of(frame.step.stamp);
   const Json stamp{{"sec", time.sec}, {"nsec", time.nanosec}};
+  const std::string camera_frame = ros::frame_names(frame.pair->frame_id).camera;
   Json entities = Json::array();
   for (const ShownObject& shown : shown_objects(frame.step)) {
-    if (const auto box = box_of(*shown.object, floor)) entities.push_back(entity_json(shown, *box, stamp));
+    if (const auto box = box_of(*shown.object, floor))
+      entities.push_back(entity_json(shown, *box, stamp, camera_frame));
   }
   // All that the frame before showed is gone; what is still there comes with the entities.
   const Json deletion{{"timestamp", stamp}, {"type", 1}, {"id", ""}};

@@ -275,7 +275,7 @@ class Following {
       if (!frame) return;
       made->step = std::make_shared<Step>(run_->next(*frame));
       const Landmarked& marked = run_->marked();
-      made->json = io::step_json(*made->step, frame->name, marked);
+      made->json = io::step_json(*made->step, frame->name, marked, frame->frame_id);
       for (const LandmarkOfTrack& of : marked.tracks) {
         if (of.landmark != LandmarkId::none) made->landmarks[number(of.track)] = number(of.landmark);
       }

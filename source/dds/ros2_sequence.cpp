@@ -250,6 +250,7 @@ class Ros2Sequence : public io::SourceSequence {
         std::move(pictures.right.gray),
         false,
         std::max(pair.left.value.arrived, pair.right.value.arrived),
+        ros::camera_of(pair.left.value.image.header),
     };
     watch_.see(frame, source_, remarks_);
     return frame;

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <support/recordings.hpp>
+#include <support/samples.hpp>
 
 #include "command.hpp"
 
@@ -87,6 +89,40 @@ TEST_F(LiveRecord, KeepsTheOptionsThatItWasMadeWith) {
   const Outcome others = run(with("live", {live.begin() + 1, live.end()}, {"--preset", "default"}));
   EXPECT_EQ(others.err.find("of the recording"), std::string::npos);
   EXPECT_NE(lines_of(others.out), lines_of(original));
+}
+
+TEST_F(LiveRecord, TheCamerasFrameOfARecordingIsInTheResults) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const io::Picture& left = sample.pictures.left;
+  {
+    recordings::CameraFile robot(at("robot.mcap"));
+    const auto left_topic = robot.topic<ros::Image>("/front/left/image_rect");
+    const auto right_topic = robot.topic<ros::Image>("/front/right/image_rect");
+    for (const Stamp stamp : {Stamp{1'403'636'579'763'555'584}, Stamp{1'403'636'579'863'555'584}}) {
+      const ros::Header header = ros::header_of(stamp, "front_left_optical");
+      robot.add(left_topic, stamp,
+                left.rgb.empty() ? ros::image_of(header, left.gray.view())
+                                 : ros::image_of(header, left.rgb.view()));
+      robot.add(right_topic, stamp, ros::image_of(header, sample.pictures.right.gray.view()));
+    }
+  }
+  const auto says = [&](const std::vector<std::string>& words) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::vector<std::string> lines = lines_of(outcome.out);
+    ASSERT_EQ(lines.size(), 2U);
+    const Json line = Json::parse(lines.back());
+    EXPECT_EQ(line["frame_id"], "front_left_optical");
+    EXPECT_EQ(line["stamp_ns"], 1'403'636'579'863'555'584);
+  };
+  const std::string options = "match.num_disparities=32";
+  says({"follow", path("robot.mcap"), "--json-lines", "--set", options});
+  ASSERT_EQ(record({"--no-tracks", "--set", options}, path("robot.mcap")).code, 0);
+  for (const std::string& recording : {path("robot.mcap"), path("run.mcap")})
+    says(
+        {"live", recording, "--no-tracks", "--every-frame", "--pace", "0", "--json-lines", "--set", options});
+  const std::vector<std::string> unnamed = lines_of(run({"follow", sequence(), "--json-lines"}).out);
+  EXPECT_FALSE(Json::parse(unnamed.at(0)).contains("frame_id"));
 }
 
 TEST_F(LiveRecord, AFileThatMayNotGrowEndsTheRecordingAndNotTheRun) {

@@ -35,8 +35,9 @@ class LiveRos2 : public CommandTest {
   }
 };
 
-/// What the command says of the objects that have a place, and what was heard.
-void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard) {
+/// What the command says of the objects that have a place, and what was heard, in the frame of `camera`.
+void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard,
+                         const std::string& camera = "cairn_camera") {
   std::vector<Json> placed;
   for (const Json& object : frame["objects"])
     if (!object["position_m"].is_null()) placed.push_back(object);
@@ -50,7 +51,7 @@ void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard) 
     EXPECT_NEAR(position.z, place[2], 1e-3);
     EXPECT_NEAR(detection.results.front().hypothesis.score, placed[i]["confidence"].get<double>(), 1e-3);
     EXPECT_EQ(detection.id, std::to_string(placed[i]["id"].get<int>()));
-    EXPECT_EQ(detection.header.frame_id, "cairn_camera");
+    EXPECT_EQ(detection.header.frame_id, camera);
   }
 }
 
@@ -134,12 +135,13 @@ TEST_F(LiveRos2, ACameraOnTopicsIsSegmentedAsItsImagesAre) {
   ASSERT_GE(frames.size(), 1U) << live.err;
   for (const auto& [stamp, frame] : frames) {
     EXPECT_EQ(stamp % 100'000'000, 0);
+    EXPECT_EQ(frame["frame_id"], "left_optical");
     EXPECT_EQ(frame["objects"], expected["objects"]);
     EXPECT_EQ(frame["floor_frame"], expected["floor_frame"]);
   }
   int heard = 0;
   while (const auto message = objects.take()) {
-    expect_same_objects(expected, *message);
+    expect_same_objects(expected, *message, "left_optical");
     ++heard;
   }
   EXPECT_GE(heard, 1) << live.err;

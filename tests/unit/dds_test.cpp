@@ -39,27 +39,28 @@ std::string message_of(const auto& call) {
   return "no error";
 }
 
-/// A picture with objects, as a robot's loop has it.
+/// A picture with objects, as a robot's loop has it; `frame_id`: of its source.
+live::LiveFramePtr made_frame(const std::string& frame_id) {
+  const std::filesystem::path folder = std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
+  io::PicturePair pictures = io::load_pair(folder / "left.png", folder / "right.png");
+  const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
+  FollowConfig config;
+  config.segmentation.match.num_disparities = calibration.num_disparities.value_or(64);
+  auto frame = std::make_shared<live::LiveFrame>();
+  frame->step.stamp = {1'700'000'000'123'456'789};
+  frame->step.frame = segment(StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb),
+                              calibration.rig, config.segmentation, {});
+  auto pair = std::make_shared<io::SequenceFrame>();
+  pair->name = "four_in_a_row";
+  pair->left = std::move(pictures.left);
+  pair->right = std::move(pictures.right.gray);
+  pair->frame_id = frame_id;
+  frame->pair = std::move(pair);
+  frame->config = std::make_shared<const FollowConfig>(config);
+  return frame;
+}
 live::LiveFramePtr live_frame() {
-  static const live::LiveFramePtr made = [] {
-    const std::filesystem::path folder =
-        std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
-    io::PicturePair pictures = io::load_pair(folder / "left.png", folder / "right.png");
-    const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
-    FollowConfig config;
-    config.segmentation.match.num_disparities = calibration.num_disparities.value_or(64);
-    auto frame = std::make_shared<live::LiveFrame>();
-    frame->step.stamp = {1'700'000'000'123'456'789};
-    frame->step.frame = segment(StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb),
-                                calibration.rig, config.segmentation, {});
-    auto pair = std::make_shared<io::SequenceFrame>();
-    pair->name = "four_in_a_row";
-    pair->left = std::move(pictures.left);
-    pair->right = std::move(pictures.right.gray);
-    frame->pair = std::move(pair);
-    frame->config = std::make_shared<const FollowConfig>(config);
-    return frame;
-  }();
+  static const live::LiveFramePtr made = made_frame("");
   return made;
 }
 StereoRig rig() {
@@ -295,11 +296,31 @@ TEST_F(Dds, WhatIsFoundIsPublished) {
   EXPECT_NE(sink->summary().find(topic("objects")), std::string::npos) << sink->summary();
 }
 
+TEST_F(Dds, TheCamerasFrameIsTheSourcesUnlessAnotherIsAskedFor) {
+  const live::LiveFramePtr frame = made_frame("front_left_optical");
+  for (const std::string asked : {"", "left_optical"}) {
+    live::Ros2Options options;
+    options.name_space = own_topic("named" + asked);
+    options.camera_frame = asked;
+    const auto sink = ros2_sink(options, rig());
+    const Participant participant;
+    Reader<ros::Detection3DArray> reader(participant, options.name_space + "/objects");
+    std::optional<ros::Detection3DArray> came;
+    ASSERT_TRUE(comes_true([&] {
+      sink->offer(frame);
+      std::this_thread::sleep_for(20ms);
+      return (came = reader.take()).has_value();
+    }));
+    EXPECT_EQ(came->header.frame_id, asked.empty() ? "front_left_optical" : asked);
+    EXPECT_EQ(came->header.stamp.nanosec, ros::time_of(frame->step.stamp).nanosec);
+  }
+}
+
 TEST_F(Dds, HolesAreAsRosHasThemWhereThatIsAsked) {
   live::Ros2Options options;
   options.name_space = own_topic("holes");
   options.marks_holes_as_ros = true;
-  options.frames.camera = "left_optical";
+  options.camera_frame = "left_optical";
   const auto sink = ros2_sink(options, rig());
   const Participant participant;
   Reader<ros::DisparityImage> reader(participant, options.name_space + "/disparity");
@@ -499,6 +520,7 @@ TEST_F(Dds, ASourceDeliversPairsAsTheyWereSent) {
     EXPECT_TRUE(equal(frame->left.gray, sent.left.gray));
     EXPECT_TRUE(equal(frame->right, sent.right));
     EXPECT_TRUE(frame->arrived);
+    EXPECT_EQ(frame->frame_id, "left_optical");
     EXPECT_GT(frame->stamp, before);
     EXPECT_EQ(frame->stamp.ns % 50'000'000, 0);
     before = frame->stamp;

@@ -81,6 +81,7 @@ TEST_F(McapSequence, PairsImagesByTheirStamps) {
     seen.push_back(i);
     EXPECT_TRUE(shows_dots(frame->left.gray, static_cast<unsigned>(i)));
     EXPECT_TRUE(shows_dots(frame->right, 100U + static_cast<unsigned>(i)));
+    EXPECT_EQ(frame->frame_id, "camera");
   }
   EXPECT_EQ(seen, (std::vector<int>{0, 1, 2, 3, 5, 6, 7, 8, 9}));
   ASSERT_EQ(sequence->remarks().size(), 1U);

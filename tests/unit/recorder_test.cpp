@@ -4,6 +4,7 @@
 #include <cairn/core/error.hpp>
 #include <live/recorder.hpp>
 #include <map>
+#include <source/sequence.hpp>
 #include <thread>
 
 #include "support/recordings.hpp"
@@ -18,7 +19,7 @@ using support::TemporaryFolder;
 constexpr Size kSize{64, 48};
 
 /// A frame in which nothing was found.
-LiveFramePtr frame_of(int index, std::uint64_t revision = 0) {
+std::shared_ptr<LiveFrame> frame_of(int index, std::uint64_t revision = 0) {
   auto pair = std::make_shared<io::SequenceFrame>();
   pair->name = std::to_string(index);
   pair->index = static_cast<std::size_t>(index);
@@ -81,6 +82,54 @@ TEST(Recorder, WritesWhatIsAskedForOfEachFrame) {
   EXPECT_NE(ros::attachment_of(reader, "config.yaml")->find("preset: default\n"), std::string::npos);
   EXPECT_NE(ros::attachment_of(reader, "calib.txt")->find("baseline=0.1\n"), std::string::npos);
   EXPECT_TRUE(recorder.summary().starts_with("recorded ")) << recorder.summary();
+}
+
+TEST(Recorder, NamesTheCamerasFrameAsTheSourceDoes) {
+  for (const std::string camera : {"", "front_left_optical"}) {
+    const TemporaryFolder folder;
+    RecorderOptions options;
+    options.what = parse_record_what("all");
+    Recorder recorder(some_run(), options);
+    const std::shared_ptr<LiveFrame> frame = frame_of(1);
+    auto pair = std::make_shared<io::SequenceFrame>();
+    pair->stamp = frame->pair->stamp;
+    pair->left.gray = recordings::dots(kSize, 1);
+    pair->right = recordings::dots(kSize, 2);
+    pair->frame_id = camera;
+    frame->pair = pair;
+    frame->step.is_lost = false;  // then the map has a transform to the camera
+    recorder.start(folder.path() / "a.mcap");
+    recorder.offer(frame);
+    recorder.stop();
+    const std::string expected = camera.empty() ? "cairn_camera" : camera;
+    ros::McapReader reader(folder.path() / "a.mcap");
+    int headers = 0;
+    while (const auto message = reader.next()) {
+      const ros::McapChannel& channel = reader.channels().at(message->channel);
+      const std::string& type = channel.type;
+      std::string found;
+      if (type == ros::Image::kType)
+        found = ros::decode<ros::Image>(message->bytes).header.frame_id;
+      else if (type == ros::CameraInfo::kType)
+        found = ros::decode<ros::CameraInfo>(message->bytes).header.frame_id;
+      else if (type == ros::Detection3DArray::kType)
+        found = ros::decode<ros::Detection3DArray>(message->bytes).header.frame_id;
+      else if (type == ros::DisparityImage::kType)
+        found = ros::decode<ros::DisparityImage>(message->bytes).header.frame_id;
+      else if (type == ros::PointCloud2::kType)
+        found = ros::decode<ros::PointCloud2>(message->bytes).header.frame_id;
+      else if (type == ros::TFMessage::kType)
+        found = ros::decode<ros::TFMessage>(message->bytes).transforms.at(0).child_frame_id;
+      else
+        continue;
+      EXPECT_EQ(found, expected) << channel.topic;
+      ++headers;
+    }
+    EXPECT_EQ(headers, 11);  // 4 images, 2 of camera_info, 2 clouds, objects, disparity, tf
+    // What is played again names the camera as the source did, and not at all where that did not.
+    const auto again = io::open_sequence((folder.path() / "a.mcap").string(), {});
+    EXPECT_EQ(again->next()->frame_id, camera);
+  }
 }
 
 TEST(Recorder, BeginsAndEndsWhileFramesCome) {
