@@ -34,6 +34,7 @@
 #include <cairn/regions/segment_intensity.hpp>   // segment_intensity
 #include <cairn/regions/segment_disparity.hpp>   // segment_disparity
 #include <cairn/grouping/superpixels.hpp>       // cut_superpixels
+#include <cairn/grouping/object_hints.hpp>      // hint_objects
 #include <cairn/grouping/merge_tree.hpp>        // grow_merge_tree
 #include <cairn/grouping/choose_objects.hpp>    // choose_objects, groups_of
 #include <cairn/objects/fuse.hpp>                // fuse

@@ -112,10 +112,12 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Background background = fit_background(evidence_px, ground, rig, config.background, exec);
   const Image<float> seen_px = floor_under_reflections(disparity, ground, exec);
 
-  // The picture in pieces, and all regions that they fuse to, the likeliest pair first.
+  // The picture in pieces, what a network says of them, and all regions that they fuse to, the likeliest pair first.
   const Superpixels superpixels =
       cut_superpixels(pair.left(), pair.left_rgb(), seen_px, noise, config.superpixels, exec);
-  const Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
+  Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
+  const Image<ObjectHint> hints = hint_objects(hint_input(superpixels, cues, exec), hint_network(), exec);
+  cues.hints = hints;
   const MergeTree tree = grow_merge_tree(superpixels, cues, kSameThing, exec);
 
   // Which of these regions are objects, and where; how far each disparity is to be trusted.

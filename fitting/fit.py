@@ -4,7 +4,7 @@
 """Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--out FOLDER] [--page FILE]
-fit.py TOOL DATA --ablation FILE: fits again without each kind of cues in turn, and reports what each brings.
+It needs what fit_hints.py leaves in the work folder. fit.py TOOL DATA --ablation FILE: fits again without each kind of cues in turn, and reports what each brings.
 
 Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
 the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
@@ -28,6 +28,7 @@ PAIRS_KEPT = 0.4  # of all that are met: there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 SEED = 7
+HALVES = 2  # of the scenes, that a network is fitted without (fit_hints.py)
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
               "2006/Lampshade1"]
 
@@ -36,6 +37,7 @@ CUES = {  # by what their features' names hold
     "colours and brightness": ("colour", "brightness"), "edges": ("edge",), "steps of disparity": ("step",),
     "planes of disparity": ("plane", "slope", "spread of disparity", "spread, relative"),
     "the ground": ("ground", "floor"), "the background": ("background",), "evidence": ("evidence",),
+    "hints": ("hints:",),
     "shape and place": ("box", "outline over", "outline of", "longer than before", "area", "extent", "middle",
                         "width", "height, share", "its foot", "image's", "borders of"),
     "the tree": ("alike", "one thing", "becomes a part", "likely the same")}
@@ -65,6 +67,29 @@ def validation_sets(data):
 
 def fold_of(frame, folds):
     return zlib.crc32(frame.name.encode()) % folds  # a scene has one name at all sizes
+
+
+def jobs_of(sets):
+    return [(frame, colour, name) for name, frames in sets.items() for frame in frames for colour in ("colour", "grey")]
+
+
+def run_tool(tool, work, jobs, files, *options):
+    """What the tool prints for each job. files(i): those of job i. Two processes at a time, told apart by @."""
+    processes = []
+    for part in range(2):
+        lines = [f"{frame} {colour} {files(i)}\n" for i, (frame, colour, _) in enumerate(jobs) if i % 2 == part]
+        (work / f"jobs{part}").write_text("".join(lines))
+        command = [tool, work / f"jobs{part}", *(str(o).replace("@", str(part)) for o in options)]
+        processes.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
+    rows = [None] * len(jobs)
+    for part, process in enumerate(processes):
+        out, _ = process.communicate()
+        if process.returncode:
+            sys.exit(process.returncode)
+        for line in out.splitlines():
+            row = line.split(" ")
+            rows[2 * int(row[0]) + part] = row
+    return rows
 
 
 class Nodes:
@@ -151,30 +176,17 @@ class Fitting:
         self.gains = {}
         self.without = ()
         self.met_by_edges = False
-        self.jobs = [(frame, colour, name) for name, frames in sets.items() for frame in frames
-                     for colour in ("colour", "grey")]
+        self.jobs = jobs_of(sets)
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
         self.weight = np.array([WEIGHTS.get(name, 1.0) for _, _, name in self.jobs])
 
     def run(self, trees, *options, jobs=None):
-        """trees(i): the two files of job i. Two processes at a time."""
-        jobs = self.jobs if jobs is None else jobs
-        processes = []
-        for part in range(2):
-            lines = [f"{frame} {colour} {' '.join(map(str, trees(i)))}\n"
-                     for i, (frame, colour, _) in enumerate(jobs) if i % 2 == part]
-            (self.work / f"jobs{part}").write_text("".join(lines))
-            command = [self.tool, self.work / f"jobs{part}", *(str(o).replace("@", str(part)) for o in options)]
-            processes.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
-        rows = [None] * len(jobs)
-        for part, process in enumerate(processes):
-            out, _ = process.communicate()
-            if process.returncode:
-                sys.exit(process.returncode)
-            for line in out.splitlines():
-                row = line.split(" ")
-                rows[2 * int(row[0]) + part] = row
-        return rows
+        """trees(i): the two files of job i. Frames of the fit set get hints of a network that has not seen them."""
+        def files(i):
+            half = "all" if jobs else fold_of(self.jobs[i][0], HALVES)
+            return " ".join(map(str, (self.work / f"hints_{half}", *trees(i))))
+
+        return run_tool(self.tool, self.work, jobs or self.jobs, files, *options)
 
     def records(self, name, features, share=1.0):
         heads, values = [], []
@@ -270,9 +282,9 @@ def page(fitting, sets, reports, score):
 
 <!-- Written by ./dev fit; do not edit. -->
 
-This page reports how well the fitted trees of the preset `default` find objects ([grouping](stages/grouping.md)). `./dev fit` fits the trees and writes them and this page: the same frames give the same numbers.
+This page reports how well the preset `default` finds objects with its fitted trees ([grouping](stages/grouping.md)) and the network of its [hints](stages/object_hints.md). `./dev fit` fits both and writes them and this page: the same frames give the same numbers on the same processor.
 Fitted to: {counts}; each frame once in colour and once in grey.
-{more}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds. Validation frames are scored by the library's trees, and were not used for any choice.
+{more}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds, with hints of a network fitted without their scene, in {HALVES} halves. Validation frames are scored by the library's trees and network, and were not used for any choice.
 In brackets: Wilson's 95 % interval. ms: one core's time for the median frame, from the superpixels to the choice of objects, on a shared machine.
 `objects.min_confidence` = {score}.
 
@@ -384,8 +396,7 @@ def main():
     sets = fit_sets(arguments.data, arguments.rooms)
     fitting = Fitting(arguments.tool, arguments.work, arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
-    validation = [(frame, colour, name) for name, frames in validation_sets(arguments.data).items() for frame in frames
-                  for colour in ("colour", "grey")]
+    validation = jobs_of(validation_sets(arguments.data))
     if arguments.ablation:
         return ablation(fitting, validation, arguments.ablation)
     fitting.fit_pairs()

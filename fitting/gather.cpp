@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // fitting --names: the features' names.
-// fitting JOBS [--pairs FILE] [--regions FILE] [--min-score S]: what fit.py fits to, and how
-// well what it has fitted does.
+// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--min-score S]: what fit_hints.py and fit.py fit
+// to, and how well what they have fitted does.
 //
-// Each line of JOBS is a frame's folder, `colour` or `grey`, and two files of fitted trees, `-` for those
-// that the library has. For each line one is printed: what was found in the frame. FILEs get a record of
+// Each line of JOBS is a frame's folder, `colour` or `grey`, and three files: a fitted network, and two of fitted
+// trees; `-` for those that the library has. For each line one is printed: what was found in the frame. FILEs get a record of
 // floats for each pair of regions that was judged (the job's number, whether they show one thing, how pure
 // they are, the features), and for each region that may be an object (the job's number, its greatest IoU with
 // a true object, whether the truth is partial, the features).
@@ -72,6 +72,7 @@ class Trees {
 struct Files {
   std::ofstream pairs;
   std::ofstream regions;
+  std::ofstream inputs;
 };
 
 template <std::size_t N>
@@ -137,6 +138,67 @@ class Truth {
   std::vector<std::vector<std::int64_t>> shares_;
 };
 
+/// The network's input and the truth, a record of whole numbers for each job: its number, width, height, whether
+/// the truth is partial; the channels of each cell; its true object: 0 none, −1 don't care.
+void record_input(std::ofstream& file, int job, const Image<std::int16_t>& input, const TrueFrame& frame) {
+  const Size cells{input.width() / kHintChannels - 2, input.height() - 2};
+  const std::array<std::int16_t, 4> head{
+      static_cast<std::int16_t>(job), static_cast<std::int16_t>(cells.width),
+      static_cast<std::int16_t>(cells.height), static_cast<std::int16_t>(frame.partial ? 1 : 0)};
+  const auto write = [&file](const std::int16_t* values, std::size_t n) {
+    file.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(n * sizeof *values));
+  };
+  write(head.data(), head.size());
+  for (int y = 0; y < cells.height; ++y)
+    write(input.row(y + 1) + kHintChannels, slot(cells.width * kHintChannels));
+  const View<const TruthId> truth = frame.objects;
+  std::map<TruthId, std::int16_t> kinds{{TruthId::dont_care, -1}, {TruthId::none, 0}};
+  for (int y = 0; y < cells.height; ++y) {
+    for (int x = 0; x < cells.width; ++x) {
+      const TruthId id = truth((2 * x + 1) * truth.width() / (2 * cells.width),
+                               (2 * y + 1) * truth.height() / (2 * cells.height));
+      write(&kinds.try_emplace(id, static_cast<std::int16_t>(kinds.size() - 1)).first->second, 1);
+    }
+  }
+}
+
+/// A network in a file, as fit_hints.py writes it: the layers' numbers, the weights, biases and scales.
+HintNetwork load_network(const std::string& path) {
+  std::ifstream in(path);
+  std::array<HintLayer, kHintLayers> layers;
+  std::size_t weights = 0;
+  std::size_t outputs = 0;
+  for (HintLayer& l : layers) {
+    in >> l.inputs >> l.outputs >> l.side >> l.stride >> l.least;
+    weights += slot(l.side * l.side * l.inputs * l.outputs);
+    outputs += slot(l.outputs);
+  }
+  std::vector<std::int8_t> weight(weights);
+  std::vector<std::int32_t> bias(outputs);
+  std::vector<float> scale(outputs);
+  for (std::int8_t& v : weight) {
+    int number = 0;
+    in >> number;
+    v = static_cast<std::int8_t>(number);
+  }
+  for (std::int32_t& v : bias) in >> v;
+  for (float& v : scale) in >> v;
+  if (!in) throw Error(path + ": no file of a fitted network");
+  return HintNetwork(layers, weight, bias, scale);
+}
+
+class Networks {
+ public:
+  const HintNetwork& at(const std::string& path) {
+    if (path == "-") return hint_network();
+    const auto known = known_.find(path);
+    return known != known_.end() ? known->second : known_.emplace(path, load_network(path)).first->second;
+  }
+
+ private:
+  std::map<std::string, HintNetwork> known_;
+};
+
 struct Pair {
   std::int32_t a;
   std::int32_t b;
@@ -190,8 +252,8 @@ void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, co
             << phantoms << " =" << ious.str() << " =" << scores.str() << ' ' << milliseconds << '\n';
 }
 
-void work(int job, const std::string& folder, bool grey, const FittedTrees& same_thing,
-          const FittedTrees& whole_object, float min_score, Files& files) {
+void work(int job, const std::string& folder, bool grey, const HintNetwork& network,
+          const FittedTrees& same_thing, const FittedTrees& whole_object, float min_score, Files& files) {
   const TrueFrame frame = load_true_frame(io::find_frames(folder).front());
   Config config;
   config.match.num_disparities = frame.num_disparities;
@@ -200,13 +262,19 @@ void work(int job, const std::string& folder, bool grey, const FittedTrees& same
   const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.pictures.left.rgb.view();
   Observed stage(exec);
   Given given{left, rgb, frame.pictures.right.gray, {}};
-  const SuperpixelScene cut = cut_scene(given, frame.rig, config, exec, stage);
+  SuperpixelScene cut = cut_scene(given, frame.rig, config, exec, stage);
   const Superpixels& superpixels = cut.superpixels;
+  if (files.inputs.is_open()) {
+    record_input(files.inputs, job, hint_input(superpixels, cut.cues(given), exec), frame);
+    std::cout << job << '\n';
+    return;
+  }
   std::vector<Pair> pairs;
   JudgedPair told;
   if (files.pairs.is_open())
     told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
   const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
+  cut.hints = hint_objects(hint_input(superpixels, cut.cues(given), exec), network, exec);
   const MergeTree tree = grow_merge_tree(superpixels, cut.cues(given), same_thing, exec, told);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
@@ -239,16 +307,19 @@ int run(std::span<char*> arguments) {
     const std::string value = arguments[i + 1];
     if (option == "--pairs") files.pairs.open(value, std::ios::binary);
     if (option == "--regions") files.regions.open(value, std::ios::binary);
+    if (option == "--inputs") files.inputs.open(value, std::ios::binary);
     if (option == "--min-score") min_score = std::stof(value);
   }
   std::ifstream jobs(arguments[1]);
   Trees trees;
   std::string folder;
   std::string colour;
+  std::string hints;
   std::string same_thing;
   std::string whole_object;
-  for (int job = 0; jobs >> folder >> colour >> same_thing >> whole_object; ++job) {
-    work(job, folder, colour == "grey", trees.at(same_thing, kSameThing),
+  Networks networks;
+  for (int job = 0; jobs >> folder >> colour >> hints >> same_thing >> whole_object; ++job) {
+    work(job, folder, colour == "grey", networks.at(hints), trees.at(same_thing, kSameThing),
          trees.at(whole_object, kWholeObject), min_score, files);
   }
   return 0;

@@ -19,6 +19,7 @@ struct DisparityMap;
 struct Ground;
 struct Background;
 struct Superpixels;
+struct ObjectHint;
 struct MergeTree;
 struct ChosenObjects;
 struct Segmentation;
@@ -31,8 +32,8 @@ enum class Space : std::uint8_t;  // defined in objects/space.hpp
 using Artifact =
     std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
                  const Ground*, const Image<std::uint8_t>*, const Background*, const Superpixels*,
-                 const MergeTree*, const ChosenObjects*, const Segmentation*, const Fusion*, const Objects*,
-                 const Image<Space>*, const std::vector<LeftOut>*>;
+                 const Image<ObjectHint>*, const MergeTree*, const ChosenObjects*, const Segmentation*,
+                 const Fusion*, const Objects*, const Image<Space>*, const std::vector<LeftOut>*>;
 
 /// Called after each stage on the calling thread: name of the stage (its function's), result, time.
 using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;

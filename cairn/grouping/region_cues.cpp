@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/disparity/disparity_map.hpp>
+#include <cairn/grouping/object_hints.hpp>
 #include <cairn/grouping/region_cues.hpp>
 #include <cmath>
 #include <utility>
@@ -55,6 +56,8 @@ class Gathering {
         background_(slot(width_)),
         contacts_of_(slot(superpixels.count)) {
     result_.regions.resize(slot(superpixels.count));
+    for (int x = 0; x < width_ && !cues.hints.empty(); ++x)
+      cell_column_.push_back(x * cues.hints.width() / width_);
   }
 
   RegionGraphCues run() {
@@ -128,7 +131,21 @@ class Gathering {
     for (int i = first; i < last; ++i) texture += edges_(i, y);
     region.texture += texture;
     add_colour(region, y, first, last);
+    if (!cues_.hints.empty()) add_hints(region, y, first, last);
     add_depth(region, y, first, last);
+  }
+
+  void add_hints(RegionCues& region, int y, int first, int last) const {
+    const int row = cell_row(y);
+    const ObjectHint* const hints = cues_.hints.row(row);
+    for (int x = first; x < last; ++x) {
+      const int column = cell_column_[slot(x)];
+      region.hints.add(hints[column], column - cues_.hints.width() / 2, row - cues_.hints.height() / 2);
+    }
+  }
+  [[nodiscard]] int cell_row(int y) const { return y * cues_.hints.height() / height_; }
+  [[nodiscard]] int outline_at(int x, int y) const {
+    return cues_.hints(cell_column_[slot(x)], cell_row(y)).outline;
   }
 
   void add_colour(RegionCues& region, int y, int first, int last) const {
@@ -216,6 +233,7 @@ class Gathering {
     const int sign = here < there ? 1 : -1;
     const int edge = std::max(edges_(x, y), edges_(x + dx, y + dy));
     ++c.length;
+    if (!cues_.hints.empty()) c.outline += std::max(outline_at(x, y), outline_at(x + dx, y + dy));
     c.edge_sum += edge;
     c.weak += static_cast<float>(edge) < weak_ ? 1 : 0;
     c.x2 += 2 * (x - width_ / 2) + dx;
@@ -253,6 +271,7 @@ class Gathering {
   std::vector<std::int32_t> textured_;  // those of a row's evidence
   std::vector<std::int32_t> ground_;    // and of what is behind it, kNoDisparity above the horizon
   std::vector<std::int32_t> background_;
+  std::vector<int> cell_column_;  // of each column, the hints' one
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> contacts_of_;  // of a: b, and which
   RegionGraphCues result_;
 };
@@ -280,6 +299,31 @@ void Heights::add(const Heights& other) {
   on += other.on;
 }
 
+void HintSums::add(const ObjectHint& hint, int column, int row) {
+  const std::int64_t vote = std::clamp(hint.object + 32, 0, 64);
+  const std::int64_t to_x = column * 8 + hint.to_x;
+  const std::int64_t to_y = row * 8 + hint.to_y;
+  object += hint.object;
+  outline += hint.outline;
+  weight += vote;
+  x += vote * to_x;
+  y += vote * to_y;
+  xx += vote * to_x * to_x;
+  yy += vote * to_y * to_y;
+  size += vote * hint.size;
+}
+
+void HintSums::add(const HintSums& other) {
+  object += other.object;
+  outline += other.outline;
+  weight += other.weight;
+  x += other.x;
+  y += other.y;
+  xx += other.xx;
+  yy += other.yy;
+  size += other.size;
+}
+
 void RegionCues::add(const RegionCues& other, std::int64_t common) {
   area += other.area;
   x += other.x;
@@ -298,6 +342,7 @@ void RegionCues::add(const RegionCues& other, std::int64_t common) {
   }
   for (std::size_t i = 0; i < histogram.size(); ++i) histogram[i] += other.histogram[i];
   texture += other.texture;
+  hints.add(other.hints);
   perimeter += other.perimeter - 2 * common;
   matched.add(other.matched);
   textured.add(other.textured);
@@ -310,6 +355,7 @@ void RegionCues::add(const RegionCues& other, std::int64_t common) {
 void ContactCues::add(const ContactCues& other, bool turned) {
   const int sign = turned ? -1 : 1;
   length += other.length;
+  outline += other.outline;
   edge_sum += other.edge_sum;
   weak += other.weak;
   x2 += other.x2;

@@ -17,6 +17,19 @@
 /// matter.
 namespace cairn {
 
+/// Sums over the hints of a region's pixels, in the units of ObjectHint. Each pixel votes for the centroid of its
+/// object, in 1/8 cell from the image centre, and for its size. The weight of a vote is the log-odds for an
+/// object + 2, limited to 0 … 4, in 1/16.
+struct HintSums {
+  std::int64_t object = 0, outline = 0;
+  std::int64_t weight = 0, x = 0, y = 0, xx = 0, yy = 0, size = 0;
+  void add(const ObjectHint& hint, int column, int row);
+  void add(const HintSums& other);
+  friend bool operator==(const HintSums&, const HintSums&) = default;
+};
+
+struct ObjectHint;  // cairn/grouping/object_hints.hpp
+
 /// The inputs per pixel. Views of one size; `rgb` may be empty.
 struct Cues {
   View<const Gray> gray;
@@ -25,7 +38,8 @@ struct Cues {
   View<const float> evidence_px;   // of these, the textured ones: find_evidence()
   const Ground& ground;
   const Background& background;
-  float noise_sigma = 0;  // grey levels
+  float noise_sigma = 0;              // grey levels
+  View<const ObjectHint> hints = {};  // hint_objects(): of cells, not of pixels; may be empty
 };
 
 /// Disparities are in 1/64 px (rounded, halves up), positions in px from the image centre, the pixel
@@ -75,6 +89,7 @@ struct RegionCues {
   PlaneMoments matched{}, textured{};               // all disparities; the textured ones
   Heights above_ground{}, textured_above_ground{};  // where the disparity of the ground is positive
   Heights before_background{}, textured_before_background{};
+  HintSums hints{};
   /// `common`: number of neighbour pairs between the two.
   void add(const RegionCues& other, std::int64_t common);
   friend bool operator==(const RegionCues&, const RegionCues&) = default;
@@ -87,6 +102,7 @@ struct ContactCues {
   std::int64_t length = 0, edge_sum = 0,
                weak = 0;        // pairs of neighbours; 1/4 grey level; pairs without an edge
   std::int64_t x2 = 0, y2 = 0;  // midpoints of the pairs, in half pixels from the image centre
+  std::int64_t outline = 0;     // hints: the greater of each pair
   std::int64_t near_n = 0, near_sum = 0, near_abs = 0;  // steps between the two pixels, in 1/64 px
   // Between pixels up to three further away from the contact, within the same superpixels along a straight
   // line:

@@ -72,6 +72,41 @@ double histogram_distance(const P& p, const Q& q) {
   return sum;
 }
 
+/// By basic operations alone: a library's may differ in the last bit from processor to processor.
+double log2_of(double value) {
+  int exponent = 0;
+  double mantissa = std::frexp(value, &exponent);  // 1/2 … 1
+  if (mantissa < 0.70710678) {
+    mantissa *= 2;
+    --exponent;
+  }
+  const double t = (mantissa - 1) / (mantissa + 1);
+  const double u = t * t;
+  const double series = 1 + u * (1.0 / 3 + u * (1.0 / 5 + u * (1.0 / 7 + u * (1.0 / 9 + u / 11))));
+  return exponent + 2 / 0.693147180559945309 * t * series;
+}
+
+double distance(double x, double y) {
+  return std::sqrt(x * x + y * y);
+}
+
+/// The centroid that the hints of a region vote for, the spread of the votes, and log₂ of the size, in cells.
+struct Votes {
+  bool any = false;
+  double x = 0, y = 0, spread = 0, size = 0;
+};
+Votes votes_of(const HintSums& h) {
+  Votes v;
+  if (h.weight < 64) return v;
+  const auto w = static_cast<double>(h.weight);
+  v.any = true;
+  v.x = static_cast<double>(h.x) / w / 8;
+  v.y = static_cast<double>(h.y) / w / 8;
+  v.spread = root(static_cast<double>(h.xx + h.yy) / w / 64 - v.x * v.x - v.y * v.y);
+  v.size = static_cast<double>(h.size) / w / 16;
+  return v;
+}
+
 double box_area(const RegionCues& r) {
   return (r.right - r.left + 1.0) * (r.bottom - r.top + 1.0);
 }
@@ -186,6 +221,33 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("the larger one's colours beside the floor's", fits_l.to_floor);
   out("the smaller one's colours beside the background's", fits_s.to_background);
   out("the larger one's colours beside the background's", fits_l.to_background);
+  list_merge_hints(s, l, contact, frame, out);
+}
+
+template <class Out>
+void list_merge_hints(const RegionCues& s, const RegionCues& l, const ContactCues& contact,
+                      const FrameCues& frame, Out& out) {
+  const auto area_s = static_cast<double>(s.area);
+  const auto area_l = static_cast<double>(l.area);
+  const double cells_s = area_s * frame.cells_per_px;
+  const double cells = (area_s + area_l) * frame.cells_per_px;
+  HintSums both = s.hints;
+  both.add(l.hints);
+  const Votes vs = votes_of(s.hints);
+  const Votes vl = votes_of(l.hints);
+  const Votes v = votes_of(both);
+  const bool any = vs.any && vl.any && frame.has_hints;
+  const double apart = any ? distance(vs.x - vl.x, vs.y - vl.y) : 0;
+  const auto known = [&](bool ok, double value) { return ok ? value : double{kUnknown}; };
+  out("hints: outline along the border", known(frame.has_hints, share(contact.outline, contact.length) / 16));
+  out("hints: object, smaller one", known(frame.has_hints, share(s.hints.object, s.area) / 16));
+  out("hints: object, larger one", known(frame.has_hints, share(l.hints.object, l.area) / 16));
+  out("hints: distance of the centroids, relative", known(any, apart / std::sqrt(cells_s + 1)));
+  out("hints: distance of the centroids, share of the width", known(any, apart / frame.cells_across));
+  out("hints: spread of the votes, relative", known(any, v.spread / std::sqrt(cells + 1)));
+  out("hints: difference of the sizes", known(any, vs.size - vl.size));
+  out("hints: area over the size voted for", known(any, log2_of(cells + 1) - v.size));
+  out("hints: outline inside the smaller one", known(frame.has_hints, share(s.hints.outline, s.area) / 16));
 }
 
 template <class Out>
@@ -231,6 +293,8 @@ struct Surroundings {
   double on_ground = 0, on_ground_length = 0, on_background = 0, on_background_length = 0;
   double step = 0, step_length = 0;
   double textured_step = 0, textured_length = 0, matched_step = 0, matched_length = 0, least_step = 1e9;
+  std::int64_t outline = 0;
+  double object = 0, most_object = -1e9, centroids = 0, centroids_length = 0, nearest_centroid = 1e9;
   double largest = 0, same_thing = 0, wants = 0, most_same_thing = -100;
 
   void add(const RegionSide& region, const Neighbour& n) {
@@ -242,6 +306,18 @@ struct Surroundings {
     length += weight;
     edge_sum += c.edge_sum;
     weak += c.weak;
+    outline += c.outline;
+    const double its = share(o.hints.object, o.area) / 16;
+    object += weight * its;
+    most_object = std::max(most_object, its);
+    const Votes v = votes_of(r.hints);
+    const Votes w = votes_of(o.hints);
+    if (v.any && w.any) {
+      const double apart = distance(v.x - w.x, v.y - w.y);
+      centroids += weight * apart;
+      centroids_length += weight;
+      nearest_centroid = std::min(nearest_centroid, apart);
+    }
     near_n += c.near_n;
     near_sum += sign * c.near_sum;
     far_n += c.far_n;
@@ -393,6 +469,28 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("evidence in the image, share", frame.evidence_share);
   out("its colours beside the floor's", region.fits.to_floor);
   out("its colours beside the background's", region.fits.to_background);
+  const Votes votes = votes_of(r.hints);
+  const double cells = static_cast<double>(r.area) * frame.cells_per_px;
+  const auto known = [&](bool ok, double value) { return ok ? value : double{kUnknown}; };
+  const auto area = static_cast<double>(r.area);
+  out("hints: object", known(frame.has_hints, share(r.hints.object, r.area) / 16));
+  out("hints: weight of its votes", known(frame.has_hints, share(r.hints.weight, r.area) / 64));
+  out("hints: outline inside", known(frame.has_hints, share(r.hints.outline, r.area) / 16));
+  out("hints: outline around it",
+      known(frame.has_hints && !alone, share(static_cast<double>(around.outline), around.length) / 16));
+  out("hints: object, around it", known(frame.has_hints && !alone, share(around.object, around.length)));
+  out("hints: object, greatest of the neighbours", known(frame.has_hints && !alone, around.most_object));
+  out("hints: spread of the votes, relative", known(votes.any, votes.spread / std::sqrt(cells + 1)));
+  out("hints: its centroid from that of its votes, relative",
+      known(votes.any,
+            distance(static_cast<double>(r.x) / area * frame.cells_across / frame.width - votes.x,
+                     static_cast<double>(r.y) / area * frame.cells_across / frame.width - votes.y) /
+                std::sqrt(cells + 1)));
+  out("hints: area over the size voted for", known(votes.any, log2_of(cells + 1) - votes.size));
+  out("hints: centroids around it, relative",
+      known(around.centroids_length > 0, around.centroids / around.centroids_length / std::sqrt(cells + 1)));
+  out("hints: nearest centroid around it, relative",
+      known(around.centroids_length > 0, around.nearest_centroid / std::sqrt(cells + 1)));
   out("its share of what it becomes a part of", kUnknown);
   out("how alike it is to the rest of that", kUnknown);
 }
@@ -431,6 +529,10 @@ FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
   frame.has_ground = cues.ground.plane.has_value();
   frame.walls_and_floor = static_cast<int>(cues.background.planes.size());
   frame.noise_sigma = cues.noise_sigma;
+  frame.has_hints = !cues.hints.empty();
+  frame.cells_per_px =
+      static_cast<double>(cues.hints.size().area()) / static_cast<double>(cues.gray.size().area());
+  frame.cells_across = cues.hints.width();
   std::int64_t matched = 0;
   std::int64_t textured = 0;
   for (const RegionCues& region : graph.regions) {

@@ -45,6 +45,9 @@ struct FrameCues {
   int height = 0;
   bool has_colour = false;
   bool has_ground = false;
+  bool has_hints = false;
+  double cells_per_px = 0;  // of the hints
+  int cells_across = 0;
   int walls_and_floor = 0;
   float noise_sigma = 0;
   float matched_share = 0;
@@ -55,8 +58,8 @@ struct FrameCues {
 FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues);
 RegionFits fit_region(const RegionCues& region, const FrameCues& frame);
 
-inline constexpr std::size_t kMergeFeatures = 48;
-inline constexpr std::size_t kObjectFeatures = 76;
+inline constexpr std::size_t kMergeFeatures = 57;
+inline constexpr std::size_t kObjectFeatures = 87;
 using MergeFeatures = std::array<float, kMergeFeatures>;
 using ObjectFeatures = std::array<float, kObjectFeatures>;
 

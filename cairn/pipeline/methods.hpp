@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/region_cues.hpp>
+#include <cairn/grouping/object_hints.hpp>
 #include <cairn/pipeline/matched_scene.hpp>
 
 /// The methods, one source file each; segment() selects. Private to the library.
@@ -19,9 +19,10 @@ struct SuperpixelScene {
   Image<float> seen_px;  // floor_under_reflections()
   Background background;
   Superpixels superpixels;
+  Image<ObjectHint> hints;
   [[nodiscard]] Cues cues(const Given& given) const {
-    return {given.left,         given.left_rgb, seen_px,          scene.evidence_px,
-            scene.found.ground, background,     scene.noise_sigma};
+    return {given.left,         given.left_rgb, seen_px,           scene.evidence_px,
+            scene.found.ground, background,     scene.noise_sigma, hints};
   }
 };
 /// The first half of segment_by_hierarchy(), and the input of fitting.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/grouping/choose_objects.hpp>
+#include <cairn/grouping/object_hints.hpp>
 #include <cairn/pipeline/segment.hpp>
 
 #include "bindings.hpp"
@@ -14,6 +15,21 @@ Size size_of(const MergeTree& tree) {
   std::int64_t area = 0;
   for (int i = 0; i < tree.superpixels; ++i) area += tree.nodes[slot(i)].area;
   return {static_cast<int>(area), 1};
+}
+
+Image<ObjectHint> hints_of(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
+  return hint_objects(hint_input(superpixels, cues, exec), hint_network(), exec);
+}
+
+Numbers<std::int16_t> numbers_of(const Image<ObjectHint>& hints) {
+  Numbers<std::int16_t> numbers{{}, {hints.height(), hints.width(), 5}};
+  for (int y = 0; y < hints.height(); ++y) {
+    for (int x = 0; x < hints.width(); ++x) {
+      const ObjectHint& h = hints(x, y);
+      numbers.values.insert(numbers.values.end(), {h.object, h.outline, h.to_x, h.to_y, h.size});
+    }
+  }
+  return numbers;
 }
 
 Numbers<std::int32_t> parents(const MergeTree& self) {
@@ -65,16 +81,30 @@ void bind_grouping(py::module_& m) {
       },
       "superpixels"_a, "left"_a);
   stage(
-      m, "grow_merge_tree", {},
-      "Fuses the two neighbouring regions that are likeliest one thing, by every cue and by fitted trees, "
-      "until none "
-      "are left. evidence_px as find_evidence() gives it, ground as likely_ground(), noise_sigma as "
-      "noise_sigma().",
+      m, "hint_objects", {},
+      "Estimates of a small network, used by grow_merge_tree(): (rows, columns, 5) int16 for cells of about 2x2 "
+      "pixels of a 320x240 image. Log-odds in 1/16 that the cell shows an object, and that an object's outline passes; "
+      "the way to the object's centroid, x and y in 1/8 cell; log2 of its number of cells in 1/16.",
       [](const Call& call, const Superpixels& superpixels, const Picture& left,
          const DisparityInput& disparity, const Disparities& evidence_px, const Ground& ground,
          const Background& background, NoiseSigma noise) {
         const Cues cues{left.gray(), left.rgb(), disparity.map().disparity_px, evidence_px.view(), ground,
                         background,  noise.value};
+        return numbers_of(hints_of(superpixels, cues, call.exec));
+      },
+      "superpixels"_a, "left"_a, "disparity"_a, "evidence_px"_a, "ground"_a, "background"_a, "noise_sigma"_a);
+  stage(
+      m, "grow_merge_tree", {},
+      "Merges the two neighbouring regions that most likely belong to one object, by all cues and fitted trees, "
+      "until one is left. Calls hint_objects(). evidence_px as find_evidence() gives it, ground as likely_ground(), "
+      "noise_sigma as noise_sigma().",
+      [](const Call& call, const Superpixels& superpixels, const Picture& left,
+         const DisparityInput& disparity, const Disparities& evidence_px, const Ground& ground,
+         const Background& background, NoiseSigma noise) {
+        Cues cues{left.gray(), left.rgb(), disparity.map().disparity_px, evidence_px.view(), ground,
+                  background,  noise.value};
+        const Image<ObjectHint> hints = hints_of(superpixels, cues, call.exec);
+        cues.hints = hints;
         return grow_merge_tree(superpixels, cues, kSameThing, call.exec);
       },
       "superpixels"_a, "left"_a, "disparity"_a, "evidence_px"_a, "ground"_a, "background"_a, "noise_sigma"_a);

@@ -28,7 +28,7 @@ assert pathlib.Path(cairn.__file__).is_relative_to(sys.prefix), cairn.__file__
 assert importlib.metadata.version("cairn") == cairn.__version__
 assert (pathlib.Path(cairn.__file__).parent / "py.typed").exists()
 frame = cairn.segment(*cairn.load_pair(folder / "left.png", folder / "right.png"), cairn.load_calibration(folder / "calib.txt"))
-assert len(frame.objects) == 2 and frame.ground, frame
+assert len(frame.objects) == 4 and frame.ground, frame
 print(frame)
 PYTHON
 "$scratch/venv/bin/pip" uninstall --yes cairn

@@ -13,7 +13,7 @@ from conftest import same
 
 STAGES = """correct_epipolar match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine
     noise_sigma find_evidence fit_ground likely_ground reject_below_ground reject_speckles label_floor fit_background
-    floor_under_reflections cut_superpixels grow_merge_tree estimate_confidence choose_objects superpixels groups
+    floor_under_reflections cut_superpixels hint_objects grow_merge_tree estimate_confidence choose_objects superpixels groups
     measure locate label_space left_out_of""".split()
 PAPER_STAGES = """match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
@@ -37,11 +37,11 @@ def test_objects_tell_what_they_are(sample):
 
 def test_objects_are_a_sequence(sample):
     objects = sample.frame.objects
-    assert len(objects) == 2 and [o.id for o in objects] == [1, 2]
-    assert objects[-1].id == 2 and [o.id for o in objects[1:3]] == [2] and [o.id for o in objects[0:2]] == [1, 2]
+    assert len(objects) == 4 and [o.id for o in objects] == [1, 2, 3, 4]
+    assert objects[-1].id == 4 and [o.id for o in objects[1:3]] == [2, 3] and [o.id for o in objects[0:2]] == [1, 2]
     assert [o.disparity_px for o in objects] == sorted((o.disparity_px for o in objects), reverse=True)
     with pytest.raises(IndexError):
-        objects[2]
+        objects[4]
     assert same(objects.labels, sample.frame.objects_map)
 
 
@@ -85,8 +85,8 @@ def test_depth_and_points_are_arrays(sample):
     assert same(points[..., 2].copy(), depth)
     own = frame.points(frame.objects[0])
     assert own.shape == ((known & (frame.objects_map == 1)).sum(), 3) and same(own, frame.points(1))
-    with pytest.raises(cairn.Error, match="object: found id 3, expected 1 … 2"):
-        frame.points(3)
+    with pytest.raises(cairn.Error, match="object: found id 5, expected 1 … 4"):
+        frame.points(5)
     with pytest.raises(cairn.Error, match="a frame without a rig has no metres"):
         cairn.segment(sample.left, sample.right, match={"num_disparities": 32}).depth_m()
 
@@ -108,12 +108,12 @@ def test_a_frame_shows_itself(sample, tmp_path):
     view, drawn = frame.disparity_view(), cairn.draw_disparity(frame.disparity_map, sample.calibration)
     assert same(view[:, :640], drawn[:, :640])
     assert not same(view, drawn)  # the frame knows which reasons are in force, and its legend lists these alone
-    assert repr(frame).startswith("<cairn.Frame 320x240, ground found, Objects(2\n  Object(id=1")
+    assert repr(frame).startswith("<cairn.Frame 320x240, ground found, Objects(4\n  Object(id=1")
     assert frame.ground and frame.ground.refusal == "none" and 0 < frame.ground.support <= 1
     a, b, c = frame.ground.plane
     assert frame.ground.plane.disparity_px(10, 20) == pytest.approx(a * 10 + b * 20 + c, rel=1e-5)
     assert list(frame.timings) == STAGES and min(frame.timings.values()) >= 0
-    assert [o["id"] for o in json.loads(frame.to_json())["objects"]] == [1, 2]
+    assert [o["id"] for o in json.loads(frame.to_json())["objects"]] == [1, 2, 3, 4]
     assert frame.epipolar.outcome == "aligned"
 
 

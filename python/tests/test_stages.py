@@ -61,6 +61,10 @@ def by_hierarchy(sample):
     background = cairn.fit_background(evidence, ground, rig)
     superpixels = cairn.cut_superpixels(sample.left, seen, noise)
     tree = cairn.grow_merge_tree(superpixels, sample.left, seen, evidence, ground, background, noise)
+    hints = cairn.hint_objects(superpixels, sample.left, seen, evidence, ground, background, noise)
+    assert hints.shape == (120, 160, 5) and hints.dtype == np.int16 and np.abs(hints[..., :2]).max() <= 96
+    shows_object = hints[..., 0].repeat(2, 0).repeat(2, 1) > 0  # of each pixel
+    assert (shows_object & (sample.frame.objects_map > 0)).sum() > 0.8 * (sample.frame.objects_map > 0).sum()
     chosen = cairn.choose_objects(tree)
     groups = cairn.groups_of(superpixels, chosen, disparity)
     objects = cairn.measure_chosen(groups.labels, chosen.scores, disparity, sample.left, noise)

@@ -56,8 +56,8 @@ TEST_F(Bench, JsonHoldsEveryStageInItsOrderWithItsTimes) {
   EXPECT_LT(position("match"), position("fit_ground"));
   EXPECT_LT(position("fit_ground"), position("measure"));
   ASSERT_NE(position("measure"), names.end());
-  for (const char* costly :
-       {"noise_sigma", "fit_background", "cut_superpixels", "grow_merge_tree", "choose_objects"})
+  for (const char* costly : {"noise_sigma", "fit_background", "cut_superpixels", "hint_objects",
+                             "grow_merge_tree", "choose_objects"})
     EXPECT_LT(position(costly), position("measure")) << costly;
   EXPECT_EQ(position("fuse"), names.end()) << "the hierarchy does not need it";
   double disparity_ms = 0;

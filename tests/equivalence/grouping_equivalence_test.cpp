@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/grouping/object_hints.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -38,6 +39,7 @@ struct Scene {
   Image<float> evidence_px;
   Ground ground;
   Background background;
+  Image<ObjectHint> hints;
 
   Scene(Size size, std::uint32_t seed) : has_colour(seed % 2 == 0) {
     gray = blocks(size, seed);
@@ -58,8 +60,25 @@ struct Scene {
         evidence_px(x, y) = n < 60 ? kNaN : d;
       }
     }
+    if (seed % 5 != 1) hints = random_hints(size, seed);
     if (seed % 3 != 0) ground.plane = GroundPlane{0.01F, 0.4F, -3};
     if (seed % 3 != 1) background = {{{0.0F, 0.4F, -3}, {0.1F, 0, 2}}, true};
+  }
+
+  /// Of fewer cells than pixels, or more.
+  static Image<ObjectHint> random_hints(Size size, std::uint32_t seed) {
+    const Size cells{size.width / 2 + 3, size.height / 2 + 2};
+    std::mt19937 random(seed);
+    const auto from = [&random](int least, int most) {
+      return static_cast<std::int16_t>(least +
+                                       static_cast<int>(random() % static_cast<unsigned>(most - least + 1)));
+    };
+    Image<ObjectHint> hints(cells);
+    for (int y = 0; y < cells.height; ++y) {
+      for (int x = 0; x < cells.width; ++x)
+        hints(x, y) = {from(-96, 96), from(-96, 96), from(-60, 60), from(-60, 60), from(0, 160)};
+    }
+    return hints;
   }
 
   static Image<Gray> blocks(Size size, std::uint32_t seed) {
@@ -75,7 +94,7 @@ struct Scene {
 
   [[nodiscard]] View<const Rgb> rgb() const { return has_colour ? colours.view() : View<const Rgb>{}; }
   [[nodiscard]] Cues cues() const {
-    return {gray, rgb(), disparity_px, evidence_px, ground, background, 1.25F};
+    return {gray, rgb(), disparity_px, evidence_px, ground, background, 1.25F, hints};
   }
   [[nodiscard]] Superpixels superpixels(int count) const {
     return cut_superpixels(gray, rgb(), disparity_px, kNoise, {count}, {});

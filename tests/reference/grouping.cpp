@@ -3,6 +3,7 @@
 #include "reference/grouping.hpp"
 
 #include <algorithm>
+#include <cairn/grouping/object_hints.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -146,6 +147,29 @@ std::array<int, 3> colour_at(Point p, const Cues& cues) {
   return {(c.r + 2 * c.g + c.b) / 4, c.b - c.g, c.r - c.g};
 }
 
+/// The cell's hint that shows the pixel.
+ObjectHint hint_at(Point p, const Cues& cues) {
+  return cues.hints(p.x * cues.hints.width() / cues.gray.width(),
+                    p.y * cues.hints.height() / cues.gray.height());
+}
+
+void count(HintSums& sums, Point p, const Cues& cues) {
+  if (cues.hints.empty()) return;
+  const ObjectHint hint = hint_at(p, cues);
+  const Point middle{
+      8 * (p.x * cues.hints.width() / cues.gray.width() - cues.hints.width() / 2) + hint.to_x,
+      8 * (p.y * cues.hints.height() / cues.gray.height() - cues.hints.height() / 2) + hint.to_y};
+  const std::int64_t votes = std::min(std::max(hint.object + 32, 0), 64);
+  sums.object += hint.object;
+  sums.outline += hint.outline;
+  sums.weight += votes;
+  sums.x += votes * middle.x;
+  sums.y += votes * middle.y;
+  sums.xx += votes * middle.x * middle.x;
+  sums.yy += votes * middle.y * middle.y;
+  sums.size += votes * hint.size;
+}
+
 /// The farthest pixel, three away at most, up to which a straight way from p stays in its superpixel.
 Point up_to_three_away(Point p, Point to, View<const RegionId> labels) {
   Point farthest = p;
@@ -190,6 +214,10 @@ FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
           .height = cues.gray.height(),
           .has_colour = !cues.rgb.empty(),
           .has_ground = cues.ground.plane.has_value(),
+          .has_hints = !cues.hints.empty(),
+          .cells_per_px =
+              static_cast<double>(cues.hints.size().area()) / static_cast<double>(cues.gray.size().area()),
+          .cells_across = cues.hints.width(),
           .walls_and_floor = static_cast<int>(cues.background.planes.size()),
           .noise_sigma = cues.noise_sigma,
           .matched_share = share(seen.matched),
@@ -415,6 +443,7 @@ RegionCues cues_of(const Members& members, const Superpixels& superpixels, const
                           !is_in(members, superpixels.labels, {x + dx, y + dy});
         region.perimeter += ends ? 1 : 0;
       }
+      count(region.hints, p, cues);
       count(matched, cues.disparity_px(x, y), p, centre, cues);
       count(textured, cues.evidence_px(x, y), p, centre, cues);
     }
@@ -438,6 +467,7 @@ ContactCues contact_of(const Members& a, const Members& b, const Superpixels& su
     const int edge = std::max(superpixels.edges(p.x, p.y), superpixels.edges(q.x, q.y));
     contact.length += 1;
     contact.edge_sum += edge;
+    if (!cues.hints.empty()) contact.outline += std::max(hint_at(p, cues).outline, hint_at(q, cues).outline);
     if (static_cast<float>(edge) < 4 * (1.5F + 0.8F * cues.noise_sigma)) contact.weak += 1;
     contact.x2 += p.x + q.x - 2 * centre.x;
     contact.y2 += p.y + q.y - 2 * centre.y;

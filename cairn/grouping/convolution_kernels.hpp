@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cstdint>
+
+/// The kernel of hint_objects(), per row; one set per instruction set. Private to the library.
+namespace cairn::kernels {
+
+/// A convolution of integers. `inputs` is even, `outputs` a multiple of 8 up to kMostOutputs.
+struct Convolution {
+  int inputs = 0;
+  int outputs = 0;
+  int side = 1;                           // of the window: 1 or 3
+  int stride = 1;                         // pixels from one output to the next
+  int least = 0;                          // of an output: 0 is a rectifier
+  const std::int16_t* weights = nullptr;  // [window row][column][pair of inputs][output][2]
+  const std::int32_t* bias = nullptr;     // [output]
+  const float* scale = nullptr;           // [output]
+};
+
+/// The largest number of outputs.
+inline constexpr int kMostOutputs = 48;
+
+/// The limit of an output: no sum of products can then exceed 32 bits.
+inline constexpr int kGreatestActivation = 8191;
+
+/// Integer sums, one multiplication by a float, rounded to nearest: the same bits on every target.
+struct ConvolutionKernels {
+  /// `rows`: the `side` rows of the window, channels side by side in each pixel, from the window's first
+  /// column of the first output on. Output o of pixel x, at out[x · outputs + o], is
+  /// (bias[o] + Σ weights · inputs) · scale[o], rounded, from `least` to kGreatestActivation.
+  void (*convolve)(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out);
+};
+
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
+const ConvolutionKernels* convolution_kernels(Target target);
+/// The functions for the active target of `exec`.
+const ConvolutionKernels& convolution_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/core/exec.hpp>
+#include <cairn/core/image.hpp>
+#include <cairn/grouping/convolution_kernels.hpp>
+#include <cairn/grouping/region_cues.hpp>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Estimates of a small convolutional network for the cells of the image, used as cues for grouping
+/// (docs/stages/object_hints.md, beyond the paper).
+namespace cairn {
+
+/// The estimates for one cell, a block of pixels.
+struct ObjectHint {
+  std::int16_t object = 0;   // log-odds that the cell shows an object, in 1/16, −96 … 96
+  std::int16_t outline = 0;  // log-odds that the outline of an object passes, likewise
+  std::int16_t to_x = 0;     // from the cell to the centroid of its object's visible part, in 1/8 cell
+  std::int16_t to_y = 0;
+  std::int16_t size = 0;  // log₂ of the number of cells of that part, in 1/16
+  friend bool operator==(const ObjectHint&, const ObjectHint&) = default;
+};
+
+/// About 160×120 cells, in the image's proportions, multiples of 8 in both directions.
+Size hint_cells(Size image);
+
+/// The number of input channels of a cell: brightness, colour, disparity, distance from ground and background,
+/// edges … (docs/stages/object_hints.md lists them).
+inline constexpr int kHintChannels = 12;
+/// The input of the network: hint_cells() with a frame of zeros around them, the channels of a cell next to each
+/// other, in 1/64. `cues.hints` is not used.
+Image<std::int16_t> hint_input(const Superpixels& superpixels, const Cues& cues, const Exec& exec);
+
+/// The shape of one layer.
+struct HintLayer {
+  int inputs = 0, outputs = 0;
+  int side = 3, stride = 1;  // of the window; pixels from one output to the next
+  int least = 0;             // output: 0 for a rectifier
+};
+inline constexpr std::size_t kHintLayers = 17;
+
+/// The fitted numbers, in the order that the kernels read.
+class HintNetwork {
+ public:
+  /// `weights`: of every layer [row][column][input][output]; `bias` and `scale`: of every layer [output].
+  /// They are copied. Precondition: as many as `layers` ask for.
+  HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
+              std::span<const std::int32_t> bias, std::span<const float> scale);
+  HintNetwork(HintNetwork&&) = default;
+  HintNetwork& operator=(HintNetwork&&) = default;
+  HintNetwork(const HintNetwork&) = delete;
+  HintNetwork& operator=(const HintNetwork&) = delete;
+  ~HintNetwork() = default;
+  [[nodiscard]] const kernels::Convolution& layer(std::size_t i) const { return layers_.at(i); }
+
+ private:
+  std::vector<std::int16_t> weights_;  // pairs of inputs side by side
+  std::vector<std::int32_t> bias_;
+  std::vector<float> scale_;
+  std::array<kernels::Convolution, kHintLayers> layers_{};
+};
+
+/// The network of the library, fitted by fitting/fit_hints.py.
+const HintNetwork& hint_network();
+
+/// One hint for each of hint_cells(), from hint_input(). An encoder halves the resolution four times; a decoder
+/// doubles it again and adds the encoder's activations of the same resolution (Ronneberger et al. 2015,
+/// "U-Net"). All sums are integers.
+Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& network, const Exec& exec);
+
+}  // namespace cairn

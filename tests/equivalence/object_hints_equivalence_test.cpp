@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "reference/object_hints.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cairn/core/target.hpp>
+#include <cmath>
+#include <random>
+
+#include "support/grids.hpp"
+
+namespace cairn {
+namespace {
+
+using grids::random_image;
+using reference::HintNumbers;
+
+/// With as many outputs as vectors take in different ways. Few weights are large, so that outputs neither vanish
+/// nor all reach their limit.
+HintNumbers random_numbers(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto from = [&random](int least, int most) {
+    return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+  };
+  const auto channels = [&] { return 8 * from(1, 6); };
+  const int half = channels();
+  const int quarter = channels();
+  const int eighth = channels();
+  const int a = channels();
+  const int b = channels();
+  HintNumbers numbers;
+  numbers.layers = {{kHintChannels, a, 3, 2, 0},
+                    {a, half, 3, 1, 0},
+                    {half, b, 3, 2, 0},
+                    {b, quarter, 3, 1, 0},
+                    {quarter, a, 3, 2, 0},
+                    {a, b, 3, 1, 0},
+                    {b, eighth, 3, 1, 0},
+                    {eighth, a, 3, 2, 0},
+                    {a, b, 3, 1, 0},
+                    {b, a, 3, 1, 0},
+                    {a, eighth, 1, 1, 0},
+                    {eighth, b, 3, 1, 0},
+                    {b, quarter, 1, 1, 0},
+                    {quarter, a, 3, 1, 0},
+                    {a, half, 1, 1, 0},
+                    {half, b, 3, 1, 0},
+                    {b, 24, 1, 1, -8191}};
+  for (const HintLayer& l : numbers.layers) {
+    const int inputs = l.side * l.side * l.inputs;
+    for (int i = 0; i < inputs * l.outputs; ++i)
+      numbers.weights.push_back(static_cast<std::int8_t>(from(0, 9) == 0 ? from(-127, 127) : from(-20, 20)));
+    for (int o = 0; o < l.outputs; ++o) {
+      numbers.bias.push_back(from(-100000, 100000));
+      const float likely = 0.03F / std::sqrt(static_cast<float>(inputs));  // keeps the spread of the numbers
+      numbers.scale.push_back(static_cast<float>(from(50, 150)) * 0.01F * likely *
+                              (l.least < 0 ? 0.2F : 1.0F));
+    }
+  }
+  return numbers;
+}
+
+/// With a frame of zeros.
+Image<std::int16_t> random_input(Size cells, std::uint32_t seed) {
+  Image<std::int16_t> input =
+      random_image<std::int16_t>({(cells.width + 2) * kHintChannels, cells.height + 2}, -256, 256, seed);
+  for (int y = 0; y < input.height(); ++y) {
+    for (int x = 0; x < input.width(); ++x) {
+      const int column = x / kHintChannels;
+      const bool inside = column > 0 && column <= cells.width && y > 0 && y <= cells.height;
+      if (!inside) input(x, y) = 0;
+    }
+  }
+  return input;
+}
+
+Exec on(Target target) {
+  Exec exec;
+  exec.target = target;
+  return exec;
+}
+
+int count_of_values(View<const ObjectHint> hints) {
+  std::vector<int> seen;
+  for (int y = 0; y < hints.height(); ++y) {
+    for (int x = 0; x < hints.width(); ++x) seen.push_back(hints(x, y).object);
+  }
+  std::sort(seen.begin(), seen.end());
+  return static_cast<int>(std::unique(seen.begin(), seen.end()) - seen.begin());
+}
+
+void expect_equal(const Image<ObjectHint>& found, const Image<ObjectHint>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (int y = 0; y < found.height(); ++y) {
+    for (int x = 0; x < found.width(); ++x) ASSERT_EQ(found(x, y), expected(x, y)) << x << ", " << y;
+  }
+}
+
+TEST(HintObjects, AreThoseOfTheDefinitionOnEveryTarget) {
+  for (const Size cells : {Size{8, 8}, {16, 8}, {24, 40}, {56, 24}}) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      const HintNumbers numbers = random_numbers(seed);
+      const Image<std::int16_t> input = random_input(cells, seed);
+      const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
+      EXPECT_GT(count_of_values(expected), 5) << "says something";
+      const HintNetwork network = numbers.network();
+      for (const Target target : supported_targets()) {
+        SCOPED_TRACE(name(target));
+        expect_equal(hint_objects(input.clone(), network, on(target)), expected);
+      }
+      for (const int threads : {2, 3})
+        expect_equal(hint_objects(input.clone(), network, Exec::with_threads(threads)), expected);
+    }
+  }
+}
+
+TEST(HintObjects, OfGreatestNumbersDoNotOverflow) {
+  HintNumbers numbers = random_numbers(5);
+  for (std::int8_t& weight : numbers.weights) weight = weight < 0 ? -127 : 127;
+  for (float& scale : numbers.scale) scale = 1;
+  const Image<std::int16_t> input = random_input({24, 16}, 5);
+  const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
+  for (const Target target : supported_targets())
+    expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
+}
+
+}  // namespace
+}  // namespace cairn

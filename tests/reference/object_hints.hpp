@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/grouping/object_hints.hpp>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// The slow twin of hint_objects(), from the definition of a convolution.
+namespace cairn::reference {
+
+/// What a HintNetwork is made of.
+struct HintNumbers {
+  std::vector<HintLayer> layers;
+  std::vector<std::int8_t> weights;
+  std::vector<std::int32_t> bias;
+  std::vector<float> scale;
+  [[nodiscard]] HintNetwork network() const { return {layers, weights, bias, scale}; }
+};
+
+/// `input`: as that of hint_objects().
+Image<ObjectHint> hint_objects(View<const std::int16_t> input, const HintNumbers& numbers);
+
+}  // namespace cairn::reference
