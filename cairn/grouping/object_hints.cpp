@@ -120,6 +120,7 @@ void add_run(const Superpixels& superpixels, const Cues& cues, const Behind& beh
 Image<CellSums> sums_of(const Superpixels& superpixels, const Cues& cues, Size cells, const Exec& exec) {
   const Size image = cues.gray.size();
   std::vector<Run> columns;
+  columns.reserve(slot(cells.width));
   for (int c = 0; c < cells.width; ++c) columns.push_back(pixels_of(c, cells.width, image.width));
   Image<CellSums> sums(cells, exec.pool);
   parallel_for(exec, cells.height, kGrain, [&](int first, int last) {
@@ -297,9 +298,11 @@ HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std:
     const HintLayer& l = layers[i];
     const int inputs = l.side * l.side * l.inputs;
     for (int k = 0; k < inputs; ++k) {
-      for (int o = 0; o < l.outputs; ++o)
-        weights_[weight + slot((k / 2 * l.outputs + o) * 2 + k % 2)] =
-            weights[weight + slot(k * l.outputs + o)];
+      for (int o = 0; o < l.outputs; ++o) {
+        // NOLINTNEXTLINE(bugprone-signed-char-misuse): a number, not a character
+        const auto number = static_cast<std::int16_t>(weights[weight + slot(k * l.outputs + o)]);
+        weights_[weight + slot((k / 2 * l.outputs + o) * 2 + k % 2)] = number;
+      }
     }
     layers_[i] = {l.inputs, l.outputs,         l.side,         l.stride,
                   l.least,  &weights_[weight], &bias_[output], &scale_[output]};
