@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/islands.hpp>
 #include <cairn/objects/locate.hpp>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -324,6 +326,26 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
     }
   });
   return objects;
+}
+
+std::vector<Vec3> object_points(const Objects& objects, ObjectId id, View<const float> disparity_px,
+                                const StereoRig& rig) {
+  const auto count = static_cast<std::int32_t>(objects.list.size());
+  if (number(id) < 1 || number(id) > count)
+    throw Error("object: found id " + std::to_string(number(id)) + ", expected 1 … " + std::to_string(count));
+  const Object& object = objects.list[slot(number(id) - 1)];
+  std::vector<Vec3> points;
+  points.reserve(slot(object.pixel_count));
+  const Rect box = object.box_px;
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    for (int x = box.x; x < box.x + box.width; ++x) {
+      if (objects.labels(x, y) != id) continue;
+      const auto point =
+          rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px(x, y));
+      if (point) points.push_back(*point);
+    }
+  }
+  return points;
 }
 
 }  // namespace cairn

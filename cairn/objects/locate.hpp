@@ -17,4 +17,10 @@ namespace cairn {
 Objects locate(Objects objects, const DisparityMap& disparity, const Ground& ground,
                const std::optional<StereoRig>& rig, const Exec& exec);
 
+/// The points of the object's pixels that have one, in raster order, m, in the left camera's frame. Those of its
+/// whole mask, holes of the disparity left out; the box and the extent are of its main part.
+/// Throws Error if there is no such object.
+std::vector<Vec3> object_points(const Objects& objects, ObjectId id, View<const float> disparity_px,
+                                const StereoRig& rig);
+
 }  // namespace cairn

@@ -3,6 +3,7 @@
 #include "frame.hpp"
 
 #include <algorithm>
+#include <cairn/objects/locate.hpp>
 #include <cairn/pipeline/segmenter.hpp>
 #include <io/image_files.hpp>
 #include <io/overlay.hpp>
@@ -145,38 +146,35 @@ auto from_floor(const PyFrame& self) {
   return floor ? std::optional(made()) : std::nullopt;
 }
 
-/// The points of all pixels, or of one object's that have one.
-Numbers<float> points_of(const PyFrame& self, const Typed<"Union[Object, int, None]">& object) {
+/// NaN where there is none.
+Numbers<float> points_of_pixels(const PyFrame& self) {
   const StereoRig& rig = rig_of_frame(self);
   const View<const float> d = self.frame.disparity.disparity_px;
-  ObjectId wanted = ObjectId::none;
-  if (!object.is_none()) {
-    const auto id =
-        whole(PyIndex_Check(object.ptr()) != 0 ? py::object(object) : py::object(object.attr("id")));
-    const int count = static_cast<int>(self.frame.objects.list.size());
-    if (!id || *id < 1 || *id > count)
-      throw Error("object: found id " + std::to_string(id.value_or(0)) + ", expected 1 … " +
-                  std::to_string(count));
-    wanted = ObjectId{*id};
-  }
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  Numbers<float> points;
+  Numbers<float> points{{}, {d.height(), d.width(), 3}};
   for (int y = 0; y < d.height(); ++y) {
     for (int x = 0; x < d.width(); ++x) {
-      if (wanted != ObjectId::none && self.frame.objects.labels(x, y) != wanted) continue;
       const auto point = rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d(x, y));
-      if (wanted != ObjectId::none && !point) continue;
       const Vec3 at = point.value_or(Vec3{kNan, kNan, kNan});
       points.values.insert(points.values.end(), {at.x, at.y, at.z});
     }
   }
-  points.shape = {d.height(), d.width(), 3};
-  if (wanted != ObjectId::none) points.shape = {static_cast<py::ssize_t>(points.values.size() / 3), 3};
+  return points;
+}
+
+Numbers<float> points_of(const PyFrame& self, const Typed<"Union[Object, int, None]">& object) {
+  if (object.is_none()) return points_of_pixels(self);
+  const auto id =
+      whole(PyIndex_Check(object.ptr()) != 0 ? py::object(object) : py::object(object.attr("id")));
+  const std::vector<Vec3> all = object_points(self.frame.objects, ObjectId{id.value_or(0)},
+                                              self.frame.disparity.disparity_px, rig_of_frame(self));
+  Numbers<float> points{{}, {static_cast<py::ssize_t>(all.size()), 3}};
+  for (const Vec3& at : all) points.values.insert(points.values.end(), {at.x, at.y, at.z});
   return points;
 }
 
 Numbers<float> depth_of(const PyFrame& self) {
-  const Numbers<float> points = points_of(self, {});
+  const Numbers<float> points = points_of_pixels(self);
   Numbers<float> depth{{}, {points.shape[0], points.shape[1]}};
   for (std::size_t i = 2; i < points.values.size(); i += 3) depth.values.push_back(points.values[i]);
   return depth;

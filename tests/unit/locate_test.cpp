@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/core/error.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>
@@ -64,6 +65,24 @@ TEST(Locate, PlacesAnObjectInMetresWhereARigIsKnown) {
   EXPECT_NEAR(object.extent_in_camera_m->y, 10 * 0.02, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
   EXPECT_FALSE(object.box_on_floor);  // no ground
+}
+
+TEST(ObjectPoints, AreThoseOfItsPixelsInRasterOrder) {
+  // Z = 2 m: a pixel is 2 cm wide there.
+  Scene scene({60, 20}, {{{20, 5, 2, 2}, 5}, {{22, 5, 8, 2}, 4}});
+  scene.disparity.disparity_px(21, 5) = kNan;
+  scene.disparity.disparity_px(20, 6) = 0;
+  const std::vector<Vec3> points =
+      object_points(scene.objects, ObjectId{1}, scene.disparity.disparity_px, kRig);
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_FLOAT_EQ(points[0].x, 0);
+  EXPECT_FLOAT_EQ(points[0].y, -0.1F);
+  EXPECT_FLOAT_EQ(points[0].z, 2);
+  EXPECT_FLOAT_EQ(points[1].x, 0.02F);
+  EXPECT_FLOAT_EQ(points[1].y, -0.08F);
+  for (const int id : {-1, 0, 3}) {
+    EXPECT_THROW((void)object_points(scene.objects, ObjectId{id}, scene.disparity.disparity_px, kRig), Error);
+  }
 }
 
 TEST(Locate, FarMismatchesDoNotPullTheDistance) {
