@@ -6,10 +6,10 @@
 // to, and how well what they have fitted does.
 //
 // Each line of JOBS is a frame's folder, `colour` or `grey`, and three files: a fitted network, and two of fitted
-// trees; `-` for those that the library has. For each line one is printed: what was found in the frame. FILEs get a record of
-// floats for each pair of regions that was judged (the job's number, whether they show one thing, how pure
-// they are, the features), and for each region that may be an object (the job's number, its greatest IoU with
-// a true object, whether the truth is partial, the features).
+// trees; `-` for those that the library has. For each line one is printed: what was found in the frame. FILEs get
+// a record of floats for each pair of regions that was judged (the job's number, whether they show one thing, how
+// pure they are, the features), and for each region that may be an object (the job's number, its greatest IoU
+// with a true object, whether the truth is partial, the features); of the inputs, see record_input().
 #include <cairn/cairn.hpp>
 #include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/methods.hpp>
@@ -40,8 +40,8 @@ struct LoadedTrees {
   FittedTrees trees;
 };
 
-std::unique_ptr<LoadedTrees> load_trees(const std::string& path) {
-  auto loaded = std::make_unique<LoadedTrees>();
+std::shared_ptr<const FittedTrees> load_trees(const std::string& path) {
+  const auto loaded = std::make_shared<LoadedTrees>();
   std::ifstream in(path);
   std::size_t roots = 0;
   std::size_t nodes = 0;
@@ -53,20 +53,24 @@ std::unique_ptr<LoadedTrees> load_trees(const std::string& path) {
   if (!in) throw Error(path + ": no file of fitted trees");
   loaded->trees.roots = loaded->roots;
   loaded->trees.nodes = loaded->nodes;
-  return loaded;
+  return {loaded, &loaded->trees};
 }
 
-class Trees {
+/// What is in files, each read once; `-` is what the library has.
+template <class T>
+class Fitted {
  public:
-  const FittedTrees& at(const std::string& path, const FittedTrees& otherwise) {
-    if (path == "-") return otherwise;
-    std::unique_ptr<LoadedTrees>& known = known_[path];
-    if (!known) known = load_trees(path);
-    return known->trees;
+  explicit Fitted(std::shared_ptr<const T> (*load)(const std::string& path)) : load_(load) {}
+  const T& at(const std::string& path, const T& of_the_library) {
+    if (path == "-") return of_the_library;
+    std::shared_ptr<const T>& known = known_[path];
+    if (!known) known = load_(path);
+    return *known;
   }
 
  private:
-  std::map<std::string, std::unique_ptr<LoadedTrees>> known_;
+  std::shared_ptr<const T> (*load_)(const std::string& path);
+  std::map<std::string, std::shared_ptr<const T>> known_;
 };
 
 struct Files {
@@ -163,14 +167,14 @@ void record_input(std::ofstream& file, int job, const Image<std::int16_t>& input
 }
 
 /// A network in a file, as fit_hints.py writes it: the layers' numbers, the weights, biases and scales.
-HintNetwork load_network(const std::string& path) {
+std::shared_ptr<const HintNetwork> load_network(const std::string& path) {
   std::ifstream in(path);
   std::array<HintLayer, kHintLayers> layers;
   std::size_t weights = 0;
   std::size_t outputs = 0;
   for (HintLayer& l : layers) {
     in >> l.inputs >> l.outputs >> l.side >> l.stride >> l.least;
-    weights += slot(l.side * l.side * l.inputs * l.outputs);
+    weights += l.weights();
     outputs += slot(l.outputs);
   }
   std::vector<std::int8_t> weight(weights);
@@ -184,20 +188,8 @@ HintNetwork load_network(const std::string& path) {
   for (std::int32_t& v : bias) in >> v;
   for (float& v : scale) in >> v;
   if (!in) throw Error(path + ": no file of a fitted network");
-  return HintNetwork(layers, weight, bias, scale);
+  return std::make_shared<HintNetwork>(layers, weight, bias, scale);
 }
-
-class Networks {
- public:
-  const HintNetwork& at(const std::string& path) {
-    if (path == "-") return hint_network();
-    const auto known = known_.find(path);
-    return known != known_.end() ? known->second : known_.emplace(path, load_network(path)).first->second;
-  }
-
- private:
-  std::map<std::string, HintNetwork> known_;
-};
 
 struct Pair {
   std::int32_t a;
@@ -311,15 +303,15 @@ int run(std::span<char*> arguments) {
     if (option == "--min-score") min_score = std::stof(value);
   }
   std::ifstream jobs(arguments[1]);
-  Trees trees;
+  Fitted<FittedTrees> trees(load_trees);
+  Fitted<HintNetwork> networks(load_network);
   std::string folder;
   std::string colour;
   std::string hints;
   std::string same_thing;
   std::string whole_object;
-  Networks networks;
   for (int job = 0; jobs >> folder >> colour >> hints >> same_thing >> whole_object; ++job) {
-    work(job, folder, colour == "grey", networks.at(hints), trees.at(same_thing, kSameThing),
+    work(job, folder, colour == "grey", networks.at(hints, hint_network()), trees.at(same_thing, kSameThing),
          trees.at(whole_object, kWholeObject), min_score, files);
   }
   return 0;

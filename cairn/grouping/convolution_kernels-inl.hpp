@@ -47,7 +47,9 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   const Products pairs;
   hn::Vec<Sums> sums[kPixels][kVectors];
   hn::Vec<Sums> others[kPixels][kVectors];  // where an instruction set sums two halves apart
+#pragma GCC unroll 12
   for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 12
     for (int v = 0; v < kVectors; ++v) {
       sums[p][v] = hn::LoadU(d, by.bias + v * kLanes);
       others[p][v] = hn::Zero(d);
@@ -59,14 +61,17 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
     const std::int16_t* HWY_RESTRICT in = rows[row] + first * step;
     for (int i = 0; i < by.side * by.inputs; i += 2) {
       hn::Vec<Products> two[kPixels];
+#pragma GCC unroll 12
       for (int p = 0; p < kPixels; ++p) {
         std::int32_t both = 0;
         std::memcpy(&both, in + p * step + i, sizeof both);
         two[p] = hn::BitCast(pairs, hn::Set(d, both));
       }
+#pragma GCC unroll 12
       for (int v = 0; v < kVectors; ++v) {
         const auto w = hn::LoadU(pairs, weights);
         weights += 2 * kLanes;
+#pragma GCC unroll 12
         for (int p = 0; p < kPixels; ++p)
           sums[p][v] = hn::ReorderWidenMulAccumulate(d, two[p], w, sums[p][v], others[p][v]);
       }
@@ -74,7 +79,9 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   }
   const auto least = hn::Set(Scales(), static_cast<float>(by.least));
   const auto greatest = hn::Set(Scales(), static_cast<float>(kGreatestActivation));
+#pragma GCC unroll 12
   for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 12
     for (int v = 0; v < kVectors; ++v) {
       const auto sum = hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]);
       const auto value = hn::Mul(hn::ConvertTo(Scales(), sum), hn::LoadU(Scales(), by.scale + v * kLanes));

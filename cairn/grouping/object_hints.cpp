@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::size_t count_of_weights() {
   std::size_t count = 0;
-  for (const HintLayer& l : kFittedLayers)
-    count += static_cast<std::size_t>(l.side * l.side * l.inputs * l.outputs);
+  for (const HintLayer& l : kFittedLayers) count += l.weights();
   return count;
 }
 static_assert(kFittedLayers.size() == kHintLayers && kFittedWeights.size() == count_of_weights());
@@ -87,21 +86,14 @@ struct Behind {
 /// The pixels of row y in a run of columns.
 void add_run(const Superpixels& superpixels, const Cues& cues, const Behind& behind, Run run, int y,
              CellSums& s) {
-  const Gray* const gray = cues.gray.row(y);
   const float* const disparity = cues.disparity_px.row(y);
   const float* const evidence = cues.evidence_px.row(y);
   const std::uint16_t* const edges = superpixels.edges.row(y);
   s.pixels += run.last - run.first;
   for (int x = run.first; x < run.last; ++x) {
-    int brightness = gray[x];
-    if (!cues.rgb.empty()) {
-      const Rgb p = cues.rgb(x, y);
-      brightness = (p.r + 2 * p.g + p.b) / 4;
-      s.colour[1] += p.b - p.g;
-      s.colour[2] += p.r - p.g;
-    }
-    s.colour[0] += brightness;
-    s.squares += brightness * brightness;
+    const std::array<int, 3> colour = colour_at(cues, x, y);
+    for (std::size_t i = 0; i < colour.size(); ++i) s.colour[i] += colour[i];
+    s.squares += colour[0] * colour[0];
     s.edges += edges[x];
     s.textured += std::isnan(evidence[x]) ? 0 : 1;
     const double ground = behind.ground[slot(x)];
@@ -141,6 +133,7 @@ Image<CellSums> sums_of(const Superpixels& superpixels, const Cues& cues, Size c
 /// The disparity that 2 % of the cells exceed, at least 1 px.
 double nearest_px(View<const CellSums> cells) {
   std::vector<double> means;
+  means.reserve(slot(cells.width() * cells.height()));
   for (int y = 0; y < cells.height(); ++y) {
     for (int x = 0; x < cells.width(); ++x) {
       const CellSums& s = cells(x, y);
@@ -296,8 +289,7 @@ HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std:
   std::size_t output = 0;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const HintLayer& l = layers[i];
-    const int inputs = l.side * l.side * l.inputs;
-    for (int k = 0; k < inputs; ++k) {
+    for (int k = 0; k < l.side * l.side * l.inputs; ++k) {
       for (int o = 0; o < l.outputs; ++o) {
         // NOLINTNEXTLINE(bugprone-signed-char-misuse): a number, not a character
         const auto number = static_cast<std::int16_t>(weights[weight + slot(k * l.outputs + o)]);
@@ -306,7 +298,7 @@ HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std:
     }
     layers_[i] = {l.inputs, l.outputs,         l.side,         l.stride,
                   l.least,  &weights_[weight], &bias_[output], &scale_[output]};
-    weight += slot(inputs * l.outputs);
+    weight += l.weights();
     output += slot(l.outputs);
   }
 }
@@ -341,6 +333,10 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
     }
   }
   return hints;
+}
+
+Image<ObjectHint> hint_objects(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
+  return hint_objects(hint_input(superpixels, cues, exec), hint_network(), exec);
 }
 
 }  // namespace cairn

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cairn/core/exec.hpp>
+#include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
 #include <cairn/grouping/convolution_kernels.hpp>
 #include <cairn/grouping/region_cues.hpp>
@@ -40,6 +41,7 @@ struct HintLayer {
   int inputs = 0, outputs = 0;
   int side = 3, stride = 1;  // of the window; pixels from one output to the next
   int least = 0;             // output: 0 for a rectifier
+  [[nodiscard]] constexpr std::size_t weights() const { return slot(side * side * inputs * outputs); }
 };
 inline constexpr std::size_t kHintLayers = 17;
 
@@ -71,5 +73,7 @@ const HintNetwork& hint_network();
 /// doubles it again and adds the encoder's activations of the same resolution (Ronneberger et al. 2015,
 /// "U-Net"). All sums are integers.
 Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& network, const Exec& exec);
+/// By the library's network.
+Image<ObjectHint> hint_objects(const Superpixels& superpixels, const Cues& cues, const Exec& exec);
 
 }  // namespace cairn

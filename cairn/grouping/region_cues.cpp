@@ -138,9 +138,12 @@ class Gathering {
   void add_hints(RegionCues& region, int y, int first, int last) const {
     const int row = cell_row(y);
     const ObjectHint* const hints = cues_.hints.row(row);
-    for (int x = first; x < last; ++x) {
+    for (int x = first; x < last;) {
       const int column = cell_column_[slot(x)];
-      region.hints.add(hints[column], column - cues_.hints.width() / 2, row - cues_.hints.height() / 2);
+      const int begin = x;
+      while (x < last && cell_column_[slot(x)] == column) ++x;
+      region.hints.add(hints[column], column - cues_.hints.width() / 2, row - cues_.hints.height() / 2,
+                       x - begin);
     }
   }
   [[nodiscard]] int cell_row(int y) const { return y * cues_.hints.height() / height_; }
@@ -152,11 +155,7 @@ class Gathering {
     std::array<std::int64_t, 3> sums{};
     std::array<std::int64_t, 3> squares{};
     for (int x = first; x < last; ++x) {
-      std::array<int, 3> colour{cues_.gray(x, y), 0, 0};
-      if (!cues_.rgb.empty()) {
-        const Rgb p = cues_.rgb(x, y);
-        colour = {(p.r + 2 * p.g + p.b) / 4, p.b - p.g, p.r - p.g};
-      }
+      const std::array<int, 3> colour = colour_at(cues_, x, y);
       for (std::size_t i = 0; i < 3; ++i) {
         sums[i] += colour[i];
         squares[i] += colour[i] * colour[i];
@@ -299,12 +298,12 @@ void Heights::add(const Heights& other) {
   on += other.on;
 }
 
-void HintSums::add(const ObjectHint& hint, int column, int row) {
-  const std::int64_t vote = std::clamp(hint.object + 32, 0, 64);
+void HintSums::add(const ObjectHint& hint, int column, int row, int pixels) {
+  const std::int64_t vote = std::int64_t{pixels} * std::clamp(hint.object + 32, 0, 64);
   const std::int64_t to_x = column * 8 + hint.to_x;
   const std::int64_t to_y = row * 8 + hint.to_y;
-  object += hint.object;
-  outline += hint.outline;
+  object += std::int64_t{pixels} * hint.object;
+  outline += std::int64_t{pixels} * hint.outline;
   weight += vote;
   x += vote * to_x;
   y += vote * to_y;

@@ -23,7 +23,8 @@ namespace cairn {
 struct HintSums {
   std::int64_t object = 0, outline = 0;
   std::int64_t weight = 0, x = 0, y = 0, xx = 0, yy = 0, size = 0;
-  void add(const ObjectHint& hint, int column, int row);
+  /// `pixels`: how many of the cell's.
+  void add(const ObjectHint& hint, int column, int row, int pixels = 1);
   void add(const HintSums& other);
   friend bool operator==(const HintSums&, const HintSums&) = default;
 };
@@ -73,16 +74,22 @@ struct Heights {
 /// from −96; values outside go to the first or last bin.
 inline constexpr std::size_t kColourBins = 16;
 
+/// Brightness, (red + 2 green + blue)/4 rounded down, blue − green, red − green; without colour: grey, 0, 0.
+inline std::array<int, 3> colour_at(const Cues& cues, int x, int y) {
+  if (cues.rgb.empty()) return {cues.gray(x, y), 0, 0};
+  const Rgb p = cues.rgb(x, y);
+  return {(p.r + 2 * p.g + p.b) / 4, p.b - p.g, p.r - p.g};
+}
+
 /// Pixels per bin: of brightness, blue − green, red − green.
 using Histogram = std::array<std::int32_t, 3 * kColourBins>;
 
 struct RegionCues {
   std::int64_t area = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   int left = std::numeric_limits<int>::max(), top = std::numeric_limits<int>::max();
-  int right = -1, bottom = -1;                    // the last column and row
-  std::array<std::int64_t, 4> at_image_border{};  // pixels at the left, right, top, bottom border
-  // Brightness, (red + 2 green + blue)/4 rounded down, blue − green, red − green; without colour: grey, 0, 0.
-  std::array<std::int64_t, 3> colour{}, colour_squares{};
+  int right = -1, bottom = -1;                             // the last column and row
+  std::array<std::int64_t, 4> at_image_border{};           // pixels at the left, right, top, bottom border
+  std::array<std::int64_t, 3> colour{}, colour_squares{};  // of colour_at()
   Histogram histogram{};
   std::int64_t texture = 0;                         // sum of the edges inside, in 1/4 grey level
   std::int64_t perimeter = 0;                       // pairs of 4-neighbours with one outside

@@ -39,6 +39,9 @@ double share(std::int64_t part, std::int64_t whole) {
 double mean_px(std::int64_t sum, std::int64_t n) {
   return share(static_cast<double>(sum) / kDisparitySteps, static_cast<double>(n));
 }
+double known(bool ok, double value) {
+  return ok ? value : double{kUnknown};
+}
 double root(double squares) {
   return std::sqrt(std::max(0.0, squares));
 }
@@ -90,13 +93,8 @@ double distance(double x, double y) {
   return std::sqrt(x * x + y * y);
 }
 
-/// The centroid that the hints of a region vote for, the spread of the votes, and log₂ of the size, in cells.
-struct Votes {
-  bool any = false;
-  double x = 0, y = 0, spread = 0, size = 0;
-};
-Votes votes_of(const HintSums& h) {
-  Votes v;
+HintVotes votes_of(const HintSums& h) {
+  HintVotes v;
   if (h.weight < 64) return v;
   const auto w = static_cast<double>(h.weight);
   v.any = true;
@@ -216,29 +214,30 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
       std::abs(static_cast<double>(s.texture) / area_s - static_cast<double>(l.texture) / area_l) / 4);
   out("noise, grey levels", frame.noise_sigma);
   out("disparity of the smaller one, share of the nearest",
-      fits_s.matched.any ? fits_s.matched.d / frame.nearest_px : double{kUnknown});
+      known(fits_s.matched.any, fits_s.matched.d / frame.nearest_px));
   out("the smaller one's colours beside the floor's", fits_s.to_floor);
   out("the larger one's colours beside the floor's", fits_l.to_floor);
   out("the smaller one's colours beside the background's", fits_s.to_background);
   out("the larger one's colours beside the background's", fits_l.to_background);
-  list_merge_hints(s, l, contact, frame, out);
+  list_merge_hints({s, fits_s}, {l, fits_l}, contact, frame, out);
 }
 
 template <class Out>
-void list_merge_hints(const RegionCues& s, const RegionCues& l, const ContactCues& contact,
+void list_merge_hints(const RegionSide& smaller, const RegionSide& larger, const ContactCues& contact,
                       const FrameCues& frame, Out& out) {
+  const RegionCues& s = smaller.cues;
+  const RegionCues& l = larger.cues;
+  const HintVotes& vs = smaller.fits.votes;
+  const HintVotes& vl = larger.fits.votes;
   const auto area_s = static_cast<double>(s.area);
   const auto area_l = static_cast<double>(l.area);
   const double cells_s = area_s * frame.cells_per_px;
   const double cells = (area_s + area_l) * frame.cells_per_px;
   HintSums both = s.hints;
   both.add(l.hints);
-  const Votes vs = votes_of(s.hints);
-  const Votes vl = votes_of(l.hints);
-  const Votes v = votes_of(both);
+  const HintVotes v = votes_of(both);
   const bool any = vs.any && vl.any && frame.has_hints;
   const double apart = any ? distance(vs.x - vl.x, vs.y - vl.y) : 0;
-  const auto known = [&](bool ok, double value) { return ok ? value : double{kUnknown}; };
   out("hints: outline along the border", known(frame.has_hints, share(contact.outline, contact.length) / 16));
   out("hints: object, smaller one", known(frame.has_hints, share(s.hints.object, s.area) / 16));
   out("hints: object, larger one", known(frame.has_hints, share(l.hints.object, l.area) / 16));
@@ -310,8 +309,8 @@ struct Surroundings {
     const double its = share(o.hints.object, o.area) / 16;
     object += weight * its;
     most_object = std::max(most_object, its);
-    const Votes v = votes_of(r.hints);
-    const Votes w = votes_of(o.hints);
+    const HintVotes& v = region.fits.votes;
+    const HintVotes& w = n.side.fits.votes;
     if (v.any && w.any) {
       const double apart = distance(v.x - w.x, v.y - w.y);
       centroids += weight * apart;
@@ -378,7 +377,7 @@ void list_surroundings(const Surroundings& s, std::size_t neighbours, double own
   out("share of these that are level", share(s.level, s.far_n));
   out("difference of brightness to what is around, grey levels", share(s.brightness, s.length));
   out("difference of colour to what is around, grey levels",
-      frame.has_colour ? share(s.colour, s.length) : double{kUnknown});
+      known(frame.has_colour, share(s.colour, s.length)));
   out("distance of the colours' histograms to what is around", share(s.histogram, s.length));
   out("what is around it on the ground, share", share(s.on_ground, s.on_ground_length));
   out("what is around it in the background, share", share(s.on_background, s.on_background_length));
@@ -452,8 +451,7 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("its larger part, share", origin.larger_part);
   out("evidence: step of the planes around, px", share(around.textured_step, around.textured_length));
   out("step of the planes around, px", share(around.matched_step, around.matched_length));
-  out("least step of the planes around, px",
-      around.matched_length > 0 ? around.least_step : double{kUnknown});
+  out("least step of the planes around, px", known(around.matched_length > 0, around.least_step));
   out("evidence: height above the ground, px",
       mean_px(r.textured_above_ground.sum, r.textured_above_ground.n));
   out("evidence: height above the ground over its error", how_clear(r.textured_above_ground));
@@ -469,9 +467,8 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("evidence in the image, share", frame.evidence_share);
   out("its colours beside the floor's", region.fits.to_floor);
   out("its colours beside the background's", region.fits.to_background);
-  const Votes votes = votes_of(r.hints);
+  const HintVotes& votes = region.fits.votes;
   const double cells = static_cast<double>(r.area) * frame.cells_per_px;
-  const auto known = [&](bool ok, double value) { return ok ? value : double{kUnknown}; };
   const auto area = static_cast<double>(r.area);
   out("hints: object", known(frame.has_hints, share(r.hints.object, r.area) / 16));
   out("hints: weight of its votes", known(frame.has_hints, share(r.hints.weight, r.area) / 64));
@@ -558,7 +555,8 @@ void SceneColours::add(const RegionCues& region) {
 }
 
 RegionFits fit_region(const RegionCues& region, const FrameCues& frame) {
-  RegionFits fits{fit_plane(region.matched, frame.width), fit_plane(region.textured, frame.width)};
+  RegionFits fits{fit_plane(region.matched, frame.width), fit_plane(region.textured, frame.width),
+                  votes_of(region.hints)};
   if (frame.floor.area > 0) fits.to_floor = histogram_distance(region, frame.floor);
   if (frame.background.area > 0) fits.to_background = histogram_distance(region, frame.background);
   return fits;

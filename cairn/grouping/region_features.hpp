@@ -25,10 +25,17 @@ struct FittedPlane {
 /// `width`: of the image.
 FittedPlane fit_plane(const PlaneMoments& moments, int width);
 
-/// Of a region: the planes through all its disparities and through its textured ones, and the distances of
-/// its colours from those of the floor and of the background.
+/// The centroid that the hints of a region vote for and the spread of the votes, in cells; log₂ of the size voted for.
+struct HintVotes {
+  bool any = false;  // they weigh enough
+  double x = 0, y = 0, spread = 0, size = 0;
+};
+
+/// Of a region: the planes through all its disparities and through its textured ones, the votes of its hints, and
+/// the distances of its colours from those of the floor and of the background.
 struct RegionFits {
   FittedPlane matched, textured;
+  HintVotes votes;
   double to_floor = kUnknown, to_background = kUnknown;  // χ², 0 … 6
 };
 

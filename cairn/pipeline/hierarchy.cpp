@@ -48,8 +48,7 @@ GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const C
   });
 
   // What the network says of them, and all that they may fuse to, by every cue.
-  grown.cut.hints = stage(
-      "hint_objects", hint_objects(hint_input(cut.superpixels, cut.cues(given), exec), hint_network(), exec));
+  grown.cut.hints = stage("hint_objects", hint_objects(cut.superpixels, cut.cues(given), exec));
   grown.tree = stage("grow_merge_tree", grow_merge_tree(cut.superpixels, cut.cues(given), kSameThing, exec));
   grown.confidence = stage("estimate_confidence", confidence.get());
   return grown;

@@ -17,8 +17,10 @@ Size size_of(const MergeTree& tree) {
   return {static_cast<int>(area), 1};
 }
 
-Image<ObjectHint> hints_of(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
-  return hint_objects(hint_input(superpixels, cues, exec), hint_network(), exec);
+Cues cues_of(const Picture& left, const DisparityInput& disparity, const Disparities& evidence_px,
+             const Ground& ground, const Background& background, NoiseSigma noise) {
+  return {left.gray(), left.rgb(), disparity.map().disparity_px, evidence_px.view(), ground,
+          background,  noise.value};
 }
 
 Numbers<std::int16_t> numbers_of(const Image<ObjectHint>& hints) {
@@ -88,9 +90,8 @@ void bind_grouping(py::module_& m) {
       [](const Call& call, const Superpixels& superpixels, const Picture& left,
          const DisparityInput& disparity, const Disparities& evidence_px, const Ground& ground,
          const Background& background, NoiseSigma noise) {
-        const Cues cues{left.gray(), left.rgb(), disparity.map().disparity_px, evidence_px.view(), ground,
-                        background,  noise.value};
-        return numbers_of(hints_of(superpixels, cues, call.exec));
+        const Cues cues = cues_of(left, disparity, evidence_px, ground, background, noise);
+        return numbers_of(hint_objects(superpixels, cues, call.exec));
       },
       "superpixels"_a, "left"_a, "disparity"_a, "evidence_px"_a, "ground"_a, "background"_a, "noise_sigma"_a);
   stage(
@@ -101,9 +102,8 @@ void bind_grouping(py::module_& m) {
       [](const Call& call, const Superpixels& superpixels, const Picture& left,
          const DisparityInput& disparity, const Disparities& evidence_px, const Ground& ground,
          const Background& background, NoiseSigma noise) {
-        Cues cues{left.gray(), left.rgb(), disparity.map().disparity_px, evidence_px.view(), ground,
-                  background,  noise.value};
-        const Image<ObjectHint> hints = hints_of(superpixels, cues, call.exec);
+        Cues cues = cues_of(left, disparity, evidence_px, ground, background, noise);
+        const Image<ObjectHint> hints = hint_objects(superpixels, cues, call.exec);
         cues.hints = hints;
         return grow_merge_tree(superpixels, cues, kSameThing, call.exec);
       },

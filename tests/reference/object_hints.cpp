@@ -59,7 +59,7 @@ class Reading {
           const float value = static_cast<float>(sum) * numbers_.scale.at(outputs_ + slot(o));
           return std::clamp<std::int64_t>(std::llrint(value), l.least, 8191);
         });
-    weights_ += slot(l.side * l.side * l.inputs * l.outputs);
+    weights_ += l.weights();
     outputs_ += slot(l.outputs);
     return out;
   }

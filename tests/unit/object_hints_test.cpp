@@ -84,8 +84,7 @@ TEST(HintInput, IsTheSameOnAnyNumberOfThreads) {
 TEST(HintObjects, TakeAnImageOfAnySize) {
   for (const Size size : {Size{1, 1}, {3, 200}, {200, 3}, {97, 61}}) {
     const RegionScene scene(Image<RegionId>(size, RegionId{0}, {}));
-    const Image<ObjectHint> hints =
-        hint_objects(hint_input(scene.superpixels, scene.cues(), {}), hint_network(), {});
+    const Image<ObjectHint> hints = hint_objects(scene.superpixels, scene.cues(), {});
     EXPECT_EQ(hints.size(), hint_cells(size));
   }
 }
