@@ -49,8 +49,8 @@ class McapWriter {
 
   /// A topic of messages in CDR. `type`: "sensor_msgs/msg/Image"; `schema`: its definition.
   std::uint16_t channel(std::string_view topic, std::string_view type, std::string_view schema);
-  /// `stamp`: never below 0 in the file.
-  void message(std::uint16_t channel, Stamp stamp, std::span<const std::uint8_t> bytes);
+  /// `id`: as channel() gave it. `stamp`: never below 0 in the file.
+  void message(std::uint16_t id, Stamp stamp, std::span<const std::uint8_t> bytes);
   void attachment(std::string_view name, std::string_view media_type, std::string_view bytes);
   void metadata(std::string_view name, const Words& words);
   /// Writes the chunk at hand, where it is old enough or `now`.

@@ -343,10 +343,11 @@ void McapWriter::flush(bool now) {
 void McapWriter::close() {
   State& s = *state_;
   if (s.is_over) return;
-  if (s.is_broken)
+  if (s.is_broken) {
     s.drop_chunk();  // what did not fit
-  else
+  } else {
     s.finish_chunk();
+  }
   Writer end;
   Writer data_end;
   data_end.number(s.file.crc());

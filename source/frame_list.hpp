@@ -38,7 +38,8 @@ FrameList list_folder(const std::filesystem::path& folder, const SourceOptions& 
 FrameList list_two(const std::string& left, const std::string& right, const SourceOptions& options);
 
 /// The stamps of the frames of a folder, by the path of the left image: from files as for list_folder(), or
-/// from the frames' names; empty if there are none. Throws Error if a file of stamps does not fit the frames, or as check_rising().
+/// from the frames' names; empty if there are none. Throws Error if a file of stamps does not fit the frames,
+/// or as check_rising().
 std::map<std::filesystem::path, Stamp> stamps_in(const std::filesystem::path& folder,
                                                  std::vector<FrameFiles> frames);
 
