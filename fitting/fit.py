@@ -24,7 +24,7 @@ import zlib
 import numpy as np
 
 WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
-PAIRS_KEPT = 0.4  # of all that are met: there are millions
+PAIRS_KEPT = 0.3  # of all that are met: there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 SEED = 7
@@ -51,8 +51,8 @@ def fit_sets(data, rooms):
     sets = {"dev 320x240": frames_in(data / "rendered/dev/320x240"),
             "dev 640x480": frames_in(data / "rendered/dev/640x480"),
             "train": frames_in(data / "rendered/train/320x240")}
-    if rooms:
-        sets["more rooms"] = frames_in(rooms)
+    for frame in frames_in(rooms) if rooms else []:
+        sets.setdefault("clutter" if frame.name.startswith("clutter") else "more rooms", []).append(frame)
     sets["rc_tabletop"] = frames_in(data / "real/rc_tabletop")
     sets["middlebury"] = [data / ("real/middlebury" + name) for name in MIDDLEBURY]
     return sets
@@ -92,6 +92,23 @@ def run_tool(tool, work, jobs, files, *options):
     return rows
 
 
+def source_number(value):
+    """A float of C++."""
+    text = f"{value:.9g}"
+    return text + ("F" if "." in text or "e" in text else ".0F")
+
+
+def source_rows(items):
+    """In lines of C++."""
+    line, lines = "", []
+    for item in items:
+        if len(line) + len(item) > 108:
+            lines.append(line.rstrip())
+            line = ""
+        line += item + " "
+    return "\n".join("    " + l for l in [*lines, line.rstrip()])
+
+
 class Nodes:
     """Trees as the library keeps them: a node's two branches stand side by side."""
 
@@ -120,26 +137,13 @@ class Nodes:
             out.writelines(f"{feature} {below} {value:.9g}\n" for feature, below, value in self.nodes)
 
     def write_source(self, path, name):
-        def number(value):
-            text = f"{value:.9g}"
-            return text + ("F" if "." in text or "e" in text else ".0F")
-
-        def rows(items):
-            line, lines = "", []
-            for item in items:
-                if len(line) + len(item) > 108:
-                    lines.append(line.rstrip())
-                    line = ""
-                line += item + " "
-            return "\n".join("    " + l for l in [*lines, line.rstrip()])
-
         with open(path, "w") as out:
             out.write("// Written by fitting/fit.py (./dev fit); do not edit.\n// clang-format off\n")
-            out.write(f"constexpr float k{name}Base = {number(self.base)};\n")
+            out.write(f"constexpr float k{name}Base = {source_number(self.base)};\n")
             out.write(f"constexpr std::array<std::int16_t, {len(self.roots)}> k{name}Roots{{\n")
-            out.write(rows(f"{root}," for root in self.roots) + "};\n")
+            out.write(source_rows(f"{root}," for root in self.roots) + "};\n")
             out.write(f"constexpr std::array<FittedTrees::Node, {len(self.nodes)}> k{name}Nodes{{{{\n")
-            out.write(rows(f"{{{f},{b},{number(v)}}}," for f, b, v in self.nodes) + "}};\n")
+            out.write(source_rows(f"{{{f},{b},{source_number(v)}}}," for f, b, v in self.nodes) + "}};\n")
 
 
 def by_edges():
@@ -274,10 +278,11 @@ def page(fitting, sets, reports, score):
         return f"| {header} | share of the gain, % |\n|---|---:|\n" + "\n".join(rows)
 
     counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
-    rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get("more rooms", []))
     more = ""
-    if rooms:
-        more = f"*more rooms* are the generator's numbers {runs_of(rooms)} (`rooms.py jobs.json FIRST LAST+1`).\n"
+    for name, script in (("more rooms", "rooms.py"), ("clutter", "fitting/cluttered_rooms.py GENERATOR")):
+        rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get(name, []))
+        if rooms:
+            more += f"*{name}*: the generator's numbers {runs_of(rooms)} (`{script} jobs.json FIRST LAST+1`).\n"
     return f"""# What was fitted
 
 <!-- Written by ./dev fit; do not edit. -->

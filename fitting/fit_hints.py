@@ -19,10 +19,11 @@ import time
 
 import numpy as np
 
-from fit import HALVES, SEED, WEIGHTS, fit_sets, fold_of, jobs_of, run_tool
+from fit import HALVES, SEED, WEIGHTS, fit_sets, fold_of, jobs_of, run_tool, source_number, source_rows
 
 BATCH = 12
 RATE, DECAY = 3e-3, 2e-3
+CLOSE_UPS = 0.3  # of the samples: as a camera with a narrower view sees them
 WIDTH, HEIGHT = 160, 120  # cells of the canvas that frames are fitted on
 CHANNELS = 12
 FIRST, SECOND, THIRD, LAST = 16, 40, 48, 32  # channels at 1/2, 1/4, 1/8 and 1/16, and before the end
@@ -72,6 +73,17 @@ def targets(truth):
     return out
 
 
+def see_closer(data, scale, inside):
+    """A crop as a camera of a narrower view would see it: what hint_input() tells relative to the image is told anew."""
+    brightness = data[0][inside]
+    data[0][inside] = np.clip((brightness - brightness.mean()) / (brightness.std() + 0.1), -4, 4)
+    matched = inside & (data[4] > 0)
+    if matched.any():
+        data[[3, 7]] = np.minimum(data[[3, 7]] / max(np.quantile(data[3][matched], 0.98), 0.02), 2)
+    data[5:7] = np.clip(data[5:7] * scale, -1, 3)  # differences of disparities
+    data[10][inside] = np.broadcast_to(2 * DOWN[:, :1] / HEIGHT - 1, inside.shape)[inside]
+
+
 class Samples:
     """Frames on the canvas: mirrored, scaled, moved, brighter, without a floor …"""
 
@@ -82,7 +94,8 @@ class Samples:
         cells, truth, partial = self.frames[i]
         height, width = truth.shape
         random = self.random
-        scale = np.exp(random.uniform(-0.25, 0.25)) * WIDTH / width
+        narrower = random.rand() < CLOSE_UPS
+        scale = np.exp(random.uniform(0.25, 0.8) if narrower else random.uniform(-0.25, 0.25)) * WIDTH / width
         x = (np.arange(WIDTH) + 0.5 - WIDTH / 2 - random.uniform(-0.1, 0.1) * WIDTH) / scale + width / 2
         y = (np.arange(HEIGHT) + 0.5 - HEIGHT / 2 - random.uniform(-0.1, 0.1) * HEIGHT) / scale + height / 2
         if random.rand() < 0.5:
@@ -95,6 +108,8 @@ class Samples:
         data[:, outside] = 0
         ids = truth.ravel()[at]
         ids[outside] = -1
+        if narrower:
+            see_closer(data, scale * width / WIDTH, ~outside)
         if partial:
             ids[ids == 0] = -1  # may be an object that is not labelled
         data[0] = data[0] * random.uniform(0.8, 1.25) + random.uniform(-0.2, 0.2)
@@ -260,22 +275,9 @@ def write(layers, path):
 
 
 def write_source(layers, path):
-    def rows(items):
-        line, lines = "", []
-        for item in items:
-            if len(line) + len(item) > 108:
-                lines.append("    " + line.rstrip())
-                line = ""
-            line += item + " "
-        return "\n".join([*lines, "    " + line.rstrip()])
-
     def array(kind, name, values):
         values = list(values)
-        return f"constexpr std::array<{kind}, {len(values)}> kFitted{name}{{\n{rows(f'{v},' for v in values)}}};\n"
-
-    def number(value):
-        text = f"{value:.9g}"
-        return text + ("F" if "." in text or "e" in text else ".0F")
+        return f"constexpr std::array<{kind}, {len(values)}> kFitted{name}{{\n{source_rows(f'{v},' for v in values)}}};\n"
 
     with open(path, "w") as out:
         out.write("// Written by fitting/fit_hints.py (./dev fit); do not edit.\n// clang-format off\n")
@@ -283,7 +285,7 @@ def write_source(layers, path):
         out.write(f"constexpr std::array<HintLayer, {len(layers)}> kFittedLayers{{{{\n{shapes}}}}};\n")
         out.write(array("std::int8_t", "Weights", (v for layer in layers for v in layer[1])))
         out.write(array("std::int32_t", "Bias", (v for layer in layers for v in layer[2])))
-        out.write(array("float", "Scale", (number(v) for layer in layers for v in layer[3])))
+        out.write(array("float", "Scale", (source_number(v) for layer in layers for v in layer[3])))
 
 
 def fit_one(arguments, jobs, half):
@@ -307,7 +309,7 @@ def main():
     parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     parser.add_argument("--out", type=pathlib.Path, help="where the source is written (cairn/grouping)")
-    parser.add_argument("--steps", type=int, default=1800)
+    parser.add_argument("--steps", type=int, default=4800)
     parser.add_argument("--only", help="one half, or all: what is in the work folder already is not made again")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
