@@ -3,8 +3,9 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
 
-fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--out FOLDER] [--page FILE]
-It needs what fit_hints.py leaves in the work folder. fit.py TOOL DATA --ablation FILE: fits again without each kind of cues in turn, and reports what each brings.
+fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
+It needs what fit_hints.py leaves in the work folder. fit.py TOOL DATA --ablation FILE: fits again without each kind
+of cues in turn, and reports what each brings.
 
 Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
 the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
@@ -173,8 +174,8 @@ def fitted(labels, weights, features, trees, depth, least_weight, eta):
 
 
 class Fitting:
-    def __init__(self, tool, work, folds, sets):
-        self.tool, self.work, self.folds = tool, work, folds
+    def __init__(self, tool, work, hints, folds, sets):
+        self.tool, self.work, self.hints, self.folds = tool, work, hints, folds
         names = subprocess.run([tool, "--names"], capture_output=True, text=True, check=True).stdout
         self.pair_features, self.region_features = (part.splitlines() for part in names.split("\n\n"))
         self.gains = {}
@@ -188,7 +189,7 @@ class Fitting:
         """trees(i): the two files of job i. Frames of the fit set get hints of a network that has not seen them."""
         def files(i):
             half = "all" if jobs else fold_of(self.jobs[i][0], HALVES)
-            return " ".join(map(str, (self.work / f"hints_{half}", *trees(i))))
+            return " ".join(map(str, (self.hints / f"hints_{half}", *trees(i))))
 
         return run_tool(self.tool, self.work, jobs or self.jobs, files, *options)
 
@@ -205,7 +206,8 @@ class Fitting:
         values = np.concatenate(values)
         names = self.region_features if name == "regions" else self.pair_features
         for i, feature in enumerate(names):
-            if any(word in feature for word in self.without):
+            # What a hint tells is a cue of the hints alone.
+            if any(word in feature for word in self.without) and ("hints:" in self.without or "hints:" not in feature):
                 values[:, i] = 0  # alike everywhere: no tree looks at it
         return np.concatenate(heads), values
 
@@ -371,7 +373,7 @@ def ablation(fitting, validation, path):
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
 This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the validation frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
-Fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row is below [what was fitted](fitting.md). A difference of fewer than three objects is noise.
+The trees were fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row is below [what was fitted](fitting.md); the [hints](stages/object_hints.md) are those of the networks that it left. A difference of fewer than three objects is noise.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
         f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
@@ -392,6 +394,7 @@ def main():
     parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
+    parser.add_argument("--hints", type=pathlib.Path, help="the folder with fitted networks, if not the work folder")
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn/grouping)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the report on single cues is written")
@@ -399,7 +402,7 @@ def main():
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     sets = fit_sets(arguments.data, arguments.rooms)
-    fitting = Fitting(arguments.tool, arguments.work, arguments.folds, sets)
+    fitting = Fitting(arguments.tool, arguments.work, arguments.hints or arguments.work, arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
     validation = jobs_of(validation_sets(arguments.data))
     if arguments.ablation:
