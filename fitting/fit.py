@@ -373,7 +373,7 @@ def ablation(fitting, validation, path):
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
 This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the validation frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
-The trees were fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row is below [what was fitted](fitting.md); the [hints](stages/object_hints.md) are those of the networks that it left. A difference of fewer than three objects is noise.
+The trees were fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row differs from [what was fitted](fitting.md); the [hints](stages/object_hints.md) are those of the networks that it left. A difference of fewer than three objects is noise.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
         f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
