@@ -108,7 +108,42 @@ def test_the_ablation_fits_without_each_kind_of_cues(tmp_path, capsys):
     assert fitted == [(), *fit.CUES.values()]
     page = (tmp_path / "ablation.md").read_text()
     assert "| edges | 2/2 = 1.00 | 0/1 = 0.00 | 2/2 = 1.00 | 0/0 = – | 0/0 = – | 0/1 = 0.00 | 0/0 = – | 0/0 = – | 2/3 = 0.67 |" in page
-    assert "Fitted to 3 frames" in page and "in 2 folds" in page
+    assert "fitted to 3 frames" in page and "in 2 folds" in page
+
+
+def test_a_hint_is_a_cue_of_the_hints_alone(tmp_path):
+    np.arange(1, 6, dtype=np.float32).tofile(tmp_path / "regions0")
+    (tmp_path / "regions1").write_bytes(b"")
+    names = ["hints: area over the size voted for", "area, share of the image"]
+    for without, kept in ((("area",), [4, 0]), (("hints:",), [0, 5]), ((), [4, 5])):
+        fake = types.SimpleNamespace(work=tmp_path, without=without, region_features=names)
+        _, values = fit.Fitting.records(fake, "regions", 2)
+        assert values.tolist() == [kept]
+
+
+def test_clutter_is_a_set_of_its_own(tmp_path):
+    for name in ("train_s300", "clutter_s2000", "train_s301"):
+        (tmp_path / "rooms" / name).mkdir(parents=True)
+        for file in ("left.png", "objects.png"):
+            (tmp_path / "rooms" / name / file).touch()
+    sets = fit.fit_sets(tmp_path, tmp_path / "rooms")
+    assert [frame.name for frame in sets["more rooms"]] == ["train_s300", "train_s301"]
+    assert [frame.name for frame in sets["clutter"]] == ["clutter_s2000"]
+    assert "clutter" not in fit.fit_sets(tmp_path, None)
+
+
+def test_a_close_view_is_told_as_a_narrow_lens_tells_it(monkeypatch):
+    monkeypatch.syspath_prepend(str(SOURCE / "fitting"))
+    hints = load("fit_hints")
+    data = np.zeros((hints.CHANNELS, hints.HEIGHT, hints.WIDTH), np.float32)
+    inside = np.ones(data.shape[1:], bool)
+    inside[:, :40] = False
+    data[0, inside], data[3, inside], data[4, inside], data[5, inside] = 2, 0.25, 1, 0.5
+    hints.see_closer(data, 2.0, inside)
+    assert np.allclose(data[0][inside], 0)  # as bright as the crop's mean
+    assert np.allclose(data[3][inside], 1)  # the nearest thing that is seen
+    assert np.allclose(data[5][inside], 1)  # twice the disparity
+    assert data[10, 0, 80] == -1 and (data[:, ~inside] == 0).all()
 
 
 def test_what_became_of_a_lost_object():
