@@ -135,13 +135,13 @@ FollowConfig slightly_too_large(const samples::Sample& sample, ControlMethod met
 }
 
 TEST(Controller, NamesTheOptionThatBringsObjectsBackAndTheSameOneAgain) {
-  const samples::Sample sample = samples::load("four_in_a_row");
+  // Not four_in_a_row: other superpixels bring more of its stool back, and are named first.
+  const samples::Sample sample = samples::load("glossy_floor");
   const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
   const Seen seen = play(sample, config, 30);
   ASSERT_FALSE(seen.events.empty());
-  // One that helps less may be named before it.
-  EXPECT_EQ(seen.events.back().arm.option, "objects.min_area");
-  EXPECT_GT(seen.events.back().lead, 0.1);
+  EXPECT_EQ(seen.events[0].arm.option, "objects.min_area");
+  EXPECT_GT(seen.events[0].lead, 0.1);
   const Seen again = play(sample, config, 30);
   ASSERT_EQ(again.events.size(), seen.events.size());
   for (std::size_t i = 0; i < seen.events.size(); ++i) EXPECT_EQ(again.events[i].arm, seen.events[i].arm);
