@@ -146,6 +146,7 @@ def measure(folders):
         "obstacles, precision": f"{share('obstacle_right', 'obstacle_called'):.1f} %",
         "pixels of objects that are obstacles / floor": f"{share('object_obstacle', 'object'):.1f} / {share('object_floor', 'object'):.1f} %",
         "objects that fill two fifths of a window": f"{len(near_by)}",
+        "… of their pixels obstacles, mean": f"{100 * np.mean(near_by):.1f} %",
         "… of them obstacles by 95 % of their pixels": f"{100 * np.mean(np.array(near_by) >= 0.95):.0f} %",
         "objects found": f"{len(rows)}",
         "depth at 2–4 m, objects": f"{len(near)}",

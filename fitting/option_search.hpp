@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct KnobSearch {
   /// Called after each setting tried, before the next; `knob` is the one that differs.
   std::function<void(std::size_t knob, const Values& tried, double score, bool kept)> tried;
 };
+
+/// One of each knob's values at random.
+inline Values drawn(const std::vector<Knob>& knobs, std::mt19937& random) {
+  Values values;
+  for (const Knob& knob : knobs) values.push_back(knob.values[random() % knob.values.size()]);
+  return values;
+}
 
 /// From `start` each knob takes each of its values in turn; one that scores higher is kept at once, so ties
 /// keep what was there. Ends after a round without a gain. The same scores give the same values.

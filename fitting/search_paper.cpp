@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // Searches the thresholds of the preset `paper` (Config::paper()) on the frames that choices are made on.
-//   search_paper DATA [--threads N] [--rounds N] [--report] [OPTION=VALUE]...
+//   search_paper DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
 // The search and its score: search_program.hpp. The method stays the published one: no semi-global matching,
 // no walls, no colour, no filter by confidence.
 #include <cairn/cairn.hpp>
@@ -29,7 +29,12 @@ std::vector<Knob> knobs() {
       {"intensity.mean_difference_max", {"2", "3", "5", "8"}},
       {"intensity.min_region_area", {"0.03", "0.1", "0.3"}},
       {"disparity.smoothing_sigma", {"0", "0.7", "1.5"}},
-      {"match.window_size", {"7", "9", "11"}},
+      {"match.window_size", {"7", "9", "11", "13"}},
+      {"left_right.max_diff", {"1", "2"}},
+      {"flatness.threshold", {"-1", "0.05", "0.1", "0.2"}},
+      {"intensity.deviation_max", {"0.5", "1", "1.5"}},
+      {"intensity.sigma_min", {"1", "2", "4"}},
+      {"disparity.sigma_min", {"0.125", "0.25", "0.5"}},
   };
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <random>
 
 #include "arguments.hpp"
 
@@ -70,11 +71,27 @@ void print(const std::vector<FrameSet>& sets, const Measured& measured) {
   print("together", measured.all);
 }
 
-Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, const Values& start, int rounds,
-              int threads) {
+struct Effort {
+  int draws = 0;
+  int rounds = 3;
+};
+
+Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, Values start,
+              const Effort& effort, int threads) {
+  std::mt19937 random;  // of which the standard fixes every number
+  double best_value = measure(program, fit, start, threads).value();
+  for (int i = 0; i < effort.draws; ++i) {
+    const Values values = drawn(program.knobs, random);
+    const Measured measured = measure(program, fit, values, threads);
+    if (measured.value() <= best_value) continue;
+    best_value = measured.value();
+    start = values;
+    std::printf("draw %d: %.4f ", i + 1, best_value);
+    print("", measured.all);
+  }
   int tried = 0;
   Measured last;
-  const KnobSearch settings{.rounds = rounds,
+  const KnobSearch settings{.rounds = effort.rounds,
                             .score =
                                 [&](const Values& values) {
                                   last = measure(program, fit, values, threads);
@@ -89,7 +106,7 @@ Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, co
                                   print("", last.all);
                                 }};
   Values best = search_knobs(program.knobs, start, settings);
-  std::printf("%d settings tried\n", tried);
+  std::printf("%d settings tried\n", effort.draws + tried);
   return best;
 }
 
@@ -110,7 +127,7 @@ void run_search(const SearchProgram& program, const std::vector<std::string>& ar
   fs::path data;
   Values values = program.start;
   int threads = 1;
-  int rounds = 3;
+  Effort effort;
   bool report = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
@@ -118,7 +135,9 @@ void run_search(const SearchProgram& program, const std::vector<std::string>& ar
     if (word == "--threads" && i + 1 < arguments.size()) {
       threads = positive_number(arguments[++i]);
     } else if (word == "--rounds" && i + 1 < arguments.size()) {
-      rounds = positive_number(arguments[++i]);
+      effort.rounds = positive_number(arguments[++i]);
+    } else if (word == "--draws" && i + 1 < arguments.size()) {
+      effort.draws = positive_number(arguments[++i]);
     } else if (word == "--report") {
       report = true;
     } else if (equals != std::string::npos) {
@@ -133,9 +152,10 @@ void run_search(const SearchProgram& program, const std::vector<std::string>& ar
     }
   }
   if (data.empty())
-    throw Error("no data collection given: DATA [--threads N] [--rounds N] [--report] [OPTION=VALUE]...");
+    throw Error(
+        "no data collection given: DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...");
   const std::vector<FrameSet> fit = fit_sets(data);
-  if (!report) values = search(program, fit, values, rounds, threads);
+  if (!report) values = search(program, fit, values, effort, threads);
   print(fit, measure(program, fit, values, threads));
   if (report) {
     const std::vector<FrameSet> validate = validation_sets(data);

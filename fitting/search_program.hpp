@@ -29,8 +29,9 @@ struct SearchProgram {
   std::function<Score(const TrueFrame& frame, const Values& values, const Exec& exec)> score;
 };
 
-/// Arguments: DATA [--threads N] [--rounds N] [--report] [OPTION=VALUE]...; --report only measures the start,
-/// on both groups of frames. The score is the source's own measure, the mean of E over the objects of all
+/// Arguments: DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...; --draws: so many settings drawn
+/// at random first, and the search goes on from the best, which may be the start; --report only measures the start, on
+/// both groups of frames. The score is the source's own measure, the mean of E over the objects of all
 /// frames (200 % at most), less a penalty where less than a third of the objects found are right: E alone
 /// ignores what is found besides. Prints each setting tried, their number, and the values kept. Throws Error.
 void run_search(const SearchProgram& program, const std::vector<std::string>& arguments);

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/core/ids.hpp>
 #include <cstdint>
 #include <span>
 
@@ -21,17 +20,8 @@ struct FittedTrees {
   std::span<const std::int16_t> roots;
   std::span<const Node> nodes;
 
-  /// The log-odds.
-  [[nodiscard]] float operator()(std::span<const float> features) const {
-    float sum = base;
-    for (const std::int16_t root : roots) {
-      const Node* node = &nodes[slot(root)];
-      while (node->feature >= 0)
-        node = &nodes[slot(node->below + (features[slot(node->feature)] < node->value ? 0 : 1))];
-      sum += node->value;
-    }
-    return sum;
-  }
+  /// The log-odds. Precondition: at least one feature.
+  [[nodiscard]] float operator()(std::span<const float> features) const;
 };
 
 /// The log-odds that two neighbouring regions belong to one object, from merge_features().

@@ -5,6 +5,7 @@
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/grouping/object_hints.hpp>
+#include <cairn/grouping/surfaces_behind.hpp>
 #include <cmath>
 #include <vector>
 
@@ -70,21 +71,8 @@ Run pixels_of(int cell, int cells, int pixels) {
   return run.first < run.last ? run : Run{at, at + 1};
 }
 
-/// The disparities of the ground and of the background in a row, 0 where there is none.
-struct Behind {
-  std::vector<float> ground, background;
-  explicit Behind(int width) : ground(slot(width)), background(slot(width)) {}
-  void note(const Cues& cues, int y) {
-    const auto fy = static_cast<float>(y);
-    for (std::size_t x = 0; cues.ground.plane && x < ground.size(); ++x)
-      ground[x] = std::clamp(cues.ground.plane->disparity_px(static_cast<float>(x), fy), 0.0F, kMaxDisparity);
-    for (std::size_t x = 0; !cues.background.planes.empty() && x < background.size(); ++x)
-      background[x] = std::min(cues.background.disparity_px(static_cast<float>(x), fy), kMaxDisparity);
-  }
-};
-
 /// The pixels of row y in a run of columns.
-void add_run(const Superpixels& superpixels, const Cues& cues, const Behind& behind, Run run, int y,
+void add_run(const Superpixels& superpixels, const Cues& cues, const SurfacesBehind& behind, Run run, int y,
              CellSums& s) {
   const float* const disparity = cues.disparity_px.row(y);
   const float* const evidence = cues.evidence_px.row(y);
@@ -116,12 +104,12 @@ Image<CellSums> sums_of(const Superpixels& superpixels, const Cues& cues, Size c
   for (int c = 0; c < cells.width; ++c) columns.push_back(pixels_of(c, cells.width, image.width));
   Image<CellSums> sums(cells, exec.pool);
   parallel_for(exec, cells.height, kGrain, [&](int first, int last) {
-    Behind behind(image.width);
+    SurfacesBehind behind(cues, image.width, exec);
     for (int row = first; row < last; ++row) {
       std::fill_n(sums.row(row), cells.width, CellSums{});
       const Run down = pixels_of(row, cells.height, image.height);
       for (int y = down.first; y < down.last; ++y) {
-        behind.note(cues, y);
+        behind.note(y);
         for (int c = 0; c < cells.width; ++c)
           add_run(superpixels, cues, behind, columns[slot(c)], y, sums(c, row));
       }

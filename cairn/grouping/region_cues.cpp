@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/grouping/cue_kernels.hpp>
 #include <cairn/grouping/object_hints.hpp>
 #include <cairn/grouping/region_cues.hpp>
-#include <cmath>
+#include <cairn/grouping/surfaces_behind.hpp>
+#include <optional>
 #include <utility>
 
 namespace cairn {
 namespace {
 
 constexpr int kFar = 3;  // px to either side of a contact
-constexpr int kNoDisparity = std::numeric_limits<int>::min();
+using kernels::kNoDisparity;
 
-/// In 1/64 px, halves up. Truncating what is positive is quicker than floor(), and in doubles as exact.
-int in_steps(float px) {
-  constexpr int kPositive = 1 << 20;
-  return static_cast<int>(double{px} * kDisparitySteps + (0.5 + kPositive)) - kPositive;
-}
+/// Of each difference of colours from −255 to 255.
+constexpr auto kBins = [] {
+  std::array<std::uint8_t, 511> bins{};
+  for (int i = 0; i < 511; ++i)
+    bins.at(slot(i)) = static_cast<std::uint8_t>(std::clamp((i - 255 + 96) / 12, 0, int{kColourBins} - 1));
+  return bins;
+}();
 
 /// What a picture's gradient must reach to be an edge, in 1/4 grey level.
 float weakest_edge(float noise_sigma) {
@@ -45,6 +48,7 @@ class Gathering {
  public:
   Gathering(const Superpixels& superpixels, const Cues& cues, const Exec& exec)
       : cues_(cues),
+        run_(kernels::cue_kernels(exec)),
         labels_(superpixels.labels),
         edges_(superpixels.edges),
         width_(labels_.width()),
@@ -54,10 +58,12 @@ class Gathering {
         textured_(slot(width_)),
         ground_(slot(width_)),
         background_(slot(width_)),
+        behind_(cues, width_, exec),
         contacts_of_(slot(superpixels.count)) {
     result_.regions.resize(slot(superpixels.count));
-    for (int x = 0; x < width_ && !cues.hints.empty(); ++x)
-      cell_column_.push_back(x * cues.hints.width() / width_);
+    if (cues.hints.empty()) return;
+    for (int x = 0; x < width_; ++x) cell_column_.push_back(x * cues.hints.width() / width_);
+    for (int y = 0; y < height_; ++y) cell_row_.push_back(y * cues.hints.height() / height_);
   }
 
   RegionGraphCues run() {
@@ -85,22 +91,12 @@ class Gathering {
  private:
   /// The disparities of a row in steps, and what lies behind them.
   void note_steps(int y) {
-    const float* const d = cues_.disparity_px.row(y);
-    std::int32_t* const out = steps_.row(y);
-    for (int x = 0; x < width_; ++x) out[x] = std::isnan(d[x]) ? kNoDisparity : in_steps(d[x]);
-    const float* const evidence = cues_.evidence_px.row(y);
-    for (int x = 0; x < width_; ++x)
-      textured_[slot(x)] = std::isnan(evidence[x]) ? kNoDisparity : in_steps(evidence[x]);
-    const auto fy = static_cast<float>(y);
-    for (int x = 0; cues_.ground.plane && x < width_; ++x) {
-      const float ground = cues_.ground.plane->disparity_px(static_cast<float>(x), fy);
-      ground_[slot(x)] =
-          ground > 0 ? in_steps(std::min(ground, kMaxDisparity)) : kNoDisparity;  // above the horizon
-    }
-    for (int x = 0; !cues_.background.planes.empty() && x < width_; ++x) {
-      const float behind = cues_.background.disparity_px(static_cast<float>(x), fy);
-      background_[slot(x)] = in_steps(std::min(behind, kMaxDisparity));
-    }
+    constexpr float kAny = -std::numeric_limits<float>::infinity();
+    behind_.note(y);
+    run_.in_steps(cues_.disparity_px.row(y), kAny, width_, steps_.row(y));
+    run_.in_steps(cues_.evidence_px.row(y), kAny, width_, textured_.data());
+    run_.in_steps(behind_.ground.data(), 0, width_, ground_.data());  // none above the horizon
+    run_.in_steps(behind_.background.data(), kAny, width_, background_.data());
   }
 
   /// The pixels first … last − 1 of row y, which all are the region's.
@@ -136,7 +132,7 @@ class Gathering {
   }
 
   void add_hints(RegionCues& region, int y, int first, int last) const {
-    const int row = cell_row(y);
+    const int row = cell_row_[slot(y)];
     const ObjectHint* const hints = cues_.hints.row(row);
     for (int x = first; x < last;) {
       const int column = cell_column_[slot(x)];
@@ -146,9 +142,8 @@ class Gathering {
                        x - begin);
     }
   }
-  [[nodiscard]] int cell_row(int y) const { return y * cues_.hints.height() / height_; }
   [[nodiscard]] int outline_at(int x, int y) const {
-    return cues_.hints(cell_column_[slot(x)], cell_row(y)).outline;
+    return cues_.hints(cell_column_[slot(x)], cell_row_[slot(y)]).outline;
   }
 
   void add_colour(RegionCues& region, int y, int first, int last) const {
@@ -159,7 +154,7 @@ class Gathering {
       for (std::size_t i = 0; i < 3; ++i) {
         sums[i] += colour[i];
         squares[i] += colour[i] * colour[i];
-        const int bin = i == 0 ? colour[i] / 16 : std::clamp((colour[i] + 96) / 12, 0, int{kColourBins} - 1);
+        const int bin = i == 0 ? colour[i] / 16 : kBins[slot(colour[i] + 255)];
         ++region.histogram[i * kColourBins + slot(bin)];
       }
     }
@@ -261,6 +256,7 @@ class Gathering {
   }
 
   const Cues& cues_;
+  const kernels::CueKernels& run_;
   View<const RegionId> labels_;
   View<const std::uint16_t> edges_;
   int width_;
@@ -270,12 +266,24 @@ class Gathering {
   std::vector<std::int32_t> textured_;  // those of a row's evidence
   std::vector<std::int32_t> ground_;    // and of what is behind it, kNoDisparity above the horizon
   std::vector<std::int32_t> background_;
+  SurfacesBehind behind_;
   std::vector<int> cell_column_;  // of each column, the hints' one
+  std::vector<int> cell_row_;     // of each row
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> contacts_of_;  // of a: b, and which
   RegionGraphCues result_;
 };
 
 }  // namespace
+
+SurfacesBehind::SurfacesBehind(const Cues& cues, int width, const Exec& exec)
+    : ground(slot(width)), background(slot(width)), cues_(cues), run_(kernels::cue_kernels(exec)) {}
+
+void SurfacesBehind::note(int y) {
+  const auto width = static_cast<int>(ground.size());
+  const std::optional<GroundPlane>& floor = cues_.ground.plane;
+  if (floor) run_.nearest_plane({&*floor, 1}, y, width, ground.data());
+  run_.nearest_plane(cues_.background.planes, y, width, background.data());
+}
 
 void PlaneMoments::add(const PlaneMoments& other) {
   n += other.n;

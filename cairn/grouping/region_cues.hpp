@@ -24,7 +24,7 @@ struct HintSums {
   std::int64_t object = 0, outline = 0;
   std::int64_t weight = 0, x = 0, y = 0, xx = 0, yy = 0, size = 0;
   /// `pixels`: how many of the cell's.
-  void add(const ObjectHint& hint, int column, int row, int pixels = 1);
+  void add(const ObjectHint& hint, int column, int row, int pixels);
   void add(const HintSums& other);
   friend bool operator==(const HintSums&, const HintSums&) = default;
 };

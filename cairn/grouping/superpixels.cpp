@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/grouping/cue_kernels.hpp>
 #include <cairn/grouping/segmentation_of.hpp>
 #include <cairn/grouping/superpixels.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cmath>
 #include <numeric>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -23,34 +23,18 @@ constexpr float kFlat = 4.0F;             // 1/4 grey level; what is less, and �
 constexpr float kFlatInNoise = 4.0F;      // … as much again for each level of noise, is no edge
 constexpr double kEvenWithoutEdge = 2.0;  // 1/4 grey level
 
-/// The largest step of disparity to one of the four neighbours; 0 beside holes.
-float step_at(View<const float> disparity_px, int x, int y) {
-  const float here = disparity_px(x, y);
-  float step = 0;
-  const auto look = [&](int u, int v) {
-    if (!disparity_px.contains(u, v)) return;
-    const float to = std::abs(disparity_px(u, v) - here);
-    if (to > step) step = to;  // NaN is not
-  };
-  look(x - 1, y);
-  look(x + 1, y);
-  look(x, y - 1);
-  look(x, y + 1);
-  return std::min(step, kLargestStep);
-}
-
 /// 0 where nothing stands out of the noise: else that would make most of the basins.
 Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const float> disparity_px,
                                 float noise_sigma, const Exec& exec) {
   const int least = static_cast<int>(kFlat + kFlatInNoise * noise_sigma);
+  const kernels::CueKernels& run = kernels::cue_kernels(exec);
+  const int height = edges.height();
   Image<std::uint16_t> sum(edges.size(), exec.pool);
-  parallel_for(exec, edges.height(), kGrain, [&](int first, int last) {
+  parallel_for(exec, height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      for (int x = 0; x < edges.width(); ++x) {
-        const float step = step_at(disparity_px, x, y) * kStepWeight + 0.5F;
-        const int edge = edges(x, y) + static_cast<int>(step);
-        sum(x, y) = static_cast<std::uint16_t>(edge < least ? 0 : edge);
-      }
+      run.add_steps(edges.row(y), disparity_px.row(std::max(y - 1, 0)), disparity_px.row(y),
+                    disparity_px.row(std::min(y + 1, height - 1)), edges.width(), kStepWeight, kLargestStep,
+                    least, sum.row(y));
     }
   });
   return sum;
@@ -78,15 +62,19 @@ class Fusing {
         if (below[x] != row[x]) meet(row[x], below[x], edges, {x, y}, {x, y + 1});
       }
     }
-    for (std::int32_t i = 0; slot(i) < links_.size(); ++i) queue(i, key_of(i));
+    queue_.reserve(2 * links_.size());
+    for (std::int32_t i = 0; slot(i) < links_.size(); ++i) queue_.push_back(entry(i, key_of(i)));
+    std::make_heap(queue_.begin(), queue_.end());
   }
 
   void until(int count) {
     while (left_ > count && !queue_.empty()) {
-      const Entry next = queue_.top();
-      queue_.pop();
+      const Entry next = queue_.front();
+      std::pop_heap(queue_.begin(), queue_.end());
+      queue_.pop_back();
       const Link& link = links_[slot(next.link)];
-      if (link.version != next.version) continue;
+      // Queued since with another key, or gone.
+      if (link.queued_key != next.key || link.queued_first != next.first) continue;
       // A key only grows while its two regions do, so that what was queued is never too late.
       const double key = key_of(next.link);
       if (key == next.key && link.first == next.first) {
@@ -113,16 +101,15 @@ class Fusing {
     std::int32_t first = 0;  // where the picture's rows show it first, among all links
     std::int64_t length = 0;
     std::int64_t edge_sum = 0;
-    std::int32_t version = 0;  // −1 = gone
-    std::int32_t queued_first = 0;
+    std::int32_t queued_first = 0;  // −1: there is no such link any more
     double queued_key = 0;
+    [[nodiscard]] bool is_gone() const { return queued_first < 0; }
     [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
   };
   struct Entry {
     double key;
     std::int32_t first;
     std::int32_t link;
-    std::int32_t version;
     bool operator<(const Entry& other) const {  // the queue's top is the greatest
       return is_after(key, first, other.key, other.first);
     }
@@ -157,40 +144,41 @@ class Fusing {
     const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
     return (edge + kEvenWithoutEdge) * std::sqrt(area);
   }
-  void queue(std::int32_t i, double key) {
+  Entry entry(std::int32_t i, double key) {
     Link& link = links_[slot(i)];
     link.queued_key = key;
     link.queued_first = link.first;
-    queue_.push({key, link.first, i, link.version});
+    return {key, link.first, i};
+  }
+  void queue(std::int32_t i, double key) {
+    queue_.push_back(entry(i, key));
+    std::push_heap(queue_.begin(), queue_.end());
   }
 
   void fuse(std::int32_t across) {
     std::int32_t kept = links_[slot(across)].a;
     std::int32_t lost = links_[slot(across)].b;
     if (links_of_[slot(kept)].size() < links_of_[slot(lost)].size()) std::swap(kept, lost);
-    links_[slot(across)].version = -1;
+    links_[slot(across)].queued_first = -1;
     parents_[slot(lost)] = kept;
     areas_[slot(kept)] += areas_[slot(lost)];
     --left_;
     std::vector<std::int32_t>& links = links_of_[slot(kept)];
-    std::erase_if(links, [&](std::int32_t i) { return links_[slot(i)].version < 0; });
+    std::erase_if(links, [&](std::int32_t i) { return links_[slot(i)].is_gone(); });
     for (const std::int32_t i : links) common_[slot(links_[slot(i)].other(kept))] = i;
     for (const std::int32_t i : links_of_[slot(lost)]) {
       Link& link = links_[slot(i)];
-      if (link.version < 0) continue;
+      if (link.is_gone()) continue;
       const std::int32_t known = common_[slot(link.other(lost))];
       if (known >= 0) {
         Link& both = links_[slot(known)];
         both.first = std::min(both.first, link.first);
         both.length += link.length;
         both.edge_sum += link.edge_sum;
-        link.version = -1;
+        link.queued_first = -1;
         // What is queued too early is queued again when its turn comes; only what would be too late is not.
         const double key = key_of(known);
-        if (is_after(both.queued_key, both.queued_first, key, both.first)) {
-          ++both.version;
-          queue(known, key);
-        }
+        if (is_after(both.queued_key, both.queued_first, key, both.first)) queue(known, key);
       } else {
         (link.a == lost ? link.a : link.b) = kept;
         links.push_back(i);
@@ -206,7 +194,7 @@ class Fusing {
   std::vector<Link> links_;
   std::vector<std::vector<std::int32_t>> links_of_;
   std::vector<std::int32_t> common_;  // while two fuse: the link from the one that is kept; −1 = none
-  std::priority_queue<Entry> queue_;
+  std::vector<Entry> queue_;          // a heap
 };
 
 }  // namespace

@@ -140,19 +140,33 @@ Points points_of(const Part& part, const Image<float>& disparity_px, const Stere
 
 // ---- boxes on the floor ----
 
-/// `count` of the points as they lie on the floor, seen from above, with their axes turned. Fewer than all
-/// are drawn at random: every so many of them would stand in a few columns of the picture.
-void turn(const Points& points, std::size_t count, float yaw_rad, std::array<std::vector<float>, 2>& room) {
+/// Where points lie on the floor, seen from above.
+using Plan = std::array<std::vector<float>, 2>;
+
+/// `count` of the points. Fewer than all are drawn at random: every so many of them would stand in a few columns
+/// of the picture.
+Plan plan_of(const Points& points, std::size_t count) {
   constexpr std::uint64_t kStride = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
-  const float c = std::cos(yaw_rad);
-  const float s = std::sin(yaw_rad);
-  for (auto& axis : room) axis.clear();
+  Plan plan;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = count < points.size() ? k * kStride % points.size() : k;
-    const float x = points.axis[0][i];
-    const float y = points.axis[1][i];
-    room[0].push_back(c * x + s * y);
-    room[1].push_back(c * y - s * x);
+    plan[0].push_back(points.axis[0][i]);
+    plan[1].push_back(points.axis[1][i]);
+  }
+  return plan;
+}
+
+/// With their axes turned.
+void turn(const Plan& plan, float yaw_rad, Plan& turned) {
+  const float c = std::cos(yaw_rad);
+  const float s = std::sin(yaw_rad);
+  const std::size_t count = plan[0].size();
+  for (auto& axis : turned) axis.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = plan[0][i];
+    const float y = plan[1][i];
+    turned[0][i] = c * x + s * y;
+    turned[1][i] = c * y - s * x;
   }
 }
 
@@ -173,13 +187,14 @@ float radians(int degrees) {
 /// How the rectangle is turned of which the sides are closest to the points, degrees from 0 to 89. (What is
 /// seen of a box from above is an L, about which the rectangle of the least area may lie askew. Zhang, Xu,
 /// Dong, Dolan: Efficient L-shape fitting, 2017.)
-int closest_yaw(const Points& points, std::array<std::vector<float>, 2>& room, const Exec& exec) {
+int closest_yaw(const Points& points, const Exec& exec) {
   constexpr std::size_t kEnough = 512;  // points, to tell a direction by
   constexpr int kCoarse = 6;            // degrees
-  const std::size_t count = std::min(points.size(), kEnough);
-  std::array<std::vector<float>, 2> ranked;
+  const Plan plan = plan_of(points, std::min(points.size(), kEnough));
+  Plan room;
+  Plan ranked;
   const auto distance = [&](int degrees) {
-    turn(points, count, radians(degrees), room);
+    turn(plan, radians(degrees), room);
     ranked = room;
     const Interval u = without_tails(ranked[0], kTailOfBox, exec);
     const Interval v = without_tails(ranked[1], kTailOfBox, exec);
@@ -237,10 +252,10 @@ FloorBox box_on(const FloorFrame& floor, const Points& in_camera, const Exec& ex
   Points points;
   for (std::size_t i = 0; i < in_camera.size(); ++i)
     points.push_back(floor.to_floor({in_camera.axis[0][i], in_camera.axis[1][i], in_camera.axis[2][i]}));
-  std::array<std::vector<float>, 2> room;
-  int degrees = closest_yaw(points, room, exec);
+  int degrees = closest_yaw(points, exec);
   const float yaw = radians(degrees);
-  turn(points, points.size(), yaw, room);
+  Plan room;
+  turn({points.axis[0], points.axis[1]}, yaw, room);
   const Interval u = without_tails(room[0], kTailOfBox, exec);
   const Interval v = without_tails(room[1], kTailOfBox, exec);
   const Interval up = without_tails(points.axis[2], kTailOfBox, exec);

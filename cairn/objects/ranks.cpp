@@ -11,8 +11,9 @@
 namespace cairn {
 namespace {
 
-constexpr std::size_t kBuckets = 1024;
-constexpr std::size_t kFew = 256;  // values that are parted faster than counted
+constexpr std::size_t kMostBuckets = 1024;
+constexpr std::size_t kInBucket = 4;  // values, or more: fewer buckets are sooner looked through
+constexpr std::size_t kFew = 256;     // values that are parted faster than counted
 
 std::ptrdiff_t offset(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
@@ -32,6 +33,7 @@ class BucketCounts {
   BucketCounts(std::span<const float> values, const kernels::Buckets& buckets,
                const kernels::LabelKernels& run)
       : values_(values), buckets_(buckets), run_(run) {
+    for (auto& counts : counts_) std::fill_n(counts.begin(), buckets.last + 1, 0U);
     std::array<std::int32_t, 256> numbers;
     for (std::size_t i = 0; i < values.size(); i += numbers.size()) {
       const std::size_t count = std::min(numbers.size(), values.size() - i);
@@ -43,7 +45,14 @@ class BucketCounts {
 
   float value_at(std::size_t rank) {
     std::size_t b = 0;
-    for (; rank >= count(b); ++b) rank -= count(b);
+    if (2 * rank < values_.size()) {
+      for (; rank >= count(b); ++b) rank -= count(b);
+    } else {  // from the top
+      b = slot(buckets_.last);
+      std::size_t above = values_.size() - 1 - rank;
+      for (; above >= count(b); --b) above -= count(b);
+      rank = count(b) - 1 - above;
+    }
     if (b != gathered_) gather(b);
     const auto at = members_.begin() + offset(rank);
     std::nth_element(members_.begin(), at, members_.end());
@@ -62,8 +71,8 @@ class BucketCounts {
   std::span<const float> values_;
   kernels::Buckets buckets_;
   const kernels::LabelKernels& run_;
-  std::array<std::array<std::uint32_t, kBuckets>, 2> counts_{};
-  std::size_t gathered_ = kBuckets;
+  std::array<std::array<std::uint32_t, kMostBuckets>, 2> counts_;  // of those that there are
+  std::size_t gathered_ = kMostBuckets;
   std::vector<float> members_;
 };
 
@@ -74,9 +83,10 @@ std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low
   if (values.size() <= kFew) return by_parting(values, low, high);
   const kernels::LabelKernels& run = kernels::label_kernels(exec);
   const auto [least, most] = run.find_range(values.data(), values.size());
-  const float scale = static_cast<float>(kBuckets) / (most - least);
+  const std::size_t count = std::clamp(values.size() / kInBucket, std::size_t{1}, kMostBuckets);
+  const float scale = static_cast<float>(count) / (most - least);
   if (!std::isfinite(scale) || !(scale > 0)) return by_parting(values, low, high);
-  BucketCounts counted(values, {least, scale, kBuckets - 1}, run);
+  BucketCounts counted(values, {least, scale, static_cast<std::int32_t>(count) - 1}, run);
   const float lower = counted.value_at(low);
   return {lower, counted.value_at(high)};
 }

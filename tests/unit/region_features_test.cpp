@@ -290,5 +290,48 @@ TEST(FittedTrees, AddUp) {
   EXPECT_EQ(FittedTrees{}(std::array{1.0F}), 0);
 }
 
+/// By the definition: from the root down, one tree after the other.
+float one_by_one(const FittedTrees& trees, std::span<const float> features) {
+  float sum = trees.base;
+  for (const std::int16_t root : trees.roots) {
+    std::size_t at = slot(root);
+    while (trees.nodes[at].feature >= 0) {
+      const FittedTrees::Node& node = trees.nodes[at];
+      at = slot(node.below) + (features[slot(node.feature)] < node.value ? 0 : 1);
+    }
+    sum += trees.nodes[at].value;
+  }
+  return sum;
+}
+
+TEST(FittedTrees, AreWalkedTogetherAsTheyAreOneByOne) {
+  std::mt19937 random(7);
+  const auto value = [&] { return static_cast<float>(static_cast<int>(random() % 2000) - 1000) / 300; };
+  std::set<float> sums;
+  for (const int count : {1, 2, 7, 8, 9, 16, 21}) {
+    std::vector<FittedTrees::Node> nodes;
+    std::vector<std::int16_t> roots;
+    for (int tree = 0; tree < count; ++tree) {
+      const std::size_t root = nodes.size();
+      roots.push_back(static_cast<std::int16_t>(root));
+      nodes.push_back({-1, 0, value()});
+      const std::size_t most = root + 1 + 2 * (random() % 15);
+      for (std::size_t i = root; nodes.size() < most; ++i) {  // the leaf becomes an inner node
+        nodes[i] = {static_cast<std::int16_t>(random() % 3), static_cast<std::int16_t>(nodes.size()),
+                    value()};
+        nodes.push_back({-1, 0, value()});
+        nodes.push_back({-1, 0, value()});
+      }
+    }
+    const FittedTrees trees{0.25F, roots, nodes};
+    for (int sample = 0; sample < 50; ++sample) {
+      const std::array features{value(), value(), value()};
+      EXPECT_EQ(trees(features), one_by_one(trees, features)) << count;
+      sums.insert(trees(features));
+    }
+  }
+  EXPECT_GT(sums.size(), 100U);
+}
+
 }  // namespace
 }  // namespace cairn

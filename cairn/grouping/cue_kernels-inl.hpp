@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// No include guard: compiled once for each target.
+namespace cairn::kernels::CAIRN_KERNEL_TARGET {
+namespace {
+
+inline void nearest_plane(std::span<const GroundPlane> planes, int y, int width, float* CAIRN_RESTRICT out) {
+  std::fill_n(out, width, 0.0F);
+  const auto fy = static_cast<float>(y);
+  for (const GroundPlane& plane : planes) {
+    const float a = plane.a;
+    const float c = plane.c;
+    const float by = plane.b * fy;
+    for (int x = 0; x < width; ++x) {
+      const float d = a * static_cast<float>(x) + by + c;
+      out[x] = out[x] < d ? d : out[x];
+    }
+  }
+  for (int x = 0; x < width; ++x) out[x] = kMaxDisparity < out[x] ? kMaxDisparity : out[x];
+}
+
+inline void in_steps(const float* disparity_px, float above, int width, std::int32_t* CAIRN_RESTRICT out) {
+  // Truncating what is positive is quicker than floor(), and in doubles as exact.
+  constexpr int kPositive = 1 << 20;
+  for (int x = 0; x < width; ++x) {
+    const float d = disparity_px[x];
+    const bool is_one = d > above;  // NaN is not
+    const double steps = double{is_one ? d : 0.0F} * kDisparitySteps + (0.5 + kPositive);
+    const std::int32_t rounded = static_cast<std::int32_t>(steps) - kPositive;
+    out[x] = is_one ? rounded : kNoDisparity;
+  }
+}
+
+inline void add_steps(const std::uint16_t* edges, const float* up, const float* here, const float* down,
+                      int width, float weight, float largest, int least, std::uint16_t* CAIRN_RESTRICT out) {
+  const auto sum = [&](int x, int left, int right) {
+    const float d = here[x];
+    const auto larger = [d](float step, float other) {
+      const float to = std::abs(other - d);
+      return to > step ? to : step;  // NaN is not
+    };
+    float step = larger(larger(larger(larger(0.0F, here[left]), here[right]), up[x]), down[x]);
+    step = largest < step ? largest : step;
+    const int edge = edges[x] + static_cast<int>(step * weight + 0.5F);
+    return static_cast<std::uint16_t>(edge < least ? 0 : edge);
+  };
+  const int end = width - 1;
+  out[0] = sum(0, 0, std::min(1, end));
+  for (int x = 1; x < end; ++x) out[x] = sum(x, x - 1, x + 1);
+  out[end] = sum(end, std::max(end - 1, 0), end);
+}
+
+inline constexpr CueKernels kCueKernels{nearest_plane, in_steps, add_steps};
+
+}  // namespace
+}  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/scene/ground_plane.hpp>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+/// What superpixels and cues are computed from, per pixel of a row; one set per instruction set. Private to the
+/// library.
+namespace cairn::kernels {
+
+inline constexpr std::int32_t kNoDisparity = std::numeric_limits<std::int32_t>::min();
+
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
+struct CueKernels {
+  /// The disparity of the nearest of `planes` in row y, limited to 0 … kMaxDisparity.
+  void (*nearest_plane)(std::span<const GroundPlane> planes, int y, int width, float* out);
+  /// In 1/64 px, rounded, halves up; kNoDisparity where a value is NaN or not above `above`.
+  void (*in_steps)(const float* disparity_px, float above, int width, std::int32_t* out);
+  /// Adds to each edge `weight` times the largest step of disparity to one of the four neighbours, limited to
+  /// `largest` px; 0 where the sum is below `least`. Beside holes there is no step.
+  void (*add_steps)(const std::uint16_t* edges, const float* up, const float* here, const float* down,
+                    int width, float weight, float largest, int least, std::uint16_t* out);
+};
+
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
+const CueKernels* cue_kernels(Target target);
+/// The functions for the active target of `exec`.
+const CueKernels& cue_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/grouping/cue_kernels.hpp>
+#include <cairn/grouping/region_cues.hpp>
+#include <vector>
+
+namespace cairn {
+
+/// The disparities of the ground and of the background in one row, in px, limited to 0 … kMaxDisparity; 0 where there
+/// is none. Private to the library.
+class SurfacesBehind {
+ public:
+  SurfacesBehind(const Cues& cues, int width, const Exec& exec);
+  void note(int y);
+  std::vector<float> ground, background;
+
+ private:
+  const Cues& cues_;
+  const kernels::CueKernels& run_;
+};
+
+}  // namespace cairn
