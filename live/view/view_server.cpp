@@ -47,9 +47,11 @@ using tcp = asio::ip::tcp;
 using ErrorCode = beast::error_code;
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 15s;       // for a request, an answer, a handshake
-constexpr auto kIdle = 30s;           // after which a viewer that neither reads nor answers is gone
-constexpr auto kGoodbye = 500ms;      // for the viewers to hear of the end
+constexpr auto kPatience = 15s;   // for a request, an answer, a handshake
+constexpr auto kIdle = 30s;       // after which a viewer that neither reads nor answers is gone
+constexpr auto kGoodbye = 500ms;  // for the viewers to hear of the end
+constexpr std::size_t kCompressedFrame = 1
+                                         << 16;  // bytes; a compressed message is sent in frames of this size
 constexpr int kSendBuffer = 1 << 17;  // bytes: more would only wait in the system, and grow old there
 constexpr std::uint32_t kMostHeader = 8 * 1024;
 constexpr std::uint64_t kMostBody = 1024;
@@ -185,6 +187,7 @@ class ViewServer::Hub {
   // From the server's thread:
 
   [[nodiscard]] const Access& access() const { return access_; }
+  [[nodiscard]] bool is_on_network() const { return !is_loopback(options_.address); }
   [[nodiscard]] Parameters& parameters() { return parameters_; }
   [[nodiscard]] const std::string& session() const { return session_; }
   [[nodiscard]] const std::string& source_name() const { return run_.name; }
@@ -557,6 +560,15 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     }));
     stream_.read_message_max(kMostClientBytes);
     stream_.auto_fragment(false);
+    if (hub_.is_on_network()) {
+      // A network is slower than this; the loopback interface is not.
+      websocket::permessage_deflate deflate;
+      deflate.server_enable = true;
+      deflate.compLevel = 1;
+      deflate.memLevel = 8;
+      stream_.set_option(deflate);
+      stream_.write_buffer_bytes(kCompressedFrame);
+    }
     hub_.add(*this);
     is_writing_ = true;  // the handshake
     stream_.async_accept(request, [self = this->shared_from_this()](ErrorCode error) {

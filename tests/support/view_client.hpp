@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <chrono>
 #include <cstdint>
@@ -142,6 +143,36 @@ inline std::string upgrade(const std::string& target, const std::string& lines,
                              (subprotocol.empty() ? "" : "Sec-WebSocket-Protocol: " + subprotocol + "\r\n"));
 }
 
+/// The messages of a connection that was compressed as a whole (RFC 7692, section 7.2.2).
+class Inflater {
+ public:
+  Inflater() {
+    if (inflateInit2(&stream_, -MAX_WBITS) != Z_OK) throw std::runtime_error("no zlib");
+  }
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  Bytes inflated(Bytes message) {
+    message.insert(message.end(), {0x00, 0x00, 0xff, 0xff});
+    Bytes all;
+    Bytes part(1 << 16);
+    stream_.next_in = message.data();
+    stream_.avail_in = static_cast<uInt>(message.size());
+    do {
+      stream_.next_out = part.data();
+      stream_.avail_out = static_cast<uInt>(part.size());
+      if (const int status = inflate(&stream_, Z_SYNC_FLUSH); status != Z_OK && status != Z_BUF_ERROR)
+        throw std::runtime_error("not deflated");
+      all.insert(all.end(), part.data(), stream_.next_out);
+    } while (stream_.avail_out == 0);
+    return all;
+  }
+
+ private:
+  z_stream stream_{};
+};
+
 /// A WebSocket, open.
 class WebSocket {
  public:
@@ -161,9 +192,13 @@ class WebSocket {
   WebSocket(std::uint16_t port, const std::string& target, const std::string& subprotocol = "foxglove.sdk.v1",
             bool tls = false, int receive_buffer = 0)
       : connection_(port, tls, receive_buffer) {
-    connection_.send(upgrade(target, "Host: 127.0.0.1:" + std::to_string(port) + "\r\n", subprotocol));
+    connection_.send(upgrade(
+        target,
+        "Host: 127.0.0.1:" + std::to_string(port) + "\r\nSec-WebSocket-Extensions: permessage-deflate\r\n",
+        subprotocol));
     answer_ = answer_of(connection_.read_head());
     if (answer_.status != 101) throw std::runtime_error("not upgraded: " + answer_.head);
+    is_compressed_ = !answer_.header("Sec-WebSocket-Extensions").empty();
   }
   [[nodiscard]] const Answer& answer() const { return answer_; }
 
@@ -184,6 +219,8 @@ class WebSocket {
 
   /// Pings are left out. None where the connection ended.
   std::optional<Message> read() {
+    Message message;
+    bool is_deflated = false;
     for (;;) {
       std::array<std::uint8_t, 10> head{};
       if (!connection_.read(head.data(), 2)) return std::nullopt;
@@ -193,12 +230,30 @@ class WebSocket {
         size = 0;
         for (int i = 0; i < more; ++i) size = size << 8 | head[static_cast<std::size_t>(2 + i)];
       }
-      EXPECT_EQ(head[0] & 0xf0, 0x80) << "a message in one frame, and not compressed";
-      Message message{head[0] & 15, Bytes(size)};
-      if (size > 0 && !connection_.read(message.payload.data(), size)) return std::nullopt;
-      if (message.opcode != 9) return message;
+      Bytes payload(size);
+      if (size > 0 && !connection_.read(payload.data(), size)) return std::nullopt;
+      bytes_ += size;
+      const int opcode = head[0] & 15;
+      if (opcode == 9) continue;
+      if (opcode >= 8) return Message{opcode, std::move(payload)};
+      const bool is_last = (head[0] & 0x80) != 0;
+      const bool is_first = opcode != 0;
+      if (is_first) {
+        message = {opcode, std::move(payload)};
+        is_deflated = (head[0] & 0x40) != 0;
+      } else {
+        message.payload.insert(message.payload.end(), payload.begin(), payload.end());
+      }
+      if (!is_compressed_) {
+        EXPECT_EQ(head[0] & 0xf0, 0x80) << "a message in one frame, and not compressed";
+      }
+      if (!is_last) continue;
+      if (is_deflated) message.payload = inflater_.inflated(std::move(message.payload));
+      return message;
     }
   }
+  /// So far, of what messages hold as they were sent.
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   /// The next text with this operation; messages of channels on the way are left out.
   Json read_op(const std::string& op) {
     while (const auto message = read()) {
@@ -253,6 +308,9 @@ class WebSocket {
 
   Connection connection_;
   Answer answer_;
+  bool is_compressed_ = false;
+  Inflater inflater_;
+  std::uint64_t bytes_ = 0;
   Json channels_;
 };
 

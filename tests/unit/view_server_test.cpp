@@ -388,6 +388,36 @@ TEST(ViewServer, SpeaksEachSubprotocol) {
       "foxglove.sdk.v1");
 }
 
+TEST(ViewServer, CompressesOnlyWhatGoesOverANetwork) {
+  const std::vector<std::string> topics{"/cairn/labels", "/cairn/reject", "/cairn/disparity", "/cairn/left"};
+  const auto frame = [&](const std::string& address, std::uint64_t& bytes) {
+    ViewOptions options = options_of_test();
+    options.address = address;
+    options.insecure = address != "127.0.0.1";
+    Served served(options);
+    WebSocket socket = served.connect();
+    EXPECT_EQ(has(socket.answer().header("Sec-WebSocket-Extensions"), "permessage-deflate"),
+              options.insecure);
+    EXPECT_EQ(socket.channels().size(), kChannels);
+    const std::uint64_t before = socket.bytes();
+    std::map<std::uint32_t, support::Bytes> got;
+    served.server.offer(renumbered(0));
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+      socket.subscribe(topics[i], static_cast<int>(i));
+      if (auto data = socket.read_data()) got[data->subscription] = std::move(data->payload);
+    }
+    bytes = socket.bytes() - before;
+    return got;
+  };
+  std::uint64_t plain = 0;
+  std::uint64_t compressed = 0;
+  const auto near = frame("127.0.0.1", plain);
+  const auto far = frame("0.0.0.0", compressed);
+  EXPECT_EQ(near.size(), topics.size());
+  EXPECT_EQ(near, far);
+  EXPECT_LT(4 * compressed, plain);
+}
+
 TEST(ViewServer, ShowsWhatIsInTheFrame) {
   Served served;
   const LiveFramePtr frame = frame_at(6);
