@@ -574,6 +574,8 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     stream_.async_accept(request, [self = this->shared_from_this()](ErrorCode error) {
       if (error) return self->end();
       self->is_writing_ = false;
+      self->is_open_ = true;
+      if (self->is_over_) return self->close();
       self->read();
       self->pump();
     });
@@ -604,9 +606,8 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     }
   }
   void say_goodbye() override {
-    if (std::exchange(is_over_, true)) return;
-    stream_.async_close(websocket::close_reason(websocket::close_code::going_away, "the run is over"),
-                        [self = this->shared_from_this()](ErrorCode) { self->end(); });
+    const bool was_over = std::exchange(is_over_, true);
+    if (is_open_ && !was_over) close();
   }
   [[nodiscard]] ChannelBits subscribed() const override { return client_.subscribed(); }
   [[nodiscard]] std::uint64_t skipped() const override { return client_.skipped(); }
@@ -635,6 +636,11 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     read();
     pump();
   }
+  /// Not before the handshake is over: that writes, too.
+  void close() {
+    stream_.async_close(websocket::close_reason(websocket::close_code::going_away, "the run is over"),
+                        [self = this->shared_from_this()](ErrorCode) { self->end(); });
+  }
   void end() {
     is_over_ = true;
     hub_.remove(*this);
@@ -648,6 +654,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
   Outgoing out_;
   bool is_writing_ = false;
   bool is_reading_ = false;
+  bool is_open_ = false;
   bool is_over_ = false;
 };
 

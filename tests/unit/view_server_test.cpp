@@ -294,6 +294,18 @@ TEST(ViewServer, HasRoomForSoManyClients) {
   EXPECT_EQ(status, 101);
 }
 
+TEST(ViewServer, TheRunMayEndWhileAClientIsLetIn) {
+  for (int i = 0; i < 12; ++i) {
+    auto served = std::make_unique<Served>();
+    support::Connection connection(served->port);
+    connection.send(upgrade(served->with_token(), served->host()));
+    std::this_thread::sleep_for(std::chrono::microseconds(50 * i));
+    served.reset();
+    const Answer answer = support::answer_of(connection.read_all());
+    EXPECT_TRUE(answer.status == 101 || answer.status == 0) << answer.status;
+  }
+}
+
 // ---- TLS ----
 
 /// A certificate of its own, as PEM files.
