@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""live_page_in_browser.py CAIRN SOURCE_DIR: the page of `cairn live --view` in headless Chromium: what it draws against what
+"""live_page_in_browser.py CAIRN SOURCE_DIR [LivePage.TEST]: the page of `cairn live --view` in headless Chromium: what it draws against what
 `cairn segment` finds, options, pause and step, a server that goes and comes back. Skipped as in_browser.py says, and where
 views are not built in. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
 import json
@@ -173,6 +173,23 @@ class LivePage(PageTest):
         print(f"{stats['drawn']} frames drawn; from arrival until drawn {stats['p50_ms']:.1f} ms (median), {stats['p95_ms']:.1f} ms (95 %)")
         self.keep("live")
 
+    def test_prints_how_fast_it_draws(self):
+        """A pair every 33 ms. Measured, not judged: a drawn frame is all that is asked for."""
+        self.look_at(self.live("--pace", "6"), frames=30)
+        for panels in ("all panels", "the left image alone"):
+            if panels != "all panels":
+                ActionChains(self.browser).double_click(self.find("[data-panel=picture] canvas")).perform()
+                time.sleep(2)
+            counts = lambda: self.script("return [performance.now(), window.cairnStats.received, window.cairnStats.drawn]")
+            before = counts()
+            time.sleep(12)
+            after = counts()
+            seconds = (after[0] - before[0]) / 1000
+            stats = self.script("return window.cairnStats")
+            print(f"{panels}: {(after[1] - before[1]) / seconds:.1f} frames a second received, {(after[2] - before[2]) / seconds:.1f} drawn; "
+                  f"from arrival until drawn {stats['p50_ms']:.1f} ms (median), {stats['p95_ms']:.1f} ms (95 %)")
+            self.assertGreater(after[2], before[2])
+
     def test_names_from_outside_are_shown_and_not_obeyed(self):
         self.look_at(self.live("--tunable"))
         self.assertEqual(self.find("#title").text, HOSTILE)
@@ -334,4 +351,4 @@ if __name__ == "__main__":
     if not re.search(r"live views.*yes", subprocess.run([CAIRN, "info"], capture_output=True, text=True).stdout):
         print("skipped: views are not built in (libboost-dev, libssl-dev)")
         sys.exit(77)
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
