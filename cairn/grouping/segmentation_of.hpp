@@ -21,13 +21,17 @@ Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, Value va
       Region& region = result.regions[index(row[first])];
       region.pixel_count += last - first;
       region.box = united(region.box, {first, y, last - first, 1});
+      double sum = region.mean;
+      double squares = region.variance;
       for (int x = first; x < last; ++x) {
         const double v = value(x, y);
         if (!(v == v)) continue;
         ++region.valid_count;
-        region.mean += v;
-        region.variance += v * v;
+        sum += v;
+        squares += v * v;
       }
+      region.mean = sum;
+      region.variance = squares;
       first = last;
     }
   }

@@ -84,13 +84,19 @@ std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px,
     behind.look_at(y);
     const RegionId* const superpixel = cues.superpixels.row(y);
     const float* const seen = seen_px.row(y);
-    for (int x = 0; x < seen_px.width(); ++x) {
-      const std::size_t i = index(superpixel[x]);
+    for (int first = 0, x = 0; first < seen_px.width(); first = x) {
+      int known = 0;
+      int on_floor = 0;
+      for (; x < seen_px.width() && superpixel[x] == superpixel[first]; ++x) {
+        known += std::isnan(seen[x]) ? 0 : 1;
+        on_floor += std::abs(seen[x] - behind.free_floor_px(x)) <= margin ? 1 : 0;
+      }
+      const std::size_t i = index(superpixel[first]);
       if (i >= pieces.size()) pieces.resize(i + 1);
       Tally& piece = pieces[i];
-      ++piece.pixels;
-      piece.known += std::isnan(seen[x]) ? 0 : 1;
-      piece.on_floor += std::abs(seen[x] - behind.free_floor_px(x)) <= margin ? 1 : 0;
+      piece.pixels += x - first;
+      piece.known += known;
+      piece.on_floor += on_floor;
     }
   }
   std::vector<bool> floor(pieces.size());
