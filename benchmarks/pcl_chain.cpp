@@ -4,10 +4,10 @@
 // Objects as one would get them without us, next to ours: OpenCV's semi-global matcher, points in metres,
 // voxels, the largest planes removed by PCL's RANSAC, Euclidean clusters of the rest.
 //   pcl_chain DATA [--threads N]
-//   pcl_chain --search DATA [--threads N] [--rounds N] [--report] [OPTION=VALUE]...
+//   pcl_chain --search DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
 // DATA is the folder that holds rendered/ and real/. The first prints the tables of docs/comparison.md. The
 // second chooses the chain's own numbers on the fit set, by the search that chose those of the preset
-// `paper`, with as many settings a round (fitting/search_program.hpp). Times are of one thread's processor.
+// `paper` (fitting/search_program.hpp). Times are of one thread's processor.
 #include <pcl/ModelCoefficients.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>

@@ -79,7 +79,7 @@ struct Effort {
 Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, Values start,
               const Effort& effort, int threads) {
   std::mt19937 random;  // of which the standard fixes every number
-  double best_value = measure(program, fit, start, threads).value();
+  double best_value = effort.draws > 0 ? measure(program, fit, start, threads).value() : 0;
   for (int i = 0; i < effort.draws; ++i) {
     const Values values = drawn(program.knobs, random);
     const Measured measured = measure(program, fit, values, threads);

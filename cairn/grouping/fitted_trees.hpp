@@ -20,7 +20,7 @@ struct FittedTrees {
   std::span<const std::int16_t> roots;
   std::span<const Node> nodes;
 
-  /// The log-odds. Precondition: at least one feature.
+  /// The log-odds. Precondition: `features` has each feature that a node names.
   [[nodiscard]] float operator()(std::span<const float> features) const;
 };
 

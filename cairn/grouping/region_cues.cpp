@@ -5,7 +5,6 @@
 #include <cairn/grouping/object_hints.hpp>
 #include <cairn/grouping/region_cues.hpp>
 #include <cairn/grouping/surfaces_behind.hpp>
-#include <optional>
 #include <utility>
 
 namespace cairn {
@@ -14,7 +13,7 @@ namespace {
 constexpr int kFar = 3;  // px to either side of a contact
 using kernels::kNoDisparity;
 
-/// Of each difference of colours from −255 to 255.
+/// The bin of each difference of colours, −255 … 255.
 constexpr auto kBins = [] {
   std::array<std::uint8_t, 511> bins{};
   for (int i = 0; i < 511; ++i)
@@ -274,16 +273,6 @@ class Gathering {
 };
 
 }  // namespace
-
-SurfacesBehind::SurfacesBehind(const Cues& cues, int width, const Exec& exec)
-    : ground(slot(width)), background(slot(width)), cues_(cues), run_(kernels::cue_kernels(exec)) {}
-
-void SurfacesBehind::note(int y) {
-  const auto width = static_cast<int>(ground.size());
-  const std::optional<GroundPlane>& floor = cues_.ground.plane;
-  if (floor) run_.nearest_plane({&*floor, 1}, y, width, ground.data());
-  run_.nearest_plane(cues_.background.planes, y, width, background.data());
-}
 
 void PlaneMoments::add(const PlaneMoments& other) {
   n += other.n;

@@ -14,7 +14,7 @@ namespace cairn {
 class SurfacesBehind {
  public:
   SurfacesBehind(const Cues& cues, int width, const Exec& exec);
-  void note(int y);
+  void note(int y);  // the row whose disparities follow
   std::vector<float> ground, background;
 
  private:

@@ -157,14 +157,13 @@ Plan plan_of(const Points& points, std::size_t count) {
 }
 
 /// With their axes turned.
-void turn(const Plan& plan, float yaw_rad, Plan& turned) {
+void turn(std::span<const float> xs, std::span<const float> ys, float yaw_rad, Plan& turned) {
   const float c = std::cos(yaw_rad);
   const float s = std::sin(yaw_rad);
-  const std::size_t count = plan[0].size();
-  for (auto& axis : turned) axis.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = plan[0][i];
-    const float y = plan[1][i];
+  for (auto& axis : turned) axis.resize(xs.size());
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    const float x = xs[i];
+    const float y = ys[i];
     turned[0][i] = c * x + s * y;
     turned[1][i] = c * y - s * x;
   }
@@ -194,7 +193,7 @@ int closest_yaw(const Points& points, const Exec& exec) {
   Plan room;
   Plan ranked;
   const auto distance = [&](int degrees) {
-    turn(plan, radians(degrees), room);
+    turn(plan[0], plan[1], radians(degrees), room);
     ranked = room;
     const Interval u = without_tails(ranked[0], kTailOfBox, exec);
     const Interval v = without_tails(ranked[1], kTailOfBox, exec);
@@ -255,7 +254,7 @@ FloorBox box_on(const FloorFrame& floor, const Points& in_camera, const Exec& ex
   int degrees = closest_yaw(points, exec);
   const float yaw = radians(degrees);
   Plan room;
-  turn({points.axis[0], points.axis[1]}, yaw, room);
+  turn(points.axis[0], points.axis[1], yaw, room);
   const Interval u = without_tails(room[0], kTailOfBox, exec);
   const Interval v = without_tails(room[1], kTailOfBox, exec);
   const Interval up = without_tails(points.axis[2], kTailOfBox, exec);

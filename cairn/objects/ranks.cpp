@@ -12,7 +12,7 @@ namespace cairn {
 namespace {
 
 constexpr std::size_t kMostBuckets = 1024;
-constexpr std::size_t kInBucket = 4;  // values, or more: fewer buckets are sooner looked through
+constexpr std::size_t kInBucket = 4;  // values on average, at least: few buckets are quicker to search
 constexpr std::size_t kFew = 256;     // values that are parted faster than counted
 
 std::ptrdiff_t offset(std::size_t i) {

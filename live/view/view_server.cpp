@@ -50,8 +50,7 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 15s;   // for a request, an answer, a handshake
 constexpr auto kIdle = 30s;       // after which a viewer that neither reads nor answers is gone
 constexpr auto kGoodbye = 500ms;  // for the viewers to hear of the end
-constexpr std::size_t kCompressedFrame = 1
-                                         << 16;  // bytes; a compressed message is sent in frames of this size
+constexpr std::size_t kCompressedFrame = 1 << 16;  // bytes: of a compressed message
 constexpr int kSendBuffer = 1 << 17;  // bytes: more would only wait in the system, and grow old there
 constexpr std::uint32_t kMostHeader = 8 * 1024;
 constexpr std::uint64_t kMostBody = 1024;
@@ -187,6 +186,8 @@ class ViewServer::Hub {
   // From the server's thread:
 
   [[nodiscard]] const Access& access() const { return access_; }
+  /// Nobody is let in any more.
+  [[nodiscard]] bool is_ending() const { return !acceptor_.is_open(); }
   [[nodiscard]] bool is_on_network() const { return !is_loopback(options_.address); }
   [[nodiscard]] Parameters& parameters() { return parameters_; }
   [[nodiscard]] const std::string& session() const { return session_; }
@@ -561,7 +562,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     stream_.read_message_max(kMostClientBytes);
     stream_.auto_fragment(false);
     if (hub_.is_on_network()) {
-      // A network is slower than this; the loopback interface is not.
+      // Wi-Fi does not carry raw labels at the rate of a camera. The price is this thread's time, for each viewer.
       websocket::permessage_deflate deflate;
       deflate.server_enable = true;
       deflate.compLevel = 1;
@@ -707,6 +708,7 @@ class Visitor : public std::enable_shared_from_this<Visitor<Hub, Stream>> {
     if (verdict.status != 200) return say(hub_.respond(verdict, host));
     const bool is_picture = verdict.path == "/left.mjpeg";
     if (!is_upgrade && !is_picture) return say(hub_.respond(verdict, host));
+    if (hub_.is_ending()) return end();
     if (hub_.is_full()) {
       return say(
           plain(http::status::service_unavailable, "the largest number of viewers is connected already"));

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/core/target.hpp>
 #include <cairn/grouping/object_hints.hpp>
 #include <cmath>
 #include <limits>
@@ -110,11 +111,15 @@ TEST(CutSuperpixels, IsThatOfItsDefinition) {
       for (const int count : {1, 7, 30}) {
         const Superpixels expected =
             reference::cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, count);
-        const Superpixels found = scene.superpixels(count);
-        EXPECT_EQ(found.count, expected.count) << text(size) << ' ' << seed << ' ' << count;
-        EXPECT_EQ(numbers(found.labels), numbers(expected.labels))
-            << text(size) << ' ' << seed << ' ' << count;
-        EXPECT_EQ(numbers(found.edges), numbers(expected.edges)) << text(size) << ' ' << seed;
+        for (const Target target : supported_targets()) {
+          SCOPED_TRACE(text(size) + " " + std::to_string(seed) + " " + std::to_string(count) + " " +
+                       std::string(name(target)));
+          const Superpixels found = cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise,
+                                                    {count}, Exec::with_threads(1, target));
+          EXPECT_EQ(found.count, expected.count);
+          EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
+          EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
+        }
       }
     }
   }
@@ -254,6 +259,29 @@ TEST(RegionCues, OfEveryNodeOfATreeAreThoseOfItsPixelsCountedAnew) {
   }
   EXPECT_GT(nodes, 500);
   EXPECT_GT(compared, 2000);
+}
+
+TEST(GatherCues, IsTheSameForEveryTarget) {
+  for (const Size size : sizes()) {
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      Scene scene(size, seed);
+      scene.ground.plane = GroundPlane{-100, 20, 1500};  // from below 0 to beyond the largest disparity
+      scene.background = {{{-90, 300, -5}, {0.1F, 0, 2}}, false};
+      for (int x = 0; x < size.width; ++x) scene.disparity_px(x, 0) = 0.37F - static_cast<float>(x);
+      const Cues cues = scene.cues();
+      const Superpixels superpixels = scene.superpixels(9);
+      const RegionGraphCues expected = gather_cues(superpixels, cues, Exec::with_threads(1, Target::scalar));
+      for (const Target target : supported_targets()) {
+        const RegionGraphCues found = gather_cues(superpixels, cues, Exec::with_threads(1, target));
+        EXPECT_TRUE(found.regions == expected.regions && found.contacts == expected.contacts)
+            << text(size) << ' ' << seed << ' ' << name(target);
+      }
+      // The slow twin: of whole superpixels.
+      for (std::int32_t i = 0; i < superpixels.count; ++i)
+        EXPECT_TRUE(expected.regions[slot(i)] == reference::cues_of({i}, superpixels, cues))
+            << text(size) << ' ' << seed << ' ' << i;
+    }
+  }
 }
 
 TEST(GatherCues, ListsContactsAsTheRowsShowThemFirst) {

@@ -217,6 +217,23 @@ class WebSocket {
     connection_.send(frame + std::string(4, '\0') + payload);  // the mask 0
   }
 
+  /// A text, compressed.
+  void send_deflated(const std::string& text) {
+    z_stream stream{};
+    if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, -MAX_WBITS, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) !=
+        Z_OK)
+      throw std::runtime_error("no zlib");
+    std::string out(deflateBound(&stream, text.size()) + 16, '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = static_cast<uInt>(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = static_cast<uInt>(out.size());
+    deflate(&stream, Z_SYNC_FLUSH);
+    out.resize(out.size() - stream.avail_out - 4);  // without 00 00 ff ff
+    deflateEnd(&stream);
+    send_frame(0x41, out);
+  }
+
   /// Pings are left out. None where the connection ended.
   std::optional<Message> read() {
     Message message;

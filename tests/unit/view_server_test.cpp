@@ -295,14 +295,16 @@ TEST(ViewServer, HasRoomForSoManyClients) {
 }
 
 TEST(ViewServer, TheRunMayEndWhileAClientIsLetIn) {
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i <= 12; ++i) {
     auto served = std::make_unique<Served>();
     support::Connection connection(served->port);
     connection.send(upgrade(served->with_token(), served->host()));
-    std::this_thread::sleep_for(std::chrono::microseconds(50 * i));
+    std::this_thread::sleep_for(std::chrono::microseconds(i < 12 ? 50 * i : 500'000));
     served.reset();
     const Answer answer = support::answer_of(connection.read_all());
     EXPECT_TRUE(answer.status == 101 || answer.status == 0) << answer.status;
+    EXPECT_TRUE(answer.status == 0 || answer.body.ends_with("\x03\xe9the run is over"));  // 1001
+    EXPECT_TRUE(answer.status == 101 || i < 12);
   }
 }
 
@@ -428,6 +430,23 @@ TEST(ViewServer, CompressesOnlyWhatGoesOverANetwork) {
   EXPECT_EQ(near.size(), topics.size());
   EXPECT_EQ(near, far);
   EXPECT_LT(4 * compressed, plain);
+}
+
+TEST(ViewServer, UnderstandsWhatAClientCompressesButNotWithoutLimit) {
+  ViewOptions options = options_of_test();
+  options.address = "0.0.0.0";
+  options.insecure = true;
+  Served served(options);
+  served.server.offer(renumbered(0));
+  WebSocket socket = served.connect();
+  const int channel = socket.channel("/cairn/labels");
+  socket.send_deflated(
+      Json{{"op", "subscribe"}, {"subscriptions", {{{"id", 5}, {"channelId", channel}}}}}.dump());
+  const auto data = socket.read_data();
+  ASSERT_TRUE(data);
+  EXPECT_EQ(data->subscription, 5U);
+  socket.send_deflated(std::string(1'000'000, 'a'));  // about 4 kB on the way
+  EXPECT_EQ(socket.read_close(), 1009);
 }
 
 TEST(ViewServer, ShowsWhatIsInTheFrame) {
