@@ -33,8 +33,8 @@ std::vector<float> score_nodes(const MergeTree& tree, const FittedTrees& whole_o
 
 ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores, const ChoiceLimits& limits) {
   const std::size_t count = tree.nodes.size();
-  std::vector<double> best(count);  // what the best choice at or below each node exceeds min_score by
-  std::vector<bool> taken(count);   // that choice is the node itself
+  std::vector<double> best(count);  // gain over min_score of the best choice at or below each node
+  std::vector<bool> taken(count);   // whether that choice is the node itself
   for (std::size_t i = 0; i < count; ++i) {
     const MergeNode& node = tree.nodes[i];
     if (node.part_a >= 0) best[i] = best[slot(node.part_a)] + best[slot(node.part_b)];
@@ -53,7 +53,7 @@ ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores,
     chosen.scores.push_back(scores[i]);
   }
   chosen.object_of.assign(object.begin(), object.begin() + tree.superpixels);
-  // From the whole tree down, each region has what those that hold it have.
+  // From the root down: a region is at least as likely as the regions that contain it.
   for (std::size_t i = count; i-- > 0;) {
     const std::int32_t whole = tree.nodes[i].whole;
     if (whole >= 0) scores[i] = std::max(scores[i], scores[slot(whole)]);

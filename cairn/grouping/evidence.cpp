@@ -33,8 +33,8 @@ Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::Evid
   return result;
 }
 
-/// The disparities of textured pixels, NaN elsewhere. NaN frame it, so that no neighbour needs a bounds
-/// check: pixel (x, y) of the picture stands at (x + kReach, y + kReach).
+/// The disparities of textured pixels, NaN elsewhere, with a frame of NaN so that neighbours need no bounds
+/// check: pixel (x, y) of the image is at (x + kReach, y + kReach).
 Image<float> textured(View<const Gray> left, const DisparityMap& disparity, float least_gradient,
                       const kernels::EvidenceKernels& run, const Exec& exec) {
   const Image<std::int16_t> smooth = lightly_smoothed(left, run, exec);

@@ -9,7 +9,7 @@
 namespace cairn {
 namespace {
 
-constexpr float kOneSuperpixel = 20.0F;  // how alike the parts of a superpixel are
+constexpr float kOneSuperpixel = 20.0F;  // the log-odds given to a superpixel, which has no parts
 constexpr int kMuch = 8;                 // a part of less than 1/8 of the other's area changes little
 
 class Growing {
@@ -60,15 +60,15 @@ class Growing {
  private:
   struct Judged {
     float score = 0;
-    std::int32_t version = 0;  // −1: there is no such contact any more
+    std::int32_t version = 0;  // −1: the contact no longer exists
   };
   struct Entry {
     float score;
     std::int32_t first;
     std::int32_t contact;
     std::int32_t version;
-    std::int64_t fusions;                       // of its two ends, when it was judged
-    bool operator<(const Entry& other) const {  // the queue's top is the greatest
+    std::int64_t fusions;                       // of its two ends at the time of the judgement
+    bool operator<(const Entry& other) const {  // the greatest is at the top of the queue
       return score < other.score || (score == other.score && first > other.first);
     }
   };
@@ -117,7 +117,7 @@ class Growing {
     std::erase_if(contacts, [&](std::int32_t i) { return judged_[slot(i)].version < 0; });
   }
 
-  /// The contacts of `lost` become those of `kept`. Returns those that changed.
+  /// Moves the contacts of `lost` to `kept`. Returns the contacts that changed.
   std::vector<std::int32_t> hand_over(std::int32_t kept, std::int32_t lost) {
     std::vector<std::int32_t>& contacts = contacts_of_[slot(kept)];
     for (const std::int32_t i : contacts) common_[slot(other_end(i, kept))] = i;
@@ -166,7 +166,7 @@ class Growing {
     describe(slot(kept), origin);
   }
 
-  /// A new node of the two regions' nodes, which is from now on that of `kept`.
+  /// Creates the node that unites the nodes of the two regions; it becomes the node of `kept`.
   Origin fused_node(std::int32_t kept, std::int32_t lost, float score) {
     const auto node = static_cast<std::int32_t>(tree_.nodes.size());
     const std::array parts{nodes_[slot(kept)], nodes_[slot(lost)]};
@@ -194,11 +194,12 @@ class Growing {
   std::vector<RegionFits> fits_;
   std::vector<std::int32_t> nodes_;  // of each region
   std::vector<std::vector<std::int32_t>> contacts_of_;
-  std::vector<std::int32_t> common_;   // while two fuse: the contact with the one that is kept; −1 = none
+  std::vector<std::int32_t>
+      common_;  // during a merge: each region's contact with the one that is kept; −1 = none
   std::vector<std::int64_t> fusions_;  // of each region
-  std::vector<std::int32_t> first_;    // of each contact: where the picture's rows show it first, among all
+  std::vector<std::int32_t> first_;    // of each contact: its rank in raster order of first occurrence
   std::vector<Judged> judged_;         // each contact
-  std::vector<Neighbour> neighbours_;  // of the region that is described
+  std::vector<Neighbour> neighbours_;  // of the region that describe() works on
   std::priority_queue<Entry> queue_;
   MergeTree tree_;
 };

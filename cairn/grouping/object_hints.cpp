@@ -22,7 +22,7 @@ constexpr std::size_t count_of_weights() {
 static_assert(kFittedLayers.size() == kHintLayers && kFittedWeights.size() == count_of_weights());
 
 constexpr int kGrain = 4;      // rows
-constexpr double kUnit = 64;   // of the input's numbers
+constexpr double kUnit = 64;   // one unit of the input is 1/64
 constexpr int kLeastSide = 8;  // cells
 constexpr double kCells = 160.0 * 120;
 constexpr int kMostLogOdds = 96;  // 1/16
@@ -250,7 +250,7 @@ Size hint_cells(Size image) {
   const double ratio = static_cast<double>(image.width) / image.height;
   const double width = std::sqrt(kCells * ratio);
   const auto rounded = [](double cells) {
-    constexpr double kMost = 1024;  // of a strip
+    constexpr double kMost = 1024;  // cells of a very long image
     return std::max(1, static_cast<int>(std::lround(std::min(cells, kMost) / kLeastSide))) * kLeastSide;
   };
   return {rounded(width), rounded(width / ratio)};
@@ -310,7 +310,7 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   up = layer(kDecode4b, doubled_and_added(layer(kDecode4a, up), quarter, exec.pool));
   up = layer(kDecode2b, doubled_and_added(layer(kDecode2a, up), half, exec.pool));
   const Activations told = layer(kTell, up);
-  // Four neighbouring cells stand in one pixel.
+  // Each output pixel holds four neighbouring cells.
   Image<ObjectHint> hints(cells, exec.pool);
   for (int y = 0; y < cells.height; ++y) {
     for (int x = 0; x < cells.width; ++x) {

@@ -21,12 +21,12 @@ constexpr auto kBins = [] {
   return bins;
 }();
 
-/// What a picture's gradient must reach to be an edge, in 1/4 grey level.
+/// The smallest gradient that counts as an edge, in 1/4 grey level.
 float weakest_edge(float noise_sigma) {
   return 4.0F * (1.5F + 0.8F * noise_sigma);
 }
 
-/// The sums of a run of pixels in one row, in registers.
+/// The sums over a run of pixels in one row, kept in registers.
 struct RunMoments {
   std::int64_t n = 0, x = 0, xx = 0, d = 0, xd = 0, dd = 0;
   void add(std::int64_t at_x, std::int64_t disparity) {
@@ -88,7 +88,7 @@ class Gathering {
   }
 
  private:
-  /// The disparities of a row in steps, and what lies behind them.
+  /// Converts the disparities of a row, and those of the surfaces behind it, to steps.
   void note_steps(int y) {
     constexpr float kAny = -std::numeric_limits<float>::infinity();
     behind_.note(y);
@@ -98,7 +98,7 @@ class Gathering {
     run_.in_steps(behind_.background.data(), kAny, width_, background_.data());
   }
 
-  /// The pixels first … last − 1 of row y, which all are the region's.
+  /// Adds the pixels first … last − 1 of row y, all of one region.
   void add_run(RegionCues& region, int y, int first, int last) const {
     const int count = last - first;
     const int v = y - height_ / 2;
@@ -179,7 +179,7 @@ class Gathering {
       add_heights(background_, d, first, last, region.before_background, region.textured_before_background);
   }
 
-  /// Of a run's disparities and of its evidence, over what lies behind.
+  /// Adds the heights of a run's disparities, and of the textured ones, above the surface behind.
   void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d, int first, int last,
                    Heights& all, Heights& textured) const {
     Heights of_all;
@@ -196,7 +196,7 @@ class Gathering {
 
   ContactCues& contact(std::int32_t a, std::int32_t b) {
     std::vector<std::pair<std::int32_t, std::int32_t>>& known = contacts_of_[slot(a)];
-    // What was met last stands last.
+    // From the end: the contact met last is the likeliest to be met again.
     const auto at =
         std::find_if(known.rbegin(), known.rend(), [&](const auto& met) { return met.first == b; });
     if (at != known.rend()) return result_.contacts[slot(at->second)];
@@ -207,7 +207,7 @@ class Gathering {
     return result_.contacts.back();
   }
 
-  /// From (x, y) as far as its region goes, kFar px at most.
+  /// The pixel up to kFar px from (x, y) in direction (dx, dy), within the same region.
   Point away(int x, int y, int dx, int dy) const {
     const RegionId here = labels_(x, y);
     for (int i = 0; i < kFar; ++i) {
@@ -218,7 +218,7 @@ class Gathering {
     return {x, y};
   }
 
-  /// The pixel with its neighbour to the right or below, which is another region's.
+  /// Adds the contact of a pixel with its right or lower neighbour of another region.
   void meet(int x, int y, int dx, int dy) {
     const std::int32_t here = number(labels_(x, y));
     const std::int32_t there = number(labels_(x + dx, y + dy));
@@ -262,13 +262,14 @@ class Gathering {
   int height_;
   float weak_;
   Image<std::int32_t> steps_;           // the disparities; kNoDisparity = hole
-  std::vector<std::int32_t> textured_;  // those of a row's evidence
-  std::vector<std::int32_t> ground_;    // and of what is behind it, kNoDisparity above the horizon
+  std::vector<std::int32_t> textured_;  // the textured disparities of a row
+  std::vector<std::int32_t> ground_;    // of the surfaces behind it; kNoDisparity above the horizon
   std::vector<std::int32_t> background_;
   SurfacesBehind behind_;
-  std::vector<int> cell_column_;  // of each column, the hints' one
-  std::vector<int> cell_row_;     // of each row
-  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> contacts_of_;  // of a: b, and which
+  std::vector<int> cell_column_;  // the column of hints for each image column
+  std::vector<int> cell_row_;     // the row of hints for each image row
+  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>>
+      contacts_of_;  // for each region a: pairs of (region b, index of the contact)
   RegionGraphCues result_;
 };
 

@@ -19,11 +19,11 @@ constexpr int kGrain = 16;                // rows
 constexpr float kSmoothing = 0.7F;        // px
 constexpr float kStepWeight = 8.0F;       // 1/4 grey level for each px of a step of disparity
 constexpr float kLargestStep = 4.0F;      // px
-constexpr float kFlat = 4.0F;             // 1/4 grey level; what is less, and …
-constexpr float kFlatInNoise = 4.0F;      // … as much again for each level of noise, is no edge
+constexpr float kFlat = 4.0F;             // 1/4 grey level; a weaker edge is none …
+constexpr float kFlatInNoise = 4.0F;      // … and this much more per grey level of noise
 constexpr double kEvenWithoutEdge = 2.0;  // 1/4 grey level
 
-/// 0 where nothing stands out of the noise: else that would make most of the basins.
+/// Edges plus steps of disparity; 0 where neither exceeds the noise, which would cause most of the basins.
 Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const float> disparity_px,
                                 float noise_sigma, const Exec& exec) {
   const int least = static_cast<int>(kFlat + kFlatInNoise * noise_sigma);
@@ -40,7 +40,7 @@ Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const floa
   return sum;
 }
 
-/// Basins that fuse two by two.
+/// Merges basins pairwise.
 class Fusing {
  public:
   Fusing(const Basins& basins, View<const std::uint16_t> edges) : left_(basins.count) {
@@ -73,9 +73,9 @@ class Fusing {
       std::pop_heap(queue_.begin(), queue_.end());
       queue_.pop_back();
       const Link& link = links_[slot(next.link)];
-      // Queued since with another key, or gone.
+      // Stale: queued again with another key, or gone.
       if (link.queued_key != next.key || link.queued_first != next.first) continue;
-      // A key only grows while its two regions do, so that what was queued is never too late.
+      // Keys only grow as regions grow, so no entry is queued too late.
       const double key = key_of(next.link);
       if (key == next.key && link.first == next.first) {
         fuse(next.link);
@@ -85,7 +85,7 @@ class Fusing {
     }
   }
 
-  /// Which basin each one is part of now.
+  /// The basin that `basin` has been merged into.
   std::int32_t root(std::int32_t basin) {
     while (parents_[slot(basin)] != basin) {
       parents_[slot(basin)] = parents_[slot(parents_[slot(basin)])];
@@ -98,10 +98,10 @@ class Fusing {
   struct Link {
     std::int32_t a = 0;
     std::int32_t b = 0;
-    std::int32_t first = 0;  // where the picture's rows show it first, among all links
+    std::int32_t first = 0;  // rank in raster order of first occurrence
     std::int64_t length = 0;
     std::int64_t edge_sum = 0;
-    std::int32_t queued_first = 0;  // −1: there is no such link any more
+    std::int32_t queued_first = 0;  // −1: the link no longer exists
     double queued_key = 0;
     [[nodiscard]] bool is_gone() const { return queued_first < 0; }
     [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
@@ -110,12 +110,12 @@ class Fusing {
     double key;
     std::int32_t first;
     std::int32_t link;
-    bool operator<(const Entry& other) const {  // the queue's top is the greatest
+    bool operator<(const Entry& other) const {  // the greatest is at the top of the queue
       return is_after(key, first, other.key, other.first);
     }
   };
 
-  /// Without branches: which of two entries is the later one is a toss-up for the processor.
+  /// Without branches, because the processor cannot predict which of two entries is later.
   static bool is_after(double key, std::int32_t first, double other_key, std::int32_t other_first) {
     return ((key > other_key) | ((key == other_key) & (first > other_first))) != 0;
   }
@@ -126,7 +126,7 @@ class Fusing {
     link.edge_sum += std::max(edges(p.x, p.y), edges(q.x, q.y));
   }
   Link& link_between(std::int32_t a, std::int32_t b) {
-    // What was met last stands last.
+    // From the end: the link met last is the likeliest to be met again.
     const std::vector<std::int32_t>& known = links_of_[slot(a)];
     const auto met = std::find_if(known.rbegin(), known.rend(),
                                   [&](std::int32_t i) { return links_[slot(i)].other(a) == b; });
@@ -176,7 +176,8 @@ class Fusing {
         both.length += link.length;
         both.edge_sum += link.edge_sum;
         link.queued_first = -1;
-        // What is queued too early is queued again when its turn comes; only what would be too late is not.
+        // An entry that is too early is queued again when its turn comes; only one that is too late must be
+        // replaced.
         const double key = key_of(known);
         if (is_after(both.queued_key, both.queued_first, key, both.first)) queue(known, key);
       } else {
@@ -193,8 +194,9 @@ class Fusing {
   std::vector<std::int32_t> parents_;
   std::vector<Link> links_;
   std::vector<std::vector<std::int32_t>> links_of_;
-  std::vector<std::int32_t> common_;  // while two fuse: the link from the one that is kept; −1 = none
-  std::vector<Entry> queue_;          // a heap
+  std::vector<std::int32_t>
+      common_;                // during a merge: each basin's link with the one that is kept; −1 = none
+  std::vector<Entry> queue_;  // a heap
 };
 
 }  // namespace

@@ -21,7 +21,7 @@
 namespace cairn {
 namespace {
 
-// Neighbours of one surface differ by less, those of two seldom: as reject_speckles() has it.
+// Neighbours on one surface differ by less, those on two surfaces rarely; as in reject_speckles().
 constexpr float kStep = 1.0F;  // px
 
 // ln σ = kBias + kSpread · ln(interquartile range + 0.1 px) + kSeen · valid share, fitted to how far the
@@ -30,8 +30,8 @@ constexpr double kBias = 1.58;
 constexpr double kSpread = 0.441;
 constexpr double kSeen = -2.693;
 constexpr double kWidth95 = 1.96;   // standard deviations on either side that hold 95 %
-constexpr double kSideSigma = 2.0;  // px: how well a mask tells where the middle of an object is …
-constexpr double kEndShare = 0.2;   // … and of each side of a box: how well it tells where it ends
+constexpr double kSideSigma = 2.0;  // px: uncertainty of an object's centre by its mask …
+constexpr double kEndShare = 0.2;   // … and of the end of each side of a box, as a share of its length
 
 /// Pixels of one object with disparities of one surface.
 struct SurfaceRow {
@@ -86,15 +86,14 @@ std::size_t rank_of(std::size_t percent, std::size_t count) {
 }
 
 /// The ranks of the `percent`-th percentile and of the one as far from the other end: ⌊(p·(n−1) + 50)/100⌋ in
-/// ascending order. Few wild matches do not stretch what lies between them. Reorders `values`, which are not
-/// empty.
+/// ascending order. A few outliers do not stretch the interval. Reorders `values`, which must not be empty.
 Interval without_tails(std::span<float> values, std::size_t percent, const Exec& exec) {
   const std::size_t n = values.size();
   const auto [low, high] = values_at_ranks(values, rank_of(percent, n), rank_of(100 - percent, n), exec);
   return {low, high};
 }
-constexpr std::size_t kTailOfBox = 2;     // %; the far ends of its sides show few points
-constexpr std::size_t kTailOfExtent = 5;  // %; depth has more wild points than breadth
+constexpr std::size_t kTailOfBox = 2;     // %; few points are visible at the far ends of the sides
+constexpr std::size_t kTailOfExtent = 5;  // %; depth has more outliers than width
 
 float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& exec) {
   const std::size_t n = disparities_px.size();
@@ -116,7 +115,7 @@ struct Points {
   }
 };
 
-/// Farther points have no place: their coordinates would overflow where they are turned.
+/// Farther points are ignored: their coordinates would overflow when rotated.
 bool is_near(Vec3 p) {
   constexpr float kFarthest = 1e6F;  // m
   return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
@@ -140,11 +139,10 @@ Points points_of(const Part& part, const Image<float>& disparity_px, const Stere
 
 // ---- boxes on the floor ----
 
-/// Where points lie on the floor, seen from above.
+/// Points seen from above: their coordinates on the floor.
 using Plan = std::array<std::vector<float>, 2>;
 
-/// `count` of the points. Fewer than all are drawn at random: every so many of them would stand in a few columns
-/// of the picture.
+/// `count` of the points, drawn at random: every n-th point could come from only a few columns of the image.
 Plan plan_of(const Points& points, std::size_t count) {
   constexpr std::uint64_t kStride = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
   Plan plan;
@@ -156,7 +154,7 @@ Plan plan_of(const Points& points, std::size_t count) {
   return plan;
 }
 
-/// With their axes turned.
+/// The coordinates along axes turned by the yaw.
 void turn(std::span<const float> xs, std::span<const float> ys, float yaw_rad, Plan& turned) {
   const float c = std::cos(yaw_rad);
   const float s = std::sin(yaw_rad);
@@ -175,7 +173,7 @@ float length(Interval i) {
 float middle(Interval i) {
   return (i.low + i.high) / 2;
 }
-/// How far a value lies from the nearer end.
+/// The distance of a value from the nearer end.
 float from_end(Interval i, float value) {
   return std::min(std::abs(value - i.low), std::abs(i.high - value));
 }
@@ -183,11 +181,11 @@ float radians(int degrees) {
   return static_cast<float>(degrees) * std::numbers::pi_v<float> / 180;
 }
 
-/// How the rectangle is turned of which the sides are closest to the points, degrees from 0 to 89. (What is
-/// seen of a box from above is an L, about which the rectangle of the least area may lie askew. Zhang, Xu,
-/// Dong, Dolan: Efficient L-shape fitting, 2017.)
+/// The yaw of the rectangle whose sides are closest to the points, 0 … 89 degrees. (From above, the visible part
+/// of a box is an L, for which the rectangle of least area may be askew. Zhang, Xu, Dong, Dolan: Efficient L-shape
+/// fitting, 2017.)
 int closest_yaw(const Points& points, const Exec& exec) {
-  constexpr std::size_t kEnough = 512;  // points, to tell a direction by
+  constexpr std::size_t kEnough = 512;  // points for finding the yaw
   constexpr int kCoarse = 6;            // degrees
   const Plan plan = plan_of(points, std::min(points.size(), kEnough));
   Plan room;
@@ -220,8 +218,8 @@ int closest_yaw(const Points& points, const Exec& exec) {
   return best;
 }
 
-/// What is not known of a box's centre: along the ray from the camera the depth, across it the mask, and
-/// along each of its sides where it ends.
+/// The covariance of a box's centre: from depth along the ray, from the mask across it, and from the ends of its
+/// sides.
 std::array<float, 6> covariance(const FloorBox& box, Vec3 position_in_camera_m, double sigma_z_m,
                                 double sigma_side_m, const FloorFrame& floor) {
   const Vec3 at_m = floor.to_floor(position_in_camera_m);
@@ -311,7 +309,7 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
     if (!std::all_of(known.begin(), known.end(), [](float c) { return std::isfinite(c); }))
       object.box_on_floor.reset();
   }
-  // What is cut off of points that are spread evenly comes back.
+  // Compensates for the tails that were cut off, assuming evenly spread points.
   const auto span = [&](std::size_t axis) {
     return length(without_tails(points.axis.at(axis), kTailOfExtent, exec)) * 100 /
            float{100 - 2 * kTailOfExtent};

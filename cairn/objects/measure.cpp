@@ -36,8 +36,8 @@ struct Rim {
   }
 };
 
-/// What is known of a candidate without its disparities. All of it are whole numbers: in which order they
-/// are added changes nothing.
+/// Properties of a candidate that need no disparities. All are integers, so the order of additions does not
+/// matter.
 struct Outline {
   std::int64_t pixel_count = 0;
   int first_pixel = 0;
@@ -180,7 +180,7 @@ std::vector<Survey> survey(const Inputs& in, const Exec& exec) {
   return bands;
 }
 
-/// Those of the whole image, put together in the first of the bands.
+/// The outlines of the whole image, merged into those of the first band.
 const std::vector<Outline>& outlines_of(std::vector<Survey>& bands) {
   std::vector<Outline>& all = bands.front().outlines();
   for (std::size_t band = 1; band < bands.size(); ++band) {
@@ -212,7 +212,7 @@ float median(std::span<float> values, const Exec& exec) {
 /// The valid disparities of an object, gathered run by run.
 class ObjectDisparities {
  public:
-  /// How many floats an object needs.
+  /// The number of floats that an object needs.
   static std::size_t room_for(std::size_t pixels) { return pixels + kernels::kListSlack; }
   ObjectDisparities(const Inputs& in, float* room, const Exec& exec)
       : in_(in), labels_(kernels::label_kernels(exec)), room_(room) {}
@@ -278,8 +278,7 @@ std::size_t pixels_of(const Candidate& candidate, const std::vector<Outline>& ou
   return static_cast<std::size_t>(outline[candidate.region].pixel_count);
 }
 
-/// Measures candidates, all together in one pass over the picture: region after region
-/// would fetch every row anew.
+/// Measures all candidates in one pass over the image; one pass per region would fetch every row again.
 void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std::vector<Outline>& outline,
                    std::span<Candidate> range, float* room, const Exec& exec) {
   std::vector<ObjectDisparities> gathered;
@@ -298,8 +297,8 @@ void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std
   }
 }
 
-/// Where lists of candidates with about as many pixels each begin, and their end. Each goes through the
-/// picture.
+/// The first candidates of lists with about equally many pixels, and the end. Each list takes one pass over the
+/// image.
 std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const std::vector<Outline>& outline,
                                 const Exec& exec) {
   const int parts = exec.threads() == 1 ? 1 : 2 * exec.threads();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostBuckets = 1024;
 constexpr std::size_t kInBucket = 4;  // values on average, at least: few buckets are quicker to search
-constexpr std::size_t kFew = 256;     // values that are parted faster than counted
+constexpr std::size_t kFew = 256;     // up to so many values, nth_element is faster than counting
 
 std::ptrdiff_t offset(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
@@ -22,12 +22,12 @@ std::ptrdiff_t offset(std::size_t i) {
 std::pair<float, float> by_parting(std::span<float> values, std::size_t low, std::size_t high) {
   std::nth_element(values.begin(), values.begin() + offset(low), values.end());
   const float lower = values[low];
-  // What is not below it keeps its ranks.
+  // Values after it keep their ranks.
   std::nth_element(values.begin() + offset(low), values.begin() + offset(high), values.end());
   return {lower, values[high]};
 }
 
-/// Values counted in buckets: a rank is searched for in one of them only.
+/// Values counted in buckets, so that a rank is searched for in one bucket only.
 class BucketCounts {
  public:
   BucketCounts(std::span<const float> values, const kernels::Buckets& buckets,
@@ -38,7 +38,7 @@ class BucketCounts {
     for (std::size_t i = 0; i < values.size(); i += numbers.size()) {
       const std::size_t count = std::min(numbers.size(), values.size() - i);
       run.number_buckets(values.data() + i, count, buckets, numbers.data());
-      // In turn: neighbours are often alike, and one would wait for the other.
+      // Two counters in turn: similar neighbours would wait for each other's increment.
       for (std::size_t k = 0; k < count; ++k) ++counts_[k % 2][slot(numbers[k])];
     }
   }
@@ -71,7 +71,8 @@ class BucketCounts {
   std::span<const float> values_;
   kernels::Buckets buckets_;
   const kernels::LabelKernels& run_;
-  std::array<std::array<std::uint32_t, kMostBuckets>, 2> counts_;  // of those that there are
+  std::array<std::array<std::uint32_t, kMostBuckets>, 2>
+      counts_;  // only the first buckets_.last + 1 are used
   std::size_t gathered_ = kMostBuckets;
   std::vector<float> members_;
 };

@@ -47,13 +47,13 @@ class BackgroundRow {
     }
   }
 
-  /// NaN above the horizon, where there is no floor, and where a wall stands before it.
+  /// NaN above the horizon, without a floor, and where a wall hides the floor.
   [[nodiscard]] float free_floor_px(int x) const {
     return floor_px_[slot(x)] >= wall_px_[slot(x)] ? floor_px_[slot(x)] : kNan;
   }
   /// −∞ where there is none.
   [[nodiscard]] float wall_px(int x) const { return wall_px_[slot(x)]; }
-  /// What an obstacle stands before: the floor; where none is known, the walls.
+  /// The surface that an obstacle must be in front of: the floor or, without one, the walls.
   [[nodiscard]] float barrier_px(int x) const { return barrier_px_[slot(x)]; }
 
  private:
@@ -172,7 +172,7 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
       const auto is_floor = [&](int x) {
         const float floor = behind.free_floor_px(x);
         if (piece == nullptr) return std::abs(seen[x] - floor) <= config.margin;
-        // A hole is floor where the piece is; what is seen off the floor is none.
+        // A hole in a piece of floor is floor; a pixel with a disparity off the floor is not.
         return pieces[index(piece[x])] &&
                std::abs((std::isnan(seen[x]) ? floor : seen[x]) - floor) <= config.margin;
       };
@@ -240,7 +240,7 @@ ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity
 ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
                            const StereoRig& rig, const SpaceConfig& config) {
   constexpr int kEnough = 3;  // pixels
-  // (A hair less, so that a whole number of cells stays one.)
+  // Slightly less, so that rounding errors do not add a cell.
   const float cells = std::ceil(config.range / config.cell_size - 1e-4F);
   const int reach = static_cast<int>(std::clamp(cells, 1.0F, float{ObstacleGrid::kMostCells}));
   ObstacleGrid grid{config.cell_size, reach, 2 * reach, 0, -config.cell_size * static_cast<float>(reach), {}};
@@ -321,7 +321,7 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
     if (2 * of.on_wall >= of.pixels) left.reason = LeftOutReason::background;
     all.push_back(left);
   }
-  // Stable: of equals the first in raster order.
+  // Stable: ties stay in raster order.
   std::stable_sort(all.begin(), all.end(),
                    [](const LeftOut& p, const LeftOut& q) { return p.disparity_px > q.disparity_px; });
   return all;

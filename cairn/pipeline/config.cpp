@@ -28,7 +28,7 @@ constexpr std::array kGone{
 constexpr std::array<std::string_view, 6> kConstants{"evidence.noise_factor",       "evidence.agreement",
                                                      "background.tolerance",        "background.min_share",
                                                      "background.min_share_square", "background.max_behind"};
-/// Sections of stages that there are no more.
+/// Option groups of stages that no longer exist.
 constexpr std::array<std::string_view, 3> kGoneSections{"facets.", "figure.", "group."};
 
 void refuse_what_is_gone(std::string_view name) {

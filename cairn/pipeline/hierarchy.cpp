@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The method by hierarchy, one call a stage, in the order in which data flows.
+// The method with fusion.method=hierarchy: one call per stage, in the order of the data.
 #include <cairn/core/later.hpp>
 #include <cairn/disparity/confidence.hpp>
 #include <cairn/objects/locate.hpp>
@@ -12,7 +12,7 @@
 namespace cairn {
 
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
-  // Rounded up: an area of min_area per cent is enough.
+  // Rounded up, so that an area of exactly min_area per cent suffices.
   const double least = std::ceil(static_cast<double>(image.area()) * double{config.min_area} / 100);
   return {config.min_confidence, static_cast<std::int64_t>(least)};
 }
@@ -21,18 +21,18 @@ SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, con
                           const Exec& exec, Observed& stage) {
   SuperpixelScene cut;
 
-  // Disparities, those that texture vouches for, and what speaks against them.
+  // Disparities with their reasons for rejection, and the textured ones among them.
   cut.scene = match_scene(given, rig, config, exec, stage);
   const MatchedScene& scene = cut.scene;
   const SceneDisparity& found = scene.found;
 
-  // What bounds the scene: its walls, and the floor, also where it mirrors.
+  // The background: walls, and the floor, also where it is reflective.
   cut.background =
       stage("fit_background", fit_background(scene.evidence_px, found.ground, rig, config.background, exec));
   cut.seen_px =
       stage("floor_under_reflections", floor_under_reflections(found.disparity, found.ground, exec));
 
-  // The picture in pieces.
+  // Superpixels.
   cut.superpixels = stage("cut_superpixels", cut_superpixels(given.left, given.left_rgb, cut.seen_px,
                                                              scene.noise_sigma, config.superpixels, exec));
   return cut;
@@ -47,7 +47,7 @@ GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const C
                                confidence_model(config.match.method), beside);
   });
 
-  // What the network says of them, and all that they may fuse to, by every cue.
+  // The hints of the network, and the tree of merged regions.
   grown.cut.hints = stage("hint_objects", hint_objects(cut.superpixels, cut.cues(given), exec));
   grown.tree = stage("grow_merge_tree", grow_merge_tree(cut.superpixels, cut.cues(given), kSameThing, exec));
   grown.confidence = stage("estimate_confidence", confidence.get());
@@ -60,7 +60,7 @@ Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given
   SceneDisparity& found = cut.scene.found;
   const Superpixels& superpixels = cut.superpixels;
 
-  // The chosen regions as objects, and where they are.
+  // The chosen regions as objects, with positions.
   Frame frame;
   frame.confidence = std::move(grown.confidence);
   frame.superpixels = stage("superpixels", segmentation_of(superpixels, given.left, exec));
@@ -69,7 +69,7 @@ Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given
                                            given.left_rgb, cut.scene.noise_sigma, exec));
   frame.objects = stage("locate", locate(std::move(frame.objects), found.disparity, found.ground, rig, exec));
 
-  // What else stands in the way, and where the floor is free.
+  // Other obstacles, and free floor.
   const SpaceCues seen{found.disparity, cut.seen_px,        frame.confidence,    found.ground,
                        cut.background,  superpixels.labels, frame.objects.labels};
   const std::int64_t min_area = limits_of(config.objects, given.left.size()).min_area;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// From a pair to disparities, one call a stage.
+// From a pair to disparities: one call per stage.
 #include <cairn/image/noise.hpp>
 #include <cairn/pipeline/matched_scene.hpp>
 #include <utility>
@@ -9,7 +9,7 @@
 namespace cairn {
 namespace {
 
-/// Disparities that the checks of single pixels have passed, and what they were judged by.
+/// Disparities after the checks of single pixels, and the data that these used.
 struct Matched {
   EpipolarOffset epipolar;
   Matches matches;
@@ -29,7 +29,7 @@ Matched match_and_check(Given& given, const Config& config, const Exec& exec, Ob
   Matches matches = stage("match", match(pair, config.match, config.semi_global, exec));
   auto refined = stage("refine_subpixel", refine_subpixel(matches, config.subpixel, exec));
 
-  // What speaks against each match. The checks know nothing of each other; each leaves its own bit.
+  // Independent checks of each match; each sets a bit of its own.
   const auto inconsistent =
       stage("reject_inconsistent", reject_inconsistent(matches, config.left_right, exec));
   const auto ambiguous = stage("reject_ambiguous", reject_ambiguous(matches, config.uniqueness, exec));
@@ -53,8 +53,7 @@ MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, cons
                                                              config.evidence, exec));
   }
 
-  // What speaks against disparities once they are seen together: the ground, what is reflected in it,
-  // islands.
+  // Checks of the map as a whole: ground, reflections in it, speckles.
   SceneDisparity& found = scene.found;
   found.epipolar = matched.epipolar;
   if (config.fusion.method == FusionMethod::hierarchy) {

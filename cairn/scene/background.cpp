@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kTrials = 300;
 constexpr std::size_t kSample = 600;
-constexpr double kBehindWeight = 2.0;  // a point behind a wall speaks against it as two on it speak for it
+constexpr double kBehindWeight = 2.0;  // a point behind a wall cancels two points on it
 
 struct Point3 {
   float x, y, d;
@@ -48,8 +48,8 @@ struct Condition {
   double value = 0;
 };
 
-/// Square on `other`: a plane d = a·x + b·y + c has the normal (a·f, b·f, a·cx + b·cy + c + doffs) in the
-/// camera's frame (from 1/Z), and two planes are square on each other where their normals are.
+/// Perpendicular to `other`: a plane d = a·x + b·y + c has the normal (a·f, b·f, a·cx + b·cy + c + doffs) in the
+/// camera's frame (from 1/Z), and two planes are perpendicular if their normals are.
 Condition square(const GroundPlane& other, const StereoRig& rig) {
   const double f = rig.focal_px;
   const double nx = other.a * f;
@@ -85,10 +85,10 @@ Condition through(const Point3& p) {
   return {{p.x, p.y, 1}, p.d};
 }
 
-/// Looks for walls among points; keeps what was found so far.
+/// Searches for walls among points, and keeps those found so far.
 class WallSearch {
  public:
-  /// `rig`: given where the first of `planes` is a floor that walls stand upright on.
+  /// `rig`: given if the first of `planes` is a floor, to which walls are perpendicular.
   WallSearch(Points points, std::vector<GroundPlane> planes, std::optional<StereoRig> rig, int width,
              const BackgroundConfig& config, const Exec& exec, std::pmr::memory_resource* memory)
       : run_(kernels::plane_kernels(exec)),
@@ -108,8 +108,8 @@ class WallSearch {
   /// Adds the best wall; false where none is good enough.
   bool find_next() { return add_best(min_share_); }
 
-  /// Adds the best wall square on the first one. One point tells where such a wall is, so less evidence will
-  /// do. For a wall that hardly shows any: a side wall with a window.
+  /// Adds the best wall perpendicular to the first one. One point determines such a wall, so less evidence is
+  /// enough, for example for a side wall with a window.
   bool find_next_square() {
     if (!rig_ || planes_.size() < 2) return false;
     conditions_.push_back(square(planes_[1], *rig_));
@@ -152,7 +152,7 @@ class WallSearch {
     run_.put_behind(points_.arrays(), plane, points_.behind.data());
   }
 
-  /// Some of the points; all where they are few.
+  /// A sample of the points, or all if they are few.
   Points sample(const Points& points) {
     const bool all = points.size() <= kSample;
     Points drawn(all ? points.size() : kSample, memory_);
@@ -193,7 +193,7 @@ class WallSearch {
       if (!plane) continue;
       const int on = run_.count_on(front.arrays(), *plane, 0.7F * tolerance_);
       const double most = front_share * static_cast<double>(on) / static_cast<double>(front.size());
-      if (!(most > best_score)) continue;  // what lies beyond can only speak against it
+      if (!(most > best_score)) continue;  // the remaining points can only lower the score
       const int beyond = run_.count_beyond(all.arrays(), *plane, tolerance_);
       const double score =
           most - kBehindWeight * static_cast<double>(beyond) / static_cast<double>(all.size());
@@ -231,12 +231,12 @@ class WallSearch {
     return {{{{{number(on.xx), xy, x}, xd}, {{xy, number(on.yy), y}, yd}, {{x, y, count}, d}}}, count};
   }
 
-  /// Least squares over the wall's own points; the condition of uprightness kept.
+  /// Least squares over the wall's own points, keeping it upright.
   [[nodiscard]] GroundPlane refined(GroundPlane plane, const Points& before) const {
     for (int round = 0; round < 3; ++round) {
       auto [normal, weight] = normal_of(plane, before);
       if (weight < 3) return plane;
-      for (const Condition& condition : conditions_) {  // as an observation so heavy that nothing moves it
+      for (const Condition& condition : conditions_) {  // as an observation of overwhelming weight
         const double heavy = 1e6 * weight;
         for (std::size_t r = 0; r < 3; ++r) {
           for (std::size_t c = 0; c < 3; ++c) normal[r].k[c] += heavy * condition.k[r] * condition.k[c];
@@ -263,7 +263,7 @@ class WallSearch {
   Points points_;
   std::vector<GroundPlane> planes_;
   std::optional<StereoRig> rig_;
-  std::vector<Condition> conditions_;  // that every wall keeps
+  std::vector<Condition> conditions_;  // that every wall must meet
   float least_distance_;
   float tolerance_;
   double min_share_;

@@ -18,7 +18,7 @@ Vec3 scaled(Vec3 v, double by) {
 Vec3 sum(Vec3 p, Vec3 q) {
   return {p.x + q.x, p.y + q.y, p.z + q.z};
 }
-/// What of `v` is square to the unit vector `axis`, as a unit vector.
+/// The component of `v` perpendicular to the unit vector `axis`, normalised.
 Vec3 square_to(Vec3 axis, Vec3 v) {
   const Vec3 rest = sum(v, scaled(axis, -dot(axis, v)));
   return scaled(rest, 1 / std::sqrt(dot(rest, rest)));
@@ -61,7 +61,7 @@ std::optional<FloorFrame> floor_frame(const GroundPlane& ground, const StereoRig
   FloorFrame frame;
   frame.camera_height_m = static_cast<float>(height);
   frame.up = scaled(down, -1 / length);
-  // Of a camera that looks straight down, what is up in the picture is forward.
+  // For a camera that looks straight down, up in the image is forward.
   constexpr float kStraightDown = 0.999F;
   frame.forward = square_to(frame.up, std::abs(frame.up.z) < kStraightDown ? Vec3{0, 0, 1} : Vec3{0, -1, 0});
   frame.left = cross(frame.up, frame.forward);

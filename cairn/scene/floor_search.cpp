@@ -19,29 +19,30 @@
 namespace cairn {
 namespace {
 
-// What a floor looks like. Distances in px of disparity, whatever the image's size: a matcher's errors are.
-constexpr float kTolerance = 1.0F;       // px; a right match is rarely farther from the floor
-constexpr float kSteepestPitch = 77.0F;  // degrees below the horizon; planes faced more squarely are walls
-constexpr float kLeastPitch = -30.0F;    // degrees; a camera that looks up more sees no floor
-constexpr float kMostRoll = 20.0F;       // degrees
-constexpr float kParallel = 5.0F;        // degrees; fits to parallel surfaces differ by less
+// The appearance of a floor. Distances are in px of disparity for any image size, as a matcher's errors are.
+constexpr float kTolerance = 1.0F;  // px; correct matches are rarely farther from the floor
+constexpr float kSteepestPitch =
+    77.0F;  // degrees below the horizon; planes that face the camera more directly are walls
+constexpr float kLeastPitch = -30.0F;  // degrees; a camera that looks up more sees no floor
+constexpr float kMostRoll = 20.0F;     // degrees
+constexpr float kParallel = 5.0F;      // degrees; fits to parallel surfaces differ by less
 
-// When there is one.
+// The conditions for accepting a floor.
 constexpr double kLeastMatches = 0.005;  // share of the image
 constexpr std::int64_t kFewestMatches = 64;
 constexpr double kLeastScore = 0.05;    // share of the matches under the plane's horizon
-constexpr double kLeastRise = 0.5;      // share of its slope that the matches show from row to row, for sure
-constexpr int kFewestPairs = 8;         // of matches, that this is judged by
-constexpr double kAlike = 4;            // so many neighbouring matches err alike
-constexpr double kLeastLikeness = 7.5;  // standard deviations; of mirror images to their originals
-constexpr float kNearest = 1.25F;       // of the nearest match; a floor is no nearer at the lower border
-constexpr float kApart = 4;             // px; from an original, at least
-constexpr int kLowerSurface = 3;        // a plane below the best counts with a third of its score
+constexpr double kLeastRise = 0.5;      // share of its slope that the matches certainly show from row to row
+constexpr int kFewestPairs = 8;         // of matches, to judge the slope
+constexpr double kAlike = 4;            // number of neighbouring matches with the same error
+constexpr double kLeastLikeness = 7.5;  // standard deviations: similarity of mirror images to their originals
+constexpr float kNearest = 1.25F;  // times the nearest match: the nearest a floor may be at the lower border
+constexpr float kApart = 4;        // px; least distance from an original
+constexpr int kLowerSurface = 3;   // a plane below the best counts with a third of its score
 
-// How hard it is searched: one to three milliseconds, four more where the left image is asked.
+// The effort of the search: one to three milliseconds, four more if the left image is used.
 constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kRefining = 1024;  // of them, for least squares
-constexpr std::size_t kScreening = 512;  // of them, for a guess's score
+constexpr std::size_t kScreening = 512;  // of them, to score a candidate
 constexpr std::size_t kMirrorScreening = 256;
 constexpr int kDraws = 8192;
 constexpr std::size_t kGuesses = 1024;
@@ -76,7 +77,7 @@ struct Kernels {
       : planes(kernels::plane_kernels(exec)), lists(kernels::label_kernels(exec)) {}
 };
 
-/// The numbers of those points whose distance above the plane is least … most, in their order.
+/// The indices of the points whose distance above the plane is within least … most, in their order.
 std::vector<std::uint32_t> between(const Points& points, const GroundPlane& plane, float least, float most,
                                    const Kernels& run) {
   std::vector<std::uint8_t> marks(points.size());
@@ -109,7 +110,7 @@ std::int64_t count_valid(View<const float> disparity_px, const Exec& exec) {
   return sum;
 }
 
-/// The finest grid that has no more than about kSamples matches at its nodes, in px.
+/// The spacing of the finest grid with at most about kSamples matches at its nodes, in px.
 int grid_step(std::int64_t valid) {
   return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(valid) / kSamples)));
 }
@@ -126,20 +127,20 @@ Points sample(View<const float> disparity_px, int step) {
   return points;
 }
 
-/// How the matches under a plane's horizon lie to it.
+/// The positions of the matches below a plane's horizon relative to the plane.
 struct Tally {
   int on = 0;        // within the tolerance
-  int beside = 0;    // else within twice of it
+  int beside = 0;    // else within twice the tolerance
   int below = 0;     // else farther away from the camera
-  int mirrored = 0;  // those of beside and below that are seen in the plane as in a mirror
+  int mirrored = 0;  // those of beside and below that are mirror images in the plane
   int all = 0;
 
-  /// A surface that cuts through the plane puts as many matches beside it as on it, and so does noise: what a
-  /// plane has more on it than beside it is its own. Nothing should be below a floor, but for wrong matches
-  /// and for what is seen mirrored in it; the latter does not count where it is known.
+  /// A surface that intersects the plane has as many matches beside it as on it, and so has noise; only the
+  /// surplus on the plane supports it. Matches below a floor are wrong or mirror images; known mirror images do
+  /// not count.
   [[nodiscard]] int score() const { return on - beside - below + mirrored; }
-  /// What planes are compared by: the score, and its share in what lies under the horizon. By the score
-  /// alone, a plane that spans the picture would beat a road that fills its lower half.
+  /// The criterion for comparing planes: the score, and its share of the matches below the horizon. By the score
+  /// alone, a plane that spans the image would beat a road that fills its lower half.
   [[nodiscard]] double rank() const {
     return score() <= 0 ? 0.0 : static_cast<double>(score()) * score() / all;
   }
@@ -155,7 +156,7 @@ float radians(float degrees) {
   return degrees * std::numbers::pi_v<float> / 180;
 }
 
-/// What is known of the camera, or assumed.
+/// The camera as far as it is known, else assumed.
 struct Camera {
   float cx_px;
   float cy_px;
@@ -168,12 +169,12 @@ struct Camera {
         focal_px(rig ? rig->focal_px : static_cast<float>(image.width)),  // 53 degrees from left to right
         infinity(rig ? rig->doffs_px : 0.0F) {}
 
-  /// The plane's normal in the camera's frame, towards the ground; of any length.
+  /// The plane's normal in the camera's frame, towards the ground, not normalised.
   [[nodiscard]] Vec3 normal(const GroundPlane& plane) const {
     return {focal_px * plane.a, focal_px * plane.b, plane.disparity_px(cx_px, cy_px) + infinity};
   }
 
-  /// Whether a camera that sees this plane as a floor has a pitch and roll that cameras have.
+  /// Whether the pitch and roll of a camera that sees this plane as a floor are plausible.
   [[nodiscard]] bool may_stand_on(const GroundPlane& plane) const {
     const Vec3 down = normal(plane);
     if (!(down.y > 0) || std::abs(down.x) > down.y * std::tan(radians(kMostRoll))) return false;
@@ -182,11 +183,10 @@ struct Camera {
   }
 };
 
-/// What is seen about a place: a match of the disparity asked for, only such as lie farther away, or nothing
-/// that tells.
+/// The matches around a place: one of the given disparity, only farther ones, or none that decides.
 enum class MatchAtPlace : std::uint8_t { same, farther, none };
 
-/// The matches by where they are, to ask whether one is at a place.
+/// An index of the matches by place.
 class MatchIndex {
  public:
   MatchIndex(const Points& points, Size image, int grid_step)
@@ -220,7 +220,7 @@ class MatchIndex {
   }
 
  private:
-  // Where the grid is coarse a cell is two steps of it wide: else there would be cells without a node.
+  // In a coarse grid, a cell is two steps wide, so that none is without a node.
   static constexpr int kCell = 8;  // px
 
   [[nodiscard]] std::size_t cell_of(std::size_t i) const {
@@ -259,8 +259,8 @@ void for_each_original(const GroundPlane& plane, const Points& points, const Cam
   }
 }
 
-/// Of the matches under a plane, those of which the original is seen where the plane as a mirror puts it, and
-/// those of which it is not: what is seen there is farther away.
+/// Splits the matches below a plane into those whose original is seen where the plane as a mirror puts it, and
+/// those where something farther away is seen instead.
 struct Reflections {
   int seen = 0;
   int missing = 0;
@@ -277,9 +277,9 @@ Reflections reflections(const GroundPlane& plane, const Points& points, const Ma
   return found;
 }
 
-/// How much mirror images look like their originals: the correlation of the two, in standard deviations from
-/// what chance would make it. A wall that a plane cuts through has its lower part where the mirror image of
-/// the upper one would be; only the picture tells these apart.
+/// The similarity of mirror images to their originals: their correlation, in standard deviations above chance. A
+/// wall that a plane intersects has its lower part where the mirror image of the upper part would be; only the
+/// image can distinguish the two.
 double likeness(const GroundPlane& plane, const Points& points, const MatchIndex& places,
                 const Camera& camera, View<const float> contrast, const Kernels& run) {
   double pp = 0;
@@ -287,7 +287,7 @@ double likeness(const GroundPlane& plane, const Points& points, const MatchIndex
   double qq = 0;
   int count = 0;
   for_each_original(plane, points, camera, run, [&](std::uint32_t i, float x, float y, float d) {
-    const bool apart = std::abs(points.y[i] - y) > kApart;  // else both see the same pixels
+    const bool apart = std::abs(points.y[i] - y) > kApart;  // else both windows contain the same pixels
     if (!apart || places.look(x, y, d) != MatchAtPlace::same) return;
     const auto u = static_cast<int>(x + 0.5F);
     const auto v = static_cast<int>(y + 0.5F);
@@ -302,7 +302,7 @@ double likeness(const GroundPlane& plane, const Points& points, const MatchIndex
   return pq > 0 ? pq * std::sqrt(count / (pp * qq)) : 0;
 }
 
-/// splitmix64 (Steele, Lea, Flood 2014): a well mixed number for each n, without a state.
+/// splitmix64 (Steele, Lea, Flood 2014): a well-mixed number for each n, without a state.
 std::uint64_t mixed(std::uint64_t n) {
   n += 0x9E3779B97F4A7C15U;
   n = (n ^ (n >> 30U)) * 0xBF58476D1CE4E5B9U;
@@ -317,8 +317,8 @@ struct PlaneHypothesis {
   int score;
 };
 
-/// The plane through two matches, for an assumed roll: two are right together more often than three. Most
-/// cameras stand upright, the others are met within a step that refinement can bridge.
+/// The plane through two matches for an assumed roll: two matches are correct together more often than three. Most
+/// cameras are upright; for the others, refinement bridges the step of the assumed rolls.
 PlaneHypothesis guess(const Points& points, std::uint64_t draw) {
   constexpr std::array kRollTangents{0.0F,  0.0F,   0.0F,  0.0F,   0.0F,  0.0F,   0.06F, -0.06F,
                                      0.12F, -0.12F, 0.18F, -0.18F, 0.26F, -0.26F, 0.36F, -0.36F};
@@ -347,14 +347,14 @@ std::vector<PlaneHypothesis> guesses(const Points& points, const Camera& camera,
   return list;
 }
 
-/// Least squares over the matches within reach, again and again while the reach shrinks.
+/// Repeated least squares over the matches within a shrinking distance.
 template <std::size_t N>
 GroundPlane refined(GroundPlane plane, const Points& points, const std::array<float, N>& reaches,
                     const Kernels& run) {
   float before = 0;
   bool moved = true;
   for (const float reach : reaches) {
-    if (reach == before && !moved) continue;  // would find the same again
+    if (reach == before && !moved) continue;  // the result would be the same
     PlaneFit fit(points.x[points.size() / 2], points.y[points.size() / 2]);
     const float farthest = reach * kTolerance;
     for (const std::uint32_t i : between(points, plane, -farthest, farthest, run))
@@ -367,18 +367,16 @@ GroundPlane refined(GroundPlane plane, const Points& points, const std::array<fl
   return plane;
 }
 
-/// Whether the matches on the plane themselves rise towards the camera as it does: disparities some rows
-/// apart must differ, and by more than noise explains. This tells a floor from a plane that is laid across
-/// upright surfaces at different depths, an object before a wall for instance, each of which has its own
-/// disparity all the way down.
+/// Whether the matches on the plane rise towards the camera as the plane does: disparities some rows apart must
+/// differ by more than noise explains. This distinguishes a floor from a plane across upright surfaces at different
+/// depths, for example an object in front of a wall, each of which has one disparity from top to bottom.
 bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points,
            const Kernels& run) {
   double nn = 0;  // n rows apart, d px apart
   double nd = 0;
   double dd = 0;
   int pairs = 0;
-  // Apart by more than a usual matching window, which would tie the two together, but not from one surface to
-  // the next.
+  // Farther apart than a usual matching window, which would make both equal, but still on one surface.
   const auto on_plane = between(points, plane, -kTolerance, kTolerance, run);
   for (const int rows : {disparity_px.height() / 24 + 1, disparity_px.height() / 12 + 1}) {
     for (const std::uint32_t i : on_plane) {
@@ -405,14 +403,14 @@ struct Candidate {
   Tally tally;
 };
 
-/// What the search found: planes that may be the floor, best first; and whether there are others as good that
-/// cannot.
+/// The result of the search: planes that may be the floor, best first, and whether equally good planes were found
+/// that cannot be a floor.
 struct Candidates {
   std::vector<Candidate> floors;
   std::vector<GroundPlane> walls;
 };
 
-/// Refines guesses, the best first, and calls visit(plane) for each plane that is another than those before;
+/// Refines candidates, best first, and calls visit(plane) for each plane that differs from the earlier ones;
 /// `walls` may grow meanwhile.
 template <class Visit>
 void for_each_finalist(const std::vector<PlaneHypothesis>& list, const Points& points,
@@ -424,7 +422,7 @@ void for_each_finalist(const std::vector<PlaneHypothesis>& list, const Points& p
     const auto explains = [&](const GroundPlane& plane) {
       return points.on(plane, next.i) && points.on(plane, next.j);
     };
-    // A guess through a wall and something else leads to the wall again, and so does one beside it.
+    // Candidates through a wall and something else, or beside it, lead to the same wall again.
     const auto touches = [&](const GroundPlane& plane) {
       return std::min(std::abs(points.above(plane, next.i)), std::abs(points.above(plane, next.j))) <=
              2 * kTolerance;
@@ -456,8 +454,8 @@ Candidates candidates(View<const float> disparity_px, const std::vector<PlaneHyp
   return found;
 }
 
-/// The floor that shows little but mirror images, by what these look like: of the planes that have matches of
-/// their own, the one with the most likeness.
+/// A floor that shows little but mirror images: of the planes with matches of their own, the one whose mirror
+/// images are most similar to their originals.
 std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<PlaneHypothesis> list,
                                   const Points& points, const std::vector<GroundPlane>& walls,
                                   const MatchIndex& places, const Camera& camera, const Kernels& run,
@@ -502,7 +500,7 @@ bool lies_below(const GroundPlane& plane, const GroundPlane& other, const Points
   return 4 * below >= 3 * on;
 }
 
-/// Whether the two are parallel in space, as well as fits can tell.
+/// Whether the two are parallel in space, within the accuracy of the fits.
 bool parallel(const GroundPlane& p, const GroundPlane& q, const Camera& camera) {
   const Vec3 m = camera.normal(p);
   const Vec3 n = camera.normal(q);
@@ -510,7 +508,7 @@ bool parallel(const GroundPlane& p, const GroundPlane& q, const Camera& camera) 
   return dot(m, n) >= std::cos(radians(kParallel)) * std::sqrt(dot(m, m) * dot(n, n));
 }
 
-/// The best floor; but of parallel ones the lower, on which the other one, a box's lid perhaps, stands.
+/// The best floor; of parallel ones the lower, since the other may be the lid of a box on it.
 const Candidate& choose(const std::vector<Candidate>& floors, const Points& points, const Camera& camera) {
   const Candidate* best = &floors.front();
   for (const auto& candidate : floors) {
@@ -522,8 +520,7 @@ const Candidate& choose(const std::vector<Candidate>& floors, const Points& poin
   return *best;
 }
 
-/// Whether a plane that is no floor explains the picture: one that is faced squarely, at the median
-/// disparity.
+/// Whether a plane that is no floor explains the image: one that faces the camera, at the median disparity.
 bool faces_a_wall(const Points& points, const Camera& camera, const Kernels& run) {
   std::vector<float> sorted = points.d;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

@@ -36,13 +36,13 @@ kernels::FloorRow floor_row(const Ground& ground, const std::optional<StereoRig>
   return {*ground.plane, rig ? rig->doffs_px : 0.0F, config.margin};
 }
 
-// A surface under the floor's plane is seen past the floor's edge. Unlike a mirror image, which shows through
-// the floor's own pattern, it is smooth and wide.
-constexpr float kWidestStep = 0.2F;     // px; larger steps between neighbours part two surfaces
+// A surface below the floor's plane is visible beyond the floor's edge. It is smooth and wide, unlike a mirror
+// image, which is mixed with the floor's own pattern.
+constexpr float kWidestStep = 0.2F;     // px; larger steps between neighbours separate two surfaces
 constexpr double kLeastSurface = 0.02;  // share of the image
 constexpr int kFewestPixels = 64;
 
-/// Rejects all disparities but those of such surfaces.
+/// Rejects all disparities except those of such surfaces.
 SpeckleConfig all_but_surfaces(Size image) {
   const auto least = static_cast<int>(kLeastSurface * static_cast<double>(image.area()));
   return {std::max(least, kFewestPixels) - 1, kWidestStep};
@@ -134,7 +134,7 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
     for (int y = first; y < last; ++y)
       run.find_below(floor, y, size.width, disparity.disparity_px.row(y), below.disparity_px.row(y));
   });
-  // What is marked is a mirror image or a wrong match; the rest, a surface beyond the floor's edge.
+  // Marked pixels are mirror images or wrong matches; the others are a surface beyond the floor's edge.
   below = reject_speckles(std::move(below), all_but_surfaces(size), exec);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {

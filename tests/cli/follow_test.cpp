@@ -258,8 +258,9 @@ TEST_F(Follow, AMapKeepsWhatWasSeen) {
   ASSERT_EQ(run(again).code, 0);
   const std::string second = run({"map", "show", path("room.db")}).out;
   EXPECT_EQ(second.substr(0, second.find('\n')), first.substr(0, first.find('\n')));
-  for (const Json& track : lines_of(at("out/tracks.jsonl")).back()["tracks"])
-    EXPECT_TRUE(track.contains("landmark")) << track;
+  const Json last = lines_of(at("out/tracks.jsonl")).back();
+  EXPECT_FALSE(last["tracks"].empty());
+  for (const Json& track : last["tracks"]) EXPECT_TRUE(track.contains("landmark")) << track;
 }
 
 TEST_F(Follow, AnErrorOnTheWayKeepsWhatWasDone) {

@@ -365,7 +365,7 @@ TEST_F(Dds, AWriterDoesNotWaitForAReaderThatIsStuck) {
   ASSERT_TRUE(comes_true([&] { return stuck.has_writer(); }));
   const auto began = std::chrono::steady_clock::now();
   for (int i = 0; i < 1000; ++i) sink->offer(live_frame());
-  EXPECT_LT(std::chrono::steady_clock::now() - began, 500ms);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 5s);  // waiting 10 ms for each would exceed it
 }
 
 // ---- what comes in ----
