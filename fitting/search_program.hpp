@@ -30,10 +30,11 @@ struct SearchProgram {
 };
 
 /// Arguments: DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...; --draws: so many settings drawn
-/// at random first, and the search goes on from the best, which may be the start; --report only measures the start, on
-/// both groups of frames. The score is the source's own measure, the mean of E over the objects of all
-/// frames (200 % at most), less a penalty where less than a third of the objects found are right: E alone
-/// ignores what is found besides. Prints each setting tried (of those drawn only what is better than all before), their number, and the values kept. Throws Error.
+/// at random first, and the search goes on from the best, which may be the start; --report only measures the start,
+/// on both groups of frames. The score is the source's own measure, the mean of E over the objects of all frames
+/// (200 % at most), less a penalty where less than a third of the objects found are right: E alone ignores what is
+/// found besides. Prints each setting tried (of those drawn, only the ones better than all before), their number,
+/// and the values kept. Throws Error.
 void run_search(const SearchProgram& program, const std::vector<std::string>& arguments);
 
 }  // namespace cairn::report

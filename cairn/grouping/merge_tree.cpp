@@ -194,8 +194,7 @@ class Growing {
   std::vector<RegionFits> fits_;
   std::vector<std::int32_t> nodes_;  // of each region
   std::vector<std::vector<std::int32_t>> contacts_of_;
-  std::vector<std::int32_t>
-      common_;  // during a merge: each region's contact with the one that is kept; −1 = none
+  std::vector<std::int32_t> common_;  // during a merge: the contact with the region that is kept; −1 = none
   std::vector<std::int64_t> fusions_;  // of each region
   std::vector<std::int32_t> first_;    // of each contact: its rank in raster order of first occurrence
   std::vector<Judged> judged_;         // each contact

@@ -22,7 +22,7 @@ constexpr std::size_t count_of_weights() {
 static_assert(kFittedLayers.size() == kHintLayers && kFittedWeights.size() == count_of_weights());
 
 constexpr int kGrain = 4;      // rows
-constexpr double kUnit = 64;   // one unit of the input is 1/64
+constexpr double kUnit = 64;   // steps of the input for each 1
 constexpr int kLeastSide = 8;  // cells
 constexpr double kCells = 160.0 * 120;
 constexpr int kMostLogOdds = 96;  // 1/16

@@ -268,8 +268,8 @@ class Gathering {
   SurfacesBehind behind_;
   std::vector<int> cell_column_;  // the column of hints for each image column
   std::vector<int> cell_row_;     // the row of hints for each image row
-  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>>
-      contacts_of_;  // for each region a: pairs of (region b, index of the contact)
+  // For each region a: pairs of (region b, index of the contact).
+  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> contacts_of_;
   RegionGraphCues result_;
 };
 

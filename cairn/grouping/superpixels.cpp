@@ -9,6 +9,7 @@
 #include <cairn/regions/watershed.hpp>
 #include <cmath>
 #include <numeric>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -62,16 +63,16 @@ class Fusing {
         if (below[x] != row[x]) meet(row[x], below[x], edges, {x, y}, {x, y + 1});
       }
     }
-    queue_.reserve(2 * links_.size());
-    for (std::int32_t i = 0; slot(i) < links_.size(); ++i) queue_.push_back(entry(i, key_of(i)));
-    std::make_heap(queue_.begin(), queue_.end());
+    std::vector<Entry> all;
+    all.reserve(2 * links_.size());
+    for (std::int32_t i = 0; slot(i) < links_.size(); ++i) all.push_back(entry(i, key_of(i)));
+    queue_ = std::priority_queue<Entry>({}, std::move(all));
   }
 
   void until(int count) {
     while (left_ > count && !queue_.empty()) {
-      const Entry next = queue_.front();
-      std::pop_heap(queue_.begin(), queue_.end());
-      queue_.pop_back();
+      const Entry next = queue_.top();
+      queue_.pop();
       const Link& link = links_[slot(next.link)];
       // Stale: queued again with another key, or gone.
       if (link.queued_key != next.key || link.queued_first != next.first) continue;
@@ -144,16 +145,14 @@ class Fusing {
     const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
     return (edge + kEvenWithoutEdge) * std::sqrt(area);
   }
+  /// Notes that link i is queued.
   Entry entry(std::int32_t i, double key) {
     Link& link = links_[slot(i)];
     link.queued_key = key;
     link.queued_first = link.first;
     return {key, link.first, i};
   }
-  void queue(std::int32_t i, double key) {
-    queue_.push_back(entry(i, key));
-    std::push_heap(queue_.begin(), queue_.end());
-  }
+  void queue(std::int32_t i, double key) { queue_.push(entry(i, key)); }
 
   void fuse(std::int32_t across) {
     std::int32_t kept = links_[slot(across)].a;
@@ -194,9 +193,8 @@ class Fusing {
   std::vector<std::int32_t> parents_;
   std::vector<Link> links_;
   std::vector<std::vector<std::int32_t>> links_of_;
-  std::vector<std::int32_t>
-      common_;                // during a merge: each basin's link with the one that is kept; −1 = none
-  std::vector<Entry> queue_;  // a heap
+  std::vector<std::int32_t> common_;  // during a merge: the link with the basin that is kept; −1 = none
+  std::priority_queue<Entry> queue_;
 };
 
 }  // namespace

@@ -142,7 +142,8 @@ Points points_of(const Part& part, const Image<float>& disparity_px, const Stere
 /// Points seen from above: their coordinates on the floor.
 using Plan = std::array<std::vector<float>, 2>;
 
-/// `count` of the points, drawn at random: every n-th point could come from only a few columns of the image.
+/// `count` of the points. Fewer than all are drawn at random: every n-th point could come from only a few columns
+/// of the image.
 Plan plan_of(const Points& points, std::size_t count) {
   constexpr std::uint64_t kStride = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
   Plan plan;

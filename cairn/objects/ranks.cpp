@@ -71,8 +71,7 @@ class BucketCounts {
   std::span<const float> values_;
   kernels::Buckets buckets_;
   const kernels::LabelKernels& run_;
-  std::array<std::array<std::uint32_t, kMostBuckets>, 2>
-      counts_;  // only the first buckets_.last + 1 are used
+  std::array<std::array<std::uint32_t, kMostBuckets>, 2> counts_;  // up to buckets_.last
   std::size_t gathered_ = kMostBuckets;
   std::vector<float> members_;
 };
@@ -84,7 +83,7 @@ std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low
   if (values.size() <= kFew) return by_parting(values, low, high);
   const kernels::LabelKernels& run = kernels::label_kernels(exec);
   const auto [least, most] = run.find_range(values.data(), values.size());
-  const std::size_t count = std::clamp(values.size() / kInBucket, std::size_t{1}, kMostBuckets);
+  const std::size_t count = std::min(values.size() / kInBucket, kMostBuckets);
   const float scale = static_cast<float>(count) / (most - least);
   if (!std::isfinite(scale) || !(scale > 0)) return by_parting(values, low, high);
   BucketCounts counted(values, {least, scale, static_cast<std::int32_t>(count) - 1}, run);

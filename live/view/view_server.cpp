@@ -607,8 +607,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     }
   }
   void say_goodbye() override {
-    const bool was_over = std::exchange(is_over_, true);
-    if (is_open_ && !was_over) close();
+    if (!std::exchange(is_over_, true) && is_open_) close();
   }
   [[nodiscard]] ChannelBits subscribed() const override { return client_.subscribed(); }
   [[nodiscard]] std::uint64_t skipped() const override { return client_.skipped(); }

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""live_page_in_browser.py CAIRN SOURCE_DIR [LivePage.TEST]: the page of `cairn live --view` in headless Chromium: what it draws against what
-`cairn segment` finds, options, pause and step, a server that goes and comes back. Skipped as in_browser.py says, and where
-views are not built in. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
+"""live_page_in_browser.py CAIRN SOURCE_DIR [LivePage.TEST]: the page of `cairn live --view` in headless Chromium: what it
+draws against what `cairn segment` finds, options, pause and step, a server that goes and comes back. Skipped as
+in_browser.py says, and where views are not built in. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
 import json
 import pathlib
 import re

@@ -251,8 +251,12 @@ class WebSocket {
       if (size > 0 && !connection_.read(payload.data(), size)) return std::nullopt;
       bytes_ += size;
       const int opcode = head[0] & 15;
+      const bool is_control = opcode >= 8;
+      if (!is_compressed_ || is_control) {
+        EXPECT_EQ(head[0] & 0xf0, 0x80) << "a message in one frame, and not compressed";
+      }
       if (opcode == 9) continue;
-      if (opcode >= 8) return Message{opcode, std::move(payload)};
+      if (is_control) return Message{opcode, std::move(payload)};
       const bool is_last = (head[0] & 0x80) != 0;
       const bool is_first = opcode != 0;
       if (is_first) {
@@ -260,9 +264,6 @@ class WebSocket {
         is_deflated = (head[0] & 0x40) != 0;
       } else {
         message.payload.insert(message.payload.end(), payload.begin(), payload.end());
-      }
-      if (!is_compressed_) {
-        EXPECT_EQ(head[0] & 0xf0, 0x80) << "a message in one frame, and not compressed";
       }
       if (!is_last) continue;
       if (is_deflated) message.payload = inflater_.inflated(std::move(message.payload));
