@@ -52,22 +52,25 @@ struct Stretch {
   int last;
 };
 
-/// The pixels of each object: its main part, and the valid disparities of the whole mask.
+/// The pixels of an object that have a disparity, and the disparities of its largest surface.
 struct Part {
-  std::vector<Stretch> main;
+  std::vector<Stretch> stretches;
   std::vector<float> disparities_px;
+  Interval within_px{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+  [[nodiscard]] bool is_main(float d) const { return within_px.low <= d && d <= within_px.high; }
 };
 
 std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_px, const Exec& exec) {
   const auto rows = [&](int y) { return SurfaceRow{objects.labels.row(y), disparity_px.row(y)}; };
   const Islands islands(disparity_px.size(), rows, exec);
-  std::vector<std::int32_t> main(objects.list.size(), -1);
+  std::vector<std::int32_t> largest(objects.list.size(), -1);
   std::vector<Part> parts(objects.list.size());
   const auto object_at = [&](int x, int y) { return slot(number(objects.labels(x, y)) - 1); };
   for (int y = 0; y < disparity_px.height(); ++y) {
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       const std::size_t i = object_at(begin, y);
-      if (main[i] < 0 || islands.pixels(island) > islands.pixels(main[i])) main[i] = island;
+      if (largest[i] < 0 || islands.pixels(island) > islands.pixels(largest[i])) largest[i] = island;
+      parts[i].stretches.push_back({y, begin, end});
       std::vector<float>& all = parts[i].disparities_px;
       all.insert(all.end(), disparity_px.row(y) + begin, disparity_px.row(y) + end);
     });
@@ -75,7 +78,10 @@ std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_p
   for (int y = 0; y < disparity_px.height(); ++y) {
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       const std::size_t i = object_at(begin, y);
-      if (island == main[i]) parts[i].main.push_back({y, begin, end});
+      if (island != largest[i]) return;
+      const auto [low, high] = std::minmax_element(disparity_px.row(y) + begin, disparity_px.row(y) + end);
+      Interval& within = parts[i].within_px;
+      within = {std::min(within.low, *low), std::max(within.high, *high)};
     });
   }
   return parts;
@@ -92,7 +98,7 @@ Interval without_tails(std::span<float> values, std::size_t percent, const Exec&
   const auto [low, high] = values_at_ranks(values, rank_of(percent, n), rank_of(100 - percent, n), exec);
   return {low, high};
 }
-constexpr std::size_t kTailOfBox = 2;     // %; few points are visible at the far ends of the sides
+constexpr std::size_t kTailOfBox = 1;     // %; few points are visible at the far ends of the sides
 constexpr std::size_t kTailOfExtent = 5;  // %; depth has more outliers than width
 
 float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& exec) {
@@ -121,21 +127,84 @@ bool is_near(Vec3 p) {
   return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
-Points points_of(const Part& part, const Image<float>& disparity_px, const StereoRig& rig, const Exec& exec) {
-  const kernels::PointKernels& run = kernels::point_kernels(exec);
-  std::array<std::vector<float>, 3> row;
-  for (auto& axis : row) axis.resize(slot(disparity_px.width()));
-  Points points;
-  for (const auto& [y, first, last] : part.main) {
-    run.points_in_camera(rig, y, first, last, disparity_px.row(y), row[0].data(), row[1].data(),
-                         row[2].data());
-    for (auto x = slot(first); x < slot(last); ++x) {
-      const Vec3 point{row[0][x], row[1][x], row[2][x]};
-      if (is_near(point)) points.push_back(point);
+/// The disparities of an object's main part, in the smallest rectangle around them.
+class Surface {
+ public:
+  Surface(const Part& part, View<const float> disparity_px) {
+    left_ = disparity_px.width();
+    int right = 0;
+    for (const Stretch& run : part.stretches) {
+      left_ = std::min(left_, run.first);
+      right = std::max(right, run.last);
+    }
+    top_ = part.stretches.front().y;
+    width_ = right - left_;
+    height_ = part.stretches.back().y + 1 - top_;
+    pitch_ = slot(width_) + 2 * kReach;
+    values_.resize((slot(height_) + 2 * kReach) * pitch_);
+    is_main_.resize(values_.size());
+    for (const auto& [y, first, last] : part.stretches) {
+      const float* const d = disparity_px.row(y);
+      for (int x = first; x < last; ++x) {
+        if (!part.is_main(d[x])) continue;
+        const std::size_t i = at(x - left_, y - top_);
+        values_[i] = d[x];
+        is_main_[i] = 1;
+      }
     }
   }
-  return points;
-}
+
+  /// Makes each disparity the mean over those in the window of 5 x 5 px around it.
+  void smooth() {
+    std::vector<float> counts = is_main_;
+    for (const std::size_t step : {std::size_t{1}, pitch_}) {
+      values_ = sums_of_five(values_, step);
+      counts = sums_of_five(counts, step);
+    }
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] /= std::max(counts[i], 1.0F);
+  }
+
+  [[nodiscard]] Points points(const StereoRig& rig, const Exec& exec) const {
+    const kernels::PointKernels& run = kernels::point_kernels(exec);
+    std::vector<float> d(slot(left_ + width_));
+    std::array<std::vector<float>, 3> row;
+    for (auto& axis : row) axis.resize(d.size());
+    Points points;
+    for (int y = 0; y < height_; ++y) {
+      const std::size_t first = at(0, y);
+      std::copy_n(&values_[first], width_, &d[slot(left_)]);
+      run.points_in_camera(rig, top_ + y, left_, left_ + width_, d.data(), row[0].data(), row[1].data(),
+                           row[2].data());
+      for (std::size_t x = 0; x < slot(width_); ++x) {
+        const std::size_t i = slot(left_) + x;
+        const Vec3 point{row[0][i], row[1][i], row[2][i]};
+        if (is_main_[first + x] > 0 && is_near(point)) points.push_back(point);
+      }
+    }
+    return points;
+  }
+
+ private:
+  static constexpr std::size_t kReach = 2;  // px
+
+  [[nodiscard]] std::size_t at(int x, int y) const { return (slot(y) + kReach) * pitch_ + slot(x) + kReach; }
+  /// Of values `step` apart. The frame around the surface need not be right.
+  static std::vector<float> sums_of_five(const std::vector<float>& v, std::size_t step) {
+    std::vector<float> sums(v.size());
+    for (std::size_t i = 2 * step; i + 2 * step < v.size(); ++i)
+      sums[i] = v[i - 2 * step] + v[i - step] + v[i] + v[i + step] + v[i + 2 * step];
+    return sums;
+  }
+
+  int left_ = 0;
+  int top_ = 0;
+  int width_ = 0;
+  int height_ = 0;
+  std::size_t pitch_ = 0;
+  // With a frame of zeros, which saves the questions at the ends of a row.
+  std::vector<float> values_;
+  std::vector<float> is_main_;  // 1 or 0
+};
 
 // ---- boxes on the floor ----
 
@@ -274,13 +343,16 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   std::int64_t sum_x = 0;
   std::int64_t sum_y = 0;
   std::int64_t count = 0;
-  for (const auto& [y, first, last] : part.main) {
-    const std::int64_t run = last - first;
-    count += run;
-    sum_x += run * (first + last - 1);
-    sum_y += run * y;
+  for (const auto& [y, first, last] : part.stretches) {
+    const float* const d = disparity_px.row(y);
+    for (int x = first; x < last; ++x) {
+      if (!part.is_main(d[x])) continue;
+      ++count;
+      sum_x += x;
+      sum_y += y;
+    }
   }
-  const double x = static_cast<double>(sum_x) / (2.0 * static_cast<double>(count));
+  const double x = static_cast<double>(sum_x) / static_cast<double>(count);
   const double y = static_cast<double>(sum_y) / static_cast<double>(count);
   object.position_in_camera_m =
       rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), object.disparity_px);
@@ -298,10 +370,12 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
                                  ? static_cast<float>(focal_baseline / (before_infinity - either_side))
                                  : std::numeric_limits<float>::infinity()};
 
-  Points points = points_of(part, disparity_px, rig, exec);
+  Surface surface(part, disparity_px);
+  Points points = surface.points(rig, exec);
   if (points.size() == 0) return;
   if (floor) {
-    object.box_on_floor = box_on(*floor, points, exec);
+    surface.smooth();  // the noise of single pixels would widen the box
+    object.box_on_floor = box_on(*floor, surface.points(rig, exec), exec);
     const double z = object.position_in_camera_m->z;
     std::array<float, 6>& known = object.box_on_floor->centre_covariance_m2;
     known =
@@ -333,7 +407,7 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
       object.depth_interval_m.reset();
       object.extent_in_camera_m.reset();
       object.box_on_floor.reset();
-      if (parts[i].main.empty()) continue;
+      if (parts[i].stretches.empty()) continue;
       object.disparity_sigma_px = sigma_px(parts[i].disparities_px, object.valid_share, exec);
       if (rig) place(object, parts[i], disparity.disparity_px, floor, *rig, exec);
     }

@@ -115,6 +115,14 @@ TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
   EXPECT_NEAR(object.position_in_camera_m->x, 2.5 * 0.02, 1e-5);
 }
 
+TEST(Locate, KeepsWhatAHoleCutsOffAtTheSameDepth) {
+  Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
+  for (int y = 5; y < 15; ++y) scene.disparity.disparity_px(26, y) = kNan;
+  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->x, 9 * 0.02 * 10 / 9, 1e-5);
+  scene.disparity.disparity_px(29, 9) = 5.01F;  // not on the largest surface, and nearer than all of it
+  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
+}
+
 TEST(Locate, AnObjectFartherThanAFloatHoldsHasNoPosition) {
   constexpr StereoRig kFar{.focal_px = 1e30F, .cx_px = 20, .cy_px = 10, .baseline_m = 1e20F, .doffs_px = 0};
   const Object object = Scene({120, 60}, {{{10, 10, 30, 20}, 8}}).located(kFar).list[0];
@@ -186,20 +194,37 @@ std::set<std::pair<int, int>> largest_part(const Scene& scene, ObjectId id) {
   return largest;
 }
 
+/// Those, and the other pixels of the object with a disparity between their least and greatest.
+std::set<std::pair<int, int>> main_part(const Scene& scene, ObjectId id) {
+  const std::set<std::pair<int, int>> largest = largest_part(scene, id);
+  std::set<float> known;
+  for (const auto& [x, y] : largest) known.insert(scene.disparity.disparity_px(x, y));
+  std::set<std::pair<int, int>> part;
+  for (int y = 0; y < scene.objects.labels.height(); ++y) {
+    for (int x = 0; x < scene.objects.labels.width(); ++x) {
+      const float d = scene.disparity.disparity_px(x, y);
+      if (scene.objects.labels(x, y) == id && d >= *known.begin() && d <= *known.rbegin())
+        part.insert({x, y});
+    }
+  }
+  return part;
+}
+
 TEST(Locate, TheMainPartIsThatOfTheDefinition) {
   std::mt19937 bits(4);
   for (int round = 0; round < 20; ++round) {
     Scene scene({70, 150}, {{{3, 4, 30, 140}, 5}, {{33, 4, 30, 140}, 5}});
+    const float step = 0.45F * static_cast<float>(1 + round % 4);  // from one surface to many small ones
     for (int y = 0; y < 150; ++y) {
       for (int x = 0; x < 70; ++x) {
         const auto random = static_cast<int>(bits() % 10);
-        scene.disparity.disparity_px(x, y) = random == 0 ? kNan : 5.0F + 0.45F * static_cast<float>(random);
+        scene.disparity.disparity_px(x, y) = random == 0 ? kNan : 5.0F + step * static_cast<float>(random);
       }
     }
     const Objects found = scene.located(kRig, {}, round % 3 + 1);
     for (const Object& object : found.list) {
       double sum = 0;
-      const auto part = largest_part(scene, object.id);
+      const auto part = main_part(scene, object.id);
       for (const auto& [x, y] : part) sum += x;
       const double middle = sum / static_cast<double>(part.size());
       EXPECT_NEAR(object.position_in_camera_m->x, (middle - 20) * object.position_in_camera_m->z / 100, 1e-5);
@@ -261,6 +286,45 @@ Scene scene_of(const Crate& crate, std::pair<double, double> corner) {
   return scene;
 }
 
+/// From the 1st to the 99th percentile of how far up the main part's points are, each with the mean disparity of a
+/// window.
+float height_of_box(const Scene& scene, ObjectId id) {
+  const std::set<std::pair<int, int>> part = main_part(scene, id);
+  std::vector<float> up_m;
+  for (const auto& [x, y] : part) {
+    float sum = 0;
+    float count = 0;
+    for (int v = y - 2; v <= y + 2; ++v) {
+      for (int u = x - 2; u <= x + 2; ++u) {
+        if (part.count({u, v}) == 0) continue;
+        sum += scene.disparity.disparity_px(u, v);
+        ++count;
+      }
+    }
+    up_m.push_back((kLarge.cy_px - static_cast<float>(y)) * kLarge.baseline_m / (sum / count));
+  }
+  std::sort(up_m.begin(), up_m.end());
+  const auto at = [&](std::size_t percent) { return up_m[(percent * (up_m.size() - 1) + 50) / 100]; };
+  return at(99) - at(1);
+}
+
+TEST(Locate, TheBoxIsThatOfTheMeansInWindows) {
+  std::mt19937 bits(5);
+  for (const Rect box : {Rect{3, 4, 30, 40}, {0, 0, 70, 50}, {69, 10, 1, 30}, {5, 49, 60, 1}, {8, 8, 1, 1}}) {
+    Scene scene({70, 50}, {{box, 5}});
+    for (int y = 0; y < 50; ++y) {
+      for (int x = 0; x < 70; ++x) {
+        const auto random = static_cast<float>(bits() % 16);
+        const bool is_hole = random == 0 && box.width * box.height > 1;
+        scene.disparity.disparity_px(x, y) = is_hole ? kNan : 30 + 0.125F * random;
+      }
+    }
+    const Object object = scene.located(kLarge, level_floor(1)).list[0];
+    ASSERT_TRUE(object.box_on_floor);
+    EXPECT_NEAR(object.box_on_floor->size_m.z, height_of_box(scene, object.id), 1e-5);
+  }
+}
+
 TEST(Locate, ACratesBoxIsTheCrate) {
   for (const double yaw : {-0.9, -0.6, -0.3}) {
     const Crate crate{yaw, 0.9, 0.5, 0.6};
@@ -268,7 +332,7 @@ TEST(Locate, ACratesBoxIsTheCrate) {
     const Object object = scene_of(crate, corner).located(kLarge, level_floor(1)).list[0];
     ASSERT_TRUE(object.box_on_floor);
     const FloorBox& box = *object.box_on_floor;
-    EXPECT_NEAR(box.size_m.x, 0.9, 0.09) << yaw;  // without its tails
+    EXPECT_NEAR(box.size_m.x, 0.9, 0.095) << yaw;  // without its tails, and of means in windows
     EXPECT_NEAR(box.size_m.y, 0.5, 0.06) << yaw;
     EXPECT_NEAR(box.size_m.z, 0.6, 0.04) << yaw;
     EXPECT_NEAR(box.yaw_rad, yaw, 0.06) << yaw;
