@@ -116,7 +116,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Superpixels superpixels =
       cut_superpixels(pair.left(), pair.left_rgb(), seen_px, noise, config.superpixels, exec);
   Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
-  const Image<ObjectHint> hints = hint_objects(superpixels, cues, exec);
+  const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, exec);
   cues.hints = hints;
   const MergeTree tree = grow_merge_tree(superpixels, cues, kSameThing, exec);
 

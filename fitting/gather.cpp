@@ -257,7 +257,7 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   SuperpixelScene cut = cut_scene(given, frame.rig, config, exec, stage);
   const Superpixels& superpixels = cut.superpixels;
   if (files.inputs.is_open()) {
-    record_input(files.inputs, job, hint_input(superpixels, cut.cues(given), exec), frame);
+    record_input(files.inputs, job, hint_input(superpixels.edges, cut.cues(given), exec), frame);
     std::cout << job << '\n';
     return;
   }
@@ -266,7 +266,7 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   if (files.pairs.is_open())
     told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
   const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
-  cut.hints = hint_objects(hint_input(superpixels, cut.cues(given), exec), network, exec);
+  cut.hints = hint_objects(hint_input(superpixels.edges, cut.cues(given), exec), network, exec);
   const MergeTree tree = grow_merge_tree(superpixels, cut.cues(given), same_thing, exec, told);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));

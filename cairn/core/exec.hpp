@@ -31,9 +31,10 @@ enum class Space : std::uint8_t;  // defined in objects/space.hpp
 /// The result of a stage, as passed to an observer: borrowed, valid during the call only.
 using Artifact =
     std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
-                 const Ground*, const Image<std::uint8_t>*, const Background*, const Superpixels*,
-                 const Image<ObjectHint>*, const MergeTree*, const ChosenObjects*, const Segmentation*,
-                 const Fusion*, const Objects*, const Image<Space>*, const std::vector<LeftOut>*>;
+                 const Ground*, const Image<std::uint8_t>*, const Image<std::uint16_t>*, const Background*,
+                 const Superpixels*, const Image<ObjectHint>*, const MergeTree*, const ChosenObjects*,
+                 const Segmentation*, const Fusion*, const Objects*, const Image<Space>*,
+                 const std::vector<LeftOut>*>;
 
 /// Called after each stage on the calling thread: name of the stage (its function's), result, time.
 using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;

@@ -72,11 +72,11 @@ Run pixels_of(int cell, int cells, int pixels) {
 }
 
 /// The pixels of row y in a run of columns.
-void add_run(const Superpixels& superpixels, const Cues& cues, const SurfacesBehind& behind, Run run, int y,
-             CellSums& s) {
+void add_run(View<const std::uint16_t> edges_in, const Cues& cues, const SurfacesBehind& behind, Run run,
+             int y, CellSums& s) {
   const float* const disparity = cues.disparity_px.row(y);
   const float* const evidence = cues.evidence_px.row(y);
-  const std::uint16_t* const edges = superpixels.edges.row(y);
+  const std::uint16_t* const edges = edges_in.row(y);
   s.pixels += run.last - run.first;
   for (int x = run.first; x < run.last; ++x) {
     const std::array<int, 3> colour = colour_at(cues, x, y);
@@ -97,7 +97,7 @@ void add_run(const Superpixels& superpixels, const Cues& cues, const SurfacesBeh
   }
 }
 
-Image<CellSums> sums_of(const Superpixels& superpixels, const Cues& cues, Size cells, const Exec& exec) {
+Image<CellSums> sums_of(View<const std::uint16_t> edges, const Cues& cues, Size cells, const Exec& exec) {
   const Size image = cues.gray.size();
   std::vector<Run> columns;
   columns.reserve(slot(cells.width));
@@ -110,8 +110,7 @@ Image<CellSums> sums_of(const Superpixels& superpixels, const Cues& cues, Size c
       const Run down = pixels_of(row, cells.height, image.height);
       for (int y = down.first; y < down.last; ++y) {
         behind.note(y);
-        for (int c = 0; c < cells.width; ++c)
-          add_run(superpixels, cues, behind, columns[slot(c)], y, sums(c, row));
+        for (int c = 0; c < cells.width; ++c) add_run(edges, cues, behind, columns[slot(c)], y, sums(c, row));
       }
     }
   });
@@ -256,9 +255,9 @@ Size hint_cells(Size image) {
   return {rounded(width), rounded(width / ratio)};
 }
 
-Image<std::int16_t> hint_input(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
+Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec) {
   const Size cells = hint_cells(cues.gray.size());
-  const Image<CellSums> sums = sums_of(superpixels, cues, cells, exec);
+  const Image<CellSums> sums = sums_of(edges, cues, cells, exec);
   const Brightness brightness = brightness_in(sums);
   const double nearest = nearest_px(sums);
   Image<std::int16_t> input = framed_image(cells, kHintChannels, exec.pool);
@@ -323,8 +322,8 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   return hints;
 }
 
-Image<ObjectHint> hint_objects(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
-  return hint_objects(hint_input(superpixels, cues, exec), hint_network(), exec);
+Image<ObjectHint> hint_objects(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec) {
+  return hint_objects(hint_input(edges, cues, exec), hint_network(), exec);
 }
 
 }  // namespace cairn

@@ -33,8 +33,8 @@ Size hint_cells(Size image);
 /// edges … (docs/stages/object_hints.md lists them).
 inline constexpr int kHintChannels = 12;
 /// The input of the network: hint_cells() with a frame of zeros around them, the channels of a cell next to each
-/// other, in 1/64. `cues.hints` is not used.
-Image<std::int16_t> hint_input(const Superpixels& superpixels, const Cues& cues, const Exec& exec);
+/// other, in 1/64. `edges`: superpixel_edges(). `cues.hints` is not used.
+Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec);
 
 /// The shape of one layer.
 struct HintLayer {
@@ -74,6 +74,6 @@ const HintNetwork& hint_network();
 /// "U-Net"). All sums are integers.
 Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& network, const Exec& exec);
 /// By the library's network.
-Image<ObjectHint> hint_objects(const Superpixels& superpixels, const Cues& cues, const Exec& exec);
+Image<ObjectHint> hint_objects(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec);
 
 }  // namespace cairn

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/parallel.hpp>
 #include <cairn/grouping/cue_kernels.hpp>
 #include <cairn/grouping/object_hints.hpp>
 #include <cairn/grouping/region_cues.hpp>
@@ -10,7 +11,8 @@
 namespace cairn {
 namespace {
 
-constexpr int kFar = 3;  // px to either side of a contact
+constexpr int kFar = 3;         // px to either side of a contact
+constexpr int kLeastRows = 16;  // of a band
 using kernels::kNoDisparity;
 
 /// The bin of each difference of colours, −255 … 255.
@@ -43,9 +45,11 @@ struct RunMoments {
   }
 };
 
+/// Gathers over some rows, for gather_cues().
 class Gathering {
  public:
-  Gathering(const Superpixels& superpixels, const Cues& cues, const Exec& exec)
+  /// `steps`: the disparities of the whole image, for all of them together.
+  Gathering(const Superpixels& superpixels, const Cues& cues, Image<std::int32_t>& steps, const Exec& exec)
       : cues_(cues),
         run_(kernels::cue_kernels(exec)),
         labels_(superpixels.labels),
@@ -53,7 +57,7 @@ class Gathering {
         width_(labels_.width()),
         height_(labels_.height()),
         weak_(weakest_edge(cues.noise_sigma)),
-        steps_(labels_.size(), exec.pool),
+        steps_(steps),
         textured_(slot(width_)),
         ground_(slot(width_)),
         background_(slot(width_)),
@@ -65,8 +69,9 @@ class Gathering {
     for (int y = 0; y < height_; ++y) cell_row_.push_back(y * cues.hints.height() / height_);
   }
 
-  RegionGraphCues run() {
-    for (int y = 0; y < height_; ++y) {
+  /// First the pixels of rows first … last − 1 …
+  void add_pixels(int first_row, int last_row) {
+    for (int y = first_row; y < last_row; ++y) {
       note_steps(y);
       const RegionId* const row = labels_.row(y);
       for (int first = 0; first < width_;) {
@@ -76,7 +81,11 @@ class Gathering {
         first = last;
       }
     }
-    for (int y = 0; y < height_; ++y) {
+  }
+
+  /// … and when those of all rows are there, their contacts.
+  void add_contacts(int first_row, int last_row) {
+    for (int y = first_row; y < last_row; ++y) {
       const RegionId* const row = labels_.row(y);
       const RegionId* const below = y + 1 < height_ ? labels_.row(y + 1) : row;
       for (int x = 0; x < width_; ++x) {
@@ -84,8 +93,19 @@ class Gathering {
         if (below[x] != row[x]) meet(x, y, 0, 1);
       }
     }
-    return std::move(result_);
   }
+
+  /// Adds what was gathered over the rows that follow.
+  void add(const Gathering& next) {
+    for (std::size_t i = 0; i < result_.regions.size(); ++i) {
+      // A contact alone adds to the perimeter.
+      const RegionCues& region = next.result_.regions[i];
+      if (region.area > 0 || region.perimeter > 0) result_.regions[i].add(region, 0);
+    }
+    for (const ContactCues& c : next.result_.contacts) contact(c.a, c.b).add(c, false);
+  }
+
+  RegionGraphCues take() { return std::move(result_); }
 
  private:
   /// Converts the disparities of a row, and those of the surfaces behind it, to steps.
@@ -261,7 +281,7 @@ class Gathering {
   int width_;
   int height_;
   float weak_;
-  Image<std::int32_t> steps_;           // the disparities; kNoDisparity = hole
+  Image<std::int32_t>& steps_;          // the disparities; kNoDisparity = hole
   std::vector<std::int32_t> textured_;  // the textured disparities of a row
   std::vector<std::int32_t> ground_;    // of the surfaces behind it; kNoDisparity above the horizon
   std::vector<std::int32_t> background_;
@@ -369,7 +389,22 @@ void ContactCues::add(const ContactCues& other, bool turned) {
 }
 
 RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
-  return Gathering(superpixels, cues, exec).run();
+  const int height = superpixels.labels.height();
+  const int bands = std::clamp(height / kLeastRows, 1, exec.threads());
+  Image<std::int32_t> steps(superpixels.labels.size(), exec.pool);
+  std::vector<Gathering> gathered;
+  gathered.reserve(slot(bands));
+  for (int i = 0; i < bands; ++i) gathered.emplace_back(superpixels, cues, steps, exec);
+  const auto for_each_band = [&](void (Gathering::*work)(int, int)) {
+    parallel_for(exec, bands, 1, [&](int first, int last) {
+      for (int i = first; i < last; ++i)
+        (gathered[slot(i)].*work)(i * height / bands, (i + 1) * height / bands);
+    });
+  };
+  for_each_band(&Gathering::add_pixels);
+  for_each_band(&Gathering::add_contacts);
+  for (std::size_t i = 1; i < gathered.size(); ++i) gathered.front().add(gathered[i]);
+  return gathered.front().take();
 }
 
 }  // namespace cairn

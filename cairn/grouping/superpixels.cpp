@@ -199,24 +199,32 @@ class Fusing {
 
 }  // namespace
 
-Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            float noise_sigma, const SuperpixelsConfig& config, const Exec& exec) {
-  Image<std::uint16_t> edges = edge_strength(gray, rgb, kSmoothing, exec);
+Image<std::uint16_t> superpixel_edges(View<const Gray> gray, View<const Rgb> rgb, const Exec& exec) {
+  return edge_strength(gray, rgb, kSmoothing, exec);
+}
+
+Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
+                            const SuperpixelsConfig& config, const Exec& exec) {
   const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, noise_sigma, exec);
   Basins basins = watershed(with_depth, exec);
   Fusing fusing(basins, with_depth);
   fusing.until(config.count);
   std::vector<std::int32_t> numbers(slot(basins.count), -1);
   std::int32_t count = 0;
-  for (int y = 0; y < gray.height(); ++y) {
+  for (int y = 0; y < edges.height(); ++y) {
     RegionId* const row = basins.labels.row(y);
-    for (int x = 0; x < gray.width(); ++x) {
+    for (int x = 0; x < edges.width(); ++x) {
       std::int32_t& number_of = numbers[slot(fusing.root(number(row[x])))];
       if (number_of < 0) number_of = count++;
       row[x] = RegionId{number_of};
     }
   }
   return {std::move(basins.labels), count, std::move(edges)};
+}
+
+Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
+                            float noise_sigma, const SuperpixelsConfig& config, const Exec& exec) {
+  return cut_superpixels(superpixel_edges(gray, rgb, exec), disparity_px, noise_sigma, config, exec);
 }
 
 Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {

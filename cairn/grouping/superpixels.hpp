@@ -24,7 +24,7 @@ void fields(SuperpixelsConfig& c, V&& v) {
 struct Superpixels {
   Image<RegionId> labels;  // 0 … count−1 in raster order of their first pixel
   int count = 0;
-  Image<std::uint16_t> edges;  // of the image alone, in 1/4 grey level: edge_strength()
+  Image<std::uint16_t> edges;  // superpixel_edges(), in 1/4 grey level
 };
 
 /// Superpixels by watershed and merging. The edge image is edge_strength() at σ = 0.7 px, plus 2 grey levels
@@ -40,6 +40,12 @@ struct Superpixels {
 /// (docs/stages/superpixels.md, beyond the paper)
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
                             float noise_sigma, const SuperpixelsConfig& config, const Exec& exec);
+
+/// The same in two steps: the edges of the image alone, edge_strength() at σ = 0.7 px …
+Image<std::uint16_t> superpixel_edges(View<const Gray> gray, View<const Rgb> rgb, const Exec& exec);
+/// … and all else.
+Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
+                            const SuperpixelsConfig& config, const Exec& exec);
 
 /// The superpixels as a segmentation, with their grey level statistics.
 Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec);

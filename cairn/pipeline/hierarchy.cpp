@@ -32,9 +32,15 @@ SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, con
   cut.seen_px =
       stage("floor_under_reflections", floor_under_reflections(found.disparity, found.ground, exec));
 
-  // Superpixels.
-  cut.superpixels = stage("cut_superpixels", cut_superpixels(given.left, given.left_rgb, cut.seen_px,
-                                                             scene.noise_sigma, config.superpixels, exec));
+  // Superpixels, and meanwhile the hints of the network; both need the edges of the image.
+  const Image<std::uint16_t> edges =
+      stage("superpixel_edges", superpixel_edges(given.left, given.left_rgb, exec));
+  Later<Superpixels> superpixels(exec, [&](const Exec& beside) {
+    return cut_superpixels(edges.clone(beside.pool), cut.seen_px, scene.noise_sigma, config.superpixels,
+                           beside);
+  });
+  cut.hints = stage("hint_objects", hint_objects(edges, cut.cues(given), exec));
+  cut.superpixels = stage("cut_superpixels", superpixels.get());
   return cut;
 }
 
@@ -47,8 +53,7 @@ GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const C
                                confidence_model(config.match.method), beside);
   });
 
-  // The hints of the network, and the tree of merged regions.
-  grown.cut.hints = stage("hint_objects", hint_objects(cut.superpixels, cut.cues(given), exec));
+  // The tree of merged regions.
   grown.tree = stage("grow_merge_tree", grow_merge_tree(cut.superpixels, cut.cues(given), kSameThing, exec));
   grown.confidence = stage("estimate_confidence", confidence.get());
   return grown;

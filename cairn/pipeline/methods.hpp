@@ -19,7 +19,7 @@ struct SuperpixelScene {
   Image<float> seen_px;  // floor_under_reflections()
   Background background;
   Superpixels superpixels;
-  Image<ObjectHint> hints;
+  Image<ObjectHint> hints;  // by the network of the library
   [[nodiscard]] Cues cues(const Given& given) const {
     return {given.left,         given.left_rgb, seen_px,           scene.evidence_px,
             scene.found.ground, background,     scene.noise_sigma, hints};

@@ -91,7 +91,7 @@ void bind_grouping(py::module_& m) {
          const DisparityInput& disparity, const Disparities& evidence_px, const Ground& ground,
          const Background& background, NoiseSigma noise) {
         const Cues cues = cues_of(left, disparity, evidence_px, ground, background, noise);
-        return numbers_of(hint_objects(superpixels, cues, call.exec));
+        return numbers_of(hint_objects(superpixels.edges, cues, call.exec));
       },
       "superpixels"_a, "left"_a, "disparity"_a, "evidence_px"_a, "ground"_a, "background"_a, "noise_sigma"_a);
   stage(
@@ -103,7 +103,7 @@ void bind_grouping(py::module_& m) {
          const DisparityInput& disparity, const Disparities& evidence_px, const Ground& ground,
          const Background& background, NoiseSigma noise) {
         Cues cues = cues_of(left, disparity, evidence_px, ground, background, noise);
-        const Image<ObjectHint> hints = hint_objects(superpixels, cues, call.exec);
+        const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, call.exec);
         cues.hints = hints;
         return grow_merge_tree(superpixels, cues, kSameThing, call.exec);
       },

@@ -284,6 +284,21 @@ TEST(GatherCues, IsTheSameForEveryTarget) {
   }
 }
 
+TEST(GatherCues, IsTheSameForAnyNumberOfThreads) {
+  for (const Size size : {Size{70, 97}, {33, 32}, {300, 31}}) {
+    const Scene scene(size, 5);
+    for (const int count : {2, 40, 300}) {
+      const Superpixels superpixels = scene.superpixels(count);
+      const RegionGraphCues expected = gather_cues(superpixels, scene.cues(), {});
+      for (const int threads : {2, 3, 8}) {
+        const RegionGraphCues found = gather_cues(superpixels, scene.cues(), Exec::with_threads(threads));
+        EXPECT_TRUE(found.regions == expected.regions && found.contacts == expected.contacts)
+            << text(size) << ' ' << count << ' ' << threads;
+      }
+    }
+  }
+}
+
 TEST(GatherCues, ListsContactsAsTheRowsShowThemFirst) {
   Superpixels superpixels{grids::grid<RegionId>({{0, 0, 1}, {2, 1, 1}, {2, 3, 3}}), 4, {}};
   superpixels.edges = Image<std::uint16_t>(Size{3, 3}, std::uint16_t{0}, {});

@@ -42,7 +42,7 @@ TEST(HintInput, MeasuresEachCell) {
   RegionScene scene = two_depths();
   scene.ground.plane = GroundPlane{0, 0, 8};
   scene.rgb = Image<Rgb>({320, 240}, Rgb{100, 100, 132}, {});
-  const Image<std::int16_t> input = hint_input(scene.superpixels, scene.cues(), {});
+  const Image<std::int16_t> input = hint_input(scene.superpixels.edges, scene.cues(), {});
   ASSERT_EQ(input.size(), (Size{162 * kHintChannels, 122}));
   EXPECT_EQ(channel(input, 10, 60, 0), 0) << "plain";
   EXPECT_EQ(channel(input, 10, 60, 1), 64) << "32 levels of blue − green";
@@ -68,15 +68,16 @@ TEST(HintInput, MeasuresEachCell) {
 
 TEST(HintInput, OfGreyImagesHasNoColour) {
   const RegionScene scene = two_depths();
-  const Image<std::int16_t> input = hint_input(scene.superpixels, scene.cues(), {});
+  const Image<std::int16_t> input = hint_input(scene.superpixels.edges, scene.cues(), {});
   for (const int c : {1, 2, 11}) EXPECT_EQ(channel(input, 80, 60, c), 0);
 }
 
 TEST(HintInput, IsTheSameOnAnyNumberOfThreads) {
   const RegionScene scene = two_depths();
-  const Image<std::int16_t> one = hint_input(scene.superpixels, scene.cues(), {});
+  const Image<std::int16_t> one = hint_input(scene.superpixels.edges, scene.cues(), {});
   for (const int threads : {2, 3, 8}) {
-    const Image<std::int16_t> more = hint_input(scene.superpixels, scene.cues(), Exec::with_threads(threads));
+    const Image<std::int16_t> more =
+        hint_input(scene.superpixels.edges, scene.cues(), Exec::with_threads(threads));
     EXPECT_EQ(grids::numbers(more), grids::numbers(one));
   }
 }
@@ -84,7 +85,7 @@ TEST(HintInput, IsTheSameOnAnyNumberOfThreads) {
 TEST(HintObjects, TakeAnImageOfAnySize) {
   for (const Size size : {Size{1, 1}, {3, 200}, {200, 3}, {97, 61}}) {
     const RegionScene scene(Image<RegionId>(size, RegionId{0}, {}));
-    const Image<ObjectHint> hints = hint_objects(scene.superpixels, scene.cues(), {});
+    const Image<ObjectHint> hints = hint_objects(scene.superpixels.edges, scene.cues(), {});
     EXPECT_EQ(hints.size(), hint_cells(size));
   }
 }
