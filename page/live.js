@@ -89,7 +89,7 @@
     const wanted = new Set(['stats']);
     if (sees('picture')) wanted.add('left').add('labels');
     if (sees('disparity')) wanted.add('disparity').add('reject');
-    if (sees('scene') && scene) wanted.add('obstacles');
+    if (sees('scene')) wanted.add('obstacles');
     return wanted;
   };
   function subscribe() {
@@ -224,7 +224,7 @@
     const panel = kPanelOf[topic];
     if (panel === 'scene') {
       newest.cloud = value;
-      return showScene();
+      return scene.refresh();
     }
     const pair = panel === 'picture' ? ['left', 'labels'] : ['disparity', 'reject'];
     const isWhole = pair.every((name) => frame[name]);
@@ -344,7 +344,7 @@
   }
   function showChosen() {
     if (shown.picture) paintPicture(shown.picture, true);
-    showScene();
+    scene.refresh();
   }
 
   // ---- the left image ----
@@ -408,7 +408,8 @@
       const x = sums.x / sums.n * scale, y = sums.y / sums.n * scale;
       let mark = pictureMarks.get(id);
       if (!mark) {
-        mark = {node: el('span', {class: 'mark', 'data-key': id}, el('b', {}, String(id)), ' ', el('span', {}, markText(id))), x, y};
+        const text = markText(id);
+        mark = {node: el('span', {class: 'mark', 'data-key': id}, el('b', {}, String(id)), ' ', el('span', {}, text)), text, at: '', x, y};
         mark.node.style.setProperty('--colour', idColour(id));
         marks.append(mark.node);
         pictureMarks.set(id, mark);
@@ -431,7 +432,8 @@
       let y = Math.min(high - 10, Math.max(10, mark.y));
       for (const other of placed) if (Math.abs(other.x - x) < other.half + half && Math.abs(other.y - y) < 20) y = other.y + 20;
       placed.push({x, y, half});
-      mark.node.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      const at = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      if (at !== mark.at) mark.node.style.transform = mark.at = at;
     }
     dimMarks();
   }
@@ -443,12 +445,9 @@
   }
   /** Not for each frame: nobody reads 30 numbers a second. */
   function writeMarks() {
-    for (const [id, mark] of pictureMarks) {
-      const text = markText(id), node = mark.node.lastChild;
-      if (node.textContent === text) continue;
-      node.textContent = text;
-      mark.wide = mark.node.offsetWidth;
-    }
+    const changed = [...pictureMarks].filter(([id, {text}]) => text !== markText(id));
+    for (const [id, mark] of changed) mark.node.lastChild.textContent = mark.text = markText(id);
+    for (const [, mark] of changed) mark.wide = mark.node.offsetWidth;  // all at once: the page is laid out once
   }
   function trackUnder(event) {
     const labels = shown.picture?.labels, at = labels && pixelUnder(event, panels.picture.screen, labels);
@@ -618,7 +617,7 @@
     }
     // Frames that were on their way when it was paused know nothing of it.
     if (stats.paused === true || performance.now() - state.pausedAt > 1000) state.isPaused = stats.paused === true;
-    showScene();
+    scene.refresh();
     if (life.count === 1) slowly();
   }
 
@@ -675,39 +674,21 @@
 
   // ---- the 3-D view ----
 
-  const scene = beginScene();
-  function beginScene() {
-    const {stage} = panels.scene, none = stage.querySelector('.none');
-    try {
-      const made = makeScene(stage, (id) => (id === null ? state.picked !== null && pick(state.picked) : pick(id)));
-      if (made) return made;
-      none.textContent = 'This browser offers no WebGL2, which the 3-D view is drawn with. All else is shown.';
-    } catch (error) {
-      none.textContent = `The 3-D view cannot be drawn: ${error.message}`;
-    }
-    none.hidden = false;
-    return null;
-  }
   function frustumOf({rig, image}) {
     if (!rig || !image) return null;
     const at = (v, c) => (v - c) / rig.focal_px;
     return {left: at(0, rig.cx_px), right: at(image.width, rig.cx_px), top: at(0, rig.cy_px), bottom: at(image.height, rig.cy_px)};
   }
-  let sceneCloud = null;
-  function showScene() {
-    if (!scene || !newest.stats) return;
-    const stats = newest.stats, only = chosen();
+  const scene = makeScene(panels.scene.stage, sceneNow, (id) => (id === null ? state.picked !== null && pick(state.picked) : pick(id)));
+  function sceneNow() {
+    const {stats, cloud} = newest, only = chosen();
+    if (!stats) return null;
     const things = [...thingsById.values()].filter((thing) => thing.corners).map((thing) => ({
       id: thing.id, corners: thing.corners, colour: idColour(thing.id), chosen: only === thing.id, dim: only !== null && only !== thing.id,
       moving: thing.is_moving === true, text: [thing.id, markText(thing.id)].filter((t) => t !== '').join(' · '),
     }));
     const matrix = floorFromCamera(stats);
-    scene.show({
-      things, floorFromCamera: matrix ?? kLevelCamera, hasFloor: matrix !== null, frustum: frustumOf(stats),
-      trails: trailsFromHere(stats, only),
-      ...(newest.cloud !== sceneCloud ? {cloud: newest.cloud} : {}),
-    });
-    sceneCloud = newest.cloud;
+    return {things, trails: trailsFromHere(stats, only), cloud, floorFromCamera: matrix ?? kLevelCamera, hasFloor: matrix !== null, frustum: frustumOf(stats)};
   }
 
   // ---- the list of objects ----
@@ -761,6 +742,7 @@
   const otherOf = (stages) => [...stages].reduce((sum, [stage, ms]) => (strip.colours.has(stage) ? sum : sum + ms), 0);
   const median = (values) => (values.length ? [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)] : NaN);
   function drawStrip() {
+    stripIsOld = false;
     const {canvas} = strip, {wide, high} = sizes.get(canvas) ?? {}, dpr = Math.min(2, devicePixelRatio || 1);
     if (!wide || !high) return;
     if (canvas.width !== Math.round(wide * dpr) || canvas.height !== Math.round(high * dpr)) {
@@ -1221,7 +1203,7 @@
     for (const name of kOverlays) byId('overlay').append(el('button', {type: 'button', onclick: () => setOverlay(name), title: 'What lies over the image (m)'}, name));
     if (!kOverlays.includes(state.overlay)) state.overlay = kOverlays[0];
     setOverlay(state.overlay);
-    for (const name of ['behind', 'side', 'above']) byId('viewpoints').append(el('button', {type: 'button', disabled: !scene, onclick: () => scene?.lookFrom(name)}, name));
+    for (const name of ['behind', 'side', 'above']) byId('viewpoints').append(el('button', {type: 'button', onclick: () => scene.lookFrom(name)}, name));
     showOptions(kept('options', innerWidth > 1240 ? 'shown' : 'hidden') === 'shown');
     for (const panel of Object.values(panels)) {
       panel.root.querySelector('.enlarge').addEventListener('click', () => enlarge(panel));
@@ -1277,14 +1259,6 @@
     document.addEventListener('visibilitychange', subscribe);
     setInterval(slowly, 200);
     setInterval(askStatus, 1000);
-    const tick = () => {
-      if (stripIsOld && document.visibilityState === 'visible') {
-        stripIsOld = false;
-        drawStrip();
-      }
-      requestAnimationFrame(tick);
-    };
-    tick();
     measured.observe(panels.picture.screen);
     measured.observe(strip.canvas);
     watch();
@@ -1299,6 +1273,7 @@
     writeThings();
     writeLegend();
     writeStages();
+    if (stripIsOld) drawStrip();
   }
   begin();
 })();
