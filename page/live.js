@@ -174,7 +174,7 @@
   // Messages of one frame have one stamp. A few frames are kept, since a slow client skips messages of each channel by
   // itself; what is shown together is of one stamp.
   const kKept = 6;
-  const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity', obstacles: 'scene'};
+  const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity'};
   const frames = new Map();  // stamp → {stamp, at, and by topic what came}
   const latest = {picture: -1n, disparity: -1n};  // the stamp that was drawn last, or will be
   let decoding = 0;
@@ -186,7 +186,11 @@
     if (!topic) return;
     const stamp = head.getBigUint64(5, true);
     try {
-      if (topic === 'stats') return heardStats(JSON.parse(kText.decode(new Uint8Array(buffer, 13))), stamp);
+      if (topic === 'stats') {
+        const stats = JSON.parse(kText.decode(new Uint8Array(buffer, 13)));
+        heardStats(stats, stamp);
+        return put(topic, stats, stamp);
+      }
       const cdr = new Cdr(buffer, 13);
       if (topic === 'left') return void decode(compressedImage(cdr), stamp);
       put(topic, topic === 'obstacles' ? pointCloud(cdr) : plainImage(cdr), stamp);
@@ -222,19 +226,21 @@
     const frame = frameOf(stamp);
     frame[topic] = value;
     const panel = kPanelOf[topic];
-    if (panel === 'scene') {
-      newest.cloud = value;
-      return scene.refresh();
-    }
+    if (topic === 'obstacles') newest.cloud = value;
+    if (panel) putInPanel(panel, frame);
+    // Each picture of the screen costs the browser much, whatever has changed in it: a frame's parts come together.
+    if ([...link.subscriptions.values()].every((name) => frame[name])) drawNow();
+    else drawsSoon ||= setTimeout(drawNow, kTogether);
+  }
+  function putInPanel(panel, frame) {
     const pair = panel === 'picture' ? ['left', 'labels'] : ['disparity', 'reject'];
     const isWhole = pair.every((name) => frame[name]);
     // On a slow link the two may never meet; then it is better to see one of them than none.
     const isLate = panel === 'picture' && frame.left && performance.now() - (drawnAt.picture ?? link.since) > 400;
     if (!isWhole && !isLate) return;
-    if (stamp < latest[panel]) return;  // its picture was decoded late
-    latest[panel] = stamp;
+    if (frame.stamp < latest[panel]) return;  // its picture was decoded late
+    latest[panel] = frame.stamp;
     due[panel] = frame;
-    soon();
   }
 
   // ---- painting at the screen's pace ----
@@ -242,13 +248,20 @@
   const due = {}, drawnAt = {};
   const newest = {cloud: null, stats: null, source: null};  // source: asked for since the last frame
   const shown = {};  // what is on the screen: {picture: frame, disparity: frame}
-  let asked = 0;
-  function soon() {
+  const kReading = 200;  // ms
+  let readAt = 0;
+  const kTogether = 40;  // ms that a frame's parts wait for the others; on a slow link some never come
+  let asked = 0, drawsSoon = 0;
+  function drawNow() {
+    clearTimeout(drawsSoon);
+    drawsSoon = 0;
     asked ||= requestAnimationFrame(() => {
       asked = 0;
       if (due.picture) paintPicture(due.picture);
       if (due.disparity) paintDisparity(due.disparity);
       due.picture = due.disparity = null;
+      scene.paintWithOthers();
+      if (performance.now() - readAt >= kReading) slowly();
     });
   }
   /** How long frames take from the arrival of their first message until they are drawn; for those who measure. */
@@ -301,6 +314,10 @@
       },
       put: () => context.putImageData(image, 0, 0),
     };
+  }
+  /** Nothing where it stands there already: the page would be laid out again. */
+  function write(node, text) {
+    if (node.textContent !== text) node.textContent = text;
   }
   function shape(screen, width, height) {
     screen.style.setProperty('--aspect', `${width} / ${height}`);
@@ -552,14 +569,14 @@
       if (first) counts.set(first.bit, counts.get(first.bit) + holes[bits]);
     }
     for (const [bit, {row, share}] of legend.rows) {
-      share.textContent = counts.get(bit) ? percent(counts.get(bit) / all) : '';
+      write(share, counts.get(bit) ? percent(counts.get(bit) / all) : '');
       row.classList.toggle('off', !counts.get(bit));
     }
     [range.low, (range.low + range.high) / 2, range.high].forEach((v, k) => {
       const d = pixelsOf(v), z = metresOf(d);
       legend.ticks[k].replaceChildren(...(isNumber(d) ? [`${fixed(d, 0)} px`, ...(isNumber(z) ? [el('br'), `${fixed(z, 1)} m`] : [])] : []));
     });
-    if (!panels.disparity.isRead) panels.disparity.count.textContent = `density ${percent(1 - hole / all, 0)}`;
+    if (!panels.disparity.isRead) write(panels.disparity.count, `density ${percent(1 - hole / all, 0)}`);
   }
   let blinker = 0;
   function blink(bit) {
@@ -617,7 +634,6 @@
     }
     // Frames that were on their way when it was paused know nothing of it.
     if (stats.paused === true || performance.now() - state.pausedAt > 1000) state.isPaused = stats.paused === true;
-    scene.refresh();
     if (life.count === 1) slowly();
   }
 
@@ -708,12 +724,12 @@
     const all = [...thingsById.values()];
     thingsTable.refill(all);
     const moving = all.filter((t) => t.is_moving).length;
-    thingsNote.textContent = all.length ? `${all.length} in view${moving ? `, ${moving} moving` : ''}` : 'none';
+    write(thingsNote, all.length ? `${all.length} in view${moving ? `, ${moving} moving` : ''}` : 'none');
     const {image, name} = newest.stats ?? {};
-    panels.picture.count.textContent = [name, image && `${image.width} × ${image.height}`].filter(Boolean).join(' · ');
+    write(panels.picture.count, [name, image && `${image.width} × ${image.height}`].filter(Boolean).join(' · '));
     panels.picture.count.title = name ?? '';
     const floor = newest.stats && floorFromCamera(newest.stats) !== null;
-    panels.scene.count.textContent = !newest.stats ? '' : !newest.stats.rig ? 'no calibration: no metres' : floor ? 'grid: 1 m' : 'no floor found';
+    write(panels.scene.count, !newest.stats ? '' : !newest.stats.rig ? 'no calibration: no metres' : floor ? 'grid: 1 m' : 'no floor found');
   }
   const thingsNote = el('span', {class: 'note'});
   byId('found').append(el('div', {class: 'head'}, el('h2', {}, 'Objects'), thingsNote), thingsTable);
@@ -756,7 +772,7 @@
     const totals = history.map(({stages, latency}) => Math.max(latency ?? 0, [...stages.values()].reduce((a, b) => a + b, 0)));
     const top = [...totals].sort((a, b) => a - b)[Math.floor(totals.length * 0.97)] * 1.2 || 10;
     strip.top += (top - strip.top) * (top > strip.top ? 0.5 : 0.05);
-    const left = 34, each = (wide - left) / kHistory, y = (ms) => high - 1 - (high - 8) * ms / strip.top;
+    const left = 34, each = (wide - left) / kHistory, perMs = (high - 8) / strip.top, y = (ms) => high - 1 - perMs * ms;
     context.font = '11px system-ui, sans-serif';
     context.textBaseline = 'middle';
     const step = roundStep(strip.top, 4);
@@ -769,18 +785,15 @@
     }
     context.textAlign = 'right';
     context.fillText('ms', left - 6, high - 5);
-    const first = kHistory - history.length;
-    history.forEach(({stages}, k) => {
-      const x = left + (first + k) * each;
-      let ms = 0;
-      const bar = (part, colour) => {
-        context.fillStyle = colour;
-        context.fillRect(x, y(ms + part), Math.max(1, each - 1), y(ms) - y(ms + part));
-        ms += part;
-      };
-      for (const stage of strip.stages) bar(stages.get(stage) ?? 0, strip.colours.get(stage));
-      bar(otherOf(stages), kOther);
-    });
+    const first = kHistory - history.length, tops = history.map(() => y(0));
+    // Colour by colour: one after the other a frame's would take three times as long.
+    for (const stage of [...strip.stages, null]) {
+      context.fillStyle = strip.colours.get(stage) ?? kOther;
+      history.forEach(({stages}, k) => {
+        const part = (stage === null ? otherOf(stages) : stages.get(stage) ?? 0) * perMs;
+        if (part > 0) context.fillRect(left + (first + k) * each, tops[k] -= part, Math.max(1, each - 1), part);
+      });
+    }
     context.strokeStyle = '#e3e6e9';
     context.lineWidth = 1.25;
     context.beginPath();
@@ -789,10 +802,10 @@
   }
   function writeStages() {
     for (const node of document.querySelectorAll('#stages [data-stage]')) {
-      node.textContent = `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)}`;
+      write(node, `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)}`);
     }
     const all = median(history.map(({stages}) => [...stages.values()].reduce((a, b) => a + b, 0)));
-    byId('time-note').textContent = history.length ? `${fixed(all, 1)} ms a frame` : '';
+    write(byId('time-note'), history.length ? `${fixed(all, 1)} ms a frame` : '');
   }
   function describeTime(event) {
     const box = strip.canvas.getBoundingClientRect(), each = (box.width - 34) / kHistory;
@@ -818,8 +831,8 @@
     }
     cell.node.hidden = value === null;
     if (value === null) return;
-    if (cell.text.textContent !== value) cell.text.textContent = value;
-    if (cell.small.textContent !== unit) cell.small.textContent = unit;
+    write(cell.text, value);
+    write(cell.small, unit);
     if (cell.node.title !== title) cell.node.title = title;
     if (cell.node.className !== kind) cell.node.className = kind;
   }
@@ -906,7 +919,7 @@
   function watch() {
     const {kind, word, head, text, small, bad} = judge();
     byId('link').dataset.state = kind;
-    byId('link').lastChild.textContent = word;
+    write(byId('link').lastChild, word);
     const news = panels.picture.stage.querySelector('.news');
     const said = head ? [head, text, small].join('|') : '';
     if (said !== verdict) {
@@ -1257,15 +1270,16 @@
     });
     for (const {root} of Object.values(panels)) looked.observe(root);
     document.addEventListener('visibilitychange', subscribe);
-    setInterval(slowly, 200);
+    setInterval(() => { if (performance.now() - readAt >= 1.5 * kReading) slowly(); }, kReading);
     setInterval(askStatus, 1000);
     measured.observe(panels.picture.screen);
     measured.observe(strip.canvas);
     watch();
     connect();
   }
-  /** What is read rather than watched. */
+  /** What is read rather than watched; with a frame where there is one. */
   function slowly() {
+    readAt = performance.now();
     watch();
     if (document.visibilityState !== 'visible') return;
     writeGauges();

@@ -34,7 +34,8 @@ const kSides = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6
 const kEdges = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 /**
- * The 3-D view in a stage. `refresh()` has it drawn soon, for which it asks `look()` for
+ * The 3-D view in a stage. `refresh()` draws it with the screen's next picture, `paintWithOthers()` in this one if it is time;
+ * it asks `look()` for
  *   things  [{id, corners (8), colour, text, chosen, dim, moving}]
  *   trails  [{colour, points}]
  *   cloud   {bytes, step, count, place, colour (offsets; colour may be null)}, or null
@@ -44,7 +45,7 @@ const kEdges = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], 
 function makeScene(stage, look, onPick) {
   const canvas = stage.querySelector('canvas'), context = canvas.getContext('2d', {alpha: false});
   const kNear = 0.05;  // m before the eye
-  const kShare = 20;   // a picture waits so many times the time of the last one: the images come first
+  const kShare = 40;   // a picture waits so many times the time of the last one: the images come first
 
   // ---- what is shown, and from where ----
 
@@ -57,11 +58,11 @@ function makeScene(stage, look, onPick) {
   let asked = 0, waits = 0, pause = 0, paintedAt = -Infinity;
   let grip = null;  // where the pointer holds the view
   const draw = () => { asked ||= requestAnimationFrame(() => { asked = 0; paint(); }); };
-  const drawSoon = () => {
-    const left = paintedAt + pause - performance.now();
-    if (left <= 0 || grip) draw();
-    else waits ||= setTimeout(() => { waits = 0; draw(); }, left);
-  };
+  /** Within a frame of the page; where the last picture is too new, with one of the next. */
+  function paintWithOthers() {
+    if (grip || performance.now() - paintedAt >= pause) paint();
+    else waits ||= setTimeout(draw, 3 * pause);
+  }
   const eye = () => minus3(view.at, [
     Math.cos(view.yaw) * Math.cos(view.pitch), Math.sin(view.yaw) * Math.cos(view.pitch), -Math.sin(view.pitch)].map((v) => v * view.far));
   const cameraPlace = () => { const m = shown.floorFromCamera; return [m[3], m[7], m[11]]; };
@@ -119,6 +120,8 @@ function makeScene(stage, look, onPick) {
   function paint() {
     const {wide, high} = room, dpr = Math.min(2, devicePixelRatio || 1), begun = performance.now();
     paintedAt = begun;
+    clearTimeout(waits);
+    waits = 0;
     if (!wide || !high) return;
     if (size.wide !== wide || size.high !== high || size.dpr !== dpr) {
       size = {wide, high, dpr};
@@ -128,7 +131,7 @@ function makeScene(stage, look, onPick) {
     const found = look();
     if (found) {
       shown = found;
-      fit(0.05);
+      fit(0.1);
     }
     clip = kMatrix.product(kMatrix.perspective(48, wide / high), kMatrix.looking(eye(), view.at));
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -378,5 +381,5 @@ function makeScene(stage, look, onPick) {
     Object.assign(room, {wide: contentRect.width, high: contentRect.height});
     draw();
   }).observe(stage);
-  return {refresh: drawSoon, lookFrom};
+  return {refresh: draw, paintWithOthers, lookFrom};
 }
