@@ -148,6 +148,7 @@
     const step = cdr.u32(), bytes = cdr.bytes(), each = encoding === 'mono16' || encoding === '16UC1' ? 2 : 1;
     const Numbers = each === 2 ? Uint16Array : Uint8Array;
     if (step * height > bytes.length || width * each > step) throw new Error('an image is cut off');
+    if (step === each * width && each === 1) return {width, height, values: bytes.subarray(0, step * height)};
     // A copy: what is received is not aligned.
     if (step === width * each) return {width, height, values: new Numbers(bytes.slice(0, step * height).buffer)};
     const tight = new Uint8Array(width * height * each);

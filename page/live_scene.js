@@ -134,11 +134,17 @@ function makeScene(stage, look, onPick) {
       fit(0.1);
     }
     clip = kMatrix.product(kMatrix.perspective(48, wide / high), kMatrix.looking(eye(), view.at));
-    context.setTransform(1, 0, 0, 1, 0, 0);
+    const places = () => context.setTransform(dpr, 0, 0, dpr, 0, 0), pixels = () => context.setTransform(1, 0, 0, 1, 0, 0);
+    pixels();
     context.drawImage(floorPicture(), 0, 0);
+    // A box's points lie between its sides.
+    places();
+    paintSides((towardsEye) => towardsEye <= 0);
+    pixels();
     if (shown.cloud && shown.floorFromCamera) paintCloud(shown.cloud);
-    context.setTransform(dpr, 0, 0, dpr, 0, 0);
-    paintThings();
+    places();
+    paintSides((towardsEye) => towardsEye > 0);
+    paintLines();
     if (shown.floorFromCamera) paintCamera();
     paintNames();
     pause = kShare * (performance.now() - begun);
@@ -218,22 +224,31 @@ function makeScene(stage, look, onPick) {
     context.drawImage(points.canvas, 0, 0, canvas.width, canvas.height);
   }
 
-  /** Boxes and trails. Edges and trails are seen through the cloud. */
-  function paintThings() {
+  const middle = (places) => [0, 1, 2].map((k) => places.reduce((sum, p) => sum + p[k], 0) / places.length);
+  /** Those sides of the boxes that `isWanted`, by how far they look towards the eye. */
+  function paintSides(isWanted) {
+    const from = eye();
+    for (const {corners, colour, dim, chosen} of shown.things) {
+      const ends = corners.map(project), centre = middle(corners);
+      context.fillStyle = colour;
+      context.globalAlpha = dim ? 0.04 : chosen ? 0.34 : 0.16;
+      for (const side of kSides) {
+        const here = middle(side.map((k) => corners[k]));
+        if (!isWanted(dot3(minus3(here, centre), minus3(from, here))) || side.some((k) => ends[k][2] < kNear)) continue;
+        context.beginPath();
+        for (const k of side) context.lineTo(...onScreen(ends[k]));
+        context.fill();
+      }
+    }
+    context.globalAlpha = 1;
+  }
+  /** Trails and edges, which are seen through the cloud. */
+  function paintLines() {
     const lines = pen();
     for (const {points: way, colour} of shown.trails) {
       for (let k = 1; k < way.length; ++k) lines.line(way[k - 1], way[k], colour, 0.12 + 0.68 * k / way.length, 2);
     }
     for (const {corners, colour, dim, chosen} of shown.things) {
-      const ends = corners.map(project);
-      context.fillStyle = colour;
-      context.globalAlpha = dim ? 0.04 : chosen ? 0.34 : 0.16;
-      for (const side of kSides) {
-        if (side.some((k) => ends[k][2] < kNear)) continue;
-        context.beginPath();
-        for (const k of side) context.lineTo(...onScreen(ends[k]));
-        context.fill();
-      }
       const bright = mixed(colour, '#ffffff', 0.25);
       for (const [a, b] of kEdges) lines.line(corners[a], corners[b], bright, dim ? 0.3 : 1, chosen ? 2.6 : 1.6);
     }
@@ -273,6 +288,10 @@ function makeScene(stage, look, onPick) {
     }
     return wide;
   }
+  function box(left, top, wide, high, round) {
+    context.beginPath();
+    context.roundRect(left, top, wide, high, round);
+  }
   /** The names over the boxes, and the metres on the floor. */
   function paintNames() {
     const wanted = [];
@@ -303,13 +322,16 @@ function makeScene(stage, look, onPick) {
         continue;
       }
       context.globalAlpha = thing.dim ? 0.3 : 1;
+      box(left, y - 9, wide, 18, 3);
       context.fillStyle = 'rgba(8, 9, 10, .6)';
-      context.fillRect(left, y - 9, wide, 18);
+      context.fill();
+      box(left, y - 9, 3, 18, [3, 0, 0, 3]);
       context.fillStyle = thing.colour;
-      context.fillRect(left, y - 9, 3, 18);
+      context.fill();
       if (thing.moving) {
+        box(left - 0.5, y - 9.5, wide + 1, 19, 3.5);
         Object.assign(context, {strokeStyle: '#fff', lineWidth: 1});
-        context.strokeRect(left - 0.5, y - 9.5, wide + 1, 19);
+        context.stroke();
       }
       context.fillStyle = '#fff';
       context.fillText(text, left + 8, y + 0.5);
