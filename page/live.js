@@ -266,7 +266,7 @@
     });
   }
   /** How long frames take from the arrival of their first message until they are drawn; for those who measure. */
-  const cairnStats = window.cairnStats = {received: 0, drawn: 0, p50_ms: 0, p95_ms: 0};
+  const cairnStats = window.cairnStats = {computed: 0, received: 0, drawn: 0, p50_ms: 0, p95_ms: 0};  // computed: by the robot
   const delays = [];
   const drawnTimes = [];
   function count(frame) {
@@ -625,7 +625,7 @@
         trails.clear();
       }
       Object.assign(life, {frame: stats.frame, at: performance.now(), count: life.count + 1});
-      cairnStats.received = life.count;
+      Object.assign(cairnStats, {computed: stats.frame, received: life.count});
       const stages = new Map();
       for (const {stage, ms} of stats.stages ?? []) if (isNumber(ms)) stages.set(String(stage), (stages.get(String(stage)) ?? 0) + ms);
       history.push({frame: stats.frame, stages, latency: stats.latency_ms});
