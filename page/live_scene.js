@@ -45,7 +45,8 @@ const kEdges = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], 
 function makeScene(stage, look, onPick) {
   const canvas = stage.querySelector('canvas'), context = canvas.getContext('2d', {alpha: false});
   const kNear = 0.05;  // m before the eye
-  const kShare = 40;   // a picture waits so many times the time of the last one: the images come first
+  // A picture waits so many times the time of the last one, but no longer than so many ms: the images come first.
+  const kShare = 40, kLongest = 400;
 
   // ---- what is shown, and from where ----
 
@@ -61,7 +62,7 @@ function makeScene(stage, look, onPick) {
   /** Within a frame of the page; where the last picture is too new, with one of the next. */
   function paintWithOthers() {
     if (grip || performance.now() - paintedAt >= pause) paint();
-    else waits ||= setTimeout(draw, 3 * pause);
+    else waits ||= setTimeout(draw, pause + 100);
   }
   const eye = () => minus3(view.at, [
     Math.cos(view.yaw) * Math.cos(view.pitch), Math.sin(view.yaw) * Math.cos(view.pitch), -Math.sin(view.pitch)].map((v) => v * view.far));
@@ -131,7 +132,7 @@ function makeScene(stage, look, onPick) {
     const found = look();
     if (found) {
       shown = found;
-      fit(0.1);
+      fit(view.reach ? 0.1 : 1);
     }
     clip = kMatrix.product(kMatrix.perspective(48, wide / high), kMatrix.looking(eye(), view.at));
     const places = () => context.setTransform(dpr, 0, 0, dpr, 0, 0), pixels = () => context.setTransform(1, 0, 0, 1, 0, 0);
@@ -147,7 +148,7 @@ function makeScene(stage, look, onPick) {
     paintLines();
     if (shown.floorFromCamera) paintCamera();
     paintNames();
-    pause = kShare * (performance.now() - begun);
+    pause = Math.min(kLongest, kShare * (performance.now() - begun));
   }
 
   const kReach = 14;  // m of grid around the camera
