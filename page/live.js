@@ -89,7 +89,7 @@
     const wanted = new Set(['stats']);
     if (sees('picture')) wanted.add('left').add('labels');
     if (sees('disparity')) wanted.add('disparity').add('reject');
-    if (sees('scene') && scene) wanted.add('obstacles');
+    if (sees('scene')) wanted.add('obstacles');
     return wanted;
   };
   function subscribe() {
@@ -148,6 +148,7 @@
     const step = cdr.u32(), bytes = cdr.bytes(), each = encoding === 'mono16' || encoding === '16UC1' ? 2 : 1;
     const Numbers = each === 2 ? Uint16Array : Uint8Array;
     if (step * height > bytes.length || width * each > step) throw new Error('an image is cut off');
+    if (step === each * width && each === 1) return {width, height, values: bytes.subarray(0, step * height)};
     // A copy: what is received is not aligned.
     if (step === width * each) return {width, height, values: new Numbers(bytes.slice(0, step * height).buffer)};
     const tight = new Uint8Array(width * height * each);
@@ -174,7 +175,7 @@
   // Messages of one frame have one stamp. A few frames are kept, since a slow client skips messages of each channel by
   // itself; what is shown together is of one stamp.
   const kKept = 6;
-  const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity', obstacles: 'scene'};
+  const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity'};
   const frames = new Map();  // stamp → {stamp, at, and by topic what came}
   const latest = {picture: -1n, disparity: -1n};  // the stamp that was drawn last, or will be
   let decoding = 0;
@@ -186,7 +187,11 @@
     if (!topic) return;
     const stamp = head.getBigUint64(5, true);
     try {
-      if (topic === 'stats') return heardStats(JSON.parse(kText.decode(new Uint8Array(buffer, 13))), stamp);
+      if (topic === 'stats') {
+        const stats = JSON.parse(kText.decode(new Uint8Array(buffer, 13)));
+        heardStats(stats, stamp);
+        return put(topic, stats, stamp);
+      }
       const cdr = new Cdr(buffer, 13);
       if (topic === 'left') return void decode(compressedImage(cdr), stamp);
       put(topic, topic === 'obstacles' ? pointCloud(cdr) : plainImage(cdr), stamp);
@@ -222,19 +227,21 @@
     const frame = frameOf(stamp);
     frame[topic] = value;
     const panel = kPanelOf[topic];
-    if (panel === 'scene') {
-      newest.cloud = value;
-      return showScene();
-    }
+    if (topic === 'obstacles') newest.cloud = value;
+    if (panel) putInPanel(panel, frame);
+    // Each picture of the screen costs the browser much, whatever has changed in it: a frame's parts come together.
+    if ([...link.subscriptions.values()].every((name) => frame[name])) drawNow();
+    else drawsSoon ||= setTimeout(drawNow, kTogether);
+  }
+  function putInPanel(panel, frame) {
     const pair = panel === 'picture' ? ['left', 'labels'] : ['disparity', 'reject'];
     const isWhole = pair.every((name) => frame[name]);
     // On a slow link the two may never meet; then it is better to see one of them than none.
     const isLate = panel === 'picture' && frame.left && performance.now() - (drawnAt.picture ?? link.since) > 400;
     if (!isWhole && !isLate) return;
-    if (stamp < latest[panel]) return;  // its picture was decoded late
-    latest[panel] = stamp;
+    if (frame.stamp < latest[panel]) return;  // its picture was decoded late
+    latest[panel] = frame.stamp;
     due[panel] = frame;
-    soon();
   }
 
   // ---- painting at the screen's pace ----
@@ -242,17 +249,24 @@
   const due = {}, drawnAt = {};
   const newest = {cloud: null, stats: null, source: null};  // source: asked for since the last frame
   const shown = {};  // what is on the screen: {picture: frame, disparity: frame}
-  let asked = 0;
-  function soon() {
+  const kReading = 200;  // ms
+  let readAt = 0;
+  const kTogether = 40;  // ms that a frame's parts wait for the others; on a slow link some never come
+  let asked = 0, drawsSoon = 0;
+  function drawNow() {
+    clearTimeout(drawsSoon);
+    drawsSoon = 0;
     asked ||= requestAnimationFrame(() => {
       asked = 0;
       if (due.picture) paintPicture(due.picture);
       if (due.disparity) paintDisparity(due.disparity);
       due.picture = due.disparity = null;
+      scene.paintWithOthers();
+      if (performance.now() - readAt >= kReading) slowly();
     });
   }
   /** How long frames take from the arrival of their first message until they are drawn; for those who measure. */
-  const cairnStats = window.cairnStats = {received: 0, drawn: 0, p50_ms: 0, p95_ms: 0};
+  const cairnStats = window.cairnStats = {computed: 0, received: 0, drawn: 0, p50_ms: 0, p95_ms: 0};  // computed: by the robot
   const delays = [];
   const drawnTimes = [];
   function count(frame) {
@@ -302,6 +316,10 @@
       put: () => context.putImageData(image, 0, 0),
     };
   }
+  /** Nothing where it stands there already: the page would be laid out again. */
+  function write(node, text) {
+    if (node.textContent !== text) node.textContent = text;
+  }
   function shape(screen, width, height) {
     screen.style.setProperty('--aspect', `${width} / ${height}`);
     screen.style.setProperty('--ratio', String(width / height));
@@ -344,7 +362,7 @@
   }
   function showChosen() {
     if (shown.picture) paintPicture(shown.picture, true);
-    showScene();
+    scene.refresh();
   }
 
   // ---- the left image ----
@@ -408,7 +426,8 @@
       const x = sums.x / sums.n * scale, y = sums.y / sums.n * scale;
       let mark = pictureMarks.get(id);
       if (!mark) {
-        mark = {node: el('span', {class: 'mark', 'data-key': id}, el('b', {}, String(id)), ' ', el('span', {}, markText(id))), x, y};
+        const text = markText(id);
+        mark = {node: el('span', {class: 'mark', 'data-key': id}, el('b', {}, String(id)), ' ', el('span', {}, text)), text, at: '', x, y};
         mark.node.style.setProperty('--colour', idColour(id));
         marks.append(mark.node);
         pictureMarks.set(id, mark);
@@ -431,7 +450,8 @@
       let y = Math.min(high - 10, Math.max(10, mark.y));
       for (const other of placed) if (Math.abs(other.x - x) < other.half + half && Math.abs(other.y - y) < 20) y = other.y + 20;
       placed.push({x, y, half});
-      mark.node.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      const at = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      if (at !== mark.at) mark.node.style.transform = mark.at = at;
     }
     dimMarks();
   }
@@ -443,12 +463,9 @@
   }
   /** Not for each frame: nobody reads 30 numbers a second. */
   function writeMarks() {
-    for (const [id, mark] of pictureMarks) {
-      const text = markText(id), node = mark.node.lastChild;
-      if (node.textContent === text) continue;
-      node.textContent = text;
-      mark.wide = mark.node.offsetWidth;
-    }
+    const changed = [...pictureMarks].filter(([id, {text}]) => text !== markText(id));
+    for (const [id, mark] of changed) mark.node.lastChild.textContent = mark.text = markText(id);
+    for (const [, mark] of changed) mark.wide = mark.node.offsetWidth;  // all at once: the page is laid out once
   }
   function trackUnder(event) {
     const labels = shown.picture?.labels, at = labels && pixelUnder(event, panels.picture.screen, labels);
@@ -553,14 +570,14 @@
       if (first) counts.set(first.bit, counts.get(first.bit) + holes[bits]);
     }
     for (const [bit, {row, share}] of legend.rows) {
-      share.textContent = counts.get(bit) ? percent(counts.get(bit) / all) : '';
+      write(share, counts.get(bit) ? percent(counts.get(bit) / all) : '');
       row.classList.toggle('off', !counts.get(bit));
     }
     [range.low, (range.low + range.high) / 2, range.high].forEach((v, k) => {
       const d = pixelsOf(v), z = metresOf(d);
       legend.ticks[k].replaceChildren(...(isNumber(d) ? [`${fixed(d, 0)} px`, ...(isNumber(z) ? [el('br'), `${fixed(z, 1)} m`] : [])] : []));
     });
-    if (!panels.disparity.isRead) panels.disparity.count.textContent = `density ${percent(1 - hole / all, 0)}`;
+    if (!panels.disparity.isRead) write(panels.disparity.count, `density ${percent(1 - hole / all, 0)}`);
   }
   let blinker = 0;
   function blink(bit) {
@@ -608,7 +625,7 @@
         trails.clear();
       }
       Object.assign(life, {frame: stats.frame, at: performance.now(), count: life.count + 1});
-      cairnStats.received = life.count;
+      Object.assign(cairnStats, {computed: stats.frame, received: life.count});
       const stages = new Map();
       for (const {stage, ms} of stats.stages ?? []) if (isNumber(ms)) stages.set(String(stage), (stages.get(String(stage)) ?? 0) + ms);
       history.push({frame: stats.frame, stages, latency: stats.latency_ms});
@@ -618,7 +635,6 @@
     }
     // Frames that were on their way when it was paused know nothing of it.
     if (stats.paused === true || performance.now() - state.pausedAt > 1000) state.isPaused = stats.paused === true;
-    showScene();
     if (life.count === 1) slowly();
   }
 
@@ -675,39 +691,21 @@
 
   // ---- the 3-D view ----
 
-  const scene = beginScene();
-  function beginScene() {
-    const {stage} = panels.scene, none = stage.querySelector('.none');
-    try {
-      const made = makeScene(stage, (id) => (id === null ? state.picked !== null && pick(state.picked) : pick(id)));
-      if (made) return made;
-      none.textContent = 'This browser offers no WebGL2, which the 3-D view is drawn with. All else is shown.';
-    } catch (error) {
-      none.textContent = `The 3-D view cannot be drawn: ${error.message}`;
-    }
-    none.hidden = false;
-    return null;
-  }
   function frustumOf({rig, image}) {
     if (!rig || !image) return null;
     const at = (v, c) => (v - c) / rig.focal_px;
     return {left: at(0, rig.cx_px), right: at(image.width, rig.cx_px), top: at(0, rig.cy_px), bottom: at(image.height, rig.cy_px)};
   }
-  let sceneCloud = null;
-  function showScene() {
-    if (!scene || !newest.stats) return;
-    const stats = newest.stats, only = chosen();
+  const scene = makeScene(panels.scene.stage, sceneNow, (id) => (id === null ? state.picked !== null && pick(state.picked) : pick(id)));
+  function sceneNow() {
+    const {stats, cloud} = newest, only = chosen();
+    if (!stats) return null;
     const things = [...thingsById.values()].filter((thing) => thing.corners).map((thing) => ({
       id: thing.id, corners: thing.corners, colour: idColour(thing.id), chosen: only === thing.id, dim: only !== null && only !== thing.id,
       moving: thing.is_moving === true, text: [thing.id, markText(thing.id)].filter((t) => t !== '').join(' · '),
     }));
     const matrix = floorFromCamera(stats);
-    scene.show({
-      things, floorFromCamera: matrix ?? kLevelCamera, hasFloor: matrix !== null, frustum: frustumOf(stats),
-      trails: trailsFromHere(stats, only),
-      ...(newest.cloud !== sceneCloud ? {cloud: newest.cloud} : {}),
-    });
-    sceneCloud = newest.cloud;
+    return {things, trails: trailsFromHere(stats, only), cloud, floorFromCamera: matrix ?? kLevelCamera, hasFloor: matrix !== null, frustum: frustumOf(stats)};
   }
 
   // ---- the list of objects ----
@@ -727,12 +725,12 @@
     const all = [...thingsById.values()];
     thingsTable.refill(all);
     const moving = all.filter((t) => t.is_moving).length;
-    thingsNote.textContent = all.length ? `${all.length} in view${moving ? `, ${moving} moving` : ''}` : 'none';
+    write(thingsNote, all.length ? `${all.length} in view${moving ? `, ${moving} moving` : ''}` : 'none');
     const {image, name} = newest.stats ?? {};
-    panels.picture.count.textContent = [name, image && `${image.width} × ${image.height}`].filter(Boolean).join(' · ');
+    write(panels.picture.count, [name, image && `${image.width} × ${image.height}`].filter(Boolean).join(' · '));
     panels.picture.count.title = name ?? '';
     const floor = newest.stats && floorFromCamera(newest.stats) !== null;
-    panels.scene.count.textContent = !newest.stats ? '' : !newest.stats.rig ? 'no calibration: no metres' : floor ? 'grid: 1 m' : 'no floor found';
+    write(panels.scene.count, !newest.stats ? '' : !newest.stats.rig ? 'no calibration: no metres' : floor ? 'grid: 1 m' : 'no floor found');
   }
   const thingsNote = el('span', {class: 'note'});
   byId('found').append(el('div', {class: 'head'}, el('h2', {}, 'Objects'), thingsNote), thingsTable);
@@ -761,6 +759,7 @@
   const otherOf = (stages) => [...stages].reduce((sum, [stage, ms]) => (strip.colours.has(stage) ? sum : sum + ms), 0);
   const median = (values) => (values.length ? [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)] : NaN);
   function drawStrip() {
+    stripIsOld = false;
     const {canvas} = strip, {wide, high} = sizes.get(canvas) ?? {}, dpr = Math.min(2, devicePixelRatio || 1);
     if (!wide || !high) return;
     if (canvas.width !== Math.round(wide * dpr) || canvas.height !== Math.round(high * dpr)) {
@@ -774,7 +773,7 @@
     const totals = history.map(({stages, latency}) => Math.max(latency ?? 0, [...stages.values()].reduce((a, b) => a + b, 0)));
     const top = [...totals].sort((a, b) => a - b)[Math.floor(totals.length * 0.97)] * 1.2 || 10;
     strip.top += (top - strip.top) * (top > strip.top ? 0.5 : 0.05);
-    const left = 34, each = (wide - left) / kHistory, y = (ms) => high - 1 - (high - 8) * ms / strip.top;
+    const left = 34, each = (wide - left) / kHistory, perMs = (high - 8) / strip.top, y = (ms) => high - 1 - perMs * ms;
     context.font = '11px system-ui, sans-serif';
     context.textBaseline = 'middle';
     const step = roundStep(strip.top, 4);
@@ -787,18 +786,15 @@
     }
     context.textAlign = 'right';
     context.fillText('ms', left - 6, high - 5);
-    const first = kHistory - history.length;
-    history.forEach(({stages}, k) => {
-      const x = left + (first + k) * each;
-      let ms = 0;
-      const bar = (part, colour) => {
-        context.fillStyle = colour;
-        context.fillRect(x, y(ms + part), Math.max(1, each - 1), y(ms) - y(ms + part));
-        ms += part;
-      };
-      for (const stage of strip.stages) bar(stages.get(stage) ?? 0, strip.colours.get(stage));
-      bar(otherOf(stages), kOther);
-    });
+    const first = kHistory - history.length, tops = history.map(() => y(0));
+    // Colour by colour: one after the other a frame's would take three times as long.
+    for (const stage of [...strip.stages, null]) {
+      context.fillStyle = strip.colours.get(stage) ?? kOther;
+      history.forEach(({stages}, k) => {
+        const part = (stage === null ? otherOf(stages) : stages.get(stage) ?? 0) * perMs;
+        if (part > 0) context.fillRect(left + (first + k) * each, tops[k] -= part, Math.max(1, each - 1), part);
+      });
+    }
     context.strokeStyle = '#e3e6e9';
     context.lineWidth = 1.25;
     context.beginPath();
@@ -807,10 +803,10 @@
   }
   function writeStages() {
     for (const node of document.querySelectorAll('#stages [data-stage]')) {
-      node.textContent = `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)}`;
+      write(node, `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)}`);
     }
     const all = median(history.map(({stages}) => [...stages.values()].reduce((a, b) => a + b, 0)));
-    byId('time-note').textContent = history.length ? `${fixed(all, 1)} ms a frame` : '';
+    write(byId('time-note'), history.length ? `${fixed(all, 1)} ms a frame` : '');
   }
   function describeTime(event) {
     const box = strip.canvas.getBoundingClientRect(), each = (box.width - 34) / kHistory;
@@ -836,8 +832,8 @@
     }
     cell.node.hidden = value === null;
     if (value === null) return;
-    if (cell.text.textContent !== value) cell.text.textContent = value;
-    if (cell.small.textContent !== unit) cell.small.textContent = unit;
+    write(cell.text, value);
+    write(cell.small, unit);
     if (cell.node.title !== title) cell.node.title = title;
     if (cell.node.className !== kind) cell.node.className = kind;
   }
@@ -924,7 +920,7 @@
   function watch() {
     const {kind, word, head, text, small, bad} = judge();
     byId('link').dataset.state = kind;
-    byId('link').lastChild.textContent = word;
+    write(byId('link').lastChild, word);
     const news = panels.picture.stage.querySelector('.news');
     const said = head ? [head, text, small].join('|') : '';
     if (said !== verdict) {
@@ -1221,7 +1217,7 @@
     for (const name of kOverlays) byId('overlay').append(el('button', {type: 'button', onclick: () => setOverlay(name), title: 'What lies over the image (m)'}, name));
     if (!kOverlays.includes(state.overlay)) state.overlay = kOverlays[0];
     setOverlay(state.overlay);
-    for (const name of ['behind', 'side', 'above']) byId('viewpoints').append(el('button', {type: 'button', disabled: !scene, onclick: () => scene?.lookFrom(name)}, name));
+    for (const name of ['behind', 'side', 'above']) byId('viewpoints').append(el('button', {type: 'button', onclick: () => scene.lookFrom(name)}, name));
     showOptions(kept('options', innerWidth > 1240 ? 'shown' : 'hidden') === 'shown');
     for (const panel of Object.values(panels)) {
       panel.root.querySelector('.enlarge').addEventListener('click', () => enlarge(panel));
@@ -1275,23 +1271,16 @@
     });
     for (const {root} of Object.values(panels)) looked.observe(root);
     document.addEventListener('visibilitychange', subscribe);
-    setInterval(slowly, 200);
+    setInterval(() => { if (performance.now() - readAt >= 1.5 * kReading) slowly(); }, kReading);
     setInterval(askStatus, 1000);
-    const tick = () => {
-      if (stripIsOld && document.visibilityState === 'visible') {
-        stripIsOld = false;
-        drawStrip();
-      }
-      requestAnimationFrame(tick);
-    };
-    tick();
     measured.observe(panels.picture.screen);
     measured.observe(strip.canvas);
     watch();
     connect();
   }
-  /** What is read rather than watched. */
+  /** What is read rather than watched; with a frame where there is one. */
   function slowly() {
+    readAt = performance.now();
     watch();
     if (document.visibilityState !== 'visible') return;
     writeGauges();
@@ -1299,6 +1288,7 @@
     writeThings();
     writeLegend();
     writeStages();
+    if (stripIsOld) drawStrip();
   }
   begin();
 })();

@@ -40,7 +40,8 @@ ros::Image disparity_of(const ros::Header& header, View<const float> disparity_p
     const float* const from = disparity_px.row(y);
     std::transform(from, from + disparity_px.width(), grey.row(y), [&](float d) {
       if (!std::isfinite(d)) return Gray{0};
-      return static_cast<Gray>(std::clamp(1 + std::round((d - low) * scale), 1.0F, 255.0F));
+      // Rounds, as numbers from 1 on: std::round() is a call for each pixel, and took a third of all encoding.
+      return static_cast<Gray>(std::clamp(1 + (d - low) * scale, 1.0F, 255.0F) + 0.5F);
     });
   }
   return ros::image_of(header, View<const Gray>(grey));

@@ -194,13 +194,29 @@ void Client::changed(const std::set<std::string>& names) {
   }
 }
 
-void Client::offer(const ViewMessagePtr& message) {
-  const auto place = subscriptions_.find(message->channel);
-  if (place == subscriptions_.end() || place->second.last_frame >= message->frame) return;
-  Subscription& subscription = place->second;
-  if (subscription.waiting) ++skipped_;
-  subscription.last_frame = message->frame;
-  subscription.waiting = message;
+void Client::offer(const std::vector<ViewMessagePtr>& messages) {
+  const bool is_busy = is_mid_frame();
+  for (const ViewMessagePtr& message : messages) {
+    const auto place = subscriptions_.find(message->channel);
+    if (place == subscriptions_.end() || place->second.last_frame >= message->frame) continue;
+    Subscription& subscription = place->second;
+    const bool was_refused = subscription.offered == message->frame;
+    subscription.offered = message->frame;
+    if (is_busy && message->frame != begun_) {
+      if (!was_refused) ++skipped_;
+      continue;
+    }
+    if (was_refused) --skipped_;
+    if (subscription.waiting) ++skipped_;
+    subscription.last_frame = message->frame;
+    subscription.waiting = message;
+  }
+}
+
+bool Client::is_mid_frame() const {
+  return std::any_of(subscriptions_.begin(), subscriptions_.end(), [&](const auto& each) {
+    return each.second.waiting && each.second.waiting->frame == begun_;
+  });
 }
 
 std::optional<Outgoing> Client::next() {
@@ -225,6 +241,7 @@ std::optional<Outgoing> Client::next() {
     out.head[0] = kMessageData;
     store(place->second.id, out.head.data() + 1, 4);
     store(out.message->stamp_ns, out.head.data() + 5, 8);
+    begun_ = out.message->frame;
     ++sent_;
     return out;
   }

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "channels.hpp"
 #include "parameters.hpp"
@@ -40,8 +41,13 @@ class Client {
   void on_text(const std::string& text);
   void on_binary();
 
-  /// Queues the newest message of a channel; replaces one that is still waiting.
-  void offer(const ViewMessagePtr& message);
+  /// Queues the messages of the newest frame instead of those that still wait, unless is_mid_frame(): viewers
+  /// draw the messages of a frame together.
+  void offer(const std::vector<ViewMessagePtr>& messages);
+  /// A frame has been sent in part; the rest waits.
+  [[nodiscard]] bool is_mid_frame() const;
+  /// The frame of the message sent last; 0: none yet.
+  [[nodiscard]] std::uint64_t begun() const { return begun_; }
   /// Announces changed values of parameters.
   void changed(const std::set<std::string>& names);
 
@@ -51,7 +57,7 @@ class Client {
   [[nodiscard]] bool may_ask() const { return texts_.size() < 16; }
 
   [[nodiscard]] ChannelBits subscribed() const;
-  /// Number of replaced messages.
+  /// Number of messages that were offered and never sent.
   [[nodiscard]] std::uint64_t skipped() const { return skipped_; }
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
 
@@ -59,7 +65,8 @@ class Client {
   using Json = Parameters::Json;
   struct Subscription {
     std::uint32_t id = 0;
-    std::uint64_t last_frame = 0;  // the last frame offered
+    std::uint64_t last_frame = 0;  // the last frame queued
+    std::uint64_t offered = 0;     // the last frame offered
     ViewMessagePtr waiting;
   };
 
@@ -73,6 +80,7 @@ class Client {
   Parameters& parameters_;
   std::map<Channel, Subscription> subscriptions_;
   std::size_t turn_ = 0;  // the next channel, round robin
+  std::uint64_t begun_ = 0;
   std::deque<std::string> texts_;
   std::set<std::string> watched_;
   bool watches_all_ = false;

@@ -54,6 +54,7 @@ constexpr std::size_t kCompressedFrame = 1 << 16;  // bytes: of a compressed mes
 constexpr int kSendBuffer = 1 << 17;  // bytes: more would only wait in the system, and grow old there
 constexpr std::uint32_t kMostHeader = 8 * 1024;
 constexpr std::uint64_t kMostBody = 1024;
+constexpr std::uint64_t kAllFrames = ~std::uint64_t{0};
 constexpr int kMostVisitors = 32;  // connections besides the viewers'
 
 using Response = http::response<http::string_body>;
@@ -69,12 +70,15 @@ class Viewer {
   virtual ~Viewer() = default;
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
-  virtual void offer(const ViewMessagePtr& message) = 0;
+  /// The messages of one frame.
+  virtual void offer(const std::vector<ViewMessagePtr>& messages) = 0;
   virtual void changed(const std::set<std::string>& parameters) = 0;
   /// What is waiting is sent.
   virtual void pump() = 0;
   virtual void say_goodbye() = 0;
   [[nodiscard]] virtual ChannelBits subscribed() const = 0;
+  /// Those of which it would take a message now.
+  [[nodiscard]] virtual ChannelBits wanted() const { return subscribed(); }
   [[nodiscard]] virtual std::uint64_t skipped() const = 0;
 };
 
@@ -210,11 +214,13 @@ class ViewServer::Hub {
     note_subscriptions();
   }
   /// Somebody subscribed or left: the frame at hand is for them, too.
-  void note_subscriptions() {
+  void note_subscriptions() { note_demand(0); }
+  /// The demand has changed: of a viewer that had frame number `had`, and wants the one at hand if it is newer.
+  void note_demand(std::uint64_t had) {
     ChannelBits all = 0;
     std::uint64_t skipped = skipped_before_;
     for (const Viewer* viewer : viewers_) {
-      all |= viewer->subscribed();
+      all |= viewer->wanted();
       skipped += viewer->skipped();
     }
     clients_ = static_cast<int>(viewers_.size());
@@ -222,7 +228,7 @@ class ViewServer::Hub {
     {
       const std::lock_guard lock(mutex_);
       wanted_ = all;
-      is_new_ = is_new_ || (newest_ && all != 0);
+      is_new_ = is_new_ || (newest_number_ > had && all != 0);
     }
     wake_.notify_one();
   }
@@ -390,12 +396,10 @@ class ViewServer::Hub {
   void deliver(const std::vector<ViewMessagePtr>& messages, std::uint64_t revision) {
     // Nothing is destroyed meanwhile: what ends a viewer is called by the system's answers alone.
     for (Viewer* viewer : std::set<Viewer*>(viewers_)) {
-      for (const ViewMessagePtr& message : messages) viewer->offer(message);
+      viewer->offer(messages);
       viewer->pump();
     }
-    std::uint64_t skipped = skipped_before_;
-    for (const Viewer* viewer : viewers_) skipped += viewer->skipped();
-    skipped_ = skipped;
+    note_demand(kAllFrames);
     if (std::exchange(revision_, revision) != revision) tell_changes();
     {
       const std::lock_guard lock(mutex_);
@@ -477,11 +481,13 @@ class MovingPicture : public Viewer, public std::enable_shared_from_this<MovingP
         "Content-Type: multipart/x-mixed-replace; boundary=cairn\r\n\r\n--cairn\r\n";
     write(asio::buffer(text_));
   }
-  void offer(const ViewMessagePtr& message) override {
-    if (message->channel != Channel::left || message->frame <= last_) return;
-    last_ = message->frame;
-    if (waiting_) ++skipped_;
-    waiting_ = message;
+  void offer(const std::vector<ViewMessagePtr>& messages) override {
+    for (const ViewMessagePtr& message : messages) {
+      if (message->channel != Channel::left || message->frame <= last_) continue;
+      last_ = message->frame;
+      if (waiting_) ++skipped_;
+      waiting_ = message;
+    }
   }
   void changed(const std::set<std::string>&) override {}
   void pump() override {
@@ -582,13 +588,15 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     });
   }
 
-  void offer(const ViewMessagePtr& message) override { client_.offer(message); }
+  void offer(const std::vector<ViewMessagePtr>& messages) override { client_.offer(messages); }
   void changed(const std::set<std::string>& parameters) override { client_.changed(parameters); }
   void pump() override {
     if (is_writing_ || is_over_) return;
+    const bool was_mid_frame = client_.is_mid_frame();
     auto next = client_.next();
     if (!next) return;
     out_ = std::move(*next);
+    if (was_mid_frame && !client_.is_mid_frame()) hub_.note_demand(client_.begun());
     is_writing_ = true;
     const auto done = [self = this->shared_from_this()](ErrorCode error, std::size_t) {
       self->is_writing_ = false;
@@ -610,6 +618,9 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     if (!std::exchange(is_over_, true) && is_open_) close();
   }
   [[nodiscard]] ChannelBits subscribed() const override { return client_.subscribed(); }
+  [[nodiscard]] ChannelBits wanted() const override {
+    return client_.is_mid_frame() ? 0 : client_.subscribed();
+  }
   [[nodiscard]] std::uint64_t skipped() const override { return client_.skipped(); }
 
  private:

@@ -4,6 +4,7 @@
 draws against what `cairn segment` finds, options, pause and step, a server that goes and comes back. Skipped as
 in_browser.py says, and where views are not built in. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -59,13 +60,28 @@ def long_sequence(folder):
     (folder / "stamps.txt").write_text("".join(f"{0.2 * k:.1f}\n" for k in range(FRAMES)))
 
 
+def processor_ms(root):
+    """What a process and those under it have taken so far."""
+    stats = {}
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = path.read_text().rpartition(")")[2].split()
+        except OSError:  # it has ended
+            continue
+        stats[int(path.parent.name)] = (int(fields[1]), int(fields[11]) + int(fields[12]))
+    family = {root}
+    while more := {pid for pid, (parent, _) in stats.items() if parent in family} - family:
+        family |= more
+    return 1000 * sum(stats[pid][1] for pid in family if pid in stats) / os.sysconf("SC_CLK_TCK")
+
+
 class LivePage(PageTest):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.source = pathlib.Path(cls.folder.name) / HOSTILE
         long_sequence(cls.source)
-        cls.browser = browser("--enable-unsafe-swiftshader")  # WebGL without a graphics processor
+        cls.browser = browser("--disable-3d-apis")  # as on a computer without a graphics processor
         cls.browser.set_script_timeout(60)
         cls.lives = []
 
@@ -84,8 +100,7 @@ class LivePage(PageTest):
         for live in self.lives:
             live.end()
         self.assertEqual(ended, [])  # by itself
-        # WebGL without a graphics processor reports how slow it is.
-        said = [entry["message"] for entry in self.browser.get_log("browser") if "GL Driver Message" not in entry["message"]]
+        said = [entry["message"] for entry in self.browser.get_log("browser")]
         if self.may_fail_to_connect:
             said = [message for message in said if "ERR_CONNECTION" not in message and "WebSocket connection" not in message]
         self.assertEqual(said, [])
@@ -167,28 +182,37 @@ class LivePage(PageTest):
         for each in objects:
             if each["distance_m"] is not None:
                 self.assertEqual(shown[str(each["id"])], f"{each['distance_m']:.2f}")
-        for canvas in ("[data-panel=picture] canvas", "[data-panel=picture] canvas:nth-of-type(2)", "[data-panel=disparity] canvas"):
+        for canvas in ("[data-panel=picture] canvas", "[data-panel=picture] canvas:nth-of-type(2)", "[data-panel=disparity] canvas",
+                       "[data-panel=scene] canvas"):
             self.assertGreater(len(self.colours(canvas)), 5, canvas)
         stats = self.script("return window.cairnStats")
         print(f"{stats['drawn']} frames drawn; from arrival until drawn {stats['p50_ms']:.1f} ms (median), {stats['p95_ms']:.1f} ms (95 %)")
         self.keep("live")
 
     def test_prints_how_fast_it_draws(self):
-        """A pair every 33 ms. Measured, not judged: a drawn frame is all that is asked for."""
-        self.look_at(self.live("--pace", "6", "--loop"), frames=30)
-        for panels in ("all panels", "the left image alone"):
-            if panels != "all panels":
-                ActionChains(self.browser).double_click(self.find("[data-panel=picture] canvas")).perform()
+        """A pair every 33 ms. Measured, not judged: a drawn frame is all that is asked for. The preset `default` takes more
+        than 33 ms of one processor for a pair, so what is received is what it computes beside the browser; `paper` keeps pace."""
+        print(f"30 pairs a second to {os.cpu_count()} processors, load before {os.getloadavg()[0]:.1f}; Chromium without a graphics processor")
+        for preset in ("default", "paper"):
+            live = self.live("--pace", "6", "--loop", "--preset", preset)
+            self.look_at(live, frames=30)
+            for panels in ("all panels", "the left image alone"):
+                if panels != "all panels":
+                    ActionChains(self.browser).double_click(self.find("[data-panel=picture] canvas")).perform()
                 time.sleep(20)  # its figures are those of the last 300 frames
-            counts = lambda: self.script("return [performance.now(), window.cairnStats.received, window.cairnStats.drawn]")
-            before = counts()
-            time.sleep(12)
-            after = counts()
-            seconds = (after[0] - before[0]) / 1000
-            stats = self.script("return window.cairnStats")
-            print(f"{panels}: {(after[1] - before[1]) / seconds:.1f} frames a second received, {(after[2] - before[2]) / seconds:.1f} drawn; "
-                  f"from arrival until drawn {stats['p50_ms']:.1f} ms (median), {stats['p95_ms']:.1f} ms (95 %)")
-            self.assertGreater(after[2], before[2])
+                counts = lambda: [*self.script("return [performance.now(), window.cairnStats.received, window.cairnStats.drawn, window.cairnStats.computed]"),
+                                  processor_ms(self.browser.service.process.pid), processor_ms(live.process.pid)]
+                before = counts()
+                time.sleep(12)
+                after = counts()
+                wall, received, drawn, computed, of_browser, of_cairn = (b - a for a, b in zip(before, after))
+                self.assertGreater(drawn, 0)
+                stats = self.script("return window.cairnStats")
+                print(f"{preset}, {panels}: {1000 * computed / wall:.1f} frames a second computed, {1000 * received / wall:.1f} received, "
+                      f"{1000 * drawn / wall:.1f} drawn; from arrival until drawn {stats['p50_ms']:.1f} ms (median), {stats['p95_ms']:.1f} ms (95 %); "
+                      f"processor time: Chromium {of_browser / drawn:.1f} ms a drawn frame, cairn {of_cairn / max(1, computed):.1f} ms a computed one")
+            self.browser.get("about:blank")
+            live.end()
 
     def test_names_from_outside_are_shown_and_not_obeyed(self):
         self.look_at(self.live("--tunable"))
@@ -333,18 +357,6 @@ class LivePage(PageTest):
                 self.keep(f"live_{width}")
         finally:
             self.browser.set_window_size(size["width"], size["height"])
-
-    def test_without_webgl_all_else_is_shown(self):
-        mine = self.browser
-        plain = browser("--disable-3d-apis")
-        try:
-            type(self).browser = plain
-            self.look_at(self.live("--tunable"))
-            self.assertIn("no WebGL2", self.find("[data-panel=scene] .none").text)
-            self.assertGreater(len(self.find_all("#things tbody tr")), 0)
-        finally:
-            type(self).browser = mine
-            plain.quit()
 
 
 if __name__ == "__main__":

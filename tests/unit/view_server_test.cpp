@@ -10,10 +10,12 @@
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cstdio>
+#include <iterator>
 #include <live/runner.hpp>
 #include <live/view/access.hpp>
 #include <live/view/client.hpp>
 #include <live/view/view_server.hpp>
+#include <map>
 #include <mutex>
 #include <random>
 #include <ros/from_step.hpp>
@@ -597,6 +599,48 @@ TEST(ViewServer, AClientThatDoesNotReadCostsTheOthersNothing) {
   RecordProperty("bytes", std::to_string(more));
   std::printf("alone %.0f Hz, beside a client that does not read %.0f Hz, %.0f kB\n", alone, with_sleeper,
               more / 1000);
+}
+
+TEST(ViewServer, ASlowClientGetsWholeFrames) {
+  const std::vector<std::string> topics{"/cairn/left", "/cairn/labels", "/cairn/reject", "/cairn/disparity",
+                                        "/cairn/stats"};
+  Served served;
+  // It reads little at a time, and has little room.
+  WebSocket slow(served.port, served.with_token(), "foxglove.sdk.v1", false, 1 << 14);
+  std::uint32_t id = 0;
+  for (const std::string& topic : topics) slow.subscribe(topic, ++id);
+  std::atomic<bool> is_over = false;
+  std::atomic<int> offered = 0;
+  std::thread run([&] {
+    while (!is_over) {
+      served.server.offer(renumbered(offered++));
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  });
+  std::map<std::uint64_t, std::size_t> messages;  // of a frame
+  for (int i = 0; i < 60; ++i) {
+    const auto data = slow.read_data();
+    if (!data) break;
+    ++messages[data->stamp_ns];
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  is_over = true;
+  run.join();
+  const std::uint64_t last = static_cast<std::uint64_t>(offered) * 100'000'000;
+  std::size_t of_last = messages.contains(last) ? messages[last] : 0;
+  // Not the first, which began before all was subscribed to, and not the last, which is cut off.
+  ASSERT_GT(messages.size(), 4U);
+  messages.erase(messages.begin());
+  messages.erase(std::prev(messages.end()));
+  for (const auto& [stamp, count] : messages) EXPECT_EQ(count, topics.size()) << stamp;
+  EXPECT_GT(offered, 2 * static_cast<int>(messages.size()));
+  EXPECT_LT(served.server.encoded(), 5U * static_cast<unsigned>(offered)) << "encodes what it cannot send";
+  // The newest frame comes in the end, though it was offered while another was on its way.
+  while (of_last < topics.size()) {
+    const auto data = slow.read_data();
+    ASSERT_TRUE(data);
+    if (data->stamp_ns == last) ++of_last;
+  }
 }
 
 TEST(ViewServer, SaysHowTheCameraDoesWhileItGivesNoFrame) {
