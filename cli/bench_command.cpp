@@ -34,7 +34,7 @@ using report::Samples;
 struct BenchOptions {
   InputOptions input;
   ExecOptions exec;
-  std::optional<std::string> size;  // of the pair that the program draws
+  std::optional<std::string> size;  // of the rendered pair
   std::string truth;
   std::optional<int> frames;
   std::optional<double> seconds;
@@ -42,13 +42,13 @@ struct BenchOptions {
   std::optional<std::string> json;
 };
 
-// ---- what is measured on ----
+// ---- the input ----
 
-/// What is known to be true of the pair.
+/// The known truth of the pair.
 struct Truth {
   std::string source;
   Image<float> disparity_px;
-  Image<std::uint8_t> hidden;  // empty where not known
+  Image<std::uint8_t> hidden;  // empty if unknown
 };
 
 struct Subject {
@@ -84,7 +84,7 @@ Size size_in(const std::string& words) {
 }
 
 Subject draw(const BenchOptions& options) {
-  constexpr float kShareOfRange = 0.75F;  // that the scene's disparities take up
+  constexpr float kShareOfRange = 0.75F;  // of the range, covered by the scene's disparities
   if (!options.truth.empty())
     throw Error("--truth " + options.truth + ": is for a pair of yours; give LEFT and RIGHT");
   if (!options.input.calib.empty())
@@ -160,7 +160,7 @@ report::Limits limits_of(const BenchOptions& options) {
   return limits;
 }
 
-// ---- the findings ----
+// ---- results ----
 
 struct Quantiles {
   double least = 0;
@@ -181,7 +181,7 @@ struct Accuracy {
   DisparityErrors errors;
 };
 
-/// Ours first. Columns that no matcher can search in full are left out for all.
+/// Our row first. Columns that some matcher cannot search in full are excluded for all.
 struct Accuracies {
   int from_column = 0;
   std::vector<Accuracy> rows;
@@ -210,7 +210,7 @@ struct Findings {
   std::optional<Accuracies> accuracies;
 };
 
-// ---- for people ----
+// ---- text ----
 
 std::string ms(double milliseconds) {
   return text_of("%.3f", milliseconds);
@@ -300,9 +300,9 @@ std::string accuracy_table(const Findings& found) {
          " on; bad: share of the matched pixels that are off by more than 1 or 2 px.\n";
 }
 
-// ---- for programs ----
+// ---- JSON ----
 
-/// JSON has neither NaN nor infinity: null. A nanosecond is as fine as the clocks are.
+/// null for NaN and infinity, which JSON does not have; otherwise rounded to ns, the clock's resolution.
 Json json(double value) {
   constexpr double kSteps = 1e6;
   return std::isfinite(value) ? Json(std::round(value * kSteps) / kSteps) : Json(nullptr);
@@ -359,7 +359,7 @@ Json accuracy_json(const Findings& found) {
           {"matchers", rows}};
 }
 
-/// The content of --json's file (docs/formats.md).
+/// The content of the --json file (docs/formats.md).
 std::string bench_json(const Findings& found) {
   const Subject& subject = found.subject;
   const FrameTimes& times = found.times;
@@ -393,7 +393,7 @@ std::string bench_json(const Findings& found) {
                  {"later_allocations", times.later_allocations}};
   j["opencv"] = opencv_json(found);
   j["accuracy"] = accuracy_json(found);
-  // A file's name may be no UTF-8, which is no reason to fail.
+  // A file name that is not UTF-8 is not an error.
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -91,7 +91,7 @@ bool are_copies(const MapFile& file, const MapFile& other) {
   return !file.map_id().empty() && file.map_id() == other.map_id();
 }
 
-/// Copies of one map by their ids, others by what they look like.
+/// Merges copies of one map by id, other maps by appearance.
 Merged merged_of(const MapFile& file, const MapFile& other, const MapOptions& options) {
   Merged merged = are_copies(file, other) ? merge_copies(file.load(), other.load(), LandmarksConfig{})
                                           : merge(file.load(), other.load(), std::nullopt, LandmarksConfig{});
