@@ -72,7 +72,7 @@ constexpr std::array kQuick{
 }  // namespace
 
 void ReadyMatcher::compute(const StereoPair& pair) const {
-  // In narrower pictures OpenCV 4.6 throws on threads of its own, which nobody can catch.
+  // For narrower images OpenCV 4.6 throws on its own threads, which cannot be caught.
   constexpr int kMargin = 16;
   const cv::StereoMatcher& matcher = *state_->matcher;
   const int least_width = matcher.getNumDisparities() + std::abs(matcher.getMinDisparity()) + kMargin;
