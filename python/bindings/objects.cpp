@@ -48,7 +48,7 @@ Image<Space> space_of(const Call& call, const Objects& objects, const DisparityI
   return label_space(cues, rig.rig(), call.config.ground, call.exec);
 }
 
-/// One of them, or with a slice a list of some.
+/// An element, or for a slice a list.
 py::object chosen(const py::object& self, const py::object& index) {
   const auto& list = self.cast<const Objects&>().list;
   const auto count = static_cast<py::ssize_t>(list.size());
