@@ -77,7 +77,7 @@ void ReadyMatcher::compute(const StereoPair& pair) const {
   const cv::StereoMatcher& matcher = *state_->matcher;
   const int least_width = matcher.getNumDisparities() + std::abs(matcher.getMinDisparity()) + kMargin;
   if (pair.size().width < least_width || pair.size().height < kMargin) {
-    throw Error("wants at least " + text(Size{least_width, kMargin}) + " px");
+    throw Error("needs at least " + text(Size{least_width, kMargin}) + " px");
   }
   try {
     state_->matcher->compute(matrix(pair.left()), matrix(pair.right()), state_->sixteenths);

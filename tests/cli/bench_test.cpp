@@ -29,14 +29,14 @@ std::vector<std::string> names_of(const Json& list) {
   return names;
 }
 
-TEST_F(Bench, DrawsAPairWhereNobodyGivesOneAndSaysSo) {
+TEST_F(Bench, RendersAPairIfNoneIsGivenAndSaysSo) {
   const auto before = everything();
   const Outcome outcome = run({"bench", "--size", "160x120", "--frames", "2", "--no-opencv"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   for (const char* words :
-       {"drawn by the program, 160x120", "median ms", "p99 ms", "match", "frames per second", "image buffers",
-        "supported: scalar", "bad-2", "2 frames after the first"}) {
+       {"rendered room, 160x120", "median ms", "p99 ms", "match", "frames per second", "image buffers",
+        "supported: scalar", "bad-2", "2 frames after a warm-up frame"}) {
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
   }
   EXPECT_EQ(everything(), before);
@@ -128,10 +128,10 @@ TEST_F(Bench, TakesAFolderWithItsTruthAndLeavesOutWhatIsHidden) {
   EXPECT_EQ(found.at("accuracy").at("matchers").at(0).at("known_px"), (160 - 64) * 72 - 10);
 }
 
-TEST_F(Bench, SaysWhenOpenCvRefusesThePair) {
+TEST_F(Bench, SaysWhyOpenCvCannotMatchThePair) {
   const Outcome outcome = run({"bench", "--size", "70x40", "--frames", "1"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(outcome.out.find("StereoBM refuses this pair") != std::string::npos ||
+  EXPECT_TRUE(outcome.out.find("StereoBM cannot match this pair") != std::string::npos ||
               outcome.out.find("not built in") != std::string::npos)
       << outcome.out;
 }
