@@ -512,7 +512,7 @@ std::string explanation() {
   std::string lines;
   fields(config, [&](const char* name, const auto& value, const char* unit, const char* help, const auto&) {
     std::string start = name;
-    start.resize(18, ' ');
+    start.resize(20, ' ');
     std::string amount = text_of("%g ", static_cast<double>(value)) + unit;
     amount.resize(std::max<std::size_t>(amount.size(), 16), ' ');
     lines += start + amount + help + "\n";
