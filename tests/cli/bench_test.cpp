@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 class Bench : public CommandTest {
  protected:
-  /// What --json says of a run that must succeed.
+  /// The --json output of a run that must succeed.
   [[nodiscard]] Json measured(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "bench");
     arguments.insert(arguments.end(), {"--json", path("bench.json")});
@@ -99,7 +99,7 @@ TEST_F(Bench, JudgesOursAndOpenCvsMatchersWhereTheTruthIsGiven) {
   EXPECT_EQ(found.at("accuracy").at("both_cameras"), false);
   const Json& rows = found.at("accuracy").at("matchers");
   EXPECT_EQ(rows.at(0).at("name"), "cairn");
-  // Random dots of one disparity: whoever matches at all is right.
+  // Random dots of one disparity: every matcher that finds a match is correct.
   for (const Json& row : rows) {
     EXPECT_EQ(row.at("known_px"), (160 - 32) * 72);
     EXPECT_GT(row.at("density"), 0.5) << row;
