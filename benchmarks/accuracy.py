@@ -485,7 +485,7 @@ COLUMNS = """## Presets and ablations
 | precision | share of our objects with IoU ≥ 0.5 with a true object |
 | median E | of the paper's E (Eq. 5, 1/IoU − 1) over all true objects; each counts for 200 % at most |
 | boundary F | mean over all true objects |
-| phantoms | per frame: objects of ours of at least 200 px with little overlap with true ones |
+| phantoms | per frame: reported objects of at least 200 px with little overlap with true ones |
 | density, bad-2 | over the pixels visible to both cameras: share of the pixels with a disparity, and of these the share with an error above 2 px; rc_tabletop has no true disparity |
 | ms | one core's time for the whole method, median frame |
 

@@ -344,10 +344,10 @@ std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOp
             : "";
     all += "precision           IoU >= 0.5: " + percent(s.precision_50()) +
            "   IoU >= 0.75: " + percent(s.precision_75()) + "   of " + std::to_string(s.our_objects) +
-           " objects of ours" + partial + "\n";
+           " reported objects" + partial + "\n";
     all += "phantoms            " + text_of("%.2f", s.phantoms_per_frame()) + " per frame\n";
   } else {
-    all += "precision           not known: the truth is partial\n";
+    all += "precision           undefined: the truth is partial\n";
   }
   all += "E                   mean " + percent(s.mean_error) + "   median " + percent(s.median_error) +
          "   (capped at 200 %; " + std::to_string(s.missed) + " reach that)\n";
@@ -357,7 +357,7 @@ std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOp
   all += "segmented           over: " + std::to_string(s.over_segmented) +
          "   under: " + std::to_string(s.under_segmented) + "\n";
   if (const Confidence c = judge_confidence(frames); c.known) {
-    all += "confidence >= 0.8   " + std::to_string(c.objects) + " objects of ours";
+    all += "confidence >= 0.8   " + std::to_string(c.objects) + " reported objects";
     if (c.objects > 0)
       all += ", " + percent(c.right / static_cast<double>(c.objects)) + " of them with IoU >= 0.5";
     all += "\n";
@@ -377,7 +377,7 @@ std::string disparity_block(const char* title, const DisparityErrors& e, const s
   all += "  density           " + percent(e.density()) + " of " + std::to_string(e.known) + " pixels\n";
   bad("  of the matched    ", [&](std::size_t t) { return e.bad_of_matched(t); });
   bad("  with holes        ", [&](std::size_t t) { return e.bad_of_known(t); });
-  all += "  off by            mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
+  all += "  error             mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
          text_of("%.3f px", e.root_mean_square_px()) + "   within 1 px RMS " +
          text_of("%.3f px", e.sigma_px()) + "\n";
   return all;

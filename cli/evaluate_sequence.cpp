@@ -241,9 +241,9 @@ std::string place_lines(const PlaceErrors& places) {
          "from the camera: median " + metres(percentile(places.in_camera_m, 0.5)) + "   95 % below " +
          metres(percentile(places.in_camera_m, 0.95)) + "\n";
   if (places.stated > 0)
-    all += "                    in the ellipsoid stated to hold 95 %: " +
+    all += "                    within the stated 95 % ellipsoid: " +
            percent(share(places.inside, places.stated)) + "   NEES: median " +
-           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 where it is right)\n";
+           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
   return all;
 }
 
@@ -251,9 +251,10 @@ std::string moving_lines(const MovingErrors& e) {
   if (!e.is_known) return {};
   std::string all = "moving              ";
   for (const auto& [id, frames] : e.frames_to_detect) {
-    all += "object " + std::to_string(id) + ": " +
-           (frames ? "after " + std::to_string(*frames) + " frames" : std::string("never seen to move")) +
-           "   ";
+    all +=
+        "object " + std::to_string(id) + ": " +
+        (frames ? "after " + std::to_string(*frames) + " frames" : std::string("never labelled as moving")) +
+        "   ";
   }
   if (e.moving > 0) all += percent(share(e.labelled, e.moving)) + " of the frames in which it moves   ";
   return all + "false: " + percent(share(e.labelled_wrong, e.at_rest)) + " of " + std::to_string(e.at_rest) +
@@ -280,14 +281,14 @@ std::string trajectory_lines(const TrajectoryError& e) {
 std::string lines_of(const SequenceScores& s) {
   const ObjectSummary& o = s.objects;
   std::string all = track_table(s) + "\n";
-  all += "objects             " + std::to_string(o.true_objects) + " true ones in " +
-         std::to_string(s.frames) + " frames, " + std::to_string(o.our_objects) + " of ours\n";
+  all += "objects             " + std::to_string(o.true_objects) + " true objects in " +
+         std::to_string(s.frames) + " frames, " + std::to_string(o.our_objects) + " reported\n";
   all += "found               IoU >= 0.5: " + percent(o.recall_50()) +
          "   IoU >= 0.75: " + percent(o.recall_75()) + "\n";
   all += "precision           " +
          (o.complete_frames > 0
               ? "IoU >= 0.5: " + percent(o.precision_50()) + "   IoU >= 0.75: " + percent(o.precision_75())
-              : std::string("not known: the truth is partial")) +
+              : std::string("undefined: the truth is partial")) +
          "\n";
   all += "E                   mean " + percent(o.mean_error) + "   median " + percent(o.median_error) + "\n";
   all += "lost and found      " + std::to_string(s.steadiness.found_again) + " times, " +
@@ -297,14 +298,15 @@ std::string lines_of(const SequenceScores& s) {
   all += place_lines(s.places) + moving_lines(s.moving);
   if (s.landmarks.is_known) {
     all += "landmarks           in view again: " + std::to_string(s.landmarks.again) +
-           "   known again: " + std::to_string(s.landmarks.re_identified) +
-           "   taken for another: " + std::to_string(s.landmarks.wrong) + "\n";
+           "   recognised: " + std::to_string(s.landmarks.re_identified) +
+           "   mistaken for another: " + std::to_string(s.landmarks.wrong) + "\n";
   }
   if (s.changes.is_known) {
     all += "changes             found " + std::to_string(s.changes.found) + " of " +
            std::to_string(s.changes.expected) + "   wrong: " + std::to_string(s.changes.wrong) + " of " +
            std::to_string(s.changes.reported) + " reported";
-    if (!s.changes.errors_m.empty()) all += "   way off by " + metres(percentile(s.changes.errors_m, 0.5));
+    if (!s.changes.errors_m.empty())
+      all += "   displacement error " + metres(percentile(s.changes.errors_m, 0.5));
     all += "\n";
   }
   if (s.trajectory) all += trajectory_lines(*s.trajectory);

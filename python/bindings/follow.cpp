@@ -405,7 +405,7 @@ void bind_results(py::module_& m) {
           [](const Track& t) { return t.has_place ? std::optional(matrix(t.covariance_m2)) : std::nullopt; },
           "3 x 3 of position_m, m²; None without a rig")
       .shows("velocity_m_s", &if_placed<&Track::velocity_m_s>,
-             "(x, y, z), m/s; 0 where it stands; None without a rig")
+             "(x, y, z), m/s; 0 if static; None without a rig")
       .shows("extent_m", &if_placed<&Track::extent_m>,
              "(x, y, z) in the camera's frame, m: the box around its points; None without a rig")
       .shows("confidence", &Track::confidence, "0 to 1, smoothed")

@@ -75,7 +75,8 @@ std::unique_ptr<PyFrame> segment_any(const Call& call, Picture& left,
   if (disparity_map.is_none())
     return segment_pair(std::move(left), Picture(right, "right", call.bgr, call.exec.pool), recipe,
                         call.exec);
-  if (!right.is_none()) throw Error("right: found an image beside disparity_map, expected one of the two");
+  if (!right.is_none())
+    throw Error("right: found an image together with disparity_map, expected one of the two");
   return segment_given(std::move(left), DisparityInput(disparity_map, "disparity_map", call.exec), recipe,
                        call.exec);
 }
@@ -228,7 +229,7 @@ void bind_frame_class(py::module_& m) {
       .method("scan",
               "The nearest obstacle in each direction: an ObstacleScan. None without a rig or a ground.",
               &from_floor<&scan_obstacles>)
-      .method("grid", "What stands where on the floor: an ObstacleGrid. None without a rig or a ground.",
+      .method("grid", "The obstacles on the floor: an ObstacleGrid. None without a rig or a ground.",
               &from_floor<&map_obstacles>)
       .method("depth_m", "(H, W) float32, m: how far each pixel is along the view; NaN = hole.", &depth_of)
       .method("points",

@@ -187,7 +187,7 @@ PyConfig config_of(const py::object& config, const std::string& preset, const py
                         ", expected a cairn.Config, the name of a file, or None");
   auto made = config.cast<PyConfig>();
   if (preset != "default" && preset != made.preset) {
-    throw Error("preset: found '" + preset + "' beside a config of preset '" + made.preset +
+    throw Error("preset: found '" + preset + "' together with a config of preset '" + made.preset +
                 "', expected one of the two");
   }
   set_groups(made.config, groups);

@@ -373,7 +373,7 @@ TEST_F(Command, EvaluateFindsNoErrorInTheTruthItself) {
   }
   write(at("truth/a/partial"), "");
   write(at("truth/b/partial"), "");
-  EXPECT_NE(run({"evaluate", path("result"), path("truth")}).out.find("precision           not known"),
+  EXPECT_NE(run({"evaluate", path("result"), path("truth")}).out.find("precision           undefined"),
             std::string::npos);
 }
 

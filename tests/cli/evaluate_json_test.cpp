@@ -182,7 +182,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
   prints("found               IoU >= 0.5: " + percent(s.at("recall_50")) +
          "   IoU >= 0.75: " + percent(s.at("recall_75")));
   prints("precision           IoU >= 0.5: " + percent(s.at("precision_50")) + "   IoU >= 0.75: " +
-         percent(s.at("precision_75")) + "   of " + s.at("ours").dump() + " objects of ours");
+         percent(s.at("precision_75")) + "   of " + s.at("ours").dump() + " reported objects");
   prints("phantoms            " + text_of("%.2f", s.at("phantoms_per_frame")));
   prints("E                   mean " + percent(s.at("mean_error")) + "   median " +
          percent(s.at("median_error")));
@@ -192,7 +192,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
          text_of("%.3f", s.at("mean_boundary_f_found")));
   prints("over: " + s.at("over_segmented").dump() + "   under: " + s.at("under_segmented").dump());
   const Json& confident = s.at("confident");
-  prints("confidence >= 0.8   " + confident.at("ours").dump() + " objects of ours, " +
+  prints("confidence >= 0.8   " + confident.at("ours").dump() + " reported objects, " +
          percent(confident.at("precision_50")));
   for (const char* pixels : {"both_cameras", "all"}) {
     const Json& d = whole.at("summary").at("disparity").at(pixels);
