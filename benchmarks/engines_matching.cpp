@@ -75,7 +75,6 @@ using report::text_of;
 
 /// The matching stages of a configuration, as run by segment(): with left-right check and uniqueness if they
 /// are on.
-/// they are on.
 DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec) {
   const Matches matches = match(pair, config.match, config.semi_global, exec);
   auto refined = refine_subpixel(matches, config.subpixel, exec);

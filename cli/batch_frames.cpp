@@ -85,7 +85,7 @@ class Planner {
   }
 
  private:
-  /// Calibration of an EuRoC sequence, which open_sequence() rectifies.
+  /// Whether it is an EuRoC sequence, which open_sequence() rectifies.
   static bool is_of_raw_cameras(const fs::path& folder) {
     return is_folder(folder / "mav0/cam0/data") || is_folder(folder / "cam0/data");
   }

@@ -38,7 +38,7 @@ io::Board board_of(const CalibrateOptions& options) {
   return board;
 }
 
-/// Pairs of the same size.
+/// Sightings of the board in pairs of one size.
 struct Sightings {
   Size size;
   std::vector<std::string> names;

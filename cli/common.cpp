@@ -164,7 +164,7 @@ std::optional<fs::path> map_of(const io::FrameFiles& files, const std::string& g
               files.name + ".png, .pfm or .npy");
 }
 
-/// Remarks that hold for all frames are printed once.
+/// Reports once what concerns all frames.
 void check_maps(const std::vector<io::FrameFiles>& frames, const InputOptions& options) {
   std::error_code ignored;
   if (frames.size() > 1 && !fs::is_directory(options.disparity, ignored)) {

@@ -43,7 +43,7 @@ struct ExaminedPair {
 
 // ---- one pair ----
 
-/// The pair, or nullopt and a finding if the sizes differ. Throws Error otherwise.
+/// The pair, or nullopt and a finding if the sizes differ. Throws Error for other faults.
 std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, ExaminedPair& examined,
                                             const Exec& exec) {
   const fs::path& right_file = right_of(files);

@@ -61,7 +61,7 @@ struct Run {
   double path_m = 0;
 };
 
-/// Whether the format has a line for this frame.
+/// Adds the frame's pose; returns whether the format has a line for it.
 bool add(Run& run, const OdometryStep& step, Stamp stamp, bool keep_lost) {
   if (step.motion.is_new_keyframe) ++run.keyframes;
   if (step.motion.refusal != MotionRefusal::none)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-// required before jpeglib.h
+// jpeglib.h requires the next two headers
 #include <cstddef>
 #include <cstdio>
 

@@ -263,7 +263,7 @@ void Recorder::start(const std::filesystem::path& path) {
   const std::lock_guard one_at_a_time(s.starting);
   if (status().is_recording)
     throw Error(path.string() + ": cannot be recorded, " + s.status.path + " is being recorded");
-  if (s.thread.joinable()) s.thread.join();  // ended by itself
+  if (s.thread.joinable()) s.thread.join();  // a recording that ended by itself
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_character_file(path, unknown))
     throw Error(path.string() + ": already exists, expected a new file to record into");

@@ -386,7 +386,7 @@ class Gyroscope : public MotionPriors {
   Pose camera_from_imu_;
 };
 
-/// The mean rate of the first half second if the sensor is at rest: steady rates and accelerations.
+/// Finds the bias: the mean rate of the first half second, if rates and accelerations are steady then.
 void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations) {
   constexpr double kRestS = 0.5;
   constexpr std::size_t kFewest = 20;

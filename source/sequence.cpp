@@ -81,7 +81,7 @@ class FileSequence : public SourceSequence {
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
     PicturePair pair = load_pair(files.left, files.right, pool_, bits_);
-    // The size of the raw images matters, too.
+    // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
                   text(raw_size_) + " like the frames before");

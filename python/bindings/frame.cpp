@@ -37,7 +37,7 @@ struct Recipe {
     calibration.check(size);
     return config.suited(calibration.calibration);
   }
-  /// A frame to be computed, with its inputs.
+  /// The provenance of a frame to be computed.
   [[nodiscard]] io::Provenance provenance(Size size, bool external_disparity) const {
     return {config.preset, for_size(size), calibration.calibration.rig, {}, external_disparity};
   }

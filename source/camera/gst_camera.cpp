@@ -169,7 +169,7 @@ class GstCamera : public Camera {
   std::uint64_t number_of(const GstBuffer* buffer) {
     const std::lock_guard lock(mutex_);
     std::uint64_t found = 0;
-    // A copy: buffers are reused.
+    // The newest one, since buffers are reused.
     for (const auto& [known, number] : numbered_) {
       if (known == buffer) found = std::max(found, number);
     }

@@ -95,7 +95,6 @@ class CommandTest : public testing::Test {
 
   /// The command must refuse: exit code 2, nothing on stdout, one line on stderr that contains all these
   /// words, no new file.
-  /// new file.
   void refuses(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
     const auto before = everything();
     const Outcome outcome = run(arguments);

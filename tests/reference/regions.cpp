@@ -38,7 +38,6 @@ std::vector<std::int64_t> gaussian(float sigma) {
 
 /// The weighted sum over the window and the sum of the weights used; `value` returns each pixel's value, or
 /// kHole16.
-/// kHole16.
 struct Sum {
   std::int64_t value = 0;
   std::int64_t weight = 0;
