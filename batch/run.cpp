@@ -23,7 +23,7 @@ std::string id_of(const Run& run) {
                     run.config_sha256 + "\n" + Json(run.sequences).dump() + "\n");
 }
 
-/// Of run.json. Throws Error where they do not rise from the first frame on.
+/// The `sequences` of run.json. Throws Error unless they ascend from 0.
 std::vector<std::size_t> sequences_in(const Json& json, std::size_t frames, const fs::path& file) {
   std::vector<std::size_t> sequences;
   const auto found = json.find("sequences");
@@ -38,7 +38,7 @@ std::vector<std::size_t> sequences_in(const Json& json, std::size_t frames, cons
   return sequences;
 }
 
-/// Throws Error where JSON cannot hold a name: it is Unicode.
+/// A line of the manifest. Throws Error for names that are not UTF-8, which JSON cannot represent.
 std::string line_of(const PlannedFrame& frame) {
   try {
     return frame.how.dump() + "\n";
@@ -58,7 +58,7 @@ void check_names(const std::vector<PlannedFrame>& frames) {
   }
 }
 
-/// Anything that no interrupted plan has left there.
+/// Throws Error for any file not left by an interrupted plan.
 void check_is_free(const fs::path& folder) {
   constexpr std::array kOurs = {"manifest.jsonl", "config.yaml"};
   std::error_code reason;

@@ -56,7 +56,7 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-/// A file that is written on until it is on disk.
+/// A file for appending, with explicit synchronisation to disk.
 class OpenFile {
  public:
   OpenFile(fs::path path, int flags) : path_(std::move(path)) {
@@ -92,7 +92,7 @@ class OpenFile {
   int descriptor_ = -1;
 };
 
-/// A name in a folder lasts when the folder is on disk.
+/// A new file name is durable only after its folder is synchronised.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -125,8 +125,8 @@ std::optional<WorkerNote> note_in(const fs::path& file) {
   }
 }
 
-/// The right to work on a shard: the system's lock on a file, gone with its process however that ends. The
-/// file stays: one that is taken away could be locked twice.
+/// Exclusive access to a shard: a file lock, which the system releases however the process ends. The file is
+/// not deleted: otherwise two processes could hold the lock.
 class ShardLock {
  public:
   ShardLock(const fs::path& path, const std::function<void(const std::string&)>& on_wait)
@@ -140,11 +140,11 @@ class ShardLock {
       }
       return;
     }
-    is_held_ = false;  // a file system without locks
+    is_held_ = false;  // the file system has no locks
   }
   [[nodiscard]] bool is_held() const { return is_held_; }
 
-  /// For `cairn batch status`; that it cannot be written is no reason to stop.
+  /// For `cairn batch status`; failing to write it is not an error.
   void say(const WorkerNote& note) const {
     const std::string text = note_text(note);
     if (::pwrite(file_.descriptor(), text.data(), text.size(), 0) >= 0)
@@ -163,7 +163,7 @@ std::string digest_of(const Run& run, std::string_view row) {
   return sum.hex().substr(0, kDigest);
 }
 
-/// The row of a line in work/, where its digest says that it is whole and of this run.
+/// The row of a line in work/, if its digest shows that it is complete and of this run.
 std::optional<std::string_view> row_in(const Run& run, std::string_view line) {
   if (line.size() < kDigest + 1 || line[kDigest] != ' ') return std::nullopt;
   const std::string_view row = line.substr(kDigest + 1);
@@ -171,7 +171,7 @@ std::optional<std::string_view> row_in(const Run& run, std::string_view line) {
   return row;
 }
 
-/// The rows of a shard that are there already: the first ones, each whole and of the frame whose turn it is.
+/// The finished rows of a shard: its first ones, complete and in order.
 class Checkpoint {
  public:
   Checkpoint(const Run& run, const fs::path& path, const std::vector<PlannedFrame>& frames)
@@ -201,7 +201,7 @@ class Checkpoint {
     synced_s_ = now_s();
   }
 
-  /// The rows alone, in `made` first; then it has the part's name, and the checkpoint is gone.
+  /// Writes the rows to `made`, renames it to `part`, and deletes the checkpoint.
   void become(const fs::path& part, const fs::path& made) const {
     {
       const OpenFile out(made, O_WRONLY | O_CREAT | O_TRUNC);
@@ -268,9 +268,9 @@ std::optional<Shard> shard_of_slurm() {
 
 FrameSpan span_of(Shard shard, const Run& run) {
   const std::size_t count = run.sequences.empty() ? run.frames : run.sequences.size();
-  // Without the product of the two, which may be too large.
+  // Avoids the product of the two, which may overflow.
   const std::size_t each = count / shard.of;
-  const std::size_t rest = count % shard.of;  // the first ones have one more
+  const std::size_t rest = count % shard.of;  // the first shards have one more
   const auto begin_of = [&](std::size_t before) {
     const std::size_t begin = each * before + std::min(before, rest);
     if (run.sequences.empty()) return begin;
@@ -317,7 +317,7 @@ Worked work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFra
   io::make_folder(run.parts());
   io::make_folder(run.work());
   const ShardLock lock(run.work() / (name_of(shard) + ".lock"), on_wait);
-  if (fs::exists(part, unknown)) {  // by the worker that was waited for
+  if (fs::exists(part, unknown)) {  // finished by the worker that held the lock
     worked.was_done = true;
     return worked;
   }
@@ -325,7 +325,7 @@ Worked work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFra
   each_planned(run, span.begin, span.end,
                [&](std::size_t, PlannedFrame frame) { frames.push_back(std::move(frame)); });
   WorkerNote note{host_name(), ::getpid(), now_s(), now_s()};
-  // Without a lock every worker has files of its own: both do the same, and nothing is resumed.
+  // Without locks every worker has its own files: two may do the same work, and nothing is resumed.
   const std::string mine = lock.is_held() ? "" : "." + note.host + "-" + std::to_string(note.pid);
   Checkpoint rows(run, run.work() / (name_of(shard) + ".rows" + mine), frames);
   worked.resumed = note.resumed = rows.rows();

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The shards that files with this ending belong to; none where the folder is not there.
+/// The shards with a file of this extension; empty without the folder.
 std::vector<Shard> shards_in(const fs::path& folder, const char* ending) {
   std::vector<Shard> shards;
   std::error_code reason;
@@ -30,7 +30,7 @@ struct Part {
   Shard shard;
 };
 
-/// Finished parts that hold frames, by the first one; of those that begin with one frame the longest first.
+/// Finished, non-empty parts by first frame; the longest first if they start at the same frame.
 std::vector<Part> parts_of(const Run& run) {
   std::vector<Part> parts;
   for (const Shard shard : shards_in(run.parts(), ".jsonl")) {
@@ -43,7 +43,7 @@ std::vector<Part> parts_of(const Run& run) {
   return parts;
 }
 
-/// The rows of a shard that is not done; 0 where nobody has begun, or without locks.
+/// The number of rows of an unfinished shard; 0 if not started, or without locks.
 std::size_t lines_in(const Run& run, Shard shard) {
   std::ifstream file(run.work() / (part_file(run, shard).stem().string() + ".rows"), std::ios::binary);
   std::size_t lines = 0;
@@ -51,7 +51,7 @@ std::size_t lines_in(const Run& run, Shard shard) {
   return lines;
 }
 
-/// How many frames some span holds.
+/// The number of frames in the union of the spans.
 std::size_t united(std::vector<FrameSpan> spans) {
   std::sort(spans.begin(), spans.end(),
             [](const FrameSpan& a, const FrameSpan& b) { return a.begin < b.begin; });
@@ -66,7 +66,7 @@ std::size_t united(std::vector<FrameSpan> spans) {
   return count;
 }
 
-/// Which part each stretch of frames is taken from; frames between two stretches are missing.
+/// The part to use for each range of frames; frames between ranges are missing.
 std::vector<Part> stretches_of(const Run& run) {
   std::vector<Part> stretches;
   std::size_t at = 0;
@@ -78,7 +78,7 @@ std::vector<Part> stretches_of(const Run& run) {
   return stretches;
 }
 
-/// A part read row by row.
+/// Reads a part row by row.
 class PartReader {
  public:
   PartReader(const Run& run, const Part& stretch)
@@ -88,7 +88,7 @@ class PartReader {
     for (std::size_t i = span_of(stretch.shard, run).begin; i < stretch.span.begin; ++i)
       std::getline(file_, row);
   }
-  /// With its newline. Throws Error where it is not the row of this frame.
+  /// Includes the newline. Throws Error if the row is not that of this frame.
   std::string row_of(const std::string& frame) {
     std::string row;
     const bool is_whole = std::getline(file_, row) && !file_.eof();

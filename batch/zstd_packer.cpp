@@ -17,7 +17,7 @@ struct ZstdPacker::State {
     for (bool is_done = false; !is_done;) {
       ZSTD_outBuffer out{room.data(), room.size(), 0};
       const std::size_t left = ZSTD_compressStream2(stream, &out, &in, until);
-      if (ZSTD_isError(left) != 0) throw std::bad_alloc();  // the only failure of packing into memory
+      if (ZSTD_isError(left) != 0) throw std::bad_alloc();  // the only error when compressing to memory
       packed.append(room, 0, out.pos);
       is_done = until == ZSTD_e_end ? left == 0 : in.pos == in.size;
     }

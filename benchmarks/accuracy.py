@@ -275,7 +275,7 @@ def tinted(frame):
 def pictures(frames, threads):
     scores = score_all(frames, cairn.Config(), False, threads)
     order = sorted(range(len(frames)), key=lambda i: Summary([scores[i]]).mean_error)
-    text = ("## The best, the median and the worst frame\n\nBy the mean E of a frame's objects, of `rendered/dev/320x240` with `default`. "
+    text = ("## The best, the median and the worst frame\n\nRanked by the mean E of a frame's objects, over `rendered/dev/320x240` with `default`. "
             "The truth is on the left, the result on the right, with distances in metres; colours have no meaning.\n\n")
     made = {}
     for name, i in zip(("best", "median", "worst"), (order[0], order[(len(order) - 1) // 2], order[-1])):
@@ -318,7 +318,7 @@ def stress(data, threads, plots):
         plots[f"stress_{name}.svg"] = dict(x=list(ticks), panels=panels, x_title=title, ticks=ticks, lines=is_strength)
         images += f"![found, E, density and bad-2 against: {title}](images/accuracy/stress_{name}.svg)\n\n"
     return ("## Under stress\n\nThree rendered scenes, 320x240, in which one condition at a time gets worse "
-            f"(`rendered/stress`): {objects} scored objects, so that one is {percent(1 / objects)} % of found. Disparity where both cameras see.\n\n{images}")
+            f"(`rendered/stress`): {objects} scored objects: one object is {percent(1 / objects)} % of found. Disparity errors are over the pixels visible to both cameras.\n\n{images}")
 
 
 # ---- Middlebury ----
@@ -378,7 +378,7 @@ def middlebury(data, threads):
     pairs = [[frame.name, *(pair(errors[name][i][0][1]) for name in matchers)] for i, frame in enumerate(frames)]
     return f"""## Disparity on Middlebury
 
-Means over {len(frames)} pairs of the Middlebury collections of 2001 to 2014, where both cameras see (of Motorcycle: all pixels with truth); OpenCV {version} in the same run, grey images for all. bad-t: share of the matched pixels that are off by more than t px; with holes: share of all pixels, with holes counted as bad.
+Means over {len(frames)} pairs of the Middlebury collections of 2001 to 2014, over the pixels visible to both cameras (Motorcycle: all pixels with truth); OpenCV {version} in the same run, grey images for all. bad-t: share of the matched pixels that are off by more than t px; with holes: share of all pixels, with holes counted as bad.
 
 Only columns x ≥ the number of disparities, since OpenCV's matchers leave the others empty:
 
@@ -455,7 +455,7 @@ def sequences(data, threads, plots):
 Two rendered sequences of 40 frames at 320x240 (`rendered/dev/sequences`): in A, the robot drives and turns among static objects; in B, a ball rolls past. Each frame is segmented independently, so this also shows how stable the result is. The table has means over the frames, and in brackets the 5th percentile, or the 95th of E, phantoms and bad-2, where less is better.
 
 {table(header, rows)}
-{images}Found: frames with IoU ≥ 0.5. Merged: frames in which more than half of the object lay in one of ours that also contains more than half of another. Lost: the number of times the object was found in one frame and not in the next. The greatest fall is between consecutive frames, with the number of the later one.
+{images}Found: frames with IoU ≥ 0.5. Merged: frames in which more than half of the object is in one of ours that also contains more than half of another. Lost: the number of times the object was found in one frame and not in the next. The greatest fall is between consecutive frames, with the number of the later one.
 
 {table(of_objects, objects)}
 """
@@ -485,8 +485,8 @@ COLUMNS = """## Presets and ablations
 | precision | share of our objects with IoU ≥ 0.5 with a true object |
 | median E | of the paper's E (Eq. 5, 1/IoU − 1) over all true objects; each counts for 200 % at most |
 | boundary F | mean over all true objects |
-| phantoms | per frame: objects of ours of at least 200 px with little overlap with true ones |
-| density, bad-2 | of the disparity, where both cameras see: share of the pixels with a disparity, and of these the share that is off by more than 2 px; rc_tabletop has no true disparity |
+| phantoms | per frame: reported objects of at least 200 px with little overlap with true ones |
+| density, bad-2 | over the pixels visible to both cameras: share of the pixels with a disparity, and of these the share with an error above 2 px; rc_tabletop has no true disparity |
 | ms | one core's time for the whole method, median frame |
 
 [Evaluation](evaluation.md) defines the words. **paper** and **default** are the presets, **as printed** is `paper` without the floor label and the gradient thresholds. Each other row is an ablation: `default` with one feature disabled or as in `paper`. A difference of one object is noise; each section gives the share of one object.

@@ -8,7 +8,7 @@
 
 namespace cairn::report {
 
-/// Throws Error where `word` is no whole number above 0.
+/// Throws Error unless `word` is an integer above 0.
 inline int positive_number(const std::string& word) {
   int value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

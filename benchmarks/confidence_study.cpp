@@ -29,7 +29,7 @@ constexpr float kRightPx = 1.0F;
 
 struct TruthFrame {
   fs::path folder;
-  fs::path truth;  // folder of disp_left.png and calib.txt
+  fs::path truth;  // folder with disp_left.png and calib.txt
 };
 
 struct DataSet {
@@ -46,7 +46,7 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
   return all;
 }
 
-/// Every frame in `folders` whose name begins with `prefix`; of a sequence, every `step`-th.
+/// Every frame in `folders` whose name starts with `prefix`; of a sequence, every `step`-th.
 DataSet data_set(std::string name, const std::vector<fs::path>& folders, const std::string& prefix = "",
                  std::size_t step = 1) {
   DataSet set{std::move(name), {}};
@@ -84,7 +84,7 @@ std::vector<DataSet> data_sets(const fs::path& data) {
           data_set("Middlebury 2014", {real / "middlebury2014"})};
 }
 
-/// Calls visit(matches, scene, truth) for a frame as the preset's pipeline sees it.
+/// Calls visit(matches, scene, truth) for each frame, as processed by the preset's pipeline.
 using Visit = std::function<void(const Matches&, const SceneDisparity&, View<const float>)>;
 void visit_frame(const TruthFrame& frame, const Config& preset, const Exec& given, const Visit& visit) {
   const io::PicturePair pair = io::load_pair(frame.folder / "left.png", frame.folder / "right.png");
@@ -108,7 +108,7 @@ void visit_frame(const TruthFrame& frame, const Config& preset, const Exec& give
 
 // ---- fitting ----
 
-constexpr std::size_t kNumbers = 5;  // of a ConfidenceModel
+constexpr std::size_t kNumbers = 5;  // parameters of a ConfidenceModel
 using Numbers = std::array<double, kNumbers>;
 
 struct Sample {
@@ -117,7 +117,7 @@ struct Sample {
   double weight = 0;
 };
 
-/// A part of the pixels of each frame, so drawn that no column or row is preferred. Data sets weigh alike.
+/// A sample of the pixels of each frame, without preferred columns or rows. Data sets have equal weight.
 std::vector<Sample> samples_of(const std::vector<DataSet>& sets, const Config& preset, const Exec& exec) {
   constexpr std::uint32_t kOneOf = 11;
   std::vector<Sample> all;
@@ -146,7 +146,7 @@ std::vector<Sample> samples_of(const std::vector<DataSet>& sets, const Config& p
   return all;
 }
 
-/// Solves h·x = g by Gauss's elimination; h is symmetric and positive definite.
+/// Solves h·x = g by Gaussian elimination; h is symmetric and positive definite.
 Numbers solve(std::array<Numbers, kNumbers> h, Numbers g) {
   for (std::size_t i = 0; i < kNumbers; ++i) {
     for (std::size_t j = i + 1; j < kNumbers; ++j) {
@@ -162,7 +162,7 @@ Numbers solve(std::array<Numbers, kNumbers> h, Numbers g) {
   return g;
 }
 
-/// The numbers of greatest likelihood, by Newton's method.
+/// The maximum-likelihood parameters, by Newton's method.
 Numbers fit(const std::vector<Sample>& samples) {
   constexpr int kSteps = 12;
   Numbers numbers{};
@@ -214,7 +214,7 @@ double sum(const std::array<double, kBins>& of) {
   return all;
 }
 
-/// Mean of |stated − measured| over the bins, weighed by their pixels.
+/// Expected calibration error: mean |stated − measured| over the bins, weighted by their pixels.
 double expected_calibration_error(const Reliability& r) {
   double all = 0;
   for (std::size_t i = 0; i < kBins; ++i) all += std::abs(r.stated[i] - r.right[i]);
@@ -237,7 +237,7 @@ Reliability reliability_of(const DataSet& set, const Config& preset, const Exec&
   return r;
 }
 
-/// Shares of fewer pixels than this say little.
+/// Smaller bins are too noisy to report.
 constexpr double kFewPixels = 200;
 
 void print_row(const DataSet& set, const Reliability& r) {

@@ -5,7 +5,7 @@
 #include <cairn/core/exec.hpp>
 #include <filesystem>
 
-/// Fits the ConfidenceModel of both presets to the rendered development frames, and compares what the library
-/// states with the share of disparities that are within 1 px of the truth, there and on pairs that it was not
-/// fitted to.
+/// Fits the ConfidenceModel of both presets to the rendered development frames. Compares the stated
+/// confidence with the share of disparities within 1 px of the truth, on these frames and on pairs not used
+/// for fitting.
 void confidence_study(const std::filesystem::path& data, const cairn::Exec& exec);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Our stages against others', interleaved in one process, with the goals beside them.
+// Races our stages against others in one process, interleaved, and reports the goals.
 //   engines [DATA] [--repeats N] [--only TEXT] [--sections yes|no]
-// DATA is the folder that holds real/. Every engine of a scene runs once, then all of them once more, and so
-// on, so that whatever else the machine does hits all alike. Ratios are those of the least times. --only
-// keeps the rows and sections whose words contain TEXT. One thread each, but where threads are compared:
-// those rows go by the wall clock and want a quiet machine (chrt -f 10).
+// DATA is the folder with real/. Every engine of a scene runs once, then all run again, and so on, so that
+// disturbances of the machine affect all alike. Ratios are those of the least times. --only keeps the rows
+// and sections that contain TEXT. One thread each, except where numbers of threads are compared: those rows
+// use the wall clock and need a quiet machine (chrt -f 10).
 #include "engines.hpp"
 
 #include <algorithm>
@@ -93,7 +93,7 @@ using Trials = std::map<std::string_view, Trial>;
 Trials race(const Scene& scene, const std::set<std::string_view>& names, Clock clock, int repeats) {
   Trials trials;
   for (const std::string_view name : names) trials[name].run = engine_named(name).prepare(scene);
-  for (auto& [name, trial] : trials) trial.run();  // fills pools and caches
+  for (auto& [name, trial] : trials) trial.run();  // warms up pools and caches
   for (int i = 0; i < repeats; ++i) {
     for (auto& [name, trial] : trials) trial.times.push_back(milliseconds(trial.run, clock));
   }

@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
-/// What is raced in engines.cpp. A file of engines registers them, and the rows of the table that they stand
-/// in, with one static `const Registration`; the program itself knows none of them.
+/// The engines raced in engines.cpp. A file of engines registers them and their rows of the table with one
+/// static `const Registration`; the program itself knows none of them.
 namespace cairn::engines {
 
-/// A pair of pictures at one of the sizes that the goals are about.
+/// An image pair of one of the sizes for which there are goals.
 struct Scene {
   std::string name;
   int num_disparities;
@@ -29,25 +29,26 @@ struct Scene {
   [[nodiscard]] std::string extent() const;
 };
 
-/// Does one frame's work.
+/// Processes one frame.
 using Run = std::function<void()>;
 
-/// One way to do something. `prepare` does what is done once for many frames; the scene outlives the run.
+/// One implementation of a task. `prepare` does the work that is shared by many frames; the scene outlives
+/// the run.
 struct Engine {
   std::string_view name;
   std::function<Run(const Scene& scene)> prepare;
 };
 
-/// Which ratios are good enough.
+/// The range of ratios that meets the goal.
 struct Goal {
   double at_least = 0;
   double at_most = std::numeric_limits<double>::infinity();
 };
 
-/// cpu: of the whole process. wall: what one waits for, to compare numbers of threads.
+/// cpu: time of the whole process. wall: elapsed time, to compare numbers of threads.
 enum class Clock { cpu, wall };
 
-/// One row of the table: how many times as long `peer` takes as `ours`, on the scenes of one extent.
+/// A row of the table: the time of `peer` divided by that of `ours`, on the scenes of one size.
 struct Comparison {
   std::string_view what;
   std::string_view ours;
@@ -57,7 +58,7 @@ struct Comparison {
   Clock clock = Clock::cpu;
 };
 
-/// A part of the report that is no race: returns Markdown. `data` is the folder that holds real/.
+/// A further section of the report, in Markdown. `data` is the folder with real/.
 struct Section {
   std::string_view title;
   std::function<std::string(const std::filesystem::path& data, const std::vector<Scene>& scenes)> write;
@@ -74,18 +75,18 @@ struct Registration {
   explicit Registration(void (*add_to)(Registry&)) { add_to(registry()); }
 };
 
-/// Milliseconds of `run`, by either clock.
+/// Milliseconds of `run` on the given clock.
 double milliseconds(const Run& run, Clock clock);
 
-/// Throws Error where none is called so.
+/// Throws Error for an unknown name.
 const Engine& engine_named(std::string_view name);
 
-// Of engines_opencv.cpp:
+// Defined in engines_opencv.cpp:
 
-/// StereoBM with its defaults, uniqueness 15, texture 10 and left-right 1; px, NaN = hole.
+/// StereoBM with its defaults: uniqueness 15, texture 10 and left-right 1; px, NaN = hole.
 Image<float> block_matched(const StereoPair& pair, int num_disparities, int window);
 
-/// Bilinear.
+/// With bilinear interpolation.
 Image<Gray> resized(const Image<Gray>& image, Size size);
 Image<Rgb> resized(const Image<Rgb>& image, Size size);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Our matching against OpenCV's, and against itself.
+// Our matching compared with OpenCV's, and with itself.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -21,13 +21,13 @@
 
 namespace {
 
-/// What the process holds on the heap, for the section on memory: StereoBM's 2.4 MB are measured alike, as
-/// what comes on top of the images.
+/// Heap use of the process, for the section on memory. StereoBM's 2.4 MB were measured in the same way: what
+/// is added to the images.
 std::atomic<std::int64_t> held_bytes{0};
 std::atomic<std::int64_t> most_held_bytes{0};
 
 void* counted(std::size_t bytes, std::size_t alignment) {
-  // The size stands before the block, for operator delete to find.
+  // The size is stored before the block, for operator delete.
   const std::size_t header = std::max<std::size_t>(alignment, 16);
   void* block = std::aligned_alloc(header, (bytes + 2 * header - 1) / header * header);
   if (block == nullptr) throw std::bad_alloc();
@@ -73,8 +73,8 @@ using report::MarkdownTable;
 using report::percent;
 using report::text_of;
 
-/// The matching stages of a configuration, as segment() runs them: the left-right check and uniqueness where
-/// they are on.
+/// The matching stages of a configuration, as run by segment(): with left-right check and uniqueness if they
+/// are on.
 DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec) {
   const Matches matches = match(pair, config.match, config.semi_global, exec);
   auto refined = refine_subpixel(matches, config.subpixel, exec);
@@ -100,14 +100,15 @@ Run winner(const Scene& scene, MatchConfig config, const Exec& exec = one_thread
   return [=, &scene] { static_cast<void>(match_windows(scene.pair(), search(scene, config), exec)); };
 }
 
-/// As StereoBM has it by default.
+/// As StereoBM's default.
 constexpr MatchConfig kSobelSad{.cost = Cost::sad, .prefilter = Prefilter::xsobel, .prefilter_cap = 31};
 
 Config complete_config(const MatchConfig& match, LeftRightMethod method) {
   Config config = Config::paper();
   config.match = match;
   config.left_right = {.max_diff = 1, .method = method};
-  // StereoBM asks for 15 % more than the least; this is what the least may be of the runner-up.
+  // StereoBM requires 15 % more than the lowest cost; this option is the lowest cost as a share of the
+  // runner-up.
   config.uniqueness.ratio = 13;
   config.flatness.threshold = -1;
   config.match.maps = method == LeftRightMethod::vote ? MatchMaps::minimum : MatchMaps::full;
@@ -119,14 +120,14 @@ Run complete(const Scene& scene, LeftRightMethod method, const Exec& exec = one_
   return [=, &scene] { static_cast<void>(match_and_check(scene.pair(), config, exec)); };
 }
 
-/// Two threads' images come from one pool, like a video's.
+/// Two threads share a pool, as for a video.
 Exec two_threads() {
   Exec exec = Exec::with_threads(2);
   exec.pool = Pool::make();
   return exec;
 }
 
-/// The scene's size, but something else to see.
+/// Same size as the scene, different content.
 Run complete_on(const Scene& scene, Gray (*pixel)(std::mt19937&)) {
   auto other = std::make_shared<Scene>(Scene{
       scene.name, scene.num_disparities, Image<Gray>(scene.left.size()), Image<Gray>(scene.left.size()), {}});
@@ -234,7 +235,7 @@ void add_comparisons(Registry& all) {
   }
 }
 
-/// What match() holds at its peak, the images and the maps of Matches apart.
+/// Peak memory of match(), without the images and the maps of Matches.
 std::int64_t working_bytes(const Scene& scene, const MatchConfig& config, const Exec& exec) {
   const std::int64_t before = held_bytes;
   most_held_bytes = before;
@@ -274,7 +275,7 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
   for (const char* folder : kMiddlebury) {
     for (const report::TrueFrame& frame : report::load_true_frames(data / "real" / folder)) {
       const auto pair = StereoPair::from(frame.pictures.left.gray, frame.pictures.right.gray);
-      match.num_disparities = (frame.num_disparities + 15) / 16 * 16;  // StereoBM asks for it
+      match.num_disparities = (frame.num_disparities + 15) / 16 * 16;  // required by StereoBM
       const auto errors = [&](View<const float> disparity_px) {
         return disparity_errors(disparity_px, frame.truth_px, frame.hidden, match.num_disparities);
       };
@@ -296,8 +297,8 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
   return table.text();
 }
 
-/// Copies as much memory as the maps of Matches take, a few times: what varies here is the machine and who
-/// else uses its caches.
+/// Copies as much memory as the maps of Matches take, several times, to measure the variation of the machine
+/// and its caches.
 Run copying(const Scene& scene) {
   constexpr int kTimes = 4;
   const auto bytes = static_cast<std::size_t>(scene.left.size().area()) * (5 * sizeof(float) + 4);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// OpenCV's engines. One thread each, but where the name says two.
+// OpenCV's engines. One thread each, unless the name says two.
 #include <memory>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -30,7 +30,7 @@ Run compute(const cv::Ptr<cv::StereoMatcher>& matcher, const Scene& scene, int t
   };
 }
 
-/// The x-Sobel prefilter with a cap of 31 is StereoBM's default.
+/// StereoBM's default is the x-Sobel prefilter with a cap of 31.
 cv::Ptr<cv::StereoBM> block_matcher(int num_disparities, int window, bool checks) {
   auto matcher = cv::StereoBM::create(num_disparities, window);
   matcher->setUniquenessRatio(checks ? 15 : 0);

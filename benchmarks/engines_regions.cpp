@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Our segmentations against OpenCV's, the whole chain against StereoBM, and where the chain's time goes. One
-// thread each, but where the name says two.
+// Our segmentations compared with OpenCV's, the whole pipeline with StereoBM, and the time of each stage. One
+// thread each, unless the name says two.
 #include <algorithm>
 #include <cairn/cairn.hpp>
 #include <cairn/image/gradient.hpp>
@@ -33,7 +33,7 @@ Exec pooled(int threads) {
   return exec;
 }
 
-/// The paper's method as StereoBM would begin it: every check, both segmentations, fusion, objects.
+/// The paper's method with StereoBM-like settings: all checks, both segmentations, fusion, objects.
 Config paper_chain(const Scene& scene) {
   Config config = Config::paper();
   config.match.cost = Cost::sad;
@@ -68,8 +68,8 @@ Run our_watershed(const Scene& scene) {
   return [heights = gradient_of(scene), exec = pooled(1)] { static_cast<void>(watershed(*heights, exec)); };
 }
 
-/// cv::watershed on the same gradient. It wants markers, which ours finds by itself: the lowest pixels of
-/// each of our basins.
+/// cv::watershed on the same gradient. It requires markers, which ours finds itself: here the lowest pixels
+/// of each of our basins.
 Run opencv_watershed(const Scene& scene) {
   const auto heights = gradient_of(scene);
   const Basins basins = watershed(*heights, {});
@@ -116,7 +116,7 @@ Run graph_segmentation(const Scene& scene) {
   };
 }
 
-/// What one would put together from OpenCV for the same purpose.
+/// The usual combination of OpenCV functions for this purpose.
 Run opencv_chain(const Scene& scene) {
   return [segment = graph_segmentation(scene), match = engine_named("StereoSGBM 3WAY").prepare(scene)] {
     segment();
@@ -152,7 +152,7 @@ void add_comparisons(Registry& all) {
   add({"intensity segmentation, complete", "segment_intensity", "createGraphSegmentation", kMiddle, {20}});
   add({"whole chain, default", "default", "SGBM 3WAY + createGraphSegmentation", kMiddle, {5}});
 #endif
-  // At most 1.25, 1.1 and 0.75 times one full call.
+  // At most 1.25, 1.1 and 0.75 times a full call.
   add({"whole chain, paper with SAD on xsobel", "chain", "StereoBM full", kSmall, {1 / 1.25}});
   add({"whole chain, paper with SAD on xsobel", "chain", "StereoBM full", kMiddle, {1 / 1.1}});
   add({"whole chain, paper with SAD on xsobel", "chain", "StereoBM full", kLarge, {1 / 0.75}});
@@ -167,7 +167,7 @@ double processor_ms() {
   return report::now_ms(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-/// The least processor time of each stage over some frames, in their order, and of all but matching.
+/// The least processor time of each stage over several frames, in order, and the total without matching.
 std::vector<std::pair<std::string, double>> stage_times(const Scene& scene, const Config& config) {
   constexpr int kFrames = 15;
   std::vector<std::pair<std::string, double>> least;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The single kernels of the matching, on every instruction set of this processor: Google Benchmark's options
-// apply, e.g. --benchmark_filter=match_rows/sad.
+// The matching kernels on every instruction set of this processor. Takes Google Benchmark's options, e.g.
+// --benchmark_filter=match_rows/sad.
 #include <benchmark/benchmark.h>
 
 #include <cairn/core/target.hpp>
@@ -19,7 +19,7 @@ using namespace cairn;
 
 constexpr Size kSize{640, 480};
 
-/// The right picture is the left one 5 px further to the left, with some dots of its own.
+/// The right image is the left one shifted by 5 px, with some dots of its own.
 struct Pictures {
   Image<Gray> left{kSize};
   Image<Gray> right{kSize};
@@ -39,7 +39,7 @@ const Pictures& pictures() {
   return all;
 }
 
-/// Pixels times disparities, in a second.
+/// Pixels times disparities per second.
 void count_candidates(benchmark::State& state, const MatchConfig& config) {
   const auto candidates = state.iterations() * kSize.width * kSize.height * config.num_disparities;
   state.counters["candidates"] =

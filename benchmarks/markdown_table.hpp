@@ -12,7 +12,7 @@
 
 namespace cairn::report {
 
-/// printf's format for one number; a dash for what is not a number.
+/// A number in printf's format; a dash for NaN.
 inline std::string text_of(const char* format, double value) {
   if (std::isnan(value)) return "–";
   std::array<char, 64> buffer{};
@@ -20,19 +20,18 @@ inline std::string text_of(const char* format, double value) {
   return buffer.data();
 }
 
-/// "62.1" of 0.621; a dash for what is not a number.
+/// 0.621 as "62.1"; a dash for NaN.
 inline std::string percent(double share) {
   return text_of("%.1f", 100 * share);
 }
 
-/// A table of a Markdown page: the first columns, of words, to the left, the others, of numbers, to the
-/// right.
+/// A Markdown table: leading text columns are left-aligned, the number columns after them right-aligned.
 class MarkdownTable {
  public:
   explicit MarkdownTable(std::vector<std::string> header, std::size_t columns_of_words = 1)
       : header_(std::move(header)), columns_of_words_(columns_of_words) {}
 
-  /// A row shorter than the header is filled up with empty cells.
+  /// Shorter rows are padded with empty cells.
   void add(std::vector<std::string> row) {
     row.resize(header_.size());
     rows_.push_back(std::move(row));

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Objects as one would get them without us, next to ours: OpenCV's semi-global matcher, points in metres,
-// voxels, the largest planes removed by PCL's RANSAC, Euclidean clusters of the rest.
+// Objects from common libraries, next to ours: OpenCV's semi-global matcher, points in metres, voxels, the
+// largest planes removed by PCL's RANSAC, Euclidean clusters of the rest.
 //   pcl_chain DATA [--threads N]
 //   pcl_chain --search DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
-// DATA is the folder that holds rendered/ and real/. The first prints the tables of docs/comparison.md. The
-// second chooses the chain's own numbers on the fit set, by the search that chose those of the preset
-// `paper` (fitting/search_program.hpp). Times are of one thread's processor.
+// DATA is the folder with rendered/ and real/. The first form prints the tables of docs/comparison.md. The
+// second chooses the chain's parameters on the fit set, by the search that chose those of the preset `paper`
+// (fitting/search_program.hpp). Times are processor times of one thread.
 #include <pcl/ModelCoefficients.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -48,20 +48,20 @@ using report::text_of;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 struct Settings {
-  double block_size, p1, p2;  // the penalties over the block's pixels
+  double block_size, p1, p2;  // the penalties are per block pixel
   double uniqueness, speckle_size, speckle_range;
   double farthest_m, voxel_m;
   double planes, plane_m,
-      least_plane;  // the largest; how far their points lie; % of all points that each holds
+      least_plane;  // smallest plane to remove; tolerance of its points; share of all points, %
   double cluster_m, smallest,
-      largest;  // how far apart the points of a cluster lie; % of the image that it covers
+      largest;  // distance between points of a cluster; its share of the image, %
 };
 
 struct ChainKnob {
   double Settings::*value;
   report::Knob knob;
-  const char* usual;   // as tutorials have it
-  const char* chosen;  // by --search
+  const char* usual;   // as in tutorials
+  const char* chosen;  // found by --search
 };
 
 const std::vector<ChainKnob>& chain_knobs() {
@@ -109,10 +109,10 @@ Image<float> matched(const report::TrueFrame& frame, const Settings& s) {
   return report::disparity_px_of(sixteenths, 0);
 }
 
-/// One point per voxel, the mean of those in it.
+/// One point per voxel, the mean of those inside.
 struct Points {
   Cloud::Ptr cloud = std::make_shared<Cloud>();
-  std::vector<std::vector<Point>> pixels;  // where each was seen
+  std::vector<std::vector<Point>> pixels;  // pixels of each voxel
 };
 
 Points points_of(View<const float> disparity_px, const StereoRig& rig, const Settings& settings) {
@@ -124,7 +124,7 @@ Points points_of(View<const float> disparity_px, const StereoRig& rig, const Set
       if (!(d > 0)) continue;
       const auto at = rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), d);
       if (!at || at->z > settings.farthest_m) continue;
-      const auto step = [&](float metres) {  // 21 bits of each coordinate
+      const auto step = [&](float metres) {  // 21 bits per coordinate
         return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(metres / settings.voxel_m))) &
                0x1fffff;
       };
@@ -149,11 +149,11 @@ Points points_of(View<const float> disparity_px, const StereoRig& rig, const Set
   return points;
 }
 
-/// The indices that are left when the largest planes are gone.
+/// The indices that remain after removing the largest planes.
 pcl::IndicesPtr without_planes(const Cloud::Ptr& cloud, const Settings& settings) {
   auto left = std::make_shared<pcl::Indices>(cloud->size());
   std::iota(left->begin(), left->end(), 0);
-  pcl::SACSegmentation<pcl::PointXYZ> planes(false);  // the same numbers in every run
+  pcl::SACSegmentation<pcl::PointXYZ> planes(false);  // deterministic: the same random numbers in every run
   planes.setModelType(pcl::SACMODEL_PLANE);
   planes.setMethodType(pcl::SAC_RANSAC);
   planes.setDistanceThreshold(settings.plane_m);
@@ -205,7 +205,7 @@ Image<ObjectId> clusters(const Points& points, Size size, const Settings& settin
   return labels;
 }
 
-/// What a frame was last matched to: most settings change only what comes after.
+/// The last matching result of a frame: most settings only change later steps.
 struct MatchedOnce {
   std::array<double, 6> by{};
   Image<float> disparity_px;

@@ -15,7 +15,7 @@
 
 #include <timing/statistics.hpp>
 
-/// Frames with their truth in memory, and how well a configuration does on them.
+/// Frames with ground truth in memory, and the scores of a configuration on them.
 namespace cairn::report {
 
 struct TrueFrame {
@@ -23,28 +23,28 @@ struct TrueFrame {
   io::PicturePair pictures;
   std::optional<StereoRig> rig;
   int num_disparities = 64;
-  Image<TruthId> objects;      // empty where not known
+  Image<TruthId> objects;      // empty if unknown
   bool partial = false;        // not every object is labelled
-  Image<float> truth_px;       // empty where not known
-  Image<std::uint8_t> hidden;  // 1 = not seen by the right camera; empty where not known
+  Image<float> truth_px;       // empty if unknown
+  Image<std::uint8_t> hidden;  // 1 = not visible to the right camera; empty if unknown
 };
 
-/// Throws Error where a file is missing or damaged.
+/// Throws Error if a file is missing or damaged.
 TrueFrame load_true_frame(const io::FrameFiles& files);
-/// One frame per sub-folder, by name.
+/// One frame per subfolder, by name.
 std::vector<TrueFrame> load_true_frames(const std::filesystem::path& folder);
 
 struct Score {
   FrameObjects objects;
-  DisparityErrors disparity;  // where both cameras see
+  DisparityErrors disparity;  // over the pixels visible to both cameras
   double milliseconds = 0;    // of one core, for the whole method
 };
 
-/// The whole method on one frame, on the calling thread. `grey`: the pictures' colour is withheld.
+/// Runs the whole method on one frame, on the calling thread. `grey`: without the image's colour.
 Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec& exec);
 Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec& exec);
 
-/// All frames, in their order, several at a time, each on one thread.
+/// All frames in order, several in parallel, each on one thread.
 std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config& config, bool grey,
                              int threads);
 

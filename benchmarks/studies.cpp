@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Three studies that the paper's claims call for, on pairs with measured or exact truth:
-//   studies operators DATA     how each correlation operator bears noise, gain and offset (Middlebury cones,
-//   teddy, tsukuba) studies reflections DATA   what the ground check removes on floors of growing gloss, and
-//   what it costs
-//   studies confidence DATA    how far stated and measured confidence of disparities agree
-// DATA is the folder that holds real/ and rendered/.
+// Three studies on pairs with measured or exact truth, suggested by the claims of the paper:
+//   studies operators DATA     robustness of each correlation operator to noise, gain and offset (Middlebury)
+//   studies reflections DATA   effect and cost of the ground check on floors of increasing gloss
+//   studies confidence DATA    agreement of stated and measured confidence of disparities
+// DATA is the folder with real/ and rendered/.
 #include <algorithm>
 #include <array>
 #include <cairn/cairn.hpp>
@@ -55,7 +54,7 @@ Image<Gray> with_noise(View<const Gray> image, double sigma, unsigned seed) {
   return result;
 }
 
-/// Pixels that are not to count: hidden from the right camera.
+/// Pixels to exclude: hidden from the right camera.
 Image<std::uint8_t> hidden(const fs::path& occlusion, Size size) {
   Image<std::uint8_t> result(size, 0, {});
   if (occlusion.empty() || !fs::exists(occlusion)) return result;
@@ -101,7 +100,7 @@ void print_errors(const Scene& scene, const Condition& condition, const Exec& ex
     Config config = Config::paper();
     config.match.cost = cost.value;
     config.match.num_disparities = scene.num_disparities;
-    config.ground.source = GroundSource::off;  // these are no rooms
+    config.ground.source = GroundSource::off;  // the scenes have no floor
     const auto found = estimate_disparity(StereoPair::from(left, right), std::nullopt, config, exec);
     const DisparityErrors errors =
         disparity_errors(found.disparity.disparity_px, scene.truth_px, scene.hidden, 0);
@@ -133,7 +132,7 @@ void operators(const fs::path& data, const Exec& exec) {
 GroundPlane true_ground(const fs::path& file) {
   std::ifstream in(file);
   GroundPlane plane;
-  for (std::string line; std::getline(in, line);) {  // the last line with three numbers alone
+  for (std::string line; std::getline(in, line);) {  // the last line with only three numbers
     std::istringstream numbers(line);
     GroundPlane read;
     std::string more;
@@ -145,7 +144,7 @@ GroundPlane true_ground(const fs::path& file) {
 struct Reflections {
   std::int64_t wrong_below = 0;    // wrong matches below the true floor
   std::int64_t wrong_removed = 0;  // of these, removed by the check
-  std::int64_t right = 0;          // right matches in the whole picture
+  std::int64_t right = 0;          // right matches in the whole image
   std::int64_t right_removed = 0;
   bool ground = false;
 };

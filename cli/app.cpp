@@ -26,7 +26,7 @@ CommandLine declare_command_line() {
       "stderr).");
   for (const Command& command : kCommands) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.help);
-    sub->footer("");  // not the parent's
+    sub->footer("");  // without the parent's footer
     line.commands.emplace_back(sub, command.declare(*sub));
     sub->footer(examples_text(command) + (sub->get_footer().empty() ? "" : "\n" + sub->get_footer()));
   }

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct BatchOptions {
   std::string action;
-  std::vector<std::string> paths;  // inputs of plan, else the run
+  std::vector<std::string> paths;  // the inputs of plan, else the run
   BatchInputs inputs;
   ConfigOptions config;
   std::string output;
@@ -68,7 +68,7 @@ batch::Shard shard_of(const BatchOptions& options) {
   return batch::shard_of_slurm().value_or(batch::Shard{});
 }
 
-/// Makes rows of planned frames.
+/// Converts planned frames to rows.
 class RowMaker {
  public:
   RowMaker(const batch::Run& run, const BatchOptions& options)

@@ -27,21 +27,21 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, unknown);
 }
 
-/// Workers run anywhere, so a manifest names files from the root on.
+/// The absolute path, because workers may run in any folder.
 std::string whole(const fs::path& path) {
   fs::path clean = fs::absolute(path).lexically_normal();
   if (!clean.has_filename()) clean = clean.parent_path();
   return clean.string();
 }
 
-/// The left and the right part of "LEFT,RIGHT"; none where a file has that very name.
+/// Splits "LEFT,RIGHT"; nullopt if a file has that very name.
 std::optional<std::pair<std::string, std::string>> two_of(const std::string& input) {
   const std::size_t comma = input.find(',');
   if (comma == std::string::npos || is_there(input)) return std::nullopt;
   return std::pair{input.substr(0, comma), input.substr(comma + 1)};
 }
 
-/// An input's path as part of a name: without what leads out of a folder.
+/// An input's path as part of a name: relative, without "..".
 std::string name_of_input(const std::string& input) {
   const auto two = two_of(input);
   fs::path name;
@@ -55,7 +55,7 @@ std::string joined(const std::string& folder, const std::string& name) {
   return folder.empty() ? name : folder + "/" + name;
 }
 
-/// Collects the frames of one input after the other.
+/// Collects the frames of the inputs, one after the other.
 class Planner {
  public:
   Planner(const BatchInputs& inputs, const Pool& pool)
@@ -85,7 +85,7 @@ class Planner {
   }
 
  private:
-  /// EuRoC's, which open_sequence() rectifies.
+  /// Whether it is an EuRoC sequence, which open_sequence() rectifies.
   static bool is_of_raw_cameras(const fs::path& folder) {
     return is_folder(folder / "mav0/cam0/data") || is_folder(folder / "cam0/data");
   }
@@ -172,7 +172,7 @@ Value value_at(const PlannedFrame& frame, const char* key, Value otherwise) {
   return found == frame.how.end() || found->is_string() ? otherwise : found->get<Value>();
 }
 
-/// The folder without which a frame says more of the machine than of itself.
+/// The folder of a frame's files: it depends on the machine rather than on the frame.
 fs::path folder_of(const PlannedFrame& frame) {
   const std::string left = text_at(frame, "left");
   if (!left.empty()) return fs::path(left).parent_path();
@@ -209,7 +209,7 @@ std::string config_of_run(const ConfigOptions& options,
   std::vector<std::string> also;
   for (const std::string& assignment : options.sets)
     also.push_back(assignment.substr(0, assignment.find('=')));
-  // What the file or --set say goes before a calibration, also where it is what the preset has.
+  // Options from the file or from --set take precedence over a calibration, even if equal to the preset's.
   constexpr int kSome = 32;
   constexpr int kOthers = 48;
   if (resolve(options, kSome, elsewhere).config.match.num_disparities ==

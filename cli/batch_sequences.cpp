@@ -17,7 +17,7 @@ namespace {
 
 std::unique_ptr<io::Sequence> open(const BatchSequence& sequence, const io::FrameRange& range,
                                    const Pool& pool) {
-  // FFmpeg would complain in lines of its own; "-8" is its quiet.
+  // Silences FFmpeg, which prints to stderr; "-8" is its quiet level.
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   io::SourceOptions options;
   options.calib = sequence.calib;
@@ -27,13 +27,13 @@ std::unique_ptr<io::Sequence> open(const BatchSequence& sequence, const io::Fram
   return io::open_sequence(sequence.source, options, pool);
 }
 
-/// Frames in folders of their own keep their numbers where one has no right image. None of other sources.
+/// Frame folders keep their numbers if a right image is missing; other sources do not.
 std::optional<std::size_t> count_in_folder(const std::string& source) {
   std::error_code unknown;
   if (!std::filesystem::is_directory(source, unknown)) return std::nullopt;
   try {
     return io::find_frames(source).size();
-  } catch (const Error&) {  // raw cameras' folders, in which all frames are pairs
+  } catch (const Error&) {  // folders of raw cameras, where all frames are pairs
     return std::nullopt;
   }
 }
@@ -53,14 +53,14 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io
   };
   std::error_code unknown;
   const std::filesystem::path left = sequence.source.substr(0, sequence.source.find(','));
-  if (!std::filesystem::is_regular_file(left, unknown)) {  // images are listed: none needs to be decoded
+  if (!std::filesystem::is_regular_file(left, unknown)) {  // image lists: no need to decode any
     std::size_t end = range.first + opened->size().value_or(0) * range.step;
     if (const auto all = count_in_folder(sequence.source))
       end = std::min(*all, range.last_excluded.value_or(*all));
     add_until(end);
     return frames;
   }
-  // Frames that cannot be decoded are planned, too: their rows say so.
+  // Undecodable frames are planned too; their rows report the error.
   while (const auto frame = opened->next()) add_until(frame->index + 1);
   return frames;
 }
@@ -73,9 +73,9 @@ struct SequenceReader::State {
   ConfigOptions config;
   Pool pool;
   BatchSequence of;
-  std::unique_ptr<io::Sequence> opened;         // one that is read on
-  std::optional<io::SequenceFrame> read_ahead;  // of it, where frames before were left out
-  std::size_t next = 0;                         // what it has not gone past
+  std::unique_ptr<io::Sequence> opened;         // the source being read sequentially
+  std::optional<io::SequenceFrame> read_ahead;  // a frame already read, if earlier ones were skipped
+  std::size_t next = 0;                         // first frame not yet passed
 
   [[nodiscard]] BatchFrame loaded(io::SequenceFrame frame, const io::Sequence& from) const {
     BatchFrame made;
@@ -90,7 +90,7 @@ struct SequenceReader::State {
     return made;
   }
 
-  /// A frame for which nothing before it speaks: its own error, whichever were read before.
+  /// Opens the source for one frame, so that the error does not depend on frames read before.
   [[nodiscard]] BatchFrame alone(std::size_t index) const {
     const auto only = open(of, {index, index + 1, 1}, pool);
     auto frame = only->next();
@@ -98,7 +98,7 @@ struct SequenceReader::State {
     return loaded(std::move(*frame), *only);
   }
 
-  /// The frame where reading on gives it.
+  /// The frame, if sequential reading reaches it.
   std::optional<io::SequenceFrame> read_on(std::size_t index) {
     try {
       if (!opened || index < next) {
@@ -110,7 +110,7 @@ struct SequenceReader::State {
         read_ahead = opened->next();
         if (!read_ahead) return std::nullopt;
       }
-    } catch (const Error&) {  // of this frame, or of this one and those before it: alone() tells
+    } catch (const Error&) {  // of this frame or an earlier one: alone() finds out
       opened.reset();
       read_ahead.reset();
       return std::nullopt;
@@ -149,8 +149,8 @@ struct TrackRows::State {
   std::unique_ptr<io::Sequence> opened;
   std::optional<io::SequenceRun> run;
   std::optional<io::SequenceFrame> read_ahead;
-  std::size_t next = 0;  // the frame that is followed next
-  std::string ended;     // why no frame can be followed any more
+  std::size_t next = 0;  // next frame to follow
+  std::string ended;     // why no further frame can be followed
 
   void begin(const BatchSequence& sequence) {
     of = sequence;
@@ -167,7 +167,7 @@ struct TrackRows::State {
     }
   }
 
-  /// The row of the frame `next` under this name.
+  /// The row of frame `next`, which has this name.
   std::string advance(const std::string& name) {
     const std::size_t index = next;
     next += of.step;

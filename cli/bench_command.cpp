@@ -34,7 +34,7 @@ using report::Samples;
 struct BenchOptions {
   InputOptions input;
   ExecOptions exec;
-  std::optional<std::string> size;  // of the pair that the program draws
+  std::optional<std::string> size;  // of the rendered pair
   std::string truth;
   std::optional<int> frames;
   std::optional<double> seconds;
@@ -42,13 +42,13 @@ struct BenchOptions {
   std::optional<std::string> json;
 };
 
-// ---- what is measured on ----
+// ---- the input ----
 
-/// What is known to be true of the pair.
+/// The known truth of the pair.
 struct Truth {
   std::string source;
   Image<float> disparity_px;
-  Image<std::uint8_t> hidden;  // empty where not known
+  Image<std::uint8_t> hidden;  // empty if unknown
 };
 
 struct Subject {
@@ -84,11 +84,11 @@ Size size_in(const std::string& words) {
 }
 
 Subject draw(const BenchOptions& options) {
-  constexpr float kShareOfRange = 0.75F;  // that the scene's disparities take up
+  constexpr float kShareOfRange = 0.75F;  // of the range, covered by the scene's disparities
   if (!options.truth.empty())
-    throw Error("--truth " + options.truth + ": is for a pair of yours; give LEFT and RIGHT");
+    throw Error("--truth " + options.truth + ": applies to your own pair only; give LEFT and RIGHT");
   if (!options.input.calib.empty())
-    throw Error("--calib " + options.input.calib + ": is for a pair of yours; give LEFT and RIGHT");
+    throw Error("--calib " + options.input.calib + ": applies to your own pair only; give LEFT and RIGHT");
   const Size size = options.size ? size_in(*options.size) : Size{640, 480};
   ResolvedConfig resolved = resolve(options.input.config);
   const MatchConfig& match = resolved.config.match;
@@ -96,14 +96,14 @@ Subject draw(const BenchOptions& options) {
       match.min_disparity + static_cast<int>(kShareOfRange * static_cast<float>(match.num_disparities));
   report::DrawnPair drawn = report::draw_pair(size, static_cast<float>(std::max(1, farthest_seen)));
   Subject subject;
-  subject.name = "drawn by the program";
+  subject.name = "rendered room";
   subject.drawn = true;
   subject.left = {std::move(drawn.left), std::move(drawn.left_rgb)};
   subject.right = std::move(drawn.right);
   subject.rig = drawn.rig;
   subject.config = std::move(resolved.config);
   subject.preset = std::move(resolved.preset);
-  subject.truth = Truth{"drawn with the pair", std::move(drawn.disparity_px), std::move(drawn.hidden)};
+  subject.truth = Truth{"rendered with the pair", std::move(drawn.disparity_px), std::move(drawn.hidden)};
   return subject;
 }
 
@@ -160,7 +160,7 @@ report::Limits limits_of(const BenchOptions& options) {
   return limits;
 }
 
-// ---- the findings ----
+// ---- results ----
 
 struct Quantiles {
   double least = 0;
@@ -181,7 +181,7 @@ struct Accuracy {
   DisparityErrors errors;
 };
 
-/// Ours first. Columns that no matcher can search in full are left out for all.
+/// Our row first. Columns that some matcher cannot search in full are excluded for all.
 struct Accuracies {
   int from_column = 0;
   std::vector<Accuracy> rows;
@@ -210,7 +210,7 @@ struct Findings {
   std::optional<Accuracies> accuracies;
 };
 
-// ---- for people ----
+// ---- text ----
 
 std::string ms(double milliseconds) {
   return text_of("%.3f", milliseconds);
@@ -226,20 +226,20 @@ std::string heading(const Findings& found) {
          subject.preset + ", " + std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") +
          std::string(name(active_target(found.exec))) + " (supported:" + supported + ")\n" + "measured    " +
          std::to_string(found.times.frames()) + (found.times.frames() == 1 ? " frame" : " frames") +
-         " after the first, which took " + text_of("%.1f ms", found.times.first_frame_ms) + ", on " +
+         " after a warm-up frame of " + text_of("%.1f ms", found.times.first_frame_ms) + ", on " +
          report::processor() + "\n";
 }
 
 std::string stage_table(const FrameTimes& times) {
   const double frame_ms = median_wall(times.frame);
-  Table table({"stage", "median ms", "p99 ms", "processor ms", "share"});
+  Table table({"stage", "median ms", "p99 ms", "CPU ms", "share"});
   const auto add = [&](const std::string& stage, const Samples& samples) {
     const Quantiles wall = quantiles(samples.wall_ms);
     table.add({stage, ms(wall.median), ms(wall.p99), ms(quantiles(samples.cpu_ms).median),
                percent(wall.median / frame_ms)});
   };
   for (const report::StageTimes& stage : times.stages) add(stage.name, stage.times);
-  add("disparity in all", times.disparity);
+  add("disparity stages", times.disparity);
   add("frame", times.frame);
   return table.text();
 }
@@ -251,16 +251,16 @@ std::string summary(const Findings& found) {
   };
   return "speed       " + text_of("%.1f frames per second", 1000 / median_wall(times.frame)) + "; " +
          std::to_string(times.objects) + " objects\n" + "memory      " + megabytes(times.pool_bytes) +
-         " of images at the peak, " + megabytes(found.times.resident_bytes) + " in the whole process; " +
+         " peak for images, " + megabytes(found.times.resident_bytes) + " for the whole process; " +
          std::to_string(times.first_allocations) + " image buffers allocated in the first frame, " +
-         std::to_string(times.later_allocations) + " in all later ones\n";
+         std::to_string(times.later_allocations) + " in later ones\n";
 }
 
 std::string peer_table(const Findings& found) {
   if (report::quick_opencv_matchers().empty()) return "OpenCV's matchers are not built in.\n";
   const FrameTimes& times = found.times;
   if (times.peers.empty()) return {};
-  Table table({"OpenCV " + std::string(report::opencv_version()), "median ms", "p99 ms", "processor ms",
+  Table table({"OpenCV " + std::string(report::opencv_version()), "median ms", "p99 ms", "CPU ms",
                "our disparity", "our frame"});
   const auto ratio = [](const Samples& ours, const Samples& theirs) {
     return text_of("x %.2f", median_wall(ours) / median_wall(theirs));
@@ -270,7 +270,7 @@ std::string peer_table(const Findings& found) {
   for (const report::PeerTimes& peer : times.peers) {
     const std::string name(peer.matcher->name);
     if (!peer.refusal.empty()) {
-      refusals += name + " refuses this pair: " + peer.refusal + "\n";
+      refusals += name + " cannot match this pair: " + peer.refusal + "\n";
       continue;
     }
     some = true;
@@ -280,8 +280,8 @@ std::string peer_table(const Findings& found) {
   }
   if (!some) return refusals;
   return table.text() + refusals +
-         "Each ran once after each frame of ours, with as many threads; x: how many times as long ours "
-         "takes.\n";
+         "Each ran once after each of our frames, with the same number of threads; x: our time divided by "
+         "theirs.\n";
 }
 
 std::string accuracy_table(const Findings& found) {
@@ -295,14 +295,14 @@ std::string accuracy_table(const Findings& found) {
   }
   const Truth& truth = *found.subject.truth;
   return "\n" + table.text() + "Truth: " + truth.source +
-         (truth.hidden.empty() ? ", all of it" : ", where both cameras see") + ", from column " +
+         (truth.hidden.empty() ? ", all pixels" : ", pixels visible to both cameras") + ", from column " +
          std::to_string(found.accuracies->from_column) +
-         " on; bad: share of the matched pixels that are off by more than 1 or 2 px.\n";
+         " on; bad-1, bad-2: share of the matched pixels with an error above 1 or 2 px.\n";
 }
 
-// ---- for programs ----
+// ---- JSON ----
 
-/// JSON has neither NaN nor infinity: null. A nanosecond is as fine as the clocks are.
+/// null for NaN and infinity, which JSON does not have; otherwise rounded to ns, the clock's resolution.
 Json json(double value) {
   constexpr double kSteps = 1e6;
   return std::isfinite(value) ? Json(std::round(value * kSteps) / kSteps) : Json(nullptr);
@@ -359,7 +359,7 @@ Json accuracy_json(const Findings& found) {
           {"matchers", rows}};
 }
 
-/// The content of --json's file (docs/formats.md).
+/// The content of the --json file (docs/formats.md).
 std::string bench_json(const Findings& found) {
   const Subject& subject = found.subject;
   const FrameTimes& times = found.times;
@@ -393,7 +393,7 @@ std::string bench_json(const Findings& found) {
                  {"later_allocations", times.later_allocations}};
   j["opencv"] = opencv_json(found);
   j["accuracy"] = accuracy_json(found);
-  // A file's name may be no UTF-8, which is no reason to fail.
+  // A file name that is not UTF-8 is not an error.
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -424,27 +424,25 @@ Work declare_bench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
   add_input_options(app, options->input);
   app.get_option("LEFT")->required(false);
-  app.add_option("--size", options->size,
-                 "of the pair that is drawn where LEFT is left out; default: 640x480")
+  app.add_option("--size", options->size, "size of the rendered pair if LEFT is not given; default: 640x480")
       ->type_name("WxH");
   add_exec_options(app, options->exec);
-  app.add_option("--frames", options->frames, "measure so many frames after the first")
+  app.add_option("--frames", options->frames, "frames to time after one warm-up frame")
       ->check(CLI::Range(1, kMostFrames).name(""))
       ->type_name("N");
-  app.add_option("--seconds", options->seconds, "measure for so long, but at least three frames")
+  app.add_option("--seconds", options->seconds, "time limit; at least three frames are timed")
       ->check(CLI::Range(0.0, kMostSeconds).name(""))
       ->type_name("S");
   app.add_option("--truth", options->truth,
                  "true disparity of the left image (.png, .pfm), or a folder with disp_left and optionally "
                  "occlusion.png, to report accuracy")
       ->type_name("PATH");
-  app.add_flag("--no-opencv", options->no_opencv, "leave OpenCV's matchers out");
-  app.add_option("--json", options->json, "also write all that was measured into this file, as JSON")
-      ->type_name("FILE");
+  app.add_flag("--no-opencv", options->no_opencv, "no comparison with OpenCV's matchers");
+  app.add_option("--json", options->json, "JSON file for all measurements")->type_name("FILE");
   app.footer(
-      "Without LEFT and RIGHT the program draws a room: the same pixels on every machine.\n"
-      "Without --frames and --seconds: 100 frames, or as many as 10 seconds allow.\n"
-      "Times are of the wall clock; `processor ms` adds up what all threads worked.");
+      "Without LEFT and RIGHT a room is rendered: the same pixels on every machine.\n"
+      "Without --frames and --seconds: 100 frames, or as many as fit in 10 seconds.\n"
+      "Times are wall-clock times; `CPU ms` is the processor time of all threads together.");
   return [options, &app] { return bench(*options, app.count("LEFT") == 0); };
 }
 

@@ -38,7 +38,7 @@ io::Board board_of(const CalibrateOptions& options) {
   return board;
 }
 
-/// Pairs of one size.
+/// Sightings of the board in pairs of one size.
 struct Sightings {
   Size size;
   std::vector<std::string> names;
@@ -56,7 +56,7 @@ Sightings& of_size(std::vector<Sightings>& groups, Size size) {
   return groups.back();
 }
 
-/// What the folder shows of the board, in the size that most of its pairs have; the others' names go to
+/// Detects the board in all pairs of the most frequent size; names of pairs of another size go to
 /// `of_other_size`.
 Sightings look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& board,
                   std::vector<std::string>& of_other_size) {
@@ -99,7 +99,7 @@ std::string too_few(const Sightings& sightings, const CalibrateOptions& options)
          ", preferably fifteen; a board of 10x7 squares has 9x6 inner corners";
 }
 
-/// Words against a side that is most likely in other units; "" for a good one.
+/// A warning if the side was probably given in other units; else "".
 std::string judge_side(const std::string& text) {
   constexpr double kShortest = 1e-4;
   constexpr double kLongest = 1;

@@ -68,7 +68,7 @@ ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrat
   resolved.config = from_preset(options.preset);
   if (!options.file.empty()) io::load_config(options.file, resolved.config, from_preset, set_all, elsewhere);
   set_all(resolved.config);
-  // Only now: in which order they were set is of no account.
+  // Checked last, so the order of the options does not matter.
   for (const std::string& assignment : options.sets) {
     const std::string_view name = name_in(assignment);
     const std::string_view value = std::string_view(assignment).substr(name.size() + 1);
@@ -134,7 +134,7 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
   const fs::path left = options.left;
   io::FrameFiles files;
   files.name = left.stem().string();
-  // Nobody calls a frame so: it is its folder that has a name.
+  // A frame without a name of its own is called after its folder.
   if (files.name == "left" || files.name == "right") files.name = name_of(fs::absolute(left).parent_path());
   files.folder = left.parent_path();
   files.left = left;
@@ -147,8 +147,8 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
 
 namespace {
 
-/// The map of a frame: the one file, or that of its name in a folder of maps or of results. Nothing where the
-/// folder has none.
+/// The map of a frame: the single file, or the one with its name in a folder of maps or results. nullopt if
+/// the folder has none.
 std::optional<fs::path> map_of(const io::FrameFiles& files, const std::string& given) {
   std::error_code ignored;
   if (!fs::is_directory(given, ignored)) return given;
@@ -164,7 +164,7 @@ std::optional<fs::path> map_of(const io::FrameFiles& files, const std::string& g
               files.name + ".png, .pfm or .npy");
 }
 
-/// What is so for all frames is said once.
+/// Reports once what concerns all frames.
 void check_maps(const std::vector<io::FrameFiles>& frames, const InputOptions& options) {
   std::error_code ignored;
   if (frames.size() > 1 && !fs::is_directory(options.disparity, ignored)) {
@@ -181,7 +181,7 @@ void check_rights(const std::vector<io::FrameFiles>& frames) {
     (void)right_of(frames.front());
 }
 
-/// MCAP: by its first bytes, since what reads it may not be built in.
+/// Recognises MCAP by its first bytes, since the reader may not be built in.
 bool is_recording(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string begin(6, '\0');
@@ -319,7 +319,7 @@ std::string name_of(const fs::path& path) {
 
 namespace {
 
-/// Characters, not bytes: a frame's name may be UTF-8.
+/// Counts characters, not bytes: names may be UTF-8.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));

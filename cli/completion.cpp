@@ -18,7 +18,7 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-/// The words of "a|b" or "a,b".
+/// Splits "a|b" or "a,b" into words.
 std::string apart(std::string words, char separator) {
   std::replace(words.begin(), words.end(), separator, ' ');
   return words;
@@ -59,11 +59,11 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// What follows an option, or takes a positional's place, in the script's own words; empty for a flag.
+/// The shell words that complete an option's value or a positional; empty for a flag.
 std::string expected_by(const CLI::Option& option) {
   const bool positional = option.get_positional();
   if (!positional && option.get_items_expected_max() == 0) return {};
-  // Their words are the library's, and --help describes them.
+  // These words come from the library; --help describes them.
   if (option.check_lname("preset")) return joined(preset_names());
   if (option.check_lname("target")) return target_names();
   if (option.check_lname("options")) return tunable_names();
@@ -115,7 +115,7 @@ _cairn() {
 complete -F _cairn cairn
 )TEXT";
 
-/// A function of the shell that prints the words of a case.
+/// A shell function that prints the words of each case.
 std::string function(const char* name, const std::string& cases) {
   return std::string(name) + "() {\n  case $1 in\n" + cases + "  esac\n}\n";
 }

@@ -26,7 +26,7 @@ struct DisparityOptions {
   std::string view;
 };
 
-/// Before any work: a name that cannot be written to should not cost the matching's time.
+/// Checked first, so that a bad name does not cost the time of matching.
 void check_output(const std::string& output, const MatchConfig& config) {
   const std::string extension = std::filesystem::path(output).extension().string();
   if (extension != ".png" && extension != ".pfm") {

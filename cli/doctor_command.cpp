@@ -21,8 +21,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestSequence = 60;  // pairs in memory at a time
-constexpr std::size_t kMostSequences = 4;     // of a longer folder: its start, its end and between
+constexpr std::size_t kLongestSequence = 60;  // pairs held in memory at a time
+constexpr std::size_t kMostSequences = 4;     // of a longer folder: at its start, its end and in between
 
 struct DoctorOptions {
   InputOptions input;
@@ -32,18 +32,18 @@ struct DoctorOptions {
   bool strict = false;
 };
 
-/// What became of one pair.
+/// The outcome of one pair.
 struct ExaminedPair {
   std::string name;
-  std::optional<Size> size;              // of the left picture
-  std::optional<PairMeasures> measures;  // nothing where the pictures differ in size
+  std::optional<Size> size;              // of the left image
+  std::optional<PairMeasures> measures;  // nullopt if the images differ in size
   std::vector<Finding> findings;
   std::vector<NotChecked> not_checked;
 };
 
 // ---- one pair ----
 
-/// The pair, or nothing and a finding where the sizes differ. Throws Error for anything else.
+/// The pair, or nullopt and a finding if the sizes differ. Throws Error for other faults.
 std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, ExaminedPair& examined,
                                             const Exec& exec) {
   const fs::path& right_file = right_of(files);
@@ -63,7 +63,7 @@ std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examine
   }
 }
 
-/// The calibration; empty with a finding where it cannot be true, or is of other pictures.
+/// The calibration; nullopt and a finding if it is impossible or belongs to other images.
 io::Calibration calibration_or_find(const io::FrameFiles& files, const std::string& given,
                                     ExaminedPair& examined) {
   std::optional<fs::path> path = files.calib;
@@ -87,7 +87,7 @@ io::Calibration calibration_or_find(const io::FrameFiles& files, const std::stri
   return calibration;
 }
 
-/// Whether the pictures were rectified with a calibration that describes raw cameras: their rows tell.
+/// For a calibration of raw cameras: judges by the rows whether the images are already rectified.
 void examine_rectification(ExaminedPair& examined) {
   const auto is = [](FindingKind kind) {
     return [kind](const Finding& finding) { return finding.kind == kind; };
@@ -125,7 +125,7 @@ ExaminedPair examine(const io::FrameFiles& files, const DoctorOptions& options, 
 
 // ---- a folder ----
 
-/// At most `most` of 0 … count − 1, spread evenly.
+/// At most `most` indices of 0 … count − 1, spread evenly.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
   std::vector<std::size_t> some(std::min(count, most));
   for (std::size_t i = 0; i < some.size(); ++i) some[i] = i * count / some.size();
@@ -134,10 +134,10 @@ std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
 
 /// Consecutive pairs of a folder.
 struct Sequence {
-  std::size_t first = 0;  // of the folder's pairs
+  std::size_t first = 0;  // index in the folder
   std::vector<std::string> names;
   Synchrony synchrony;
-  std::optional<Finding> finding;  // its frames count from the folder's first pair
+  std::optional<Finding> finding;  // its frames are indices in the folder
 
   [[nodiscard]] Severity severity() const { return finding ? finding->severity : Severity::note; }
 };
@@ -145,8 +145,8 @@ struct Sequence {
 struct Diagnosis {
   std::size_t pairs_in_all = 0;
   std::vector<ExaminedPair> pairs;
-  std::vector<std::size_t> indices;  // of these pairs in the folder
-  LeftOut left_out;                  // pairs whose files cannot be used
+  std::vector<std::size_t> indices;  // index in the folder of each pair
+  LeftOut left_out;                  // pairs with unusable files
   std::optional<Sequence> sequence;
   std::vector<Finding> findings;
 };
@@ -166,7 +166,7 @@ std::optional<Finding> find_sizes(const std::vector<ExaminedPair>& pairs) {
   return finding;
 }
 
-/// nullopt where it cannot be used: an end of what follows each other.
+/// nullopt if it is unusable, which ends the consecutive pairs.
 std::optional<io::PicturePair> load_if_possible(const io::FrameFiles& files, const Exec& exec) {
   try {
     return io::load_pair(files.left, right_of(files), exec.pool);
@@ -175,7 +175,7 @@ std::optional<io::PicturePair> load_if_possible(const io::FrameFiles& files, con
   }
 }
 
-/// Consecutive pairs from `first` on, as long as they can be used and are of one size.
+/// Consecutive usable pairs of one size, from `first` on.
 Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& frames, const Exec& exec) {
   std::vector<io::PicturePair> pictures;
   std::vector<StereoPair> pairs;
@@ -200,7 +200,7 @@ Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& fra
   return sequence;
 }
 
-/// What a folder of many pairs says best: that the cameras are out of step, that they are not, or nothing.
+/// The most significant result: the cameras are out of step; else that they are in step; else inconclusive.
 Sequence telling_sequence(const std::vector<io::FrameFiles>& frames, const Exec& exec) {
   const std::size_t rest = frames.size() - std::min(frames.size(), kLongestSequence);
   const std::size_t count =
@@ -214,7 +214,7 @@ Sequence telling_sequence(const std::vector<io::FrameFiles>& frames, const Exec&
   return best;
 }
 
-/// Pairs out of step seem to have lost their rows where the rig moves: a note then.
+/// On a moving rig, pairs out of step appear misaligned in rows: downgrade that finding to a note.
 void explain_rows(Diagnosis& diagnosis) {
   const Finding& lost = *diagnosis.sequence->finding;
   if (lost.severity != Severity::broken) return;
@@ -232,7 +232,7 @@ void explain_rows(Diagnosis& diagnosis) {
   }
 }
 
-/// The same finding with its frames among the pairs that were measured.
+/// The finding with its frames renumbered as indices of the measured pairs.
 Finding of_measured_pairs(Finding finding, const Diagnosis& diagnosis) {
   std::vector<std::size_t> measured;
   for (std::size_t i = 0; i < diagnosis.indices.size(); ++i) {
@@ -243,7 +243,7 @@ Finding of_measured_pairs(Finding finding, const Diagnosis& diagnosis) {
   return finding;
 }
 
-/// A calibration for all pairs that cannot be read is bad input; one that cannot be true is for a finding.
+/// An unreadable calibration is bad input; an impossible one is a finding.
 void check_calibration(const std::string& path) {
   if (path.empty()) return;
   try {
@@ -255,7 +255,7 @@ void check_calibration(const std::string& path) {
 
 Diagnosis examine_all(const DoctorOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
-  (void)resolve(options.input.config);  // a bad option is one before any work
+  (void)resolve(options.input.config);  // reports bad options before any work
   check_calibration(options.input.calib);
   const Exec exec = make_exec(options.exec);
   const std::vector<std::size_t> tried = spread(frames.size(), static_cast<std::size_t>(options.frames));
@@ -344,7 +344,8 @@ Histogram histogram_of(const std::vector<ExaminedPair>& pairs) {
   return sum;
 }
 
-/// "rows off       -1     0    +1" and the points below it; bins that are empty at either end are left out.
+/// A histogram as two lines, "rows off       -1     0    +1" and the numbers of points, without empty bins at
+/// the ends.
 std::string histogram_text(const Histogram& histogram) {
   const auto is_used = [](int count) { return count > 0; };
   const auto first = std::find_if(histogram.begin(), histogram.end(), is_used);
@@ -363,7 +364,7 @@ std::string histogram_text(const Histogram& histogram) {
   return table.text();
 }
 
-// ---- words ----
+// ---- text ----
 
 std::vector<std::string> names_of(const std::vector<ExaminedPair>& pairs) {
   std::vector<std::string> names;
@@ -384,9 +385,9 @@ std::string findings_text(const Diagnosis& diagnosis) {
   return all;
 }
 
-/// One check that some pairs did not allow.
+/// A check that was not possible for some pairs.
 struct Omission {
-  NotChecked first;  // of the first pair
+  NotChecked first;  // from the first of these pairs
   std::vector<std::size_t> pairs;
 };
 
@@ -437,7 +438,7 @@ std::string names_of(const std::vector<Finding>& findings, Severity severity) {
   return all;
 }
 
-/// The worst by name, and which checks no pair allowed.
+/// The worst findings by name, and the checks that were possible for no pair.
 std::string verdict(const Diagnosis& diagnosis, const std::vector<Omission>& omitted) {
   std::string all = "verdict: ";
   std::string unknown;
@@ -499,7 +500,7 @@ int examine_and_tell(const DoctorOptions& options) {
   return broken || (options.strict && warned) ? 1 : left_out;
 }
 
-/// Every finding with its number and remedy, and every limit.
+/// All findings with number and remedy, and all limits.
 std::string explanation() {
   std::string all;
   for (const FindingInfo& known : kFindings) {
@@ -511,7 +512,7 @@ std::string explanation() {
   std::string lines;
   fields(config, [&](const char* name, const auto& value, const char* unit, const char* help, const auto&) {
     std::string start = name;
-    start.resize(18, ' ');
+    start.resize(20, ' ');
     std::string amount = text_of("%g ", static_cast<double>(value)) + unit;
     amount.resize(std::max<std::size_t>(amount.size(), 16), ' ');
     lines += start + amount + help + "\n";

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct EvaluateOptions {
-  std::vector<std::string> folders;  // as given: the results, then the truth
+  std::vector<std::string> folders;  // as given: results, then truth
   std::vector<std::string> results;
   std::string truth;
   ObjectErrorConfig objects;
@@ -48,11 +48,11 @@ struct EvaluateOptions {
 
 constexpr double kConfident = 0.8;
 
-/// Of the disparities whose truth is known.
+/// Over the pixels with a known truth.
 struct ConfidentPixels {
   std::int64_t matched = 0;
-  std::int64_t confident = 0;  // stated to be right with at least kConfident
-  std::int64_t right = 0;      // of those, off by 1 px at most
+  std::int64_t confident = 0;  // with a confidence of at least kConfident
+  std::int64_t right = 0;      // of those, with an error of at most 1 px
 
   ConfidentPixels& operator+=(const ConfidentPixels& other) {
     matched += other.matched;
@@ -67,16 +67,16 @@ struct FrameScore {
   ResultFiles result;
   io::TruthFiles truth;
   std::optional<FrameObjects> objects;
-  std::map<ObjectId, double> confidence;   // empty where there is no objects.json
-  std::optional<DisparityErrors> visible;  // non-occluded; all pixels with truth where nothing tells
+  std::map<ObjectId, double> confidence;   // empty without objects.json
+  std::optional<DisparityErrors> visible;  // non-occluded pixels; all if occlusion is unknown
   std::optional<DisparityErrors> all;
   bool knows_occlusion = false;
-  std::optional<ConfidentPixels> confident;  // nullopt where there is no confidence.png
-  std::vector<io::StageTime> times;          // empty where there is no objects.json, or nothing shows them
+  std::optional<ConfidentPixels> confident;  // nullopt without confidence.png
+  std::vector<io::StageTime> times;          // empty without objects.json, or if it has no times
   io::EncodedFrame page;                     // empty without --html
 };
 
-/// What objects.json says of the time of each stage.
+/// The time of each stage according to objects.json.
 std::vector<io::StageTime> load_times(const fs::path& objects_json) {
   constexpr std::size_t kMost = std::size_t{256} << 20;
   const std::string text = io::read_file(objects_json, kMost);
@@ -157,9 +157,9 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
 
 struct Scores {
   std::vector<FrameScore> frames;
-  std::vector<std::string> without_result;  // frames with a truth, which are not in the results
-  std::vector<std::string> without_truth;   // the other way round: of KITTI's frames every other
-  LeftOut left_out;                         // frames whose files cannot be used
+  std::vector<std::string> without_result;  // frames in the truth only
+  std::vector<std::string> without_truth;   // frames in the results only: KITTI has every other
+  LeftOut left_out;                         // frames with unusable files
   std::size_t results = 0;
 };
 
@@ -308,7 +308,7 @@ struct DisparityTotals {
   DisparityErrors all;
   int frames = 0;
   int with_occlusion = 0;
-  ConfidentPixels confident;  // of the frames that have a confidence.png
+  ConfidentPixels confident;  // over the frames with a confidence.png
 };
 
 DisparityTotals disparity_totals(const std::vector<FrameScore>& frames) {
@@ -344,10 +344,10 @@ std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOp
             : "";
     all += "precision           IoU >= 0.5: " + percent(s.precision_50()) +
            "   IoU >= 0.75: " + percent(s.precision_75()) + "   of " + std::to_string(s.our_objects) +
-           " objects of ours" + partial + "\n";
+           " reported objects" + partial + "\n";
     all += "phantoms            " + text_of("%.2f", s.phantoms_per_frame()) + " per frame\n";
   } else {
-    all += "precision           not known: the truth is partial\n";
+    all += "precision           undefined: the truth is partial\n";
   }
   all += "E                   mean " + percent(s.mean_error) + "   median " + percent(s.median_error) +
          "   (capped at 200 %; " + std::to_string(s.missed) + " reach that)\n";
@@ -357,7 +357,7 @@ std::string object_lines(const std::vector<FrameScore>& frames, const EvaluateOp
   all += "segmented           over: " + std::to_string(s.over_segmented) +
          "   under: " + std::to_string(s.under_segmented) + "\n";
   if (const Confidence c = judge_confidence(frames); c.known) {
-    all += "confidence >= 0.8   " + std::to_string(c.objects) + " objects of ours";
+    all += "confidence >= 0.8   " + std::to_string(c.objects) + " reported objects";
     if (c.objects > 0)
       all += ", " + percent(c.right / static_cast<double>(c.objects)) + " of them with IoU >= 0.5";
     all += "\n";
@@ -377,7 +377,7 @@ std::string disparity_block(const char* title, const DisparityErrors& e, const s
   all += "  density           " + percent(e.density()) + " of " + std::to_string(e.known) + " pixels\n";
   bad("  of the matched    ", [&](std::size_t t) { return e.bad_of_matched(t); });
   bad("  with holes        ", [&](std::size_t t) { return e.bad_of_known(t); });
-  all += "  off by            mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
+  all += "  error             mean " + text_of("%.3f px", e.mean_absolute_px()) + "   RMS " +
          text_of("%.3f px", e.root_mean_square_px()) + "   within 1 px RMS " +
          text_of("%.3f px", e.sigma_px()) + "\n";
   return all;
@@ -409,9 +409,9 @@ std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left
   return all;
 }
 
-// ---- the same as JSON ----
+// ---- JSON ----
 
-/// JSON has neither NaN nor infinity: null.
+/// null for NaN and infinity, which JSON does not have.
 Json json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -420,7 +420,7 @@ Json json_if(bool known, int value) {
   return known ? Json(value) : Json(nullptr);
 }
 
-/// The double that has the float's shortest text: 0.7, not 0.699999988.
+/// The double nearest to the float's shortest decimal form: 0.7, not 0.699999988.
 double shortest(float value) {
   return std::stod(text_of("%.7g", static_cast<double>(value)));
 }
@@ -560,7 +560,7 @@ Json mean_and_median(const std::vector<double>& values) {
 
 Json summary_times_json(const std::vector<FrameScore>& frames) {
   std::vector<double> totals;
-  std::vector<std::string> stages;  // in the order of the work, which a map would lose
+  std::vector<std::string> stages;  // in order of execution, which a map would not keep
   std::map<std::string, std::vector<double>> by_stage;
   for (const FrameScore& frame : frames) {
     if (frame.times.empty()) continue;
@@ -578,7 +578,7 @@ Json summary_times_json(const std::vector<FrameScore>& frames) {
   return j;
 }
 
-/// The content of --json's file (docs/evaluation.md).
+/// The content of the --json file (docs/evaluation.md).
 std::string evaluation_json(const Scores& scores, const EvaluateOptions& options) {
   Json j;
   j["cairn"] = CAIRN_VERSION;
@@ -593,7 +593,7 @@ std::string evaluation_json(const Scores& scores, const EvaluateOptions& options
   j["left_out"] = scores.left_out.frames();
   j["frames"] = Json::array();
   for (const FrameScore& frame : scores.frames) j["frames"].push_back(frame_json(frame));
-  // A folder's name may be no UTF-8, which is no reason to fail.
+  // A folder name that is not UTF-8 is not an error.
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -610,7 +610,7 @@ void write_page(Scores& scores, const EvaluateOptions& options, const std::strin
   io::write_file(fs::path(*options.html) / kPageName, page);
 }
 
-/// Empty where there are none.
+/// Empty if there are none.
 std::string names_line(std::string head, const char* whose, const std::vector<std::string>& names) {
   constexpr std::size_t kColumn = 20;
   if (names.empty()) return {};
@@ -620,9 +620,9 @@ std::string names_line(std::string head, const char* whose, const std::vector<st
   return line + "\n";
 }
 
-// ---- runs side by side ----
+// ---- comparison of runs ----
 
-/// As CSV wants a text that may have commas.
+/// Quotes a CSV field that may contain commas.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string all = "\"";
@@ -635,7 +635,7 @@ struct Run {
   Scores scores;
 };
 
-/// The numbers of a run by their names: those of --json's `summary`, without the single stages.
+/// The numbers of a run by name: those of `summary` in --json, without the single stages.
 std::vector<std::pair<std::string, std::string>> cells_of(const Run& run) {
   Json summary{{"objects", summary_objects_json(run.scores.frames)},
                {"disparity", summary_disparity_json(run.scores.frames)},
@@ -651,7 +651,7 @@ std::vector<std::pair<std::string, std::string>> cells_of(const Run& run) {
   return cells;
 }
 
-/// One line for each run below the names; what a run does not have is empty.
+/// A header line of names, then one line per run; missing values are empty.
 std::string csv(const std::vector<Run>& runs) {
   std::vector<std::string> names;
   std::vector<std::map<std::string, std::string>> rows;
@@ -662,7 +662,7 @@ std::string csv(const std::vector<Run>& runs) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
-  // What one run lacks as a whole, like `objects`, has no value of its own where another one has its parts.
+  // A run without a section, such as `objects`, has no value for its name if other runs have its parts.
   std::erase_if(names, [&](const std::string& name) {
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& other) { return other.starts_with(name + "."); });
@@ -701,7 +701,7 @@ std::string run_table(const std::vector<Run>& runs) {
   return table.text();
 }
 
-/// A comparison of runs is fair on the same frames only.
+/// Runs are compared only on the same frames.
 std::string frames_that_differ(const std::vector<Run>& runs) {
   const auto names_of = [](const Run& run) {
     std::set<std::string> names;
@@ -735,7 +735,7 @@ int compare(const EvaluateOptions& options) {
   return code;
 }
 
-/// Of a sequence, or of two trajectories; none where it is neither.
+/// The evaluation of a sequence or of two trajectories; nullopt if the input is neither.
 std::optional<int> evaluate_over_time(const EvaluateOptions& options) {
   const auto is_trajectory = [](const std::string& path) {
     const fs::path file(path);

@@ -18,7 +18,7 @@ std::optional<fs::path> file_in(const fs::path& folder, const char* name) {
   return fs::is_regular_file(folder / name, ignored) ? std::optional(folder / name) : std::nullopt;
 }
 
-/// A map of the page, which must have the size of those before it.
+/// A map for the page; it must have the size of the earlier ones.
 class SizeCheck {
  public:
   void operator()(const fs::path& path, Size size) {
@@ -32,7 +32,7 @@ class SizeCheck {
   Size size_;
 };
 
-/// The frame's left picture: in the truth's folder, or in the one beside it that has the result's name.
+/// The frame's left image: in the truth's folder, or next to it under the result's name.
 std::optional<fs::path> left_picture(const fs::path& truth_folder, const std::string& name) {
   for (const fs::path& folder : {truth_folder, truth_folder.parent_path() / name}) {
     try {
@@ -41,7 +41,7 @@ std::optional<fs::path> left_picture(const fs::path& truth_folder, const std::st
         if (frame.folder == folder && (frames.size() == 1 || frame.name == name)) return frame.left;
       }
     } catch (const Error&) {
-      continue;  // a truth needs no picture
+      continue;  // truth without an image is valid
     }
   }
   return std::nullopt;
@@ -140,7 +140,7 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
     shown.left_rgb = left.rgb;
   }
   if (result.json) {
-    (void)io::load_confidences(*result.json);  // refuses what is no objects.json, with the file's name
+    (void)io::load_confidences(*result.json);  // rejects a file that is no objects.json, with its name
     constexpr std::size_t kMost = std::size_t{256} << 20;
     shown.objects_json = io::read_file(*result.json, kMost);
   }

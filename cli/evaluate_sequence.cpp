@@ -24,12 +24,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// JSON has neither NaN nor infinity: null.
+/// null for NaN and infinity, which JSON does not have.
 Json json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// The value that this share of all does not exceed; NaN of none.
+/// The quantile at `share`; NaN without values.
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
@@ -49,7 +49,7 @@ std::string metres(double value) {
   return text_of("%.3f m", value);
 }
 
-// ---- as JSON ----
+// ---- JSON ----
 
 Json json(const TrackErrors& e) {
   return {{"HOTA", e.hota},         {"DetA", e.det_a},     {"DetRe", e.det_re},   {"DetPr", e.det_pr},
@@ -150,7 +150,7 @@ Json summary_json(const SequenceScores& s) {
 }
 
 std::string dumped(const Json& json) {
-  // A folder's name may be no UTF-8, which is no reason to fail.
+  // A folder name that is not UTF-8 is not an error.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -163,7 +163,7 @@ std::string whole_json(const SequenceScores& s, const EvaluateSequenceOptions& o
                  {"without_truth", s.without_truth}});
 }
 
-// ---- as CSV: one row for each run ----
+// ---- CSV: one row per run ----
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -172,8 +172,8 @@ std::string quoted(const std::string& text) {
   return all + "\"";
 }
 
-/// One line for each run below the names; what a run does not have is empty. Frames to detect are left out:
-/// their names are the objects', which differ from truth to truth.
+/// A header line of names, then one line per run; missing values are empty. The frames to detection are left
+/// out, since their names, those of the objects, differ between truths.
 std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
   std::vector<std::string> names;
   std::vector<std::map<std::string, std::string>> rows;
@@ -190,7 +190,7 @@ std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
     }
     rows.push_back(std::move(row));
   }
-  // What one run lacks as a whole, like `moving`, has no value of its own where another one has its parts.
+  // A run without a section, such as `moving`, has no value for its name if other runs have its parts.
   std::erase_if(names, [&](const std::string& name) {
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& other) { return other.starts_with(name + "."); });
@@ -204,7 +204,7 @@ std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
   return text + "\n";
 }
 
-// ---- as text ----
+// ---- text ----
 
 std::string track_table(const SequenceScores& s) {
   Table table({"objects over time", "tracks", "oracle ids"});
@@ -241,9 +241,9 @@ std::string place_lines(const PlaceErrors& places) {
          "from the camera: median " + metres(percentile(places.in_camera_m, 0.5)) + "   95 % below " +
          metres(percentile(places.in_camera_m, 0.95)) + "\n";
   if (places.stated > 0)
-    all += "                    in the ellipsoid stated to hold 95 %: " +
+    all += "                    within the stated 95 % ellipsoid: " +
            percent(share(places.inside, places.stated)) + "   NEES: median " +
-           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 where it is right)\n";
+           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
   return all;
 }
 
@@ -251,9 +251,10 @@ std::string moving_lines(const MovingErrors& e) {
   if (!e.is_known) return {};
   std::string all = "moving              ";
   for (const auto& [id, frames] : e.frames_to_detect) {
-    all += "object " + std::to_string(id) + ": " +
-           (frames ? "after " + std::to_string(*frames) + " frames" : std::string("never seen to move")) +
-           "   ";
+    all +=
+        "object " + std::to_string(id) + ": " +
+        (frames ? "after " + std::to_string(*frames) + " frames" : std::string("never labelled as moving")) +
+        "   ";
   }
   if (e.moving > 0) all += percent(share(e.labelled, e.moving)) + " of the frames in which it moves   ";
   return all + "false: " + percent(share(e.labelled_wrong, e.at_rest)) + " of " + std::to_string(e.at_rest) +
@@ -280,14 +281,14 @@ std::string trajectory_lines(const TrajectoryError& e) {
 std::string lines_of(const SequenceScores& s) {
   const ObjectSummary& o = s.objects;
   std::string all = track_table(s) + "\n";
-  all += "objects             " + std::to_string(o.true_objects) + " true ones in " +
-         std::to_string(s.frames) + " frames, " + std::to_string(o.our_objects) + " of ours\n";
+  all += "objects             " + std::to_string(o.true_objects) + " true objects in " +
+         std::to_string(s.frames) + " frames, " + std::to_string(o.our_objects) + " reported\n";
   all += "found               IoU >= 0.5: " + percent(o.recall_50()) +
          "   IoU >= 0.75: " + percent(o.recall_75()) + "\n";
   all += "precision           " +
          (o.complete_frames > 0
               ? "IoU >= 0.5: " + percent(o.precision_50()) + "   IoU >= 0.75: " + percent(o.precision_75())
-              : std::string("not known: the truth is partial")) +
+              : std::string("undefined: the truth is partial")) +
          "\n";
   all += "E                   mean " + percent(o.mean_error) + "   median " + percent(o.median_error) + "\n";
   all += "lost and found      " + std::to_string(s.steadiness.found_again) + " times, " +
@@ -297,14 +298,15 @@ std::string lines_of(const SequenceScores& s) {
   all += place_lines(s.places) + moving_lines(s.moving);
   if (s.landmarks.is_known) {
     all += "landmarks           in view again: " + std::to_string(s.landmarks.again) +
-           "   known again: " + std::to_string(s.landmarks.re_identified) +
-           "   taken for another: " + std::to_string(s.landmarks.wrong) + "\n";
+           "   recognised: " + std::to_string(s.landmarks.re_identified) +
+           "   mistaken for another: " + std::to_string(s.landmarks.wrong) + "\n";
   }
   if (s.changes.is_known) {
     all += "changes             found " + std::to_string(s.changes.found) + " of " +
            std::to_string(s.changes.expected) + "   wrong: " + std::to_string(s.changes.wrong) + " of " +
            std::to_string(s.changes.reported) + " reported";
-    if (!s.changes.errors_m.empty()) all += "   way off by " + metres(percentile(s.changes.errors_m, 0.5));
+    if (!s.changes.errors_m.empty())
+      all += "   displacement error " + metres(percentile(s.changes.errors_m, 0.5));
     all += "\n";
   }
   if (s.trajectory) all += trajectory_lines(*s.trajectory);
@@ -374,7 +376,7 @@ int evaluate_trajectory(const EvaluateSequenceOptions& options) {
   for (const std::string& result : options.results) {
     io::Trajectory ours = io::load_trajectory(result);
     if (ours.has_stamps != truth.has_stamps) {
-      // KITTI's poses have no stamps: the k-th belongs to the k-th, and that needs as many on both sides.
+      // KITTI poses have no stamps, so they are matched by index; both sides need the same number.
       if (ours.poses.size() != truth.poses.size())
         throw Error((ours.has_stamps ? options.truth : result) + ": has no stamps, and " +
                     std::to_string((ours.has_stamps ? truth : ours).poses.size()) + " poses, expected " +

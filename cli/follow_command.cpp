@@ -49,7 +49,7 @@ struct FollowOptions {
   bool html = false;
 };
 
-/// What a run has come to, for its last line and summary.json.
+/// Totals of a run, for its last line and summary.json.
 struct Run {
   std::vector<double> milliseconds;
   double path_m = 0;
@@ -60,7 +60,7 @@ struct Run {
   std::map<std::string, int> refusals;
   std::vector<LandmarkEvent> events;
   int unreliable = 0;
-  // Of each witness, and of the value that they make: sum and number of frames that know it.
+  // For each witness and for the resulting value: sum, and number of frames where it is known.
   std::map<std::string, std::pair<double, int>> reliability;
 
   void add(const std::string& name, std::optional<float> share) {
@@ -159,7 +159,7 @@ std::string progress_words(std::size_t done, std::optional<std::size_t> all, con
   return words;
 }
 
-/// "X,Y,DEGREES" on the floor of the map.
+/// "X,Y,DEGREES" on the map's floor.
 std::optional<Pose> start_in_map(const std::string& text) {
   if (text.empty()) return std::nullopt;
   double x = 0;
@@ -178,7 +178,7 @@ std::optional<fs::path> named(const std::string& file) {
   return file.empty() ? std::nullopt : std::optional<fs::path>(file);
 }
 
-/// What is known beside the pictures; options that do not go together are refused.
+/// The additional inputs; rejects options that exclude each other.
 io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& source) {
   refuse_two_priors(options.odometry, options.imu);
   if (!options.poses.empty() && !(options.odometry.empty() && options.imu.empty()))
@@ -206,7 +206,7 @@ io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& 
           start};
 }
 
-/// Results among the frames would be frames of the next run.
+/// Results written next to the frames would be read as frames by the next run.
 void check_output(const FollowOptions& options) {
   for (const auto& [wanted, name] :
        {std::pair{options.frames_out, "--frames-out"}, {options.html, "--html"}}) {
@@ -278,7 +278,7 @@ std::string event_line(const Json& event) {
   return line;
 }
 
-/// Everything that a run writes.
+/// All output of a run.
 struct Outputs {
   std::optional<io::FollowFiles> files;
   std::optional<io::FollowPage> page;
@@ -319,7 +319,7 @@ void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& f
   }
 }
 
-/// Frame by frame until the source ends, somebody ends it, or nobody reads any more.
+/// Processes frames until the source ends, the user stops the run, or no reader is left.
 void go_through(io::Sequence& source, io::SequenceRun& follower, Controller& controller,
                 const FollowOptions& options, Outputs& outputs, Run& run) {
   const Progress progress(source.size().value_or(0));
@@ -346,7 +346,7 @@ void go_through(io::Sequence& source, io::SequenceRun& follower, Controller& con
   }
 }
 
-/// What is open is closed whatever ended the run, so that all that was done is kept.
+/// Closes all files however the run ends, so that finished results are kept.
 void close(const std::string& state, const io::Sequence& source, io::SequenceRun& follower,
            const FollowOptions& options, Outputs& outputs, const Run& run) {
   if (outputs.page) outputs.page->finish(follower.marked().state.map);

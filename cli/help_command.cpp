@@ -25,7 +25,7 @@ Work declare_help(CLI::App& app) {
   app.add_option("COMMAND", *name, "command to describe; default: list of all commands")->type_name("");
   return [name] {
     const CommandLine line =
-        declare_command_line();  // one where no command was chosen: CLI11 shows that one's
+        declare_command_line();  // a fresh one: CLI11 would print the help of a chosen subcommand
     if (name->empty()) {
       std::cout << line.app->help();
       return 0;

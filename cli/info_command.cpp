@@ -16,7 +16,7 @@ std::string names(const std::vector<Target>& targets) {
   return all;
 }
 
-/// One thing that may be left out of a build, and what it needs.
+/// An optional part of the build, and the package it needs.
 std::string built_in(std::string what, bool is_in, const char* packages) {
   constexpr std::size_t kColumn = 42;
   what.resize(kColumn, ' ');

@@ -22,11 +22,11 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kMostWaiting = 16;  // frames
 constexpr int kNotice_ms = 50;
-/// A pipe that poll() calls writable takes so much without blocking (POSIX's PIPE_BUF is no less than 512;
-/// Linux's is 4096).
+/// poll() guarantees that a writable pipe takes this much without blocking (POSIX: PIPE_BUF is at least 512;
+/// Linux: 4096).
 constexpr std::size_t kPiece = 4096;
 
-/// False where nobody reads any more, or where the reader hangs and `is_over`.
+/// False if the reader closed the pipe, or does not read and `is_over`.
 template <class IsOver>
 bool write_to_stdout(std::string_view text, IsOver&& is_over) {
   while (!text.empty()) {

@@ -23,7 +23,7 @@ struct LiveCommandOptions {
   std::string map;
   bool map_read_only = false;
   ConfigOptions config;
-  bool is_config_told = false;  // --preset or --config
+  bool is_config_told = false;  // --preset or --config was given
   LiveRecordOptions record;
   ExecOptions exec;
   bool every_frame = false;
@@ -37,7 +37,7 @@ struct LiveCommandOptions {
   Ros2CommandOptions ros2;
 };
 
-/// A line a second on stderr where somebody looks.
+/// Prints a status line per second to stderr if it is a terminal.
 class StatusLine : public live::Sink {
  public:
   void offer(const live::LiveFramePtr& frame) override {

@@ -31,7 +31,7 @@ std::unique_ptr<live::Recorder> open_recorder(const LiveRecordOptions& options, 
   how.what = live::parse_record_what(options.what);
   how.waits = waits;
   how.on_trouble = [](const std::string& line) { std::cerr << "cairn: " + line + "\n" << std::flush; };
-  // A file that may grow no further is refused as a full disk is, and does not end the run.
+  // A file-size limit is handled like a full disk, without ending the run.
   std::signal(SIGXFSZ, SIG_IGN);
   return std::make_unique<live::Recorder>(std::move(run), std::move(how));
 }
@@ -45,7 +45,7 @@ RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options
   if (is_told || !ros::has_mcap() || !ros::is_mcap(source)) return;
   const auto text = ros::attachment_of(ros::McapReader(source), "config.yaml");
   if (!text) return;
-  // Without a name, so that no other program can find or replace it.
+  // Unnamed, so that no other program can find or replace it.
   descriptor_ = ::memfd_create("config.yaml", MFD_CLOEXEC);
   if (descriptor_ < 0)
     throw Error(source +

@@ -36,7 +36,7 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
   return close.empty() ? "" : ", did you mean '" + close + "'?";
 }
 
-/// The sentence for the first option that `app` does not have; empty where all are known.
+/// An error message for the first option unknown to `app`; empty if all are known.
 std::string unknown_option(const CLI::App& app, const std::vector<std::string>& words) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options()) {
@@ -101,9 +101,9 @@ int guarded(int argc, const char* const* argv) {
 
 std::terminate_handler usual_terminate = std::abort;
 
-/// Memory may end where no exception can leave: in a library's destructor, in another thread.
+/// Memory may run out where no exception can be caught: in a library's destructor, in another thread.
 [[noreturn]] void end_in_one_line() {
-  bool is_memory = errno == ENOMEM;  // an exception that finds no way out at all is not current
+  bool is_memory = errno == ENOMEM;  // an uncaught exception may not be current here
   try {
     if (const std::exception_ptr why = std::current_exception()) std::rethrow_exception(why);
   } catch (const std::bad_alloc&) {
@@ -112,7 +112,7 @@ std::terminate_handler usual_terminate = std::abort;
     is_memory = false;
   }
   if (!is_memory) {
-    usual_terminate();  // says what was thrown
+    usual_terminate();  // reports what was thrown
     std::abort();
   }
   constexpr std::string_view kLine = "cairn: not enough memory\n";
@@ -120,8 +120,8 @@ std::terminate_handler usual_terminate = std::abort;
   ::_exit(kFailed);
 }
 
-/// Whoever calls with stdout closed would find it in the first file that is opened. Nothing can be written to
-/// what is opened instead, which is noticed as any other stdout that takes nothing.
+/// If stdout was closed by the caller, the first file opened would take its number. A read-only /dev/null
+/// takes it instead; writing to it fails, which is reported like any write error on stdout.
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDONLY);  // gets the lowest free number

@@ -36,7 +36,7 @@ int show(const MapOptions& options) {
     std::cout << "rig: baseline " << text_of("%g m", static_cast<double>(rig->baseline_m))
               << ", focal length " << text_of("%g px", static_cast<double>(rig->focal_px)) << "\n";
   Table landmarks(
-      {"landmark", "x m", "y m", "z m", "± m", "width m", "height m", "there", "seen", "expected", "name"});
+      {"landmark", "x m", "y m", "z m", "± m", "width m", "height m", "present", "seen", "expected", "name"});
   for (const Landmark& l : map.list) {
     const double sigma = std::sqrt((l.covariance_m2[0] + l.covariance_m2[4]) / 2);
     landmarks.add({std::to_string(number(l.id)), text_of("%.2f", l.position_m.x),
@@ -47,12 +47,12 @@ int show(const MapOptions& options) {
                    std::to_string(l.expected), l.name});
   }
   if (!map.list.empty()) std::cout << "\n" << landmarks.text();
-  Table runs({"run", "state", "frames", "from s", "to s", "located", "source"});
+  Table runs({"run", "state", "frames", "start s", "end s", "located", "source"});
   for (const MapRun& run : file.runs())
     runs.add({std::to_string(run.id), choice_name(run.state, kRunStates), std::to_string(run.frames),
               seconds(run.began), seconds(run.ended), run.map_from_odom ? "yes" : "no", run.source});
   if (!file.runs().empty()) std::cout << "\n" << runs.text();
-  Table events({"event", "run", "at s", "landmark", "x m", "y m", "by m", "probability"});
+  Table events({"event", "run", "time s", "landmark", "x m", "y m", "moved m", "probability"});
   for (const MapEvent& e : file.events())
     events.add({choice_name(e.event.kind, kLandmarkEventKinds), std::to_string(e.run), seconds(e.event.stamp),
                 e.event.landmark == LandmarkId::none ? "" : std::to_string(number(e.event.landmark)),
@@ -68,7 +68,7 @@ int check(const MapOptions& options) {
   const std::vector<std::string> wrong = file.check();
   for (const std::string& line : wrong) std::cout << line << "\n";
   if (!wrong.empty()) return 1;
-  std::cout << options.file << ": sound, " << count_of(file.load().list.size(), "landmark") << ", "
+  std::cout << options.file << ": valid, " << count_of(file.load().list.size(), "landmark") << ", "
             << count_of(file.runs().size(), "run") << "\n";
   return 0;
 }
@@ -91,14 +91,14 @@ bool are_copies(const MapFile& file, const MapFile& other) {
   return !file.map_id().empty() && file.map_id() == other.map_id();
 }
 
-/// Copies of one map by their ids, others by what they look like.
+/// Merges copies of one map by id, other maps by appearance.
 Merged merged_of(const MapFile& file, const MapFile& other, const MapOptions& options) {
   Merged merged = are_copies(file, other) ? merge_copies(file.load(), other.load(), LandmarksConfig{})
                                           : merge(file.load(), other.load(), std::nullopt, LandmarksConfig{});
   if (!merged.map_from_other)
-    throw Error(options.other + ": no place in " + options.file + " resembles it (" +
+    throw Error(options.other + ": matches no place in " + options.file + " (" +
                 choice_name(merged.refusal, kRecognitionRefusals) + "), expected " +
-                std::to_string(LandmarksConfig{}.relocation_pairs) + " landmarks of both");
+                std::to_string(LandmarksConfig{}.relocation_pairs) + " common landmarks");
   return merged;
 }
 
@@ -117,7 +117,7 @@ int diff(const MapOptions& options) {
     return std::hypot(b.x - a.position_m.x, b.y - a.position_m.y);
   };
   const auto least = static_cast<double>(LandmarksConfig{}.moved);
-  Table table({"change", "landmark", "x m", "y m", "by m"});
+  Table table({"change", "landmark", "x m", "y m", "moved m"});
   std::size_t changes = 0;
   const auto add = [&](const char* change, LandmarkId id, Point3 at, double by) {
     table.add({change, std::to_string(number(id)), text_of("%.2f", at.x), text_of("%.2f", at.y),
@@ -152,7 +152,7 @@ int diff(const MapOptions& options) {
   }
   for (const Landmark& ours : map.list) {
     if (!ours.is_gone && std::find(met.begin(), met.end(), ours.id) == met.end())
-      add("not in the other", ours.id, ours.position_m, 0);
+      add("not in OTHER", ours.id, ours.position_m, 0);
   }
   std::cout << (changes == 0 ? "no change\n" : table.text());
   return 0;
@@ -161,7 +161,7 @@ int diff(const MapOptions& options) {
 int merge_files(const MapOptions& options) {
   const MapFile file = MapFile::open(options.file, MapMode::read_only);
   const MapFile other = MapFile::open(second_of(options), MapMode::read_only);
-  if (options.output.empty()) throw Error("map merge: needs -o FILE");
+  if (options.output.empty()) throw Error("map merge: found no output file, expected -o FILE");
   if (fs::exists(options.output)) throw Error("-o " + options.output + ": already exists");
   const Merged merged = merged_of(file, other, options);
   const fs::path part = options.output + ".part";
@@ -181,7 +181,8 @@ int merge_files(const MapOptions& options) {
 }
 
 int forget_some(const MapOptions& options) {
-  if (options.ids.empty() && !options.gone) throw Error("map forget: needs --id N or --gone");
+  if (options.ids.empty() && !options.gone)
+    throw Error("map forget: found no landmark, expected --id N or --gone");
   MapFile file = MapFile::open(options.file, MapMode::update);
   LandmarkMap map = file.load();
   const std::size_t before = map.list.size();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// In place of the commands for sequences, where what they need was not installed.
+// Replaces the sequence commands in a build without their dependencies.
 #include <cairn/core/error.hpp>
 
 #include "batch_frames.hpp"

@@ -49,9 +49,9 @@ std::unique_ptr<io::MotionPriors> load_priors(const OdometryOptions& options, co
   return io::open_priors(named(options.wheels), named(options.imu), options.input.source, source);
 }
 
-/// What the frames have come to, for the last line.
+/// Totals of the frames, for the last line.
 struct Run {
-  std::vector<TimedPose> poses;  // known ones, or all where the form has a line for each; to be written yet
+  std::vector<TimedPose> poses;  // to be written: known ones, or one per frame if the format requires
   std::vector<double> milliseconds;
   std::map<std::string, int> refusals;
   std::size_t frames = 0;
@@ -61,7 +61,7 @@ struct Run {
   double path_m = 0;
 };
 
-/// Whether the frame has a line.
+/// Adds the frame's pose; returns whether the format has a line for it.
 bool add(Run& run, const OdometryStep& step, Stamp stamp, bool keep_lost) {
   if (step.motion.is_new_keyframe) ++run.keyframes;
   if (step.motion.refusal != MotionRefusal::none)

@@ -39,7 +39,7 @@ std::string number_text(std::size_t number) {
   return std::string(kDigits - std::min(kDigits, text.size()), '0') + text;
 }
 
-/// The folder that is written: whole frames, and a stamp for each.
+/// The output folder: complete frames and their stamps.
 class Recording {
  public:
   Recording(fs::path folder, const io::Sequence& sequence) : folder_(std::move(folder)), sequence_(sequence) {
@@ -51,7 +51,7 @@ class Recording {
   void add(const io::SequenceFrame& frame) {
     const fs::path folder = folder_ / number_text(count_);
     io::make_folder(folder);
-    // The left image last: a folder without one is no frame, so whenever this ends there are whole frames
+    // The left image last: a folder without one is no frame, so an interrupted run leaves complete frames
     // only.
     io::save_png(folder / "right.png", frame.right.view());
     if (sequence_.rig()) {

@@ -31,7 +31,7 @@ void save(const fs::path& path, const io::Picture& picture) {
   }
 }
 
-/// Of a folder of frames whose stamps are all known: in ascending order, which is that of the frames.
+/// The stamps in ascending order, which is that of the frames, if all frames of the folder have one.
 void save_stamps(const fs::path& path, const std::vector<std::optional<std::int64_t>>& stamps) {
   std::vector<std::int64_t> known;
   for (const auto& stamp : stamps) {

@@ -12,7 +12,7 @@
 namespace cairn::cli {
 namespace {
 
-/// Where the picture has no more texture than its noise makes, which differs by 2 σ² from pixel to pixel.
+/// Pixels without more texture than noise produces, whose squared differences are 2 σ² on average.
 Image<Reject> without_texture(View<const Gray> left, const Exec& exec) {
   const float sigma = noise_sigma(left, exec);
   TextureConfig config;
@@ -50,8 +50,8 @@ Refusals count_refusals(const DisparityMap& map, View<const Gray> left, Reject i
 
 std::string refusals_line(const Refusals& refusals) {
   constexpr double kRare = 0.0005;      // prints as 0.0 %
-  constexpr double kWorthAWord = 0.05;  // of the pixels
-  constexpr double kClearlyMore = 0.1;  // than everywhere
+  constexpr double kWorthAWord = 0.05;  // share of the pixels worth mentioning
+  constexpr double kClearlyMore = 0.1;  // above the share in the whole image
   std::string all;
   for (const RefusalCount& refusal : refusals.counts) {
     if (refusal.share < kRare) continue;

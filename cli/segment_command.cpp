@@ -57,7 +57,7 @@ std::string interval_text(const std::optional<Interval>& i) {
          (std::isinf(i->high) ? "∞" : text_of("%.2f", double(i->high)));
 }
 
-/// "3 obstacles left out: 2 background, 1 low confidence; the nearest at …"; empty where there are none.
+/// "3 obstacles left out: 2 background, 1 low confidence; the nearest at …"; empty without any.
 std::string left_out_text(const std::vector<cairn::LeftOut>& left_out) {
   if (left_out.empty()) return {};
   std::string text = std::to_string(left_out.size()) +
@@ -94,11 +94,11 @@ std::string object_table(const std::vector<Object>& objects) {
   return table.text();
 }
 
-/// Of the frames that were worked on.
+/// Over the frames processed.
 struct Totals {
   int frames = 0;
   std::size_t objects = 0;
-  double valid_share = 0;  // summed up, as are the times
+  double valid_share = 0;  // a sum, as are the times
   int grounds = 0;
   double milliseconds = 0;
 
@@ -121,15 +121,14 @@ std::string summary(const Totals& frame) {
 struct Report {
   Totals totals;       // of this frame
   std::string out;     // for stdout
-  std::string note;    // for stderr; mostly empty
-  std::string remark;  // the same, but once for all frames that have it
+  std::string note;    // for stderr; usually empty
+  std::string remark;  // like note, but printed once for all frames that have it
   std::vector<Finding> findings;
   bool is_doubtful = false;
   io::EncodedFrame frame;  // for the page; empty without --html
 };
 
-/// How many doubtful frames of a run are measured as the doctor does it, which takes as long as segmenting
-/// one.
+/// The number of doubtful frames per run to diagnose, each of which takes as long as segmenting one.
 constexpr std::size_t kMostMeasured = 5;
 
 constexpr const char* kPageName = "segment.html";
@@ -154,7 +153,7 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   return io::encode_frame(shown);
 }
 
-/// The files that are made on request and are in metres, by their flags.
+/// Optional outputs in metres, by flag.
 std::array<std::pair<bool, const char*>, 4> metric_outputs(const SegmentOptions& options) {
   return {{{options.ply, "--ply"},
            {options.ply_objects, "--ply-objects"},
@@ -167,7 +166,7 @@ std::string no_metres(const std::string& flag, const io::FrameFiles& files) {
          " has no calibration with a baseline; give one with --calib";
 }
 
-/// An older page would speak of results that are no longer there.
+/// Removes an outdated page, which would show old results.
 void remove_older_page(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(folder / kPageName, ignored);
@@ -181,7 +180,7 @@ LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, con
   return loaded;
 }
 
-/// One frame from its pictures to results.
+/// Processes one frame, from its images to its results.
 Report work_on(LoadedFrame loaded, const io::FrameFiles& files, std::optional<std::int64_t> stamp_ns,
                const SegmentOptions& options, const fs::path& folder, bool one_of_many, bool may_measure,
                Exec& exec) {
@@ -231,14 +230,14 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, std::optional<st
   return report;
 }
 
-/// Whether `input` is a folder of frames, each with a result of its own, rather than the only frame itself.
+/// Whether `input` is a folder of frames, each with a result of its own, rather than a single frame.
 bool is_folder_of_frames(const fs::path& input, const std::vector<io::FrameFiles>& frames) {
   std::error_code ignored;
   return frames.size() > 1 ||
          (fs::is_directory(input, ignored) && !fs::equivalent(frames.front().folder, input, ignored));
 }
 
-/// Files that are asked for without a folder for them.
+/// Rejects options that write files but need an output folder.
 void require_output(const SegmentOptions& options) {
   if (!options.output.empty()) return;
   const auto require = [](bool asked, const char* name) {
@@ -253,14 +252,14 @@ struct Outcome {
   int exit_code = 0;
 };
 
-/// Where the result of a frame goes; empty without -o.
+/// The output folder of a frame; empty without -o.
 fs::path result_folder(const SegmentOptions& options, const io::FrameFiles& frame, bool many) {
   if (options.output.empty()) return {};
   return many ? fs::path(options.output) / frame.name : fs::path(options.output);
 }
 
-/// Throws Error where a result would replace an objects.png that is none of ours: the truth of a data set has
-/// this name, and lies with the images.
+/// Throws Error if a result would overwrite an objects.png that is not ours: data sets use this name for
+/// truth next to the images.
 void keep_truth(const fs::path& folder) {
   std::error_code unknown;
   if (folder.empty() || !fs::exists(folder / "objects.png", unknown)) return;
@@ -273,7 +272,7 @@ void keep_truth(const fs::path& folder) {
 
 Outcome segment_all(const SegmentOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
-  (void)resolve(options.input.config);  // what is bad for all frames is so before any of them
+  (void)resolve(options.input.config);  // reports bad options before any work
   if (!options.input.calib.empty()) (void)io::load_calibration(options.input.calib);
   Exec exec = make_exec(options.exec);
   const bool many = is_folder_of_frames(options.input.left, frames);
@@ -284,7 +283,7 @@ Outcome segment_all(const SegmentOptions& options) {
   std::set<std::string> remarks;
   PassingFindings findings;
   std::size_t doubtful = 0;
-  bool is_any_broken = false;  // of the doubtful ones
+  bool is_any_broken = false;  // any of the doubtful ones
   LeftOut left_out;
   Totals totals;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -333,7 +332,7 @@ std::vector<std::string> words_of(const std::string& list) {
   return words;
 }
 
-/// Before any work: what every preset must be and have for a run of its own.
+/// Checked before any work: that every preset is valid for a run of its own.
 void check_presets(const std::vector<SegmentOptions>& runs, const SegmentOptions& all) {
   const std::string list = "--preset " + all.input.config.preset;
   if (all.output.empty()) throw Error(list + ": needs -o DIR, with a sub-folder for each preset");

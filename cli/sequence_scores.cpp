@@ -12,16 +12,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kSettles = 8;       // frames that a label of motion is decided by
+constexpr std::int64_t kSettles = 8;       // frames until a motion label counts
 constexpr std::int64_t kOutOfView = 10;    // frames
 constexpr std::int64_t kInViewAgain = 10;  // frames
-constexpr double kMovesMetres = 1e-3;      // in a frame: the truth is exact
+constexpr double kMovesMetres = 1e-3;      // per frame; small, as the truth is exact
 
-/// A frame of the result beside its truth.
+/// A result frame and its truth.
 struct Pair {
   const io::TrackFrame* ours = nullptr;
   const io::TrueFrame* truth = nullptr;
-  std::int64_t index = 0;  // of the truth
+  std::int64_t index = 0;  // index of the truth
 };
 
 struct Result {
@@ -86,7 +86,7 @@ std::vector<io::TrackRecord> counted(const io::TrackFrame& frame, const Sequence
   return tracks;
 }
 
-/// The ids of a frame's tracks as those of its objects, which are small numbers.
+/// Track ids of a frame as object ids, which are small numbers.
 Image<ObjectId> object_labels(const Image<TrackId>& tracks) {
   std::map<TrackId, ObjectId> ids{{TrackId::none, ObjectId::none}};
   Image<ObjectId> labels(tracks.size());
@@ -128,7 +128,7 @@ const io::TrackRecord* record_of(const io::TrackFrame& frame, std::int64_t id) {
   return found == frame.tracks.end() ? nullptr : &*found;
 }
 
-/// Calls visit(pair, true id, track, frame's number among the pairs) for each match.
+/// Calls visit(pair, true id, track, index of the pair) for each match.
 template <class Visit>
 void each_match(const std::vector<Pair>& pairs, const std::vector<ScoredFrame>& scored, const Visit& visit) {
   const std::vector<std::vector<int>> matches = clear_matches(scored);
@@ -142,7 +142,7 @@ void each_match(const std::vector<Pair>& pairs, const std::vector<ScoredFrame>& 
   }
 }
 
-/// The truth's world from the result's map, laid together at the first frame that has both poses.
+/// Pose of the result's map in the truth's world, aligned at the first frame with both poses.
 std::optional<Pose> world_from_map(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     if (pair.ours->map_from_camera && pair.truth->world_from_camera)
@@ -171,7 +171,7 @@ PlaceErrors place_errors(const std::vector<Pair>& pairs, const SequenceScores& s
   return errors;
 }
 
-/// Which true objects move in which frames of the truth.
+/// Which true objects move in which true frames.
 class TrueMotion {
  public:
   explicit TrueMotion(const io::TrueSequence& truth) {
@@ -242,11 +242,11 @@ MovingErrors moving_errors(const std::vector<Pair>& pairs, const io::TrueSequenc
 }
 
 LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceScores& scores) {
-  /// While an object is in view, without a break of kOutOfView frames.
+  /// A stay of an object in view, with no gap of kOutOfView frames.
   struct Stretch {
     std::int64_t last = 0;
     std::int64_t frames = 0;
-    std::map<std::int64_t, int> landmarks;  // and in how many frames its track has them
+    std::map<std::int64_t, int> landmarks;  // number of frames for each landmark that its track has
   };
   std::map<std::int64_t, std::vector<Stretch>> objects;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -273,7 +273,7 @@ LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceSco
                             [](const auto& a, const auto& b) { return a.second < b.second; })
         ->first;
   };
-  // Whose each landmark is: of the object that it is seen on first and longest.
+  // A landmark belongs to the object that had it for the most frames of its first stay with landmarks.
   std::map<std::int64_t, std::pair<std::int64_t, int>> owner;
   for (const auto& [id, stretches] : objects) {
     for (const Stretch& stretch : stretches) {
@@ -309,7 +309,7 @@ ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
   std::error_code ignored;
   errors.is_known = truth.has_events && fs::exists(result.changes, ignored);
   if (!errors.is_known) return errors;
-  // A change names a track or a landmark: the object that it was matched with most often.
+  // A change names a track or a landmark; it belongs to the object matched with it most often.
   std::map<std::int64_t, std::map<std::int64_t, int>> by_track;
   std::map<std::int64_t, std::map<std::int64_t, int>> by_landmark;
   each_match(pairs, scores.scored, [&](const Pair&, std::int64_t id, const io::TrackRecord& track) {

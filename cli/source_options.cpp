@@ -91,7 +91,7 @@ void add_source_options(CLI::App& app, SourceInput& input) {
 }
 
 std::unique_ptr<io::Sequence> open_source(const SourceInput& input, const Pool& pool) {
-  // FFmpeg would complain in lines of its own; "-8" is its quiet.
+  // Silences FFmpeg, which prints to stderr; "-8" is its quiet level.
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   io::SourceOptions options = input.options;
   if (!input.frames.empty()) options.frames = io::parse_frame_range(input.frames);

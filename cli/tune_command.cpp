@@ -32,14 +32,14 @@ using Seconds = std::chrono::duration<double>;
 
 struct TuneOptions {
   std::vector<std::string> folders;
-  InputOptions input;  // all but its pictures
+  InputOptions input;  // without its images
   ExecOptions exec;
   bool truth = false;
   bool sequence = false;
   std::vector<std::string> patterns;
   std::string budget = "60s";
   int evaluations = 0;            // 0 = as many as the budget allows
-  std::optional<double> holdout;  // else kHoldout where there are kEnough frames
+  std::optional<double> holdout;  // default: kHoldout from kEnough frames on
   std::uint32_t seed = 1;
   std::string output = "tuned.yaml";
   std::string json;
@@ -68,16 +68,16 @@ Seconds parse_budget(const std::string& text) {
   return Seconds(value * seconds);
 }
 
-// ---- what is tuned, on what ----
+// ---- options and frames ----
 
 struct Task {
   std::vector<TuningFiles> files;
-  std::vector<TuningFrame> frames;  // of the files
-  ResolvedConfig base;              // without what a calibration says
-  bool names_disparities = false;   // match.num_disparities is the user's, not the calibration's
+  std::vector<TuningFrame> frames;  // loaded from the files
+  ResolvedConfig base;              // without options from a calibration
+  bool names_disparities = false;   // match.num_disparities was set by the user
 };
 
-/// Whether --config or --set say how many disparities there are.
+/// Whether --config or --set give the number of disparities.
 bool names_disparities(const ConfigOptions& options) {
   constexpr int kOne = 17;
   constexpr int kOther = 19;
@@ -90,7 +90,7 @@ Task read_task(const TuneOptions& options) {
   task.base = resolve(options.input.config);
   task.names_disparities = names_disparities(options.input.config);
   if (!options.patterns.empty())
-    (void)tunables(options.patterns, task.base.config);  // a bad name is one whatever the frames hold
+    (void)tunables(options.patterns, task.base.config);  // rejects bad names before looking at frames
   task.files = load_tuning_files(options.folders, options.input, options.truth);
   for (const TuningFiles& files : task.files) task.frames.push_back(files.frame());
   return task;
@@ -112,7 +112,7 @@ using io::goal_word;
 using io::Measures;
 using Figure = io::TuningFigure;
 
-/// What stands beside the bar.
+/// The text next to the progress bar.
 std::string words(const TuneProgress& now, const std::string& budget) {
   std::string text =
       std::to_string(now.evaluations) + " tried, " + text_of("%.0f s", now.seconds) + " of " + budget;
@@ -121,7 +121,7 @@ std::string words(const TuneProgress& now, const std::string& budget) {
   return text;
 }
 
-/// Frames of one name show one scene, and are held out together.
+/// Frames with the same name show one scene and are held out together.
 std::size_t count_scenes(const Task& task) {
   std::set<std::string> names;
   for (const TuningFrame& frame : task.frames) names.insert(frame.name);
@@ -143,7 +143,7 @@ Tuning tune_task(const Task& task, const TuneOptions& options, Seconds budget) {
   return tuned;
 }
 
-// ---- what is reported ----
+// ---- report ----
 
 std::string text_of(const Figure& figure) {
   return figure.is_share ? percent(figure.value) : cli::text_of("%.2f", figure.value);
@@ -170,7 +170,7 @@ std::string gain_text(const Gain& gain) {
   return points(gain.mean) + " points (95 %: " + points(gain.low) + " ... " + points(gain.high) + ")";
 }
 
-/// How much of the gain is luck: what frames gain that had no say in the search.
+/// How much of the gain is overfitting: the gain on frames that were not used by the search.
 std::string luck(const Tuning& tuned) {
   const Gain own = gain_of(losses_of(tuned.before), losses_of(tuned.after));
   std::string all = "gain, tuned on:  " + gain_text(own) + "\n";

@@ -17,13 +17,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostFrames = 300;  // that are held in memory
+constexpr std::size_t kMostFrames = 300;  // held in memory
 constexpr std::size_t kFewestFrames = 10;
 /// A smaller gain, or one below two standard errors, does not count.
 constexpr Margin kLeastGain{.least_share = 0.05, .standard_errors = 2};
 
 struct SteadinessRun {
-  std::vector<float> frames;  // of each but the first
+  std::vector<float> frames;  // for each frame but the first
   [[nodiscard]] double mean(std::size_t first, std::size_t last) const {
     double sum = 0;
     for (std::size_t i = first; i < last; ++i) sum += double{frames[i]};
@@ -44,7 +44,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const Exec exec = make_exec(options.exec);
   const auto source = open_source(input, exec.pool);
   FollowConfig start;
-  const ResolvedConfig base = resolve(options.config);  // what the calibration says is not written
+  const ResolvedConfig base = resolve(options.config);  // without options from the calibration
   start.segmentation = resolve(options.config, source->disparities()).config;
   start.segmentation.ground.known = source->ground();
   validate(start);
@@ -59,7 +59,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
     throw Error(options.source + ": has " + std::to_string(frames.size()) + " frames, expected " +
                 std::to_string(kFewestFrames) + " or more to judge steadiness");
   const double share = options.holdout.value_or(0.25);
-  const std::size_t count = frames.size() - 1;  // the first frame has none before it
+  const std::size_t count = frames.size() - 1;  // the first frame has no predecessor
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
 
   const auto began = Clock::now();
@@ -94,7 +94,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const double reference = before->mean(0, tuned_on);
   SteadinessRun best = *before;
   SteadinessRun latest = *before;
-  // A loss falls as steadiness rises, and is twice the start's or more where nothing is steady.
+  // The loss falls as steadiness rises, and is at least twice the initial one if nothing is steady.
   const auto losses = [&](const SteadinessRun& steady) {
     std::vector<Loss> all;
     for (std::size_t i = 0; i < tuned_on; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The least that one needs: a rectified pair in, objects out.
+// The minimum: a rectified pair in, objects out.
 //   01_objects_from_a_pair samples/four_in_a_row
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>

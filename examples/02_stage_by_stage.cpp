@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// What cairn::segment() does with the presets `paper` and `default`, one stage at a time, with a look at what
-// each one made.
+// What cairn::segment() does with the presets `paper` and `default`, one stage at a time, printing the result
+// of each.
 //   02_stage_by_stage samples/glossy_floor
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>
@@ -50,33 +50,33 @@ void print_holes(const DisparityMap& disparity, const Ground& ground) {
   }
 }
 
-/// What cairn/pipeline/paper.cpp does.
+/// As in cairn/pipeline/paper.cpp.
 void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
                const Exec& exec) {
   // [stages]
-  // Correlation, and a disparity for every pixel that has a candidate.
+  // Correlation: a disparity for every pixel with a candidate.
   const Matches matches = match(pair, config.match, config.semi_global, exec);
   Image<float> refined = refine_subpixel(matches, config.subpixel, exec);
 
-  // What speaks against each match. The checks know nothing of each other; each leaves its own bit.
+  // Independent checks of each match; each sets its own bit.
   const Image<Reject> inconsistent = reject_inconsistent(matches, config.left_right, exec);
   const Image<Reject> ambiguous = reject_ambiguous(matches, config.uniqueness, exec);
   const Image<Reject> flat = reject_flat(matches, config.flatness, exec);
   const Image<Reject> textureless = reject_textureless(pair.left(), config.texture, exec);
   DisparityMap disparity = combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec);
 
-  // What contradicts the scene: matches under the floor are reflections.
+  // A check against the scene: matches below the floor are reflections.
   const Ground ground = fit_ground(disparity, rig, config.ground, exec);
   disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
   disparity = reject_speckles(std::move(disparity), config.speckle, exec);
   const Image<std::uint8_t> floor = label_floor(disparity, ground, rig, config.ground, exec);
 
-  // The left picture and the disparities are segmented apart, and then united.
+  // Segment the left image and the disparities separately, then fuse both.
   const Segmentation by_disparity = segment_disparity(disparity, floor, config.disparity, exec);
   const Segmentation by_intensity = segment_intensity(pair.left(), config.intensity, exec);
   const Fusion fusion = fuse(by_intensity, by_disparity, exec);
 
-  // Which of the fused regions are objects, and where.
+  // Choose the fused regions that are objects, and measure them.
   const float noise = noise_sigma(pair.left(), exec);
   Objects objects = measure(fusion.labels, fusion.is_floor, disparity, pair.left(), pair.left_rgb(), noise,
                             config.objects, exec);
@@ -89,11 +89,11 @@ void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, cons
               objects.list.size());
 }
 
-/// What cairn/pipeline/hierarchy.cpp does.
+/// As in cairn/pipeline/hierarchy.cpp.
 void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, const Config& config,
                  const Exec& exec) {
   // [stages_by_hierarchy]
-  // A right picture that vibration has moved is moved back; then disparities, smooth along paths.
+  // Undo a vertical shift of the right image, caused by vibration; then match with smoothness along paths.
   const EpipolarCorrection aligned = correct_epipolar(given, config.match, config.epipolar_correction, exec);
   const StereoPair pair =
       aligned.right.empty() ? given : StereoPair::from(given.left(), aligned.right, given.left_rgb());
@@ -102,7 +102,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   // (The other checks are off in this preset.)
   DisparityMap disparity = combine(refine_subpixel(matches, config.subpixel, exec), {inconsistent}, exec);
 
-  // Those that texture vouches for show the scene: its ground, what is reflected in it, its walls.
+  // Disparities supported by texture show the scene: its ground, reflections in it, its walls.
   const float noise = noise_sigma(pair.left(), exec);
   const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
   const Ground seen = fit_ground(evidence_px, rig, config.ground, exec, pair.left());
@@ -112,7 +112,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Background background = fit_background(evidence_px, ground, rig, config.background, exec);
   const Image<float> seen_px = floor_under_reflections(disparity, ground, exec);
 
-  // The picture in pieces, what a network says of them, and all regions that they fuse to, the likeliest pair first.
+  // Superpixels, a network's hints for them, and a tree of regions: the most similar pair merges first.
   const Superpixels superpixels =
       cut_superpixels(pair.left(), pair.left_rgb(), seen_px, noise, config.superpixels, exec);
   Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
@@ -120,7 +120,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   cues.hints = hints;
   const MergeTree tree = grow_merge_tree(superpixels, cues, kSameThing, exec);
 
-  // Which of these regions are objects, and where; how far each disparity is to be trusted.
+  // Choose the regions that are objects, and measure them; then estimate the confidence of each disparity.
   const ChosenObjects chosen = choose_objects(tree, kWholeObject, limits_of(config.objects, pair.size()));
   const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
   Objects objects =
@@ -152,7 +152,7 @@ int main(int argc, char** argv) try {
   for (const char* const preset : {"paper", "default"}) {
     Config config = Config::preset(preset);
     config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
-    validate(config, pair.size(), calibration.rig.has_value());  // past this no stage can fail
+    validate(config, pair.size(), calibration.rig.has_value());  // after this no stage can fail
     std::printf("%s\n", preset);
     const auto run_stages = config.fusion.method == FusionMethod::overlap ? run_paper : run_default;
     run_stages(pair, calibration.rig, config, Exec::with_threads(0));

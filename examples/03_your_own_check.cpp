@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// A check of one's own beside the library's: over-exposed pixels carry no data, so no match of theirs is
-// believed.
+// Adds a check of your own to the library's: over-exposed pixels carry no information, so their matches are
+// rejected.
 //   03_your_own_check samples/dim_light
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>
@@ -16,7 +16,7 @@ namespace {
 using namespace cairn;
 
 // [check]
-/// Marks pixels whose brightness reached the end of the sensor's scale.
+/// Marks pixels at the upper end of the sensor's range.
 Image<Reject> reject_saturated(View<const Gray> image, const Exec& exec) {
   constexpr Gray kSaturated = 250;
   Image<Reject> verdicts(image.size(), exec.pool);
@@ -28,7 +28,7 @@ Image<Reject> reject_saturated(View<const Gray> image, const Exec& exec) {
   return verdicts;
 }
 
-/// The pair's disparities with one more reason to refuse; ground, segmentation and objects follow as ever.
+/// The pair's disparities with one more reason to reject; ground, segmentation and objects follow as usual.
 Frame segment_without_saturated(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                 const Config& config, const Exec& exec) {
   const Matches matches = match(pair, config.match, config.semi_global, exec);
@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
   validate(config, pair.size(), calibration.rig.has_value());
   const Frame frame = segment_without_saturated(pair, calibration.rig, config, Exec::with_threads(0));
 
-  // The law of every disparity map holds for a check of one's own, too: no disparity where there is a reason.
+  // An invariant of every disparity map, also with your own check: a pixel with a reason has no disparity.
   int refused = 0;
   for (int y = 0; y < pair.size().height; ++y) {
     for (int x = 0; x < pair.size().width; ++x) {

@@ -5,8 +5,8 @@
 #include <cairn/tracking/follower.hpp>
 #include <cstdio>
 
-/// From a sequence to the camera's path and to things that keep their ids: 05_follow_a_sequence FOLDER.
-/// FOLDER is whatever `cairn follow` takes, such as sequences/rolling_ball.
+/// From a sequence to the camera's path and to objects with persistent ids: 05_follow_a_sequence FOLDER,
+/// where FOLDER is any source of `cairn follow`, such as sequences/rolling_ball.
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: 05_follow_a_sequence FOLDER\n"), 2;
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// fitting --names: the features' names.
-// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--min-score S]: what fit_hints.py and fit.py fit
-// to, and how well what they have fitted does.
+// fitting --names: prints the names of the features.
+// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--min-score S]: gathers the data for
+// fit_hints.py and fit.py, and measures how well the result performs.
 //
-// Each line of JOBS is a frame's folder, `colour` or `grey`, and three files: a fitted network, and two of fitted
-// trees; `-` for those that the library has. For each line one is printed: what was found in the frame. FILEs get
-// a record of floats for each pair of regions that was judged (the job's number, whether they show one thing, how
-// pure they are, the features), and for each region that may be an object (the job's number, its greatest IoU
-// with a true object, whether the truth is partial, the features); of the inputs, see record_input().
+// Each line of JOBS is the folder of a frame, `colour` or `grey`, and three files: a fitted network and two
+// sets of fitted trees; `-` for the library's. For each line it prints what was found in the frame. The FILEs
+// receive records of floats: for each pair of regions that was judged, the job's number, whether they show
+// the same object, how pure they are, and the features; for each region that may be an object, the job's
+// number, its greatest IoU with a true object, whether the truth is partial, and the features; for the
+// inputs, see record_input().
 #include <cairn/cairn.hpp>
 #include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/methods.hpp>
@@ -27,13 +28,13 @@
 namespace cairn::report {
 namespace {
 
-constexpr double kLeastArea = 0.0015;  // share of the image; regions that may be objects
+constexpr double kLeastArea = 0.0015;  // share of the image; candidate regions
 constexpr double kMostArea = 0.7;
 constexpr float kBothBackground =
-    0.3F;  // weight of pairs that are both background: the truth does not part its surfaces
+    0.3F;  // weight of pairs that are both background: the truth does not separate its surfaces
 constexpr float kLeastPurity = 0.1F;
 
-/// Fitted trees in a file: base, numbers of roots and nodes; the roots; a node a line.
+/// Fitted trees in a file: base, numbers of roots and nodes; the roots; one node per line.
 struct LoadedTrees {
   std::vector<std::int16_t> roots;
   std::vector<FittedTrees::Node> nodes;
@@ -56,7 +57,7 @@ std::shared_ptr<const FittedTrees> load_trees(const std::string& path) {
   return {loaded, &loaded->trees};
 }
 
-/// What is in files, each read once; `-` is what the library has.
+/// Models by file name, each read once; `-` is the library's.
 template <class T>
 class Fitted {
  public:
@@ -86,7 +87,7 @@ void record(std::ofstream& file, int job, float label, float more, const std::ar
   file.write(reinterpret_cast<const char*>(features.data()), sizeof features);
 }
 
-/// What the truth says of the nodes of a tree. Kind 0: don't care, 1: no object, 2 …: objects.
+/// Ground truth for the nodes of a tree. Kind 0: don't care, 1: no object, 2 …: objects.
 class Truth {
  public:
   Truth(const TrueFrame& frame, const Superpixels& superpixels, const MergeTree& tree)
@@ -115,7 +116,7 @@ class Truth {
     for (std::size_t k = 1; k < areas_.size(); ++k) sum += shares_[node][k];
     return sum;
   }
-  /// What most of it is; 0 where nothing is known.
+  /// The kind of most of its pixels; 0 if unknown.
   [[nodiscard]] std::size_t kind(std::size_t node) const {
     const auto first = shares_[node].begin() + 1;
     return known(node) == 0
@@ -142,8 +143,8 @@ class Truth {
   std::vector<std::vector<std::int64_t>> shares_;
 };
 
-/// The network's input and the truth, a record of whole numbers for each job: its number, width, height, whether
-/// the truth is partial; the channels of each cell; its true object: 0 none, −1 don't care.
+/// The network's input and the truth, as a record of integers for each job: its number, width, height,
+/// whether the truth is partial; the channels of each cell; its true object: 0 none, −1 don't care.
 void record_input(std::ofstream& file, int job, const Image<std::int16_t>& input, const TrueFrame& frame) {
   const Size cells{input.width() / kHintChannels - 2, input.height() - 2};
   const std::array<std::int16_t, 4> head{
@@ -166,7 +167,7 @@ void record_input(std::ofstream& file, int job, const Image<std::int16_t>& input
   }
 }
 
-/// A network in a file, as fit_hints.py writes it: the layers' numbers, the weights, biases and scales.
+/// A network in a file, as written by fit_hints.py: sizes of the layers, weights, biases and scales.
 std::shared_ptr<const HintNetwork> load_network(const std::string& path) {
   std::ifstream in(path);
   std::array<HintLayer, kHintLayers> layers;
@@ -204,7 +205,7 @@ void record_pairs(std::ofstream& file, int job, const std::vector<Pair>& pairs, 
     if (a == 0 || b == 0) continue;
     float purity = truth.purity(slot(pair.a)) * truth.purity(slot(pair.b));
     if (a == 1 && b == 1) {
-      if (truth.partial()) continue;  // may be two objects that are not labelled
+      if (truth.partial()) continue;  // both may belong to unlabelled objects
       purity *= kBothBackground;
     }
     if (purity >= kLeastPurity) record(file, job, a == b ? 1.0F : 0.0F, purity, pair.features);
@@ -219,7 +220,7 @@ void record_regions(std::ofstream& file, int job, const MergeTree& tree, const T
     if (area < kLeastArea * image || area > kMostArea * image) continue;
     if (2 * truth.known(i) < node.area) continue;
     const float iou = truth.best_iou(i);
-    // What is not labelled may be an object.
+    // An unlabelled region may be an object.
     if (truth.partial() && truth.kind(i) == 1 && iou < 0.1F && truth.purity(i) > 0.9F) continue;
     record(file, job, iou, truth.partial() ? 1.0F : 0.0F, node.features);
   }
@@ -282,7 +283,7 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   print_found(job, frame, object_errors(ours, frame.objects, {}), chosen, milliseconds);
 }
 
-/// The features, one a line: pairs', an empty line, regions'.
+/// The features, one per line: those of pairs, an empty line, those of regions.
 int print_names() {
   for (const std::string_view name : merge_feature_names()) std::cout << name << '\n';
   std::cout << '\n';

@@ -8,33 +8,33 @@
 #include <string>
 #include <vector>
 
-/// The search by which programs choose numbers on the fit set: one option after the other.
+/// Coordinate search for programs that choose parameters on the fit set.
 namespace cairn::report {
 
 struct Knob {
   std::string option;
-  std::vector<std::string> values;  // those tried
+  std::vector<std::string> values;  // values to try
 };
 
-/// One value per knob, in their order.
+/// One value per knob, in order.
 using Values = std::vector<std::string>;
 
 struct KnobSearch {
   int rounds = 3;  // at most
   std::function<double(const Values&)> score;
-  /// Called after each setting tried, before the next; `knob` is the one that differs.
+  /// Called after each setting, before the next; `knob` is the one changed.
   std::function<void(std::size_t knob, const Values& tried, double score, bool kept)> tried;
 };
 
-/// One of each knob's values at random.
+/// A random value for each knob.
 inline Values drawn(const std::vector<Knob>& knobs, std::mt19937& random) {
   Values values;
   for (const Knob& knob : knobs) values.push_back(knob.values[random() % knob.values.size()]);
   return values;
 }
 
-/// From `start` each knob takes each of its values in turn; one that scores higher is kept at once, so ties
-/// keep what was there. Ends after a round without a gain. The same scores give the same values.
+/// From `start`, each knob tries each of its values in turn; a higher score is kept at once, so ties keep the
+/// earlier value. Ends after a round without improvement. Deterministic for deterministic scores.
 inline Values search_knobs(const std::vector<Knob>& knobs, const Values& start, const KnobSearch& search) {
   Values best = start;
   double highest = search.score(best);

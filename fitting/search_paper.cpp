@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Searches the thresholds of the preset `paper` (Config::paper()) on the frames that choices are made on.
+// Searches the thresholds of the preset `paper` (Config::paper()) on the fit set.
 //   search_paper DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
-// The search and its score: search_program.hpp. The method stays the published one: no semi-global matching,
-// no walls, no colour, no filter by confidence.
+// The search and its score: search_program.hpp. The method remains the published one: no semi-global
+// matching, no walls, no colour, no filter by confidence.
 #include <cairn/cairn.hpp>
 #include <cstdio>
 #include <exception>

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct Source {
   const char* name;
   const char* folder;
-  std::size_t every = 1;  // n-th frame of it
+  std::size_t every = 1;  // use each n-th frame
 };
 
 std::vector<FrameSet> load(const fs::path& data, const std::vector<Source>& sources) {
@@ -78,7 +78,7 @@ struct Effort {
 
 Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, Values start,
               const Effort& effort, int threads) {
-  std::mt19937 random;  // of which the standard fixes every number
+  std::mt19937 random;  // whose output the standard specifies exactly
   double best_value = effort.draws > 0 ? measure(program, fit, start, threads).value() : 0;
   for (int i = 0; i < effort.draws; ++i) {
     const Values values = drawn(program.knobs, random);

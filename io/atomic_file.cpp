@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
   throw Error(path.string() + ": cannot be written: " + std::generic_category().message(reason));
 }
 
-/// An open file that closes itself; closed() tells whether everything has reached the system.
+/// An open file that closes itself; closed() returns whether all data reached the system.
 class OutputFile {
  public:
   OutputFile(const fs::path& path, int flags)
@@ -50,21 +50,21 @@ class OutputFile {
   int descriptor_;
 };
 
-/// Hidden, so that nobody who lists the folder takes it for a result; unlike any other writer's.
+/// Hidden, so that a listing does not show it as a result; unique for each writer.
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> count{0};
   const std::string mark = std::to_string(::getpid()) + "-" + std::to_string(count++);
   return path.parent_path() / ("." + path.filename().string().substr(0, 200) + "." + mark + ".tmp");
 }
 
-/// A device or a pipe, which has no content to be replaced.
+/// Whether it is a device or a pipe, which has no content to replace.
 bool takes_bytes_directly(const fs::path& path) {
   std::error_code unknown;
   const fs::file_status status = fs::status(path, unknown);
   return fs::exists(status) && !fs::is_regular_file(status);
 }
 
-/// Where the bytes of `path` are to be in the end: behind a symbolic link. Refuses what can be no file.
+/// The final location of `path`, following symbolic links. Rejects paths that cannot be files.
 fs::path target_of(const fs::path& path) {
   if (path.filename().empty()) refuse(path, path.empty() ? ENOENT : EISDIR);
   std::error_code unknown;
@@ -91,7 +91,7 @@ struct GrowingFile::State {
   }
 
   fs::path path;
-  fs::path temporary;  // empty where the bytes go to `path` directly
+  fs::path temporary;  // empty if `path` is written directly
   OutputFile file;
   bool is_finished = false;
 };

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rectified means fx = fy; a relative difference below this is rounding in the file.
+/// A rectified calibration has fx = fy; smaller relative differences are rounding.
 constexpr double kSameFocal = 1e-3;
 
 std::string written(double value) {
@@ -43,7 +43,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-/// key → value of every line `key<mark>value`; comments and empty lines are passed over.
+/// key → value of each line `key<mark>value`; comments and empty lines are ignored.
 std::map<std::string, std::string_view, std::less<>> pairs_of(std::string_view text, char mark) {
   std::map<std::string, std::string_view, std::less<>> pairs;
   int number = 0;
@@ -98,7 +98,7 @@ std::array<double, 9> camera_matrix(const Pairs& pairs, std::string_view key) {
   return matrix;
 }
 
-/// Whether a line begins with one of KITTI's projections: "P2: 7.2e+02 …" or "P_rect_02: …".
+/// Whether a line starts with a KITTI projection matrix: "P2: 7.2e+02 …" or "P_rect_02: …".
 bool has_kitti_projection(std::string_view text) {
   const auto lines = lines_of(text);
   return std::any_of(lines.begin(), lines.end(), [](std::string_view line) {
@@ -126,7 +126,7 @@ bool is_assignment(std::string_view line) {
 }
 
 Statement read_statement(std::string_view text, const fs::path& path, bool grey_cameras) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // what some editors put before UTF-8
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark
   if (trimmed(text).empty()) throw Error("is empty, expected a calibration");
   if (text.find('\0') != std::string_view::npos) throw Error("is not text, expected a calibration");
   if (trimmed(text).starts_with('<')) return read_opencv_xml(text);
@@ -138,7 +138,7 @@ Statement read_statement(std::string_view text, const fs::path& path, bool grey_
               excerpt(lines_of(trimmed(text)).front()));
 }
 
-/// A whole number in 1 … most.
+/// An integer in 1 … most.
 int counted(double value, const char* key, int most) {
   if (!(value >= 1 && value <= most) || value != std::floor(value)) {
     throw Error(std::string(key) + " is " + written(value) + ", expected a whole number in 1 ... " +
@@ -200,7 +200,7 @@ Calibration judged(const Statement& says) {
   return calibration;
 }
 
-/// The one file of a folder that --calib may mean.
+/// The calibration file in a folder given to --calib; it must be unambiguous.
 fs::path file_in(const fs::path& folder) {
   std::vector<fs::path> pairs;
   std::error_code reason;
@@ -334,7 +334,7 @@ Statement read_kitti(std::string_view text, bool grey_cameras) {
   Pairs pairs;
   for (const std::string_view line : lines_of(text)) {
     const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos) continue;  // other lines are other matters: dates, corner distances
+    if (colon == std::string_view::npos) continue;  // unrelated lines: dates, corner distances
     const auto [at, fresh] = pairs.emplace(line.substr(0, colon), trimmed(line.substr(colon + 1)));
     if (!fresh && line.starts_with('P')) throw Error("has " + excerpt(at->first) + " twice");
   }
@@ -373,7 +373,7 @@ Calibration load_calibration(const fs::path& path, bool grey_cameras) {
 Calibration parse_calibration(std::string_view text, const fs::path& file, bool grey_cameras) {
   try {
     Calibration calibration = judged(read_statement(text, file, grey_cameras));
-    // Numbers that are fine as double may be none as float.
+    // Finite double values can overflow float.
     if (calibration.rig) calibration.rig->validate("calibration");
     return calibration;
   } catch (const ImpossibleCalibration& error) {

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Numbers = std::vector<double>;
 
-/// A matrix as OpenCV and ROS write it.
+/// A matrix in the format of OpenCV or ROS.
 struct Matrix {
   double rows = 0;
   double cols = 0;
@@ -26,7 +26,7 @@ struct Matrix {
 
 // ---- YAML ----
 
-/// OpenCV begins its YAML with a directive that is none ("%YAML:1.0").
+/// OpenCV's first line is not valid YAML ("%YAML:1.0").
 std::string_view without_directive(std::string_view text) {
   const std::string_view begin = trimmed(text);
   if (!begin.starts_with("%YAML")) return text;
@@ -51,7 +51,7 @@ std::optional<double> number_at(const YAML::Node& map, const char* key) {
 }
 
 std::vector<double> numbers_of(const YAML::Node& sequence, const char* key) {
-  // The longest list that any form needs is 4x4.
+  // The longest list of any format is 4x4.
   if (!sequence.IsSequence() || sequence.size() > 16) {
     throw Error(std::string(key) + " is not a list of at most 16 numbers");
   }
@@ -83,7 +83,7 @@ std::string without_comments(std::string_view text) {
   return rest += text;
 }
 
-/// What stands between <name …> and </name>; nothing where there is no such element.
+/// The content of <name …>…</name>; nullopt without such an element.
 std::optional<std::string_view> element(std::string_view xml, std::string_view name) {
   const std::string open = "<" + std::string(name);
   for (std::size_t at = 0; (at = xml.find(open, at)) != std::string_view::npos; at += open.size()) {
@@ -126,12 +126,12 @@ std::optional<std::vector<double>> list_at(const YAML::Node& map, const char* ke
   return numbers_of(node, key);
 }
 
-// ---- how the rig is mounted, from either ----
+// ---- mounting of the rig, from either ----
 
 std::optional<std::vector<double>> points_at(std::string_view xml) {
   return list_at(xml, kGroundPointsKey);
 }
-/// A list of numbers, a list of points, or a text of them.
+/// A list of numbers, a list of points, or text with these.
 std::optional<std::vector<double>> points_at(const YAML::Node& map) {
   const YAML::Node node = map[kGroundPointsKey];
   if (!node) return std::nullopt;
@@ -166,7 +166,7 @@ void check_shape(const Matrix& matrix, const char* key, int rows, int cols) {
               " matrix");
 }
 
-/// Q = [1 0 0 −cx; 0 1 0 −cy; 0 0 0 f; 0 0 1/B (cx'−cx)/B], as cv::stereoRectify makes it.
+/// Q = [1 0 0 −cx; 0 1 0 −cy; 0 0 0 f; 0 0 1/B (cx'−cx)/B], as written by cv::stereoRectify.
 Statement from_reprojection(const Matrix& matrix) {
   check_shape(matrix, "Q", 4, 4);
   const std::vector<double>& q = matrix.data;
@@ -209,7 +209,7 @@ void read_size(const Document& document, Statement& says) {
   }
 }
 
-/// Nothing where none of OpenCV's matrices is there.
+/// nullopt without any of OpenCV's matrices.
 template <class Document>
 std::optional<Statement> read_opencv(const Document& document) {
   const std::optional<Matrix> left = matrix_at(document, "P1");
@@ -240,7 +240,8 @@ std::optional<Statement> read_opencv(const Document& document) {
 
 // ---- ROS camera_info ----
 
-/// One camera's projection: camera_calibration's file has `projection_matrix`, a printed message `P` or `p`.
+/// The projection matrix of a camera: `projection_matrix` in files of camera_calibration, `P` or `p` in a
+/// printed message.
 std::optional<Projection> ros_projection(const YAML::Node& camera) {
   if (!camera.IsMap()) return std::nullopt;
   if (const std::optional<Matrix> matrix = matrix_at(camera, "projection_matrix")) {
@@ -252,7 +253,8 @@ std::optional<Projection> ros_projection(const YAML::Node& camera) {
   return std::nullopt;
 }
 
-/// Of one camera: `distortion_coefficients` of camera_calibration's file, `D` or `d` of a printed message.
+/// The distortion of a camera: `distortion_coefficients` in files of camera_calibration, `D` or `d` in a
+/// printed message.
 bool ros_distortion(const YAML::Node& camera) {
   if (const auto matrix = matrix_at(camera, "distortion_coefficients")) return is_distorted(matrix->data);
   for (const char* key : {"D", "d"}) {
@@ -261,7 +263,7 @@ bool ros_distortion(const YAML::Node& camera) {
   return false;
 }
 
-/// The camera whose fourth column is greater is the left one: P[0][3] = −fx·B for the right.
+/// The camera with the greater fourth column is the left one: P[0][3] = −fx·B for the right one.
 Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
   const std::optional<Projection> first = ros_projection(one);
   const std::optional<Projection> second = ros_projection(other);
@@ -274,7 +276,7 @@ Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
   return says;
 }
 
-/// The other camera's file beside the one that is named.
+/// The file of the other camera, in the same folder.
 YAML::Node ros_partner(const fs::path& path) {
   const std::optional<fs::path> partner = other_camera(path);
   std::error_code unknown;
@@ -289,7 +291,7 @@ YAML::Node ros_partner(const fs::path& path) {
   return documents.front();
 }
 
-/// Both cameras, from one file with both or from the two of a pair; nothing where the file is no camera_info.
+/// Both cameras, from one file or the two of a pair; nullopt if the file is no camera_info.
 std::optional<std::pair<YAML::Node, YAML::Node>> ros_pair(const std::vector<YAML::Node>& documents,
                                                           const fs::path& path) {
   const YAML::Node& map = documents.front();
@@ -314,7 +316,7 @@ std::array<double, N> fixed(const std::vector<double>& numbers, const char* key)
 
 using Names = std::initializer_list<const char*>;
 
-/// The numbers of the matrix that has one of these names.
+/// The elements of the matrix with one of these names.
 template <class Document>
 std::optional<std::vector<double>> matrix_named(const Document& document, Names names) {
   for (const char* name : names) {
@@ -405,7 +407,7 @@ RawCamera euroc_camera(const YAML::Node& camera) {
           {}};
 }
 
-/// x_right = Rᵣᵀ · (Rₗ · x_left + tₗ − tᵣ), R and t those of T_BS.
+/// x_right = Rᵣᵀ · (Rₗ · x_left + tₗ − tᵣ), with R and t of T_BS.
 void relate(const Pose& left, const Pose& right, RawCalibration& raw) {
   std::array<double, 9> rotation{};
   std::array<double, 3> translation{};
@@ -419,7 +421,7 @@ void relate(const Pose& left, const Pose& right, RawCalibration& raw) {
   raw.translation_m = translation;
 }
 
-/// cam0/sensor.yaml with cam1/sensor.yaml beside its folder.
+/// cam0/sensor.yaml, and cam1/sensor.yaml in the neighbouring folder.
 RawCalibration raw_from_euroc(const YAML::Node& left, const fs::path& path) {
   const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
   const fs::path partner = folder.parent_path() / "cam1" / path.filename();

@@ -35,7 +35,7 @@ std::string key_of(const YAML::Node& key) {
   return key.Scalar();
 }
 
-/// An option that the file has set.
+/// An option set by the file.
 struct SetAt {
   std::string option;
   std::string line;
@@ -43,7 +43,7 @@ struct SetAt {
 
 using Elsewhere = std::function<bool(std::string_view, std::string_view)>;
 
-/// Every option that is gone says so whatever its value was: points were lists.
+/// Removed options are reported whatever their values, which may be lists.
 void set_at(Config& config, const std::string& name, const YAML::Node& key, const YAML::Node& value,
             const Elsewhere& elsewhere, std::vector<SetAt>& options) {
   try {
@@ -78,7 +78,7 @@ void read_preset(Config& config, const YAML::Node& value, const FromPreset& from
 
 void read_root(Config& config, const YAML::Node& root, const FromPreset& from_preset,
                const Elsewhere& elsewhere, std::vector<SetAt>& options) {
-  if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments alone: nothing is set
+  if (!root.IsDefined() || root.IsNull()) return;  // an empty file, or comments only
   if (!root.IsMap()) throw Error("is not a map of options, expected lines such as 'match.window_size: 9'");
   bool first = true;
   for (const auto& entry : root) {
@@ -93,7 +93,7 @@ void read_root(Config& config, const YAML::Node& root, const FromPreset& from_pr
     } else if (entry.second.IsMap()) {
       read_section(config, key, entry.second, elsewhere, options);
     } else if (entry.second.IsNull() && key.find('.') == std::string::npos) {
-      continue;  // a section whose every line is commented out
+      continue;  // a section with only comments
     } else {
       set_at(config, key, entry.first, entry.second, elsewhere, options);
     }
@@ -109,8 +109,7 @@ bool reads(const Config& config, const std::string& option) {
   return true;
 }
 
-/// Of the options that the file has set each must have an effect, in the file's own configuration or in the
-/// final one.
+/// Throws Error for options of the file without effect, both in its own configuration and in the final one.
 void require_effects(const std::vector<SetAt>& options, const Config& of_file, const Config& with_all) {
   for (const auto& [option, line] : options) {
     if (reads(with_all, option)) continue;

@@ -13,21 +13,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A TIFF is found, so that reading it says what to do. Files are looked for by these very names.
+// TIFF is included so that reading it gives a helpful message. These are the names searched for.
 constexpr std::array kPictureExtensions = {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".pnm", ".tif", ".tiff",
                                            ".PNG", ".JPG", ".JPEG", ".PGM", ".PPM", ".PNM", ".TIF", ".TIFF"};
 constexpr std::array kCalibrations = {"calib.txt", "calib.yaml", "calib.yml",           "calib.json",
                                       "calib.xml", "left.yaml",  "calib_cam_to_cam.txt"};
 
-/// What data sets call a pair, the first that is there counts. A folder of Middlebury's with im2 and im6 has
-/// im0 and im1, too.
+/// The image names of data sets; the first pair found is used. Folders of Middlebury with im2 and im6 also
+/// have im0 and im1.
 struct Names {
   const char* left;
   const char* right;
 };
 constexpr std::array kPairs = {Names{"left", "right"}, Names{"im2", "im6"}, Names{"view1", "view5"},
                                Names{"im0", "im1"}};
-/// In Middlebury's folders of 2014 both disp0 and disp1 are, and disp0 belongs to the left picture.
+/// Middlebury 2014 has disp0 and disp1 in a folder; disp0 belongs to the left image.
 constexpr std::array kTrueDisparities = {"disp_left", "disp0GT", "disp0", "disp1", "disp2"};
 
 struct Folders {
@@ -67,7 +67,7 @@ std::optional<fs::path> picture(const fs::path& folder, const std::string& stem)
   return std::nullopt;
 }
 
-/// Without a slash at its end, "." written out: so that it has a name and a parent.
+/// Absolute and without a trailing slash, so that it has a name and a parent.
 fs::path clean(const fs::path& folder) {
   fs::path path = fs::absolute(folder).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
@@ -77,7 +77,7 @@ fs::path truth_beside(const fs::path& folder) {
   return clean(folder).parent_path() / "gt";
 }
 
-/// A frame's own, else that of the truth beside it.
+/// The frame's own file, else the one next to the truth.
 std::optional<fs::path> calibration_of(const fs::path& folder) {
   std::optional<fs::path> calib = calibration_in(folder);
   return calib ? calib : calibration_in(truth_beside(folder));
@@ -122,7 +122,7 @@ std::optional<TruthFiles> truth_in(const fs::path& folder) {
   return truth;
 }
 
-/// Of KITTI 2015 (disp_occ_0) and 2012 (disp_occ).
+/// KITTI 2015 (disp_occ_0) and 2012 (disp_occ).
 std::optional<TruthFiles> kitti_truth(const fs::path& folder, const std::string& name) {
   for (const auto& [all, seen] : {std::pair{"disp_occ_0", "disp_noc_0"}, std::pair{"disp_occ", "disp_noc"}}) {
     TruthFiles truth;
@@ -141,7 +141,7 @@ void check_folder(const fs::path& folder) {
               (fs::exists(folder, reason) ? "is not a folder, expected one" : "no such folder"));
 }
 
-/// What `visit` makes of each entry, sorted by name. Throws Error where the folder cannot be listed.
+/// The results of `visit` for each entry, sorted by name. Throws Error if the folder cannot be listed.
 template <class Visit>
 std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
   std::vector<FrameFiles> frames;
@@ -161,15 +161,15 @@ std::vector<FrameFiles> frames_below(const fs::path& folder) {
   });
 }
 
-/// The right picture of a left one whose name says that it is one.
+/// The right image for a left one, by its name.
 std::optional<fs::path> partner(const fs::path& left) {
   const std::string name = left.filename().string();
   const bool is_left = name.find("left") != std::string::npos && !name.starts_with("disp");
   return is_left ? other_camera(left) : std::nullopt;
 }
 
-/// Of one frame among others: KITTI has a file for each, named by what stands before the _, and its raw
-/// recordings one above their folders.
+/// The calibration of one frame of many: KITTI has a file per frame, named by the part before the _, and one
+/// above the folders of its raw recordings.
 std::optional<fs::path> calibration_among(const fs::path& folder, const fs::path& left) {
   const std::string stem = left.stem().string();
   const std::string number = stem.substr(0, stem.find('_')) + ".txt";
@@ -191,7 +191,7 @@ std::vector<FrameFiles> pairs_of_names(const fs::path& folder) {
   });
 }
 
-/// left/01.jpg and right/01.jpg. Pictures without the other are left out where there are pairs.
+/// left/01.jpg and right/01.jpg. Images without a counterpart are ignored if there are pairs.
 std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names) {
   std::vector<FrameFiles> all =
       each_in(folder / names.left, [&](const fs::path& left) -> std::optional<FrameFiles> {
@@ -222,14 +222,14 @@ std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras) {
   return pairs_of_names(folder);
 }
 
-/// Empty where there is none.
+/// Empty if there is none.
 std::vector<FrameFiles> frames_in(const fs::path& folder, Cameras cameras) {
   if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
   std::vector<FrameFiles> frames = frames_below(folder);
   return frames.empty() ? pairs_by_name(folder, cameras) : frames;
 }
 
-/// The folder in this one that holds frames, as data sets have several.
+/// The subfolder with frames, as in several data sets.
 std::optional<fs::path> frames_deeper(const fs::path& folder) {
   std::optional<fs::path> first;
   std::error_code reason;

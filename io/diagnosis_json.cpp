@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 57.29577951308232;
 
-/// NaN where it was not measured, as with all numbers.
+/// NaN if not measured, as for all numbers.
 double of_brightness(const PairMeasures& measures, float number) {
   return measures.brightness.is_measured() ? static_cast<double>(number) : std::nan("");
 }

@@ -42,7 +42,7 @@ Form form_of(const fs::path& path, bool written) {
 
 // ---- PNG ----
 
-/// d · 256 to the nearest; 0 is the hole, so that a true 0 becomes 1. Nothing where 16 bits do not hold it.
+/// d · 256, rounded; 0 marks holes, so a true 0 becomes 1. nullopt beyond 16 bits.
 std::optional<std::uint16_t> encoded(float disparity_px) {
   if (!std::isfinite(disparity_px)) return std::uint16_t{0};
   const double value = std::nearbyint(double{disparity_px} * 256.0);
@@ -50,8 +50,8 @@ std::optional<std::uint16_t> encoded(float disparity_px) {
   return static_cast<std::uint16_t>(std::max(value, 1.0));
 }
 
-/// Middlebury's maps of 8 bits say nowhere what a step is; it follows from the height of the data set's
-/// pictures.
+/// Middlebury's 8-bit maps do not state their unit; it follows from the height of the images in each data
+/// set.
 struct MiddleburySet {
   int height;
   float unit;  // steps per px
@@ -109,11 +109,11 @@ void save_as_png(const fs::path& path, View<const float> disparity_px) {
 struct PfmHeader {
   Size size;
   bool little_endian = true;
-  std::size_t bytes = 0;  // of the header itself
+  std::size_t bytes = 0;  // of the header
 };
 
-/// The header is three lines: "Pf", width and height, scale; its sign tells the byte order, its amount means
-/// nothing here.
+/// The header has three lines: "Pf", width and height, scale. The sign of the scale is the byte order; its
+/// magnitude is ignored.
 class HeaderWords {
  public:
   explicit HeaderWords(std::string_view file) : file_(file) {}
@@ -124,7 +124,7 @@ class HeaderWords {
     while (at_ < file_.size() && std::isspace(static_cast<unsigned char>(file_[at_])) == 0) ++at_;
     return file_.substr(begin, at_ - begin);
   }
-  /// A number, whole: nothing may follow it in its word.
+  /// A number that takes up its whole word.
   template <class T>
   T number(const char* what) {
     const std::string_view word = next();
@@ -135,7 +135,7 @@ class HeaderWords {
     }
     return value;
   }
-  /// Where the pixels begin: one white space after the last word.
+  /// Start of the pixels: one white space after the last word.
   [[nodiscard]] std::size_t end() const { return at_ + 1; }
 
  private:
@@ -184,7 +184,7 @@ Image<float> decode_pfm(std::string_view file, const Pool& pool) {
 
 // ---- NPY ----
 
-/// NumPy's header is a line of Python: {'descr': '<f4', 'fortran_order': False, 'shape': (480, 640), }.
+/// NumPy's header is a Python literal: {'descr': '<f4', 'fortran_order': False, 'shape': (480, 640), }.
 std::string_view after(std::string_view header, std::string_view key) {
   const std::size_t at = header.find(key);
   if (at == std::string_view::npos) throw Error("is a damaged .npy: its header has no " + std::string(key));

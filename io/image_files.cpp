@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How many bits the samples need; 8 for every 8-bit file.
+/// Number of bits of the samples; 8 for every 8-bit file.
 int depth_of(const Raster& raster) {
   if (raster.bytes_each == 1) return 8;
   auto most = static_cast<unsigned>(raster.max_value);
@@ -27,8 +27,7 @@ int depth_of(const Raster& raster) {
   return std::max(8, static_cast<int>(std::bit_width(most)));
 }
 
-/// Samples to 8 bits: the low bits of deep ones dropped, the full scale of shallow ones (a PGM up to 15)
-/// brought to 255.
+/// Converts samples to 8 bits: drops the low bits of deep ones, scales shallow ones (a PGM up to 15) to 255.
 class Reduction {
  public:
   Reduction(const Raster& raster, int depth)

@@ -14,14 +14,14 @@
 namespace cairn::io {
 namespace {
 
-constexpr int kLegibleWidth = 640;  // px; narrower pictures are enlarged to about this
+constexpr int kLegibleWidth = 640;  // px; narrower images are enlarged to about this
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 int enlargement(Size size) {
   return std::clamp((kLegibleWidth + size.width / 2) / size.width, 1, 4);
 }
 
-/// The pixels of an image as OpenCV sees them: channels in the order R, G, B.
+/// An image as cv::Mat with channels in the order R, G, B.
 cv::Mat matrix(Image<Rgb>& image) {
   return {image.height(), image.width(), CV_8UC3, image.row(0),
           static_cast<std::size_t>(image.view().stride()) * sizeof(Rgb)};
@@ -59,11 +59,11 @@ void write(const cv::Mat& canvas, const std::string& text, cv::Point at, double 
   cv::putText(canvas, text, at, kFont, scale, scalar(colour), 1, cv::LINE_AA);
 }
 
-/// A text that belongs to a point.
+/// A label at a point.
 struct Label {
   std::string text;
   cv::Point middle;
-  cv::Size extent;  // above the line that it is written on
+  cv::Size extent;  // above the baseline
   int below = 0;
 };
 
@@ -75,7 +75,7 @@ Label label_at(cv::Point middle, std::string text) {
   return label;
 }
 
-/// What it covers where it is centred on its point.
+/// The area that it covers when centred on its point.
 Rect covered(const Label& label) {
   return {label.middle.x - label.extent.width / 2, label.middle.y - label.extent.height / 2,
           label.extent.width, label.extent.height + label.below};
@@ -91,7 +91,7 @@ bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// Texts at their points, or beside and with a line to them where others are there already.
+/// Places labels at their points, or next to them with a line if others are there already.
 void write_labels(const cv::Mat& canvas, const std::vector<Label>& labels) {
   std::vector<Rect> wanted;
   wanted.reserve(labels.size());
@@ -109,7 +109,7 @@ void write_labels(const cv::Mat& canvas, const std::vector<Label>& labels) {
     write(canvas, labels[i].text, {places[i].x, places[i].y + labels[i].extent.height}, kLabelScale, white);
 }
 
-/// The picture enlarged, its background faded towards grey.
+/// The enlarged image, with its background faded to grey.
 Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor) {
   Image<Rgb> colour(left.size());
   for (int y = 0; y < left.height(); ++y) {
@@ -124,7 +124,7 @@ Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor)
   return large;
 }
 
-/// What a picture's levels are multiplied by so that its brightest hundredth is bright.
+/// The gain that makes the brightest hundredth of the image bright.
 float brightening(View<const Gray> left) {
   constexpr int kBright = 200;
   constexpr float kMost = 8;
@@ -159,7 +159,7 @@ void brighten(Image<Rgb>& canvas, float factor) {
 constexpr Rgb kFloorTint{90, 150, 190};
 constexpr int kStripHeight = 24;
 
-/// The picture with a strip below it that says what the colours mean.
+/// The image with a colour legend below it.
 Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float brightened) {
   constexpr double kScale = 0.42;
   constexpr int kGap = 18;
@@ -277,13 +277,13 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Dispa
 }  // namespace
 
 Rgb object_colour(ObjectId id) {
-  // Steps of the golden ratio keep any few consecutive hues far apart.
+  // Steps of the golden ratio keep consecutive hues far apart.
   const float hue = std::fmod(0.61803399F * static_cast<float>(number(id) % 1000), 1.0F);
   return from_hsv(hue, 0.78F, 0.98F);
 }
 
 LabelPlace label_place(View<const std::uint8_t> mask) {
-  // A frame of nothing around it: the image's border is an outline, too.
+  // Padded, so that the image border counts as an outline.
   cv::Mat framed(mask.height() + 2, mask.width() + 2, CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < mask.height(); ++y) {
     std::copy_n(mask.row(y), mask.width(), framed.ptr<std::uint8_t>(y + 1) + 1);
@@ -296,8 +296,8 @@ LabelPlace label_place(View<const std::uint8_t> mask) {
 }
 
 std::vector<Rect> place_labels(const std::vector<Rect>& wanted, Size picture) {
-  constexpr int kGap = 1;       // px between two
-  constexpr int kFurthest = 6;  // heights up and down, and half as many half widths to either side
+  constexpr int kGap = 1;       // px between two labels
+  constexpr int kFurthest = 6;  // heights up and down, and half as many half-widths to either side
   std::vector<Rect> placed;
   for (const Rect& label : wanted) {
     const auto is_free = [&](const Rect& place) {
@@ -351,7 +351,7 @@ std::array<Rgb, 256> disparity_colours() {
   std::array<Rgb, 256> colours{};
   for (int i = 0; i < 256; ++i) {
     const auto c = bgr.at<cv::Vec3b>(0, i);
-    // The darkest ends would be hard to tell from holes.
+    // The darkest ends of the map would be hard to distinguish from holes.
     colours[static_cast<std::size_t>(i)] = mixed(Rgb{c[2], c[1], c[0]}, {255, 255, 255}, 0.08F);
   }
   return colours;

@@ -11,7 +11,7 @@
 namespace cairn::io {
 namespace {
 
-/// The lowest byte first, on every machine.
+/// Little-endian on every machine.
 void append(std::string& bytes, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((value >> shift) & 0xff);
 }
@@ -48,7 +48,7 @@ struct Vertices {
   }
 };
 
-/// visit(x, y, point, colour) for each pixel that has a point, in raster order.
+/// Calls visit(x, y, point, colour) for each pixel with a point, in raster order.
 template <class Visit>
 void for_each_point(View<const Gray> left, View<const Rgb> left_rgb, View<const float> disparity_px,
                     const StereoRig& rig, const Visit& visit) {

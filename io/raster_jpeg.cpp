@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-// jpeglib.h needs these two before it
+// jpeglib.h requires the next two headers
 #include <cstddef>
 #include <cstdio>
 
@@ -16,13 +16,13 @@
 #include <string>
 #include <utility>
 
-// libjpeg itself rather than OpenCV's use of it: a truncated file is a mere warning there, printed, and grey
-// pixels.
+// libjpeg is used directly because OpenCV only prints a warning for a truncated file, and fills the rest with
+// grey.
 namespace cairn::io {
 namespace {
 
 struct Complaints {
-  jpeg_error_mgr manager{};  // first, so that libjpeg's pointer to it is a pointer to this
+  jpeg_error_mgr manager{};  // first member, so that libjpeg's pointer to it also points to this
   std::jmp_buf way_out{};
   char text[JMSG_LENGTH_MAX] = {};
 };
@@ -32,7 +32,7 @@ void complain(j_common_ptr jpeg) {
   complaints->manager.format_message(jpeg, complaints->text);
   std::longjmp(complaints->way_out, 1);
 }
-/// A warning (level −1) means invented pixels, except the one about an odd Adobe mark.
+/// A warning (level −1) means invented pixels, except the one about an unusual Adobe marker.
 void judge(j_common_ptr jpeg, int level) {
   if (level < 0 && jpeg->err->msg_code != JWRN_ADOBE_XFORM) complain(jpeg);
 }
@@ -56,17 +56,16 @@ struct Reader {
   Complaints complaints;
 };
 
-/// Where libjpeg writes. Its own destination in memory (jpeg_mem_dest) leaves a pointer to a freed buffer
-/// where a later one cannot be had.
+/// Destination in memory. libjpeg's own (jpeg_mem_dest) leaves a dangling pointer if a reallocation fails.
 struct Destination {
-  jpeg_destination_mgr manager{};  // first, so that libjpeg's pointer to it is a pointer to this
+  jpeg_destination_mgr manager{};  // first member, so that libjpeg's pointer to it also points to this
   std::string file;
 };
 
 Destination& destination(j_compress_ptr jpeg) {
   return *reinterpret_cast<Destination*>(jpeg->dest);
 }
-/// Room behind the first `used` bytes. No exception may cross libjpeg, and its longjmp no destructor.
+/// Grows the buffer beyond `used` bytes. No exception may cross libjpeg, and no destructor its longjmp.
 void make_room(j_compress_ptr jpeg, std::size_t used) {
   constexpr std::size_t kLeast = std::size_t{1} << 16;
   bool has_room = true;
@@ -87,7 +86,7 @@ void begin_file(j_compress_ptr jpeg) {
   make_room(jpeg, 0);
 }
 boolean grow_file(j_compress_ptr jpeg) {
-  make_room(jpeg, destination(jpeg).file.size());  // libjpeg calls when all of it is used
+  make_room(jpeg, destination(jpeg).file.size());  // libjpeg calls this when the buffer is full
   return TRUE;
 }
 void end_file(j_compress_ptr jpeg) {
@@ -110,8 +109,8 @@ struct Writer {
   Complaints complaints;
 };
 
-/// Runs `steps`, which must own nothing: libjpeg leaves them by longjmp. Everything that lives on is the
-/// caller's. False where libjpeg complained, not of memory.
+/// Runs `steps`, which must own nothing, since libjpeg leaves it by longjmp; the caller owns all objects.
+/// False if libjpeg failed other than by lack of memory.
 template <class Steps>
 bool succeeds(Complaints& complaints, const Steps& steps) {
   if (setjmp(complaints.way_out) != 0) {  // NOLINT(cert-err52-cpp): libjpeg's only way out
@@ -128,8 +127,8 @@ void run(Reader& reader, const auto& steps) {
   }
 }
 
-/// Each block of 8x8 samples takes a bit at the least, so a short file with a great claim is refused before
-/// it costs memory. Arithmetic coding, which hardly any program writes, may take less.
+/// Each block of 8x8 samples takes at least one bit, so a short file that claims a huge size is rejected
+/// before memory is allocated. Arithmetic coding, which is rare, may take less.
 void check_plausible(const jpeg_decompress_struct& jpeg, std::size_t file_bytes) {
   const auto samples = std::size_t{jpeg.image_width} * jpeg.image_height;
   if (jpeg.arith_code || samples / 64 / 8 <= file_bytes) return;
@@ -184,7 +183,7 @@ std::string encode_jpeg(const PixelRows& rows, int quality) {
     jpeg_set_quality(&jpeg, quality, TRUE);
     jpeg_start_compress(&jpeg, TRUE);
     for (int y = 0; y < rows.size.height; ++y) {
-      // libjpeg's type, not its habit: it reads these rows.
+      // libjpeg lacks const here; it only reads these rows.
       auto* row = const_cast<JSAMPROW>(rows.first + y * rows.stride_bytes);
       jpeg_write_scanlines(&jpeg, &row, 1);
     }

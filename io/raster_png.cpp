@@ -13,7 +13,7 @@
 #include <new>
 #include <string>
 
-// libpng itself rather than OpenCV's use of it: here its complaints can be caught instead of printed.
+// libpng is used directly to catch its errors, which OpenCV only prints.
 namespace cairn::io {
 namespace {
 
@@ -35,7 +35,7 @@ void read_bytes(png_structp png, png_bytep out, std::size_t count) {
   rest.remove_prefix(count);
 }
 
-/// No exception may cross libpng, and its longjmp no destructor.
+/// No exception may cross libpng, and no destructor its longjmp.
 void append_bytes(png_structp png, png_bytep bytes, std::size_t count) {
   bool has_room = true;
   try {
@@ -88,8 +88,8 @@ struct Writer {
   png_infop info;
 };
 
-/// Runs `steps`, which must own nothing: libpng leaves them by longjmp. Everything that lives on is the
-/// caller's. False where libpng complained, not of memory.
+/// Runs `steps`, which must own nothing, since libpng leaves it by longjmp; the caller owns all objects.
+/// False if libpng failed other than by lack of memory.
 template <class Steps>
 bool succeeds(png_structp png, const Steps& steps) {
   if (setjmp(png_jmpbuf(png)) != 0) {  // NOLINT(cert-err52-cpp): libpng's only way out
@@ -105,9 +105,10 @@ void run(const Reader& reader, const auto& steps) {
     throw Error(std::string("is a truncated or damaged PNG: ") + reader.complaint.text);
 }
 
-/// Deflate packs at most 1032:1, so a short file with a great claim is refused before it costs memory.
+/// Deflate compresses at most 1032:1, so a short file that claims a huge size is rejected before memory is
+/// allocated.
 void check_plausible(Size size, std::size_t raster_bytes, std::size_t file_bytes) {
-  // Samples of less than 8 bits are packed eight to the byte before.
+  // Samples of less than 8 bits are first packed, up to eight per byte.
   if (raster_bytes / 8 / 1032 <= file_bytes) return;
   throw Error("is a truncated or damaged PNG: " + std::to_string(file_bytes) + " bytes cannot hold " +
               text(size) + " pixels");
@@ -138,7 +139,7 @@ Raster decode_png(std::string_view file, Palette palette) {
   std::size_t row_bytes = 0;
   run(reader, [&] {
     if (indexed && palette == Palette::colours) png_set_palette_to_rgb(reader.png);
-    png_set_packing(reader.png);  // less than 8 bits: one byte each, values as they are
+    png_set_packing(reader.png);  // less than 8 bits: one byte each, values unchanged
     png_set_strip_alpha(reader.png);
     if (std::endian::native == std::endian::little) png_set_swap(reader.png);
     png_set_interlace_handling(reader.png);
@@ -169,8 +170,8 @@ std::string encode_png(const PixelRows& rows) {
                  static_cast<png_uint_32>(rows.size.height), 8 * rows.bytes_each,
                  rows.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // Differences to the row above, in runs: on photographs and on maps of ids smaller than deflate's search
-    // at its middle levels, in a quarter of the time.
+    // The "up" filter with run-length encoding: on photographs and id maps smaller than deflate at middle
+    // levels, in a quarter of the time.
     png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
     png_set_compression_strategy(writer.png, Z_RLE);
     png_write_info(writer.png, writer.info);

@@ -13,12 +13,12 @@ constexpr bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/// Walks over the decimal numbers of a PNM file.
+/// Parses the decimal numbers of a PNM file.
 class Numbers {
  public:
   explicit Numbers(std::string_view text) : rest_(text) {}
 
-  /// The next number; white space and comments (# to the end of the line) before it are passed over.
+  /// The next number; skips white space and comments (# to the end of the line).
   int next(const char* what) {
     skip();
     int value = 0;
@@ -28,7 +28,7 @@ class Numbers {
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
   }
-  /// What follows the one white space that ends a binary file's header.
+  /// The data after the single white space that ends a binary header.
   std::string_view body() const {
     if (rest_.empty()) throw Error("is truncated: it ends with its header");
     if (!is_space(rest_.front())) throw Error("is damaged: no white space after its header");
@@ -88,7 +88,7 @@ Raster decode_pnm(std::string_view file) {
   const std::size_t bytes = samples * static_cast<std::size_t>(raster.bytes_each);
 
   if (text) {
-    // A digit and a blank each, at the least: refuses a lying header before it costs memory.
+    // Each number takes at least a digit and a blank: rejects a false header before memory is allocated.
     if (numbers.bytes_left() < 2 * samples) refuse_length(numbers.bytes_left(), 2 * samples);
     raster.bytes.resize(bytes);
     for (std::size_t i = 0; i < samples; ++i) store(raster, i, numbers.next("last pixel"));

@@ -47,7 +47,7 @@ void check(const RawCalibration& calibration) {
     throw Error("has neither R and T nor R1, R2, P1 and P2, expected the relative pose of the cameras");
 }
 
-/// For a better word than that its matrices are missing.
+/// For a better message than that matrices are missing.
 bool is_of_rectified_pair(const fs::path& path) {
   try {
     const Calibration calibration = load_calibration(path);

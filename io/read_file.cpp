@@ -38,7 +38,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes) {
   if (::fstat(file.descriptor, &status) != 0) refuse(path, errno);
   if (S_ISDIR(status.st_mode)) throw Error(path.string() + ": is a folder, expected a file");
 
-  // Pipes tell no length, so the loop reads until the end; the length only sizes the first allocation.
+  // The length only sizes the first allocation, as pipes have none; the loop reads to the end.
   const auto length = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
   std::string bytes(std::min(length, most_bytes) + 1, '\0');
   std::size_t filled = 0;

@@ -29,8 +29,8 @@ using Json = nlohmann::ordered_json;
 
 // ---- objects.json ----
 
-/// The double that a reader of the float's shortest text would see: 0.7, not 0.699999988. JSON has no NaN:
-/// null.
+/// The double nearest to the float's shortest decimal form: 0.7, not 0.699999988. null for NaN, which JSON
+/// does not have.
 Json json(float value) {
   if (!std::isfinite(value)) return nullptr;
   std::array<char, 48> text{};
@@ -112,7 +112,7 @@ Json json(const LeftOut& left) {
   return j;
 }
 
-/// null where nothing is known of a floor in metres.
+/// null if no floor is known in metres.
 Json scan_json(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
@@ -175,7 +175,7 @@ Json size_json(const Frame& frame) {
   return {{"width", size.width}, {"height", size.height}};
 }
 
-/// What was found, to the end of the document.
+/// Writes the results, up to the end of the document.
 void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
   j["epipolar"] = json(frame.epipolar);
   j["ground"] = json(frame.ground);
@@ -189,7 +189,7 @@ void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
 
 // ---- the folder ----
 
-/// A folder that is gone with all that it holds unless it is kept.
+/// A folder that is deleted with its content unless it is kept.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const fs::path& parent) {
@@ -214,7 +214,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// Makes the missing ancestors of a folder; takes them away again unless they are kept.
+/// Creates the missing parents of a folder; removes them again unless they are kept.
 class Ancestors {
  public:
   explicit Ancestors(const fs::path& folder) {
@@ -230,7 +230,7 @@ class Ancestors {
   ~Ancestors() {
     if (kept_) return;
     std::error_code ignored;
-    for (const fs::path& p : made_) fs::remove(p, ignored);  // innermost first; one that is not empty stays
+    for (const fs::path& p : made_) fs::remove(p, ignored);  // innermost first; non-empty ones remain
   }
   void keep() { kept_ = true; }
 
@@ -241,7 +241,7 @@ class Ancestors {
 
 // ---- its files ----
 
-/// What the files of a result are made from.
+/// The data for the files of a result.
 struct Result {
   View<const Gray> left;
   View<const Rgb> left_rgb;
@@ -294,7 +294,7 @@ Image<float> depth_m(const Result& r) {
   return depth;
 }
 
-/// Millimetres; 0 where there is no depth, and beyond what 16 bits hold.
+/// In mm; 0 without depth, or beyond 16 bits.
 void save_depth(const fs::path& path, const Image<float>& depth) {
   Image<std::uint16_t> millimetres(depth.size());
   for (int y = 0; y < depth.height(); ++y) {
@@ -306,11 +306,11 @@ void save_depth(const fs::path& path, const Image<float>& depth) {
   save_png(path, View<const std::uint16_t>(millimetres));
 }
 
-/// numpy's form, version 1.0, of a matrix of 32-bit floats.
+/// NumPy's format, version 1.0, for a matrix of 32-bit floats.
 std::string npy_bytes(View<const float> image) {
   std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
                        std::to_string(image.height()) + ", " + std::to_string(image.width()) + "), }";
-  constexpr std::size_t kBefore = 10;  // bytes, and the whole a multiple of 64
+  constexpr std::size_t kBefore = 10;  // bytes; the whole header is a multiple of 64
   header.resize((kBefore + header.size() + 1 + 63) / 64 * 64 - kBefore - 1, ' ');
   header += '\n';
   std::string bytes("\x93NUMPY\x01\x00", 8);
@@ -336,7 +336,7 @@ ObstacleGrid grid_of(const Result& r) {
                        r.provenance.config.space);
 }
 
-/// As ROS' map_server reads it: the row with the greatest y first.
+/// In the format of ROS map_server: the row with the greatest y first.
 std::string grid_pgm(const ObstacleGrid& grid) {
   constexpr char kUnknown = static_cast<char>(205);
   constexpr char kFree = static_cast<char>(254);
@@ -366,8 +366,8 @@ struct ResultFile {
   void (*write)(const fs::path&, const Result&);
 };
 
-/// All that a result may hold: what is written, and what is removed of an older one. In the order in which
-/// they are put in place: objects.json last, so that it never speaks of other files.
+/// All possible files of a result: those to write, and old ones to remove. In the order in which they are
+/// moved into place: objects.json last, so that it never describes other files.
 constexpr std::array kResultFiles{
     ResultFile{"disparity.png",
                [](const Result& r) { return disparity_file_name(r.frame, r.provenance) == "disparity.png"; },
@@ -419,7 +419,7 @@ constexpr std::array kResultFiles{
                  write_file(path, objects_json(r.frame, r.provenance));
                }}};
 
-/// The folder with a file for each object.
+/// The folder with one file per object.
 constexpr const char* kObjectClouds = "objects";
 
 bool wants_object_clouds(const Result& r) {
@@ -436,14 +436,14 @@ void write_files(const fs::path& folder, const Result& result) {
   }
 }
 
-/// Whether it has a name that save_object_plys() gives.
+/// Whether save_object_plys() gives such a name.
 bool is_object_cloud(const fs::path& path) {
   const std::string name = path.stem().string();
   return path.extension() == ".ply" &&
          std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// As replace(); other files in the folder stay.
+/// Like replace(), but keeps other files of the folder.
 void replace_object_clouds(const fs::path& made, const fs::path& folder) {
   std::vector<fs::path> older;
   std::error_code ignored;
@@ -452,7 +452,7 @@ void replace_object_clouds(const fs::path& made, const fs::path& folder) {
   }
   for (const fs::path& path : older) fs::remove(path);
   if (!fs::exists(made)) {
-    if (!older.empty()) fs::remove(folder, ignored);  // unless others have files in it
+    if (!older.empty()) fs::remove(folder, ignored);  // unless it contains other files
     return;
   }
   fs::create_directory(folder);
@@ -526,7 +526,7 @@ void save_confidence(const fs::path& path, View<const float> confidence) {
 void write_result(const fs::path& given_folder, View<const Gray> left, View<const Rgb> left_rgb,
                   const Frame& frame, const Provenance& provenance, Extras extras) {
   std::error_code failed;
-  // Absolute and without a last slash, so that every folder has a parent.
+  // Absolute and without a trailing slash, so that every folder has a parent.
   fs::path folder = fs::absolute(given_folder, failed).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   try {
@@ -535,7 +535,7 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
       const fs::path clouds = folder / kObjectClouds;
       if (extras.object_clouds && fs::exists(clouds) && !fs::is_directory(clouds))
         throw Error(clouds.string() + ": is a file, expected a folder");
-      const TemporaryFolder made(folder);  // inside: a folder beside might lie on another disk
+      const TemporaryFolder made(folder);  // inside the folder: one next to it might be on another disk
       write_files(made.path(), {left, left_rgb, frame, provenance, extras});
       replace(made.path(), folder);
       return;
@@ -552,7 +552,7 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
 
 namespace {
 
-/// JSON's conversions to integers do not ask whether the number fits.
+/// JSON's integer conversions do not check the range.
 ObjectId id_of(const nlohmann::json& value) {
   constexpr std::int64_t kMost = 65'535;
   if (!value.is_number_integer() || value < 1 || value > kMost) {

@@ -18,7 +18,7 @@ void append_number(std::int64_t value, std::string& text) {
   bool more = true;
   while (more) {
     std::int64_t group = value & kGroupMask;
-    value >>= kGroupBits;  // arithmetic: a negative number ends in −1
+    value >>= kGroupBits;  // arithmetic shift: a negative number ends in −1
     more = (group & kSignBit) != 0 ? value != -1 : value != 0;
     if (more) group |= kMoreBit;
     text.push_back(static_cast<char>(kFirstCharacter + group));
@@ -53,8 +53,7 @@ std::string counts_to_text(const std::vector<std::int64_t>& counts) {
 }
 
 std::vector<std::int64_t> text_to_counts(std::string_view text) {
-  constexpr std::int64_t kMost = std::int64_t{1}
-                                 << 40;  // far beyond any image; keeps the sums from overflowing
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;  // far above any image; prevents overflow of the sums
   std::vector<std::int64_t> counts;
   for (std::size_t at = 0; at < text.size();) {
     std::int64_t count = read_number(text, at);
@@ -80,9 +79,9 @@ Rle encode_rle(View<const ObjectId> labels, ObjectId id, Rect box) {
     for (int y = box.y; y < box.y + box.height; ++y) {
       if ((labels(x, y) == id) != inside) turn_at(column + y);
     }
-    // Below the box there is nothing of the object; a run goes on only where box and image end together.
+    // Below the box there are no object pixels; a run continues only if box and image end together.
     if (inside && box.y + box.height < labels.height()) turn_at(column + box.y + box.height);
-    // Nor is there above the box in the next column.
+    // The same above the box in the next column.
     if (inside && box.y > 0) turn_at(column + labels.height());
   }
   const std::int64_t end = labels.size().area();

@@ -7,7 +7,7 @@
 namespace cairn::io {
 namespace {
 
-/// The fractional parts of the cube roots of the first 64 primes, 32 bits each (section 4.2.2).
+/// Fractional parts of the cube roots of the first 64 primes, 32 bits each (section 4.2.2).
 constexpr std::array<std::uint32_t, 64> kRound{
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -20,7 +20,7 @@ constexpr std::array<std::uint32_t, 64> kRound{
 
 }  // namespace
 
-// The names a … h, t1 and t2 are the standard's (section 6.2.2).
+// The names a … h, t1 and t2 are those of the standard (section 6.2.2).
 void Sha256::add_block(const unsigned char* block) {
   std::array<std::uint32_t, 64> w{};
   for (std::size_t t = 0; t < 16; ++t) {

@@ -12,7 +12,7 @@
 namespace cairn::io {
 namespace {
 
-/// OpenCV's exceptions in one line.
+/// OpenCV's exceptions as a single line.
 template <class Work>
 auto with_opencv(const char* doing, Work work) {
   try {
@@ -45,8 +45,8 @@ std::vector<cv::Point2f> points_of(const Corners& corners) {
   return points;
 }
 
-/// Rotations and projections of the rectified pair, where the calibration does not say them itself. Every
-/// pixel of the rectified pictures shows something (alpha = 0), and doffs is 0.
+/// Rotations and projections of the rectified pair if the calibration does not contain them. The rectified
+/// images have no empty pixels (alpha = 0), and doffs is 0.
 RawCalibration with_rectification(RawCalibration raw) {
   if (raw.left.rotation && raw.left.projection && raw.right.rotation && raw.right.projection) return raw;
   cv::Mat left_rotation;
@@ -65,7 +65,7 @@ RawCalibration with_rectification(RawCalibration raw) {
   return raw;
 }
 
-/// Root mean squared difference of the rows of corners that are rectified.
+/// RMS of the row differences of rectified corners.
 double rows_error(std::span<const BoardSighting> sightings, const RawCalibration& raw) {
   const auto rectified = [](const Corners& corners, const RawCamera& camera) {
     std::vector<cv::Point2f> points;
@@ -87,7 +87,7 @@ double rows_error(std::span<const BoardSighting> sightings, const RawCalibration
   return std::sqrt(squares / std::max(1.0, count));
 }
 
-/// The same corner first in both pictures: a board looks alike when it is turned by half a turn.
+/// Makes the corner order agree in both images: a board looks the same after half a turn.
 std::vector<cv::Point2f> in_order_of(const std::vector<cv::Point2f>& left, std::vector<cv::Point2f> right) {
   const cv::Point2f along_left = left.back() - left.front();
   const cv::Point2f along_right = right.back() - right.front();
@@ -183,7 +183,7 @@ StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, con
   return with_opencv("calibrating", [&] { return calibrate(sightings, board, image); });
 }
 
-/// For each pixel of the rectified pictures its place in the raw ones.
+/// The position in the raw image of each rectified pixel.
 struct Rectifier::Maps {
   Size size;
   cv::Mat left_x;

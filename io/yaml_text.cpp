@@ -11,12 +11,12 @@ namespace {
 
 constexpr int kMostValues = 200'000;
 
-/// Walks a text without keeping anything of it.
+/// Parses a text without storing anything.
 class Check : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override {
-    // The parser asks for documents until the text is used up, and one that uses nothing of it begins where
-    // the one before began.
+    // The parser is called for documents until the text is used up; one that consumes nothing starts where
+    // the previous one did.
     if (mark.pos == document_) throw YAML::ParserException(mark, "nothing is allowed here");
     document_ = mark.pos;
     count(mark);

@@ -31,20 +31,21 @@ constexpr double kSeenThrough = -1.5;
 constexpr double kGone = -2;
 constexpr int kGoneFrames = 5;
 constexpr double kThroughShare = 0.6;
-constexpr double kThroughMargin = 0.3;  // beyond what shows through while it is there
+constexpr double kThroughMargin = 0.3;  // added to the share visible through the place of a present object
 constexpr int kLeastPixels = 200;
 constexpr double kLongUnseen_s = 5;
 constexpr double kClosure_s = 5;
 constexpr int kSteadyFrames = 5;
 constexpr int kFloorFrames = 10;
-constexpr double kSettled_s = 3;  // a new landmark may prove to be a moved one for this long
-constexpr double kUnique = 0.05;  // of score
+constexpr double kSettled_s = 3;  // until then a new landmark may turn out to be a moved one
+constexpr double kUnique = 0.05;  // of the score
 
-// The centre lies behind what is seen of a thing. Shares of its width, measured on 335 objects of the
-// rendered rooms of the fit set: median 0.26, 16 % and 84 % at 0.11 and 0.39, sideways 0.06 at 84 %.
+// An object's centre is behind its visible surface. As shares of its width, measured on 335 objects of the
+// rendered rooms of the fit set: median 0.26, 16th and 84th percentile 0.11 and 0.39; sideways 0.06 at the
+// 84th.
 constexpr double kBehind = 0.26;
 constexpr double kCentreSigma = 0.14;
-constexpr double kCentreSigmaUp = 0.1;  // of its height
+constexpr double kCentreSigmaUp = 0.1;  // of the height
 
 struct VisibleArea {
   int pixels = 0;
@@ -66,7 +67,7 @@ int octant_of(Point3 landmark, Point3 camera) {
   return (static_cast<int>(std::floor((angle + 2 * std::numbers::pi) / kEighth + 0.5)) + 8) % 8;
 }
 
-/// Towards the smaller of the sizes seen, or the larger, quickly; back slowly.
+/// An exponential envelope: fast towards a new extreme, slow back.
 void follow(double& bound, double value, bool down) {
   constexpr double kQuickly = 0.3;
   constexpr double kSlowly = 0.02;
@@ -124,7 +125,7 @@ LandmarkOfTrack of_track(const TrackEvidence& evidence) {
 void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& frame, bool is_cut,
             const LandmarksConfig& config) {
   const Point3 camera = frame.odom_from_camera.translation_m;
-  // What rolls slowly, or was carried while it was hidden, may never be called moving.
+  // Slow rolling, or being carried while hidden, may never raise the moving state.
   const double least = std::max(static_cast<double>(config.moved), evidence.size.widest_m);
   const bool has_left =
       evidence.landmark != LandmarkId::none && horizontal(track.position_m, evidence.stood_m) > least;
@@ -164,7 +165,7 @@ void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& fr
   away.z = 0;
   const double distance = std::max(1e-6, length(away));
   const Point3 centre = track.position_m + (kBehind * across / distance) * away;
-  // The track's filter already averages; what changes here is the side from which it is seen.
+  // The track's filter averages noise; this averages over viewing directions.
   constexpr int kMost = 20;
   evidence.centres = std::min(evidence.centres + 1, kMost);
   evidence.centre_m = evidence.centre_m + (1.0 / evidence.centres) * (centre - evidence.centre_m);
@@ -188,20 +189,20 @@ LandmarkRefusal refusal_of(const TrackEvidence& evidence, const Track& track, co
   return LandmarkRefusal::none;
 }
 
-/// Recognition asks for less than a landmark of its own: the map vouches for the thing.
+/// Requires less than creating a landmark, since the map is further evidence of the object.
 bool may_be_recognised(const TrackEvidence& evidence, const Track& track, const LandmarksConfig& config) {
   return track.state == TrackState::confirmed && !track.is_moving && track.object != ObjectId::none &&
          evidence.frames >= std::max(2, config.min_frames / 2) && evidence.cut_ago > 0 &&
          evidence.centres >= 2;
 }
 
-/// A pose asks for sure places, but not that all of them are in view at once.
+/// For localisation: requires certain positions, but not that all objects are in view at once.
 bool may_tell_place(const TrackEvidence& evidence, const Track& track, const LandmarksConfig& config) {
   return track.state != TrackState::tentative && !track.is_moving && evidence.frames >= config.min_frames &&
          evidence.cut_ago > 0 && evidence.centres >= 2;
 }
 
-/// An octant's colours, and the crop where this is the largest view so far.
+/// Stores the colours of an octant, and the crop if this is the largest view so far.
 void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int octant,
           const LandmarkFrame& frame) {
   auto at = std::lower_bound(landmark.looks.begin(), landmark.looks.end(), octant,
@@ -214,7 +215,7 @@ void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int 
     if (!look.crop_png.empty()) largest = look.pixels;
   }
   at->pixels = std::max(at->pixels, shown.pixels);
-  constexpr double kWorth = 1.5;  // encoding takes longer than all else here
+  constexpr double kWorth = 1.5;  // least gain in area; encoding takes longer than the rest of this function
   if (frame.left.empty() && frame.left_rgb.empty()) return;
   if (shown.pixels < kWorth * largest || shown.pixels == 0) return;
   constexpr int kSide_px = 72;
@@ -239,7 +240,7 @@ void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int 
   at->crop_png = std::move(png);
 }
 
-/// The landmark with what its track says of it now.
+/// Updates the landmark with the track's current estimates.
 void update(Landmark& landmark, const TrackEvidence& evidence, const Track& track,
             const LandmarksState& state, const LandmarkFrame& frame) {
   const Candidate candidate = candidate_of(evidence, track);
@@ -305,7 +306,7 @@ bool was_seen_before(const Landmark& landmark, Stamp stamp, const LandmarksState
   return landmark.run != state.run || landmark.last < stamp;
 }
 
-/// How alike two landmarks are, whichever sides of them were seen.
+/// Similarity of two landmarks over all their views.
 double score_between(const Landmark& a, const Landmark& b) {
   double best = 0;
   for (const LandmarkLook& look : a.looks)
@@ -324,7 +325,7 @@ std::vector<int> frames_of(const LandmarksState& state, LandmarkId id) {
   return {};
 }
 
-/// A landmark that is gone and one that was found since may be one thing, which was moved.
+/// Pairs landmarks that disappeared with new ones that may be the same object, moved.
 std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame& frame,
                                       const LandmarksConfig& config) {
   std::vector<LandmarkEvent> events;
@@ -395,7 +396,7 @@ std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame
   return events;
 }
 
-/// Found landmarks that stand where floor had been seen, and are none that went.
+/// Reports landmarks that are where the map had floor, and are not moved ones.
 std::vector<LandmarkEvent> report_new(LandmarksState& state, const LandmarkFrame& frame,
                                       const LandmarksConfig& config) {
   std::vector<LandmarkEvent> events;
@@ -420,17 +421,18 @@ std::vector<LandmarkEvent> report_new(LandmarksState& state, const LandmarkFrame
   return events;
 }
 
-/// What odometry added since the anchor comes on top of what was uncertain there. Differences of its
-/// covariances, not sums of their growth: they fall again when the keyframe is seen after a few dark frames.
+/// Adds the uncertainty that odometry gained since the anchor to that of the anchor. As a difference of
+/// covariances, not a sum of increments, since odometry's covariance drops again when a keyframe is seen
+/// again after a few dark frames.
 void place_camera(LandmarksState& state, const LandmarkFrame& frame) {
   state.located.camera_in_odom_m = frame.odom_from_camera.translation_m;
   const Point3 way = state.located.camera_in_odom_m - state.anchor.camera_in_odom_m;
-  // Rounding, and a pose that was seen better than at the anchor, may make it negative in some direction.
+  // The difference may have negative eigenvalues, by rounding or if the pose at the anchor was less certain.
   const Matrix4 grown = landmarks::with_clamped_eigenvalues(
       Matrix4(position_and_yaw(frame.pose_covariance) -
               landmarks::carried(position_and_yaw(state.anchor_pose_covariance), way)),
       0);
-  // Odometry's axes are not the map's; about the vertical they agree.
+  // The frames of odometry and map differ by a rotation about the vertical only.
   Matrix4 turn = Matrix4::Identity();
   turn.topLeftCorner<3, 3>() = Eigen::Map<const Matrix3>(state.located.map_from_odom.rotation.data());
   state.located.covariance = landmarks::rows_of(
@@ -438,13 +440,13 @@ void place_camera(LandmarksState& state, const LandmarkFrame& frame) {
               turn * grown * turn.transpose()));
 }
 
-/// `state.located` is known by more than odometry.
+/// Requires that `state.located` comes from more than odometry.
 void anchor_here(LandmarksState& state, const LandmarkFrame& frame) {
   state.anchor = state.located;
   state.anchor_pose_covariance = frame.pose_covariance;
 }
 
-/// A guess alone ties what is seen from here on to the map.
+/// Starts a segment that is tied to the map only by a guessed pose.
 void begin_segment(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config) {
   state.segment_began = frame.stamp;
   state.tracks.clear();
@@ -461,7 +463,7 @@ void begin_segment(LandmarksState& state, const LandmarkFrame& frame, const Land
     state.has_guess = true;
     return;
   }
-  // Too few landmarks ever to say where this is: the map is of this segment from now on.
+  // Too few landmarks to localise by: discard the map and start again with this segment.
   const std::int64_t next = state.map.next;
   state.map = {};
   state.map.next = next;
@@ -472,14 +474,14 @@ void begin_segment(LandmarksState& state, const LandmarkFrame& frame, const Land
   anchor_here(state, frame);
 }
 
-/// The landmarks that were recognised together after a while correct the pose.
+/// Corrects the pose by landmarks that were recognised together after a while.
 void correct(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config) {
   if (!state.closure || state.closure->last != frame.stamp) return;
   std::vector<Pull> pulls;
   Located before = state.closure->before;
   before.camera_in_odom_m = state.located.camera_in_odom_m;
   Located exact = before;
-  exact.covariance = {};  // the pose's own is the prior, not a part of what is seen
+  exact.covariance = {};  // the pose's covariance is the prior, not part of the measurement
   for (const TrackId id : state.closure->tracks) {
     const TrackEvidence* evidence = evidence_of(state, id);
     const Track* track = track_of(*frame.tracks, id);
@@ -522,7 +524,7 @@ void bind(LandmarksState& state, const LandmarkPair& pair, const LandmarkFrame& 
   state.closure->tracks.push_back(pair.track);
 }
 
-/// Whether the frame shows what lies behind most of what the place should show.
+/// Whether most places of landmarks that should be visible show what is behind them instead.
 bool is_contradicted(const LandmarksState& state, const Recognition& found, const LandmarkFrame& frame) {
   std::size_t against = 0;
   for (const Landmark& landmark : state.map.list) {
@@ -536,7 +538,8 @@ bool is_contradicted(const LandmarksState& state, const Recognition& found, cons
 }  // namespace
 
 Covariance6 camera_covariance(const Located& located, const Covariance6& pose_covariance) {
-  // What ties roll and pitch to the others is odometry's, and need not suit what recognition made of them.
+  // Roll and pitch come from odometry. Their correlations with the other components are dropped: they may be
+  // inconsistent with the covariance from recognition.
   const Matrix3 attitude = matrix(pose_covariance).bottomRightCorner<3, 3>();
   Covariance6 all{};
   Eigen::Map<Matrix6> rows(all.data());
@@ -584,7 +587,7 @@ LandmarkFrame landmark_frame(const Step& step, const StereoRig& rig, View<const 
 }
 
 Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const Pose& map_from_odom) {
-  constexpr double kCore = 0.7;     // of the ellipse: its rim is background often
+  constexpr double kCore = 0.7;     // of the ellipse: its rim often shows background
   constexpr double kInView = 0.85;  // of the samples
   constexpr double kSigma_px = 0.35;
   constexpr double kSigmas = 3;
@@ -605,7 +608,7 @@ Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const P
   const double sigma_m = std::sqrt(matrix(landmark.covariance_m2).topLeftCorner<2, 2>().trace() / 2);
   const double a = focal * across_m / 2 / centre.z;
   const double b = focal * landmark.size.height_m / 2 / centre.z;
-  // What the landmark's place leaves open is no part of the core.
+  // The core excludes the margin left by the landmark's position uncertainty.
   const double core_a = std::max(kCore * a / 2, kCore * a - focal * sigma_m / centre.z / 2);
   const double core_b = kCore * b;
   const double depth_sigma_px =
@@ -616,7 +619,7 @@ Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const P
   };
   const double behind = disparity_at(centre.z + landmark.size.widest_m / 2) - margin;
   const double before = disparity_at(std::max(kNearest_m, centre.z - landmark.size.widest_m / 2)) + margin;
-  // Close behind a thing's lower half lies floor, too close to be told by its disparity; but it is flat.
+  // The floor just behind an object's base has nearly the same disparity; it is recognised by being flat.
   constexpr double kFlat_m = 0.06;
   constexpr double kAbove_m = 0.12;
   constexpr double kStands_m = 0.15;
@@ -687,7 +690,8 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
   place_camera(state, frame);
   if (frame.is_new_segment) begin_segment(state, frame, config);
   if (is_guessed(frame)) {
-    // A dark picture shows neither a thing nor what is behind it, and from a guessed pose all seems moved.
+    // A dark image shows neither an object nor the background, and from a guessed pose everything seems
+    // moved.
     for (const Track& track : tracks.list) {
       const TrackEvidence* evidence = evidence_of(state, track.id);
       const LandmarkOfTrack known =
@@ -699,7 +703,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     return result;
   }
 
-  // What the frame says of each track.
+  // Update the evidence of each track.
   std::erase_if(state.tracks, [&](const TrackEvidence& e) { return track_of(tracks, e.track) == nullptr; });
   for (const Track& track : tracks.list) {
     const auto at = std::lower_bound(state.tracks.begin(), state.tracks.end(), track.id,
@@ -717,7 +721,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     gather(*evidence_of(state, track.id), track, frame, is_cut, config);
   }
 
-  // Which of them the map knows.
+  // Match candidates with the map.
   std::vector<Candidate> candidates;
   std::vector<LandmarkId> taken;
   for (const TrackEvidence& evidence : state.tracks) {
@@ -739,7 +743,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
       state.is_located = true;
       state.has_guess = false;
       state.located.map_from_odom = *found.map_from_odom;
-      // Not known at all but for the landmarks, which now say it.
+      // The pose was unknown and now comes from the landmarks alone.
       state.located.covariance = {};
       for (const std::size_t i : {0U, 5U, 10U}) state.located.covariance[i] = 1;
       state.located.covariance[15] = 0.1;
@@ -767,7 +771,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     correct(state, frame, config);
   }
 
-  // New ones, and what is known better now.
+  // Create landmarks and update known ones.
   std::vector<VisibleArea> shown(tracks.list.size());
   for (int y = 0; y < frame.ids.height(); ++y) {
     const TrackId* row = frame.ids.row(y);
@@ -821,7 +825,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     landmark->run = state.run;
     if (track.is_moving || evidence.centres == 0) continue;
     if (evidence.was_moving) {
-      // Carried in view: the track vouches that it is the same thing.
+      // Carried in view: the track shows that it is the same object.
       if (evidence.refusal != LandmarkRefusal::none) continue;
       const Placed here = landmarks::place(candidate_of(evidence, track), state.located);
       const Eigen::Vector3d way = here.position_m - vector(landmark->position_m);
@@ -849,7 +853,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
     }
   }
 
-  // What is there, and what is not.
+  // Update which landmarks are present.
   if (state.is_located) {
     for (Landmark& landmark : state.map.list) {
       const bool is_seen = std::find(seen.begin(), seen.end(), landmark.id) != seen.end();
@@ -887,7 +891,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
                                    vanished->frames});
         }
       } else if (2 * there.agree < samples) {
-        // Something else, or holes: no proof against it.
+        // Another object, or holes: weak evidence against it.
         landmark.log_odds = std::max(landmark.log_odds + kMissed, -kLargestOdds);
       }
     }

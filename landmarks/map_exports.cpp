@@ -41,7 +41,7 @@ std::string numbers_of(const Pose& pose) {
   return line("%.6f %.6f %.6f %.9f %.9f %.9f %.9f", t.x, t.y, t.z, q[0], q[1], q[2], q[3]);
 }
 
-/// An information matrix's upper triangle.
+/// The upper triangle of an information matrix.
 template <int N>
 std::string information_text(const Eigen::Matrix<double, N, N, Eigen::RowMajor>& information) {
   std::string text;
@@ -52,13 +52,13 @@ std::string information_text(const Eigen::Matrix<double, N, N, Eigen::RowMajor>&
 }
 
 Matrix3 information_of(const Covariance3& covariance) {
-  constexpr double kLeast = 1e-8;  // 0.1 mm: an exact place would have no inverse
+  constexpr double kLeast = 1e-8;  // 0.1 mm; an exact position would have no inverse
   return (landmarks::matrix(covariance) + kLeast * Matrix3::Identity()).inverse();
 }
 
-/// Of the motion between two poses of a run, along the map's axes: what the second has more than the first
-/// carried on. A correction by landmarks between the two makes it less; the step is then as uncertain as both
-/// poses together.
+/// Covariance of the motion between two poses of a run, along the map's axes: the second covariance minus the
+/// first one propagated. Where a correction by landmarks between the two reduced it, the step gets the
+/// covariances of both poses together.
 Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
   constexpr double kLeast = 1e-6;     // 1 mm, 1 mrad
   constexpr double kRounding = 1e-3;  // of the larger one
@@ -80,8 +80,8 @@ Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
   return landmarks::with_clamped_eigenvalues(step, kLeast);
 }
 
-/// EDGE_SE3:QUAT's: its error is (t, q) of the deviation along the axes of the camera that the edge leads to,
-/// q the vector part of the quaternion, hence half the angle (g2o, types/slam3d/isometry3d_mappings.h,
+/// For EDGE_SE3:QUAT, whose error is (t, q): the deviation in the frame of the second camera, q being the
+/// vector part of the quaternion, hence half the angle (g2o, types/slam3d/isometry3d_mappings.h,
 /// toVectorMQT).
 Matrix6 information_of_step(const MapPose& before, const MapPose& now) {
   const Pose camera_from_map = inverse(now.map_from_camera);

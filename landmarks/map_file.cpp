@@ -27,7 +27,7 @@ constexpr int kApplication = 0x63726e31;  // "crn1"
 constexpr int kSchema = 1;
 constexpr int kFramesPerTransaction = 30;
 constexpr double kSecondsPerTransaction = 1;
-constexpr int kMostObservations = 200;  // of a landmark in a run
+constexpr int kMostObservations = 200;  // of one landmark in one run
 constexpr double kSameBaseline = 0.02;  // relative
 
 constexpr const char* kTables = R"(
@@ -50,7 +50,7 @@ CREATE TABLE event(id INTEGER PRIMARY KEY, run INTEGER NOT NULL REFERENCES run, 
 CREATE TABLE floor(x INTEGER NOT NULL, y INTEGER NOT NULL, frames INTEGER NOT NULL, PRIMARY KEY(x, y)) WITHOUT ROWID;
 )";
 
-/// A blob of floats or doubles, as they lie in memory.
+/// Numbers from a blob, in the machine's byte order.
 template <class T, std::size_t N>
 std::array<T, N> numbers_in(const SQLite::Column& column, const char* what) {
   std::array<T, N> values{};
@@ -87,7 +87,7 @@ E choice_in(const SQLite::Column& column, const std::array<Choice<E>, N>& choice
   throw Error(std::string(what) + " is '" + name + "'");
 }
 
-/// The upper triangle in single precision: 84 bytes in place of 288, for each keyframe.
+/// The upper triangle in single precision: 84 instead of 288 bytes per keyframe.
 std::array<float, 21> packed(const Covariance6& covariance) {
   std::array<float, 21> values{};
   std::size_t at = 0;
@@ -136,7 +136,7 @@ std::string random_id() {
   return id;
 }
 
-/// SQLite's percent-encoding of a path for its URIs.
+/// A file: URI with the path percent-encoded, as SQLite expects.
 std::string uri_of(const fs::path& path) {
   std::string uri = "file:";
   for (const char c : fs::absolute(path).string()) {
@@ -176,7 +176,7 @@ std::string words_for(const SQLite::Exception& error) {
   return "is damaged, or not a map: " + words;
 }
 
-/// What was stored of a landmark, to tell what has changed.
+/// The stored state of a landmark, to detect changes.
 struct StoredLandmark {
   double log_odds = 0;
   int seen = 0;
@@ -184,7 +184,7 @@ struct StoredLandmark {
   bool is_gone = false;
   Point3 position_m;
   std::string name;
-  std::vector<int> pixels;  // of the looks
+  std::vector<int> pixels;  // of each look
   friend bool operator==(const StoredLandmark&, const StoredLandmark&) = default;
 };
 
@@ -205,7 +205,7 @@ StoredLandmark stored_of(const Landmark& landmark) {
 struct MapFile::Store {
   fs::path path;
   MapMode mode = MapMode::read_only;
-  // Closed after the database: another descriptor of the same file that is closed would end SQLite's own
+  // Released after the database is closed: closing any other descriptor of the file would drop SQLite's own
   // locks.
   struct Lock {
     int file = -1;
@@ -220,7 +220,7 @@ struct MapFile::Store {
   int since_commit = 0;
   Stamp committed;
   Stamp latest;
-  bool is_open = false;  // a transaction
+  bool is_open = false;  // inside a transaction
   std::optional<Pose> map_from_odom;
   std::map<LandmarkId, StoredLandmark> stored;
   std::vector<FloorCell> stored_floor;
@@ -231,7 +231,7 @@ struct MapFile::Store {
   };
   std::map<LandmarkId, Thinning> thinning;
 
-  /// Calls `work`; what goes wrong in it is an Error that names the file.
+  /// Calls `work` and rethrows its errors as Error with the file's name.
   template <class F>
   auto guarded(F&& work) const {
     try {
@@ -273,7 +273,7 @@ struct MapFile::Store {
     is_open = false;
     try {
       database->exec("ROLLBACK");
-    } catch (const SQLite::Exception&) {  // SQLite has done it already
+    } catch (const SQLite::Exception&) {  // SQLite has rolled back already
     }
   }
 
@@ -318,7 +318,7 @@ struct MapFile::Store {
     }
   }
 
-  /// What differs from what is stored.
+  /// Writes the differences from the stored state.
   void store(const LandmarkMap& map) {
     for (const Landmark& landmark : map.list) {
       StoredLandmark now = stored_of(landmark);
@@ -351,7 +351,7 @@ struct MapFile::Store {
       cell.bind(3, now.frames);
       cell.exec();
     }
-    // A map that began again in a new segment has left its floor behind.
+    // A map restarted in a new segment has dropped its floor.
     SQLite::Statement drop(*database, "DELETE FROM floor WHERE x=? AND y=?");
     auto now = map.floor.begin();
     for (const FloorCell& was : stored_floor) {
@@ -452,8 +452,8 @@ MapFile MapFile::open(const fs::path& path, MapMode mode, const std::optional<St
       store->database = std::make_unique<SQLite::Database>(
           path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kPatience_ms);
     } else {
-      // Without a journal beside it nothing is being written: then no file is made next to it, which a
-      // folder that is read-only would not allow.
+      // Without a journal there is no writer. The file is then opened as immutable, since SQLite would
+      // otherwise create files next to it, which fails in a read-only folder.
       const bool is_quiet = !fs::exists(path.string() + "-wal", unimportant);
       store->database =
           std::make_unique<SQLite::Database>(uri_of(path) + (is_quiet ? "?immutable=1" : ""),
@@ -758,7 +758,7 @@ void MapFile::write(const LandmarkFrame& frame, const Landmarked& step) {
         put.exec();
       }
       for (const LandmarkOfTrack& seen : step.tracks) {
-        if (is_guessed(frame)) break;  // its places are guesses, too
+        if (is_guessed(frame)) break;  // its positions are guesses, too
         if (seen.landmark == LandmarkId::none || !s.stored.contains(seen.landmark)) continue;
         const auto track = std::find_if(frame.tracks->list.begin(), frame.tracks->list.end(),
                                         [&](const Track& t) { return t.id == seen.track; });
@@ -766,7 +766,7 @@ void MapFile::write(const LandmarkFrame& frame, const Landmarked& step) {
         Store::Thinning& thin = s.thinning[seen.landmark];
         if (thin.met++ % thin.every != 0) continue;
         if (thin.kept >= kMostObservations) {
-          // Every other one goes, and from now on twice as few come.
+          // Halves the stored observations, and from now on the rate of new ones.
           SQLite::Statement drop(
               *s.database,
               "DELETE FROM observation WHERE landmark=?1 AND run=?2 AND stamp_ns IN (SELECT stamp_ns FROM "

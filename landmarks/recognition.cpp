@@ -41,7 +41,7 @@ Located corrected(const Located& located, const std::vector<Pull>& pulls) {
   constexpr int kIterations = 6;
   constexpr double kHuber = 2;
   const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
-  // An exactly known pose would have no inverse.
+  // Keeps the covariance of an exactly known pose invertible.
   const Matrix4 prior = (matrix(located.covariance) + 1e-9 * Matrix4::Identity()).inverse();
   Eigen::Vector4d x = Eigen::Vector4d::Zero();
   Matrix4 normal = prior;
@@ -88,7 +88,7 @@ double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covari
   return difference.dot(covariance.ldlt().solve(difference));
 }
 
-/// A pair that colours and sizes allow.
+/// A candidate and a landmark with compatible colours and sizes.
 struct CompatiblePair {
   std::size_t candidate = 0;
   std::size_t landmark = 0;
@@ -115,7 +115,7 @@ std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vec
   return pairs;
 }
 
-/// Pairs that one pose explains.
+/// Pairs consistent with one pose.
 struct Constellation {
   std::vector<std::size_t> pairs;
   Pose map_from_odom;
@@ -123,8 +123,8 @@ struct Constellation {
   [[nodiscard]] std::size_t agreeing() const { return pairs.size() * (pairs.size() - 1) / 2; }
 };
 
-/// The rotation about z and the translation that bring the candidates onto the landmarks: least squares with
-/// one weight for each pair (Umeyama 1991, in the plane).
+/// The rotation about z and the translation that align the candidates with the landmarks: weighted least
+/// squares (Umeyama 1991, in the plane).
 Pose fit(const std::vector<std::size_t>& chosen, const std::vector<CompatiblePair>& pairs,
          const std::vector<Candidate>& candidates, const LandmarkMap& map) {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
@@ -156,7 +156,7 @@ Pose fit(const std::vector<std::size_t>& chosen, const std::vector<CompatiblePai
   return pose;
 }
 
-/// All pairs that the pose explains, each candidate and landmark once, the nearest first.
+/// All pairs consistent with the pose, each candidate and landmark at most once, nearest first.
 Constellation explained(const Pose& pose, double slack, const std::vector<CompatiblePair>& pairs,
                         const std::vector<Candidate>& candidates, const LandmarkMap& map, double gate) {
   std::vector<std::pair<double, std::size_t>> near;
@@ -164,7 +164,7 @@ Constellation explained(const Pose& pose, double slack, const std::vector<Compat
     const Candidate& candidate = candidates[pairs[i].candidate];
     const Landmark& landmark = map.list[pairs[i].landmark];
     const Eigen::Vector3d difference = vector(pose(candidate.position_m) - landmark.position_m);
-    if (difference.squaredNorm() > 9) continue;  // cheap: farther than any gate reaches
+    if (difference.squaredNorm() > 9) continue;  // a quick test: beyond any gate
     const double squared = squared_distance(
         difference,
         slack * Matrix3(matrix(rotated(pose, candidate.covariance_m2)) + matrix(landmark.covariance_m2)));
@@ -188,7 +188,7 @@ Constellation explained(const Pose& pose, double slack, const std::vector<Compat
 
 bool agree(const CompatiblePair& a, const CompatiblePair& b, const std::vector<Candidate>& candidates,
            const LandmarkMap& map) {
-  constexpr double kShortest_m = 0.3;  // a shorter base tells no direction
+  constexpr double kShortest_m = 0.3;  // a shorter baseline determines no direction
   constexpr double kSigmas = 3;
   if (a.candidate == b.candidate || a.landmark == b.landmark) return false;
   const auto& ca = candidates[a.candidate];
@@ -221,7 +221,7 @@ bool is_same_place(const Pose& a, const Pose& b, Point3 where) {
   return length(a(where) - b(where)) < kApart_m && angle_of(inverse(a) * b) < kApart_rad;
 }
 
-/// Whether a pose in the map lies within the 95 % of a guess.
+/// Whether a pose in the map is within the 95 % region of a guess.
 bool suits(const Pose& map_from_odom, const Located& guess) {
   constexpr double kChi2Of4At95 = 9.488;
   const Pose apart = map_from_odom * inverse(guess.map_from_odom);
@@ -259,8 +259,8 @@ bool may_be(const Candidate& candidate, const Landmark& landmark) {
 Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& candidates,
                       const Located& located, const std::vector<LandmarkId>& taken,
                       const LandmarksConfig& config) {
-  constexpr double kReach_m = 3;   // cheap, and farther than a gate should reach
-  constexpr double kColours = 20;  // of squared distance for the whole of an unlikeness
+  constexpr double kReach_m = 3;   // a quick test, and the largest distance that a gate should allow
+  constexpr double kColours = 20;  // squared distance added for a colour similarity of 0
   Recognition result;
   if (candidates.empty()) {
     result.refusal = RecognitionRefusal::no_candidates;
@@ -309,7 +309,7 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
                      const LandmarksConfig& config, const std::optional<Located>& guess) {
   Recognition result;
   const auto enough = static_cast<std::size_t>(config.relocation_pairs);
-  // Two at least: one tells no direction.
+  // Two at least: one determines no direction.
   const std::size_t enough_near =
       guess ? std::min(enough, static_cast<std::size_t>(std::max(2, config.min_pairs))) : enough;
   if (candidates.size() < enough_near) {
@@ -317,16 +317,16 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
     return result;
   }
   const std::vector<CompatiblePair> pairs = allowed_pairs(map, candidates, config);
-  // χ² of 3 degrees of freedom, 0.95: a pair that is missing costs little, one that was moved bends the pose.
+  // χ² with 3 degrees of freedom, 0.95. Losing a correct pair costs little; a moved object distorts the pose.
   constexpr double kTight = 7.81;
   const double gate = std::min(static_cast<double>(config.gate), kTight);
   Point3 middle;
   for (const Candidate& candidate : candidates)
     middle = middle + (1.0 / static_cast<double>(candidates.size())) * candidate.position_m;
 
-  // A pose from each two pairs whose distances agree; what it explains refines it.
-  constexpr double kSeedSlack = 2;    // the seeds' own errors add to those of what they explain
-  std::vector<Constellation> places;  // different ones, the best of each
+  // Each two pairs with consistent distances give a pose, which all pairs consistent with it then refine.
+  constexpr double kSeedSlack = 2;    // for the position errors of the seeds
+  std::vector<Constellation> places;  // distinct places, the best constellation of each
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (std::size_t j = i + 1; j < pairs.size(); ++j) {
       if (!agree(pairs[i], pairs[j], candidates, map)) continue;
@@ -385,7 +385,7 @@ std::vector<Candidate> candidates_of(const LandmarkMap& other) {
   return candidates;
 }
 
-/// Whether two copies of a map mean the same by an id: after the copying each gives its own.
+/// Whether two copies of a map use the id for the same object: after copying, each assigns its own ids.
 bool is_shared(const Landmark& a, const Landmark& b, const LandmarksConfig& config) {
   if (a.id != b.id || a.first != b.first || !may_be(landmarks::candidate_of(a, {}), b)) return false;
   if (a.looks.empty() || b.looks.empty()) return true;
@@ -464,11 +464,11 @@ Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksCo
     pairs.push_back({TrackId{number(theirs.id)}, ours->id, 1});
     shared.push_back(ours->id);
     const std::string name = ours->name.empty() ? theirs.name : ours->name;
-    // What is gone was looked for after it was last seen.
+    // A missing landmark was expected later than it was last seen.
     if (std::tie(theirs.run, theirs.last, theirs.expected) >
         std::tie(ours->run, ours->last, ours->expected)) {
       *ours = theirs;
-      ours->run = std::min(theirs.run, latest);  // a later run of theirs is none of ours
+      ours->run = std::min(theirs.run, latest);  // runs of the other map after the copy are not ours
     }
     ours->name = name;
   }

@@ -49,11 +49,11 @@ class Looped : public Sequence {
   [[nodiscard]] const std::string& ended_early() const override { return inner_->ended_early(); }
 
  private:
-  static constexpr std::int64_t kPause_ns = 2'000'000'000;  // more than a gap
+  static constexpr std::int64_t kPause_ns = 2'000'000'000;  // between rounds; more than a gap in the stamps
 
   std::function<std::unique_ptr<Sequence>()> open_;
   std::unique_ptr<Sequence> inner_;
-  // Of its first round: others may ask while a round begins.
+  // Cached from the first round, as other threads may ask while the next one opens.
   std::optional<StereoRig> rig_;
   Size size_;
   std::size_t count_ = 0;

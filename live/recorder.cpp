@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Every how many-th pixel of a cloud.
+/// Step between the pixels of a cloud.
 constexpr int kCloudStride = 2;
 
 std::string config_text(const std::string& preset, const FollowConfig& config) {
@@ -46,7 +46,7 @@ bool is_same(View<const Gray> a, View<const Gray> b) {
   return true;
 }
 
-/// One file, and what its topics are.
+/// A recording file and its channels.
 class Recording {
  public:
   Recording(const std::filesystem::path& path, const RecordedRun& run, const RecorderOptions& options)
@@ -110,10 +110,10 @@ class Recording {
 
   RecordedRun run_;
   RecordWhat what_;
-  ros::FrameNames names_;  // of the last frame
+  ros::FrameNames names_;  // of the previous frame
   ros::McapWriter file_;
   std::optional<std::uint64_t> revision_;
-  // Channels; 0: none.
+  // Channel ids; 0 = none.
   std::uint16_t left_ = 0;
   std::uint16_t left_grey_ = 0;
   std::uint16_t right_ = 0;
@@ -163,7 +163,7 @@ void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) 
   }
 }
 
-/// With the first frame as a file, which the next run may begin with; later changes in their place.
+/// With the first frame as an attachment, which a later run can use; later changes as messages.
 void Recording::add_config(const LiveFrame& frame) {
   if (revision_ == frame.revision) return;
   const std::string text = config_text(run_.preset, *frame.config);
@@ -180,7 +180,7 @@ void Recording::add_input(const LiveFrame& frame, const ros::Header& header) {
     write(left_, pair.stamp, ros::image_of(header, pair.left.gray.view()));
   } else {
     write(left_, pair.stamp, ros::image_of(header, pair.left.rgb.view()));
-    // Of pairs that were rectified here, colours and grey were interpolated each for itself.
+    // In pairs rectified here, colour and grey are interpolated separately, so grey may differ.
     const Image<Gray> grey = io::grey_of(pair.left.rgb.view());
     if (!is_same(grey, pair.left.gray)) {
       if (left_grey_ == 0) left_grey_ = add<ros::Image>("/stereo/left/image_grey");
@@ -239,14 +239,14 @@ struct Recorder::State {
 
   const RecordedRun run;
   const RecorderOptions options;
-  std::mutex starting;  // of start() and stop(): one at a time
+  std::mutex starting;  // serialises start() and stop()
   std::unique_ptr<Recording> recording;
   std::thread thread;
-  mutable std::mutex mutex;  // of all that follows
+  mutable std::mutex mutex;  // guards all members below
   std::condition_variable changed;
   std::deque<Waiting> queue;
   std::uint64_t skipped_before = 0;
-  std::uint64_t in_file = 0;  // frames, of status.frames; the others are in the chunk at hand
+  std::uint64_t in_file = 0;  // frames written; those in the current chunk are not
   bool is_stopping = false;
   RecorderStatus status;
 };
@@ -263,7 +263,7 @@ void Recorder::start(const std::filesystem::path& path) {
   const std::lock_guard one_at_a_time(s.starting);
   if (status().is_recording)
     throw Error(path.string() + ": cannot be recorded, " + s.status.path + " is being recorded");
-  if (s.thread.joinable()) s.thread.join();  // one that ended by itself
+  if (s.thread.joinable()) s.thread.join();  // a recording that ended by itself
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_character_file(path, unknown))
     throw Error(path.string() + ": already exists, expected a new file to record into");
@@ -318,7 +318,7 @@ void Recorder::offer(const LiveFramePtr& frame) {
   s.changed.notify_all();
 }
 
-/// On a thread of its own, until it is stopped or the file cannot be written.
+/// Runs on its own thread until stopped, or until the file cannot be written.
 void Recorder::State::write_all() {
   try {
     while (true) {
@@ -338,7 +338,7 @@ void Recorder::State::write_all() {
       else
         recording->flush();
       const std::lock_guard lock(mutex);
-      // What was written meanwhile holds all frames before this one.
+      // The messages written by now include all earlier frames.
       if (recording->bytes() != status.bytes) in_file = status.frames;
       status.frames += next.frame ? 1 : 0;
       status.bytes = recording->bytes();

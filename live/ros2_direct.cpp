@@ -3,7 +3,7 @@
 #include "dds/ros2_sink.hpp"
 #include "ros2.hpp"
 
-/// Without a module: sanitizers want one program.
+/// Linked directly, without a module: sanitizers need one program.
 namespace cairn::live {
 
 std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig) {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "dds/module.hpp"
 
-/// Who publishes nothing loads no DDS.
+/// Loads DDS only if something is published.
 namespace cairn::live {
 
 std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig) {

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How soon a wait notices that it is in vain.
+/// Interval at which a wait checks whether to give up.
 constexpr auto kNotice = 50ms;
 
 Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
@@ -97,7 +97,7 @@ LiveSummary Runner::run() {
     const std::exception_ptr first = std::current_exception();
     try {
       end(RunState::aborted);
-    } catch (const Error&) {  // the first fault says more
+    } catch (const Error&) {  // the first error is more informative
     }
     std::rethrow_exception(first);
   }
@@ -108,21 +108,21 @@ LiveSummary Runner::run() {
           latencies_.max_ms()};
 }
 
-/// On a thread of its own, so that the source is never kept waiting.
+/// On its own thread, so that the source never waits.
 void Runner::read_source(NewestSlot<PairPtr>& slot) {
   while (!is_over()) {
     auto pair = source_.next();
     if (!pair) return;
     wait_for_its_time(*pair);
     if (!pair->arrived) pair->arrived = Clock::now();
-    // A gap before a pair that is dropped is one before the next.
+    // A gap before a dropped pair counts for the next one.
     slot.put(std::make_shared<io::SequenceFrame>(std::move(*pair)), [](PairPtr& fresh, const PairPtr& old) {
       fresh->after_gap = fresh->after_gap || old->after_gap;
     });
   }
 }
 
-/// Files are played at the pace of their stamps; a camera sets its own.
+/// Files are played at the pace of their stamps; cameras set their own.
 void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
   if (source_.status().is_live) return;
   bool was_paused = false;
@@ -138,7 +138,7 @@ void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
     const double seconds = seconds_between(played_->first, pair.stamp) / options_.pace;
     due =
         played_->second + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-    // Late is late: no frames are hurried to make up for it.
+    // Frames are not sped up to make up for a delay.
     if (due < now) due = now;
   }
   while (Clock::now() < due && !is_over())

@@ -34,7 +34,7 @@ Json packed_disparity(View<const float> map) {
 
 // ---- facts ----
 
-/// Every id above none with the smallest box around it.
+/// The bounding box of each id above none.
 template <class Id>
 std::map<Id, Rect> boxes(View<const Id> labels) {
   std::map<Id, Rect> all;
@@ -60,7 +60,7 @@ Json label_places(View<const Id> labels) {
   return all;
 }
 
-/// What the page needs of an objects.json: all but the masks, which it has as maps.
+/// The part of objects.json that the page needs: all but the masks, which it has as maps.
 Json without_masks(const std::string& objects_json) {
   if (objects_json.empty()) return nullptr;
   Json whole = Json::parse(objects_json);
@@ -113,7 +113,7 @@ Json maps(const PageFrame& frame) {
           {"groups", packed(frame.groups, id)},
           {"objects", packed(frame.objects, id)},
           {"space", packed(frame.space, [](Space s) { return static_cast<std::uint8_t>(s); })},
-          // One more than the id: don't care is 0.
+          // Ids are shifted by one: 0 is don't care.
           {"true_objects", packed(frame.true_objects, [](TruthId t) { return number(t) + 1; })},
           {"true_disparity", packed_disparity(frame.true_disparity_px)}};
 }

@@ -112,7 +112,7 @@ std::string script_block(const std::string& id, const std::string& text) {
 }
 
 Json id_colours() {
-  constexpr int kColours = 1000;  // object_colour() begins again after as many
+  constexpr int kColours = 1000;  // the number of different colours of object_colour()
   Json all = Json::array();
   for (int id = 0; id < kColours; ++id) all.push_back(hex(object_colour(ObjectId{id})));
   return all;
@@ -139,7 +139,7 @@ PageShell page_shell(std::string_view layout, std::string_view style, std::strin
                                                       {"script", std::string(kSharedScript) += script}};
   PageShell shell;
   std::string* page = &shell.before;
-  // One pass, so that nothing inside of a part is taken for a place of another: `{{name}}`.
+  // In a single pass, so that `{{name}}` inside a part is not replaced.
   for (std::size_t open = layout.find("{{"); open != std::string_view::npos; open = layout.find("{{")) {
     const std::size_t close = layout.find("}}", open);
     const std::string_view name = layout.substr(open + 2, close - open - 2);

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-/// Messages of ROS 2, as bytes and as structs. (docs/recordings.md, "Messages")
+/// ROS 2 messages, as bytes and as structs. (docs/recordings.md, "Messages")
 namespace cairn::ros {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -27,8 +27,8 @@ concept Message = requires {
   T::kType;
 };
 
-/// Classic CDR (XCDR1), little endian, as ROS 2 sends and records messages: four bytes of header, then the
-/// members, each number at a multiple of its own size counted from behind the header.
+/// Plain CDR (XCDR1), little endian, as ROS 2 sends and records messages: a header of four bytes, then the
+/// members, each number aligned to its own size counted from the end of the header.
 class CdrWriter {
  public:
   CdrWriter() : bytes_{0, 1, 0, 0} {}
@@ -85,11 +85,11 @@ class CdrWriter {
   Bytes bytes_;
 };
 
-/// The way back. Throws Error where the bytes end early or are no such message; nothing beyond them is read,
-/// and no more is allocated than they can fill.
+/// Decodes a message. Throws Error if the bytes end early or are not such a message. Never reads beyond them,
+/// and allocates no more than they can fill.
 class CdrReader {
  public:
-  /// `bytes` are borrowed.
+  /// Borrows `bytes`.
   CdrReader(std::span<const std::uint8_t> bytes, std::string_view type) : bytes_(bytes), type_(type) {
     if (bytes_.size() < kHeader) refuse("found " + std::to_string(bytes_.size()) + " bytes");
     if (bytes_[0] != 0 || bytes_[1] != 1)
@@ -101,7 +101,7 @@ class CdrReader {
     name_ = name;
     get(value);
   }
-  /// All bytes but padding must have been read.
+  /// Throws Error unless all bytes but padding have been read.
   void end() const {
     if (bytes_.size() - at_ >= 8)
       refuse("found " + std::to_string(bytes_.size() - at_) + " bytes behind its end");
@@ -141,7 +141,7 @@ class CdrReader {
       list.assign(first, first + length);
       at_ += length;
     } else {
-      // One at a time: what the bytes cannot fill is never made.
+      // One at a time: never allocates more than the bytes can fill.
       for (std::size_t i = 0; i < length; ++i) get(list.emplace_back());
     }
   }
@@ -167,11 +167,11 @@ class CdrReader {
   static constexpr std::size_t kHeader = 4;
   std::span<const std::uint8_t> bytes_;
   std::string_view type_;
-  std::string_view name_ = "its header";  // of the member at hand
+  std::string_view name_ = "its header";  // of the current member
   std::size_t at_ = 0;
 };
 
-/// The message's bytes, with the four of the header.
+/// The bytes of the message, including the header of four.
 template <Message M>
 Bytes encode(const M& message) {
   CdrWriter writer;
@@ -179,7 +179,7 @@ Bytes encode(const M& message) {
   return writer.take();
 }
 
-/// Throws Error, which names the type, where `bytes` are none.
+/// Throws Error, naming the type, if `bytes` are not such a message.
 template <Message M>
 M decode(std::span<const std::uint8_t> bytes) {
   CdrReader reader(bytes, M::kType);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-/// An image whose pixels are to be filled in, row by row without gaps.
+/// An image with contiguous rows to be filled in.
 Image blank(const Header& header, Size size, const char* encoding, std::uint32_t pixel_bytes) {
   Image message;
   message.header = header;
@@ -31,7 +31,7 @@ void store(std::uint8_t* to, float value) {
   store(to, std::bit_cast<std::uint32_t>(value));
 }
 
-/// mono16 of what `value_of` says of each pixel.
+/// mono16 with value_of(pixel).
 template <class T, class ValueOf>
 Image mono16(const Header& header, View<const T> image, ValueOf value_of) {
   Image message = blank(header, image.size(), "mono16", 2);
@@ -55,7 +55,7 @@ Vector3 vector_of(Vec3 v) {
   return {double{v.x}, double{v.y}, double{v.z}};
 }
 
-/// The track that an object is, or is a piece of.
+/// The track of an object, or of the object that it is a piece of.
 TrackId track_of(const Tracks& tracks, ObjectId object) {
   for (const Track& track : tracks.list) {
     if (track.object == object ||
@@ -65,7 +65,7 @@ TrackId track_of(const Tracks& tracks, ObjectId object) {
   return TrackId::none;
 }
 
-/// Along the ray by the disparity's uncertainty, across it by an edge's half a pixel.
+/// Along the ray from the disparity's uncertainty, across it half a pixel from the edge.
 std::array<double, 36> covariance_of(const Object& object, Vec3 position, const StereoRig& rig) {
   const double z = double{position.z};
   const double across = z * 0.5 / double{rig.focal_px};

@@ -11,7 +11,7 @@
 
 #include "mcap.hpp"
 
-/// The records of an MCAP file, as its specification (mcap.dev/spec) has them; internal to ros.
+/// The records of an MCAP file by its specification (mcap.dev/spec); internal to ros.
 namespace cairn::ros::mcap {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', 0x30, '\r', '\n'};
@@ -35,7 +35,7 @@ enum class Op : std::uint8_t {
   data_end = 15
 };
 
-/// Bytes of records: numbers lowest byte first, texts behind their length.
+/// Serialises records: numbers little-endian, texts after their length.
 class Writer {
  public:
   template <class T>
@@ -58,7 +58,7 @@ class Writer {
     number(static_cast<std::uint32_t>(inside.bytes_.size()));
     raw(inside.bytes_);
   }
-  /// A whole record.
+  /// A complete record.
   void record(Op op, const Writer& content) {
     number(static_cast<std::uint8_t>(op));
     number(std::uint64_t{content.bytes_.size()});
@@ -72,7 +72,7 @@ class Writer {
   Bytes bytes_;
 };
 
-/// The way back. Throws Error, without a file's name, where the bytes end before what is read.
+/// Parses records. Throws Error, without a file name, if the bytes end early.
 class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -93,7 +93,7 @@ class Reader {
     const auto raw = take(number<std::uint32_t>());
     return {raw.begin(), raw.end()};
   }
-  /// The bytes behind their own length, of 32 bits.
+  /// Bytes preceded by their length in 32 bits.
   Reader part() { return Reader(take(number<std::uint32_t>())); }
   Words words() {
     Reader inside = part();

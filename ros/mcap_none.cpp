@@ -23,7 +23,7 @@ struct McapReader::State {};
 bool has_mcap() {
   return false;
 }
-/// Also without the rest: it is then refused in words that fit.
+/// Recognises MCAP files even in a build without a reader, for a helpful error message.
 bool is_mcap(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string begin(8, '\0');

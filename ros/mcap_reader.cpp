@@ -23,14 +23,14 @@ using mcap::kRecordHeader;
 using mcap::Op;
 using mcap::Reader;
 
-// What no honest recording exceeds; who claims more is refused before anything is allocated.
+// Limits above any real recording; larger claims are rejected before memory is allocated.
 constexpr std::uint64_t kMostChunkBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostAttachmentBytes = std::uint64_t{16} << 20;
-constexpr std::size_t kMostDefinitionBytes = std::size_t{64} << 20;  // of all channels together
+constexpr std::size_t kMostDefinitionBytes = std::size_t{64} << 20;  // of all channels
 constexpr std::uint64_t kFooterBytes = 20;
 
-/// A file that is read in pieces, none beyond its end.
+/// A file read in pieces within its bounds.
 class InFile {
  public:
   explicit InFile(const std::filesystem::path& path)
@@ -74,7 +74,7 @@ class InFile {
 
 struct Head {
   Op op{};
-  std::uint64_t at = 0;  // of the content
+  std::uint64_t at = 0;  // offset of the content
   std::uint64_t length = 0;
 };
 
@@ -84,15 +84,15 @@ struct Schema {
   std::string text;
 };
 
-/// A chunk, or a message outside of any.
+/// A chunk, or a message outside of chunks.
 struct Part {
-  std::uint64_t at = 0;  // of the content
+  std::uint64_t at = 0;  // offset of the content
   std::uint64_t length = 0;
   bool is_chunk = true;
-  std::set<std::uint16_t> channels;  // that it holds; empty: not known
+  std::set<std::uint16_t> channels;  // channels in it; empty = unknown
 };
 
-/// The records of a chunk, unpacked.
+/// Decompresses the records of a chunk.
 Bytes unpacked(const Bytes& content) {
   Reader in(content);
   (void)in.number<std::uint64_t>();
@@ -147,7 +147,7 @@ struct McapReader::State {
   void scan();
   void forget();
   [[nodiscard]] Bytes chunk_of(const Part& part) const;
-  /// The channels that a chunk declares; nothing where it is damaged.
+  /// The channels declared in a chunk; empty if it is damaged.
   void learn_from(const Part& part);
   [[nodiscard]] bool is_wanted(const Part& part) const;
   bool open_next_part();
@@ -155,7 +155,7 @@ struct McapReader::State {
     if (damaged_count++ == 0) first_damage = file.path() + ": " + why;
   }
 
-  /// Of what is read more than once: all of it together is no more than the file.
+  /// Limits repeated reads: their total must not exceed the file's size.
   [[nodiscard]] bool may_read(std::uint64_t length) {
     read_bytes += std::min(length, file.size() + 1);
     return read_bytes <= file.size();
@@ -163,7 +163,7 @@ struct McapReader::State {
 
   InFile file;
   std::uint64_t read_bytes = 0;      // of attachments and metadata
-  std::size_t definition_bytes = 0;  // that the channels' schemas take
+  std::size_t definition_bytes = 0;  // of the channels' schemas
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, McapChannel> channels;
   std::map<std::uint16_t, std::uint64_t> counts;
@@ -171,13 +171,13 @@ struct McapReader::State {
   std::map<std::string, Words> metadata;
   std::vector<Part> parts;
   bool is_whole = false;
-  std::set<std::uint16_t> wanted;  // empty: all
+  std::set<std::uint16_t> wanted;  // empty = all
   std::size_t damaged_count = 0;
   std::string first_damage;
-  // Where it is.
+  // The reading position.
   std::size_t next_part = 0;
-  Bytes records;       // of the part at hand
-  std::size_t at = 0;  // in them
+  Bytes records;       // of the current part
+  std::size_t at = 0;  // index in `records`
 };
 
 bool is_mcap(const std::filesystem::path& path) {
@@ -195,7 +195,7 @@ McapReader::McapReader(const std::filesystem::path& path) : state_(std::make_uni
   if (!std::ranges::equal(begin, kMagic)) throw Error(path.string() + ": is not a recording, expected MCAP");
   try {
     if (s.read_summary()) return;
-  } catch (const Error&) {  // a damaged summary: the data may be fine
+  } catch (const Error&) {  // a damaged summary: the data may be intact
   }
   s.forget();
   s.scan();
@@ -216,7 +216,7 @@ void McapReader::State::forget() {
   is_whole = false;
 }
 
-/// A schema or a channel.
+/// Reads a schema or a channel.
 void McapReader::State::add(Op op, std::span<const std::uint8_t> content) {
   Reader in(content);
   if (op == Op::schema) {
@@ -229,12 +229,12 @@ void McapReader::State::add(Op op, std::span<const std::uint8_t> content) {
   } else if (op == Op::channel) {
     McapChannel channel;
     channel.id = in.number<std::uint16_t>();
-    const Schema& schema = schemas[in.number<std::uint16_t>()];  // 0: none
+    const Schema& schema = schemas[in.number<std::uint16_t>()];  // 0 = none
     channel.topic = in.text();
     channel.encoding = in.text();
     channel.type = schema.name;
     channel.schema_encoding = schema.encoding;
-    // Many channels may name one large schema.
+    // Limits the total, as many channels may share one large schema.
     const auto before = channels.find(channel.id);
     if (before != channels.end()) definition_bytes -= before->second.schema.size();
     definition_bytes += schema.text.size();
@@ -246,7 +246,7 @@ void McapReader::State::add(Op op, std::span<const std::uint8_t> content) {
 }
 
 void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes || !may_read(length)) return;  // none of ours
+  if (length > kMostAttachmentBytes || !may_read(length)) return;  // not written by cairn
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   (void)in.take(16);
@@ -268,7 +268,7 @@ void McapReader::State::add_metadata(std::uint64_t content_at, std::uint64_t len
   metadata.insert_or_assign(std::move(name), in.words());
 }
 
-/// False where there is none, or none that says where the chunks are.
+/// False if there is no summary, or one without chunk indexes.
 bool McapReader::State::read_summary() {
   const std::uint64_t tail = kRecordHeader + kFooterBytes + kMagic.size();
   if (file.size() < 2 * kMagic.size() + tail) return false;
@@ -347,7 +347,7 @@ void McapReader::State::learn_from(const Part& part) {
   try {
     const Bytes content = chunk_of(part);
     const std::string compression = compression_of(content);
-    if (!compression.empty() && compression != "zstd") return;  // next() refuses it
+    if (!compression.empty() && compression != "zstd") return;  // next() rejects it
     const Bytes chunk = unpacked(content);
     Reader in(chunk);
     while (!in.empty()) {
@@ -358,7 +358,7 @@ void McapReader::State::learn_from(const Part& part) {
   }
 }
 
-/// From the first record to the last whole one.
+/// Scans the file up to its last complete record.
 void McapReader::State::scan() {
   std::uint64_t at_record = kMagic.size();
   bool has_new_channel = false;
@@ -411,7 +411,7 @@ bool McapReader::State::is_wanted(const Part& part) const {
          std::ranges::any_of(part.channels, [&](std::uint16_t id) { return wanted.contains(id); });
 }
 
-/// Its records are then to be read; false at the end.
+/// Loads the records of the next part; false at the end.
 bool McapReader::State::open_next_part() {
   while (next_part < parts.size()) {
     const Part& part = parts[next_part++];

@@ -19,7 +19,7 @@ using mcap::Op;
 using mcap::Writer;
 using Clock = std::chrono::steady_clock;
 
-/// Both programs and people find the quality of service of each topic here when they play a recording.
+/// The quality of service of each topic, for players and people.
 const Words kNoQuality{{"offered_qos_profiles", ""}};
 
 std::uint64_t time_of_file(Stamp stamp) {
@@ -30,7 +30,7 @@ std::uint32_t crc_of(std::uint32_t before, std::span<const std::uint8_t> bytes) 
   return static_cast<std::uint32_t>(::crc32_z(before, bytes.data(), bytes.size()));
 }
 
-/// From the first to the last stamp; both 0 where there is none.
+/// The stamps of first and last message; both 0 without messages.
 struct Range {
   std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t last = 0;
@@ -43,7 +43,7 @@ struct Range {
   }
 };
 
-/// A file that knows how much of it is whole.
+/// A file that knows how many of its bytes are complete.
 class OutFile {
  public:
   explicit OutFile(const std::filesystem::path& path)
@@ -56,7 +56,7 @@ class OutFile {
   OutFile(const OutFile&) = delete;
   OutFile& operator=(const OutFile&) = delete;
 
-  /// All of it, or what was there before is all that stays.
+  /// Appends all bytes, or none.
   void append(std::span<const std::uint8_t> bytes, bool sync) {
     std::size_t done = 0;
     while (done < bytes.size()) {
@@ -65,7 +65,7 @@ class OutFile {
       if (wrote <= 0) end_here(wrote == 0 ? ENOSPC : errno);
       done += static_cast<std::size_t>(wrote);
     }
-    // A pipe or a device knows of no such thing.
+    // Pipes and devices do not support it.
     if (sync && ::fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) end_here(errno);
     crc_ = crc_of(crc_, bytes);
     size_ += bytes.size();
@@ -74,7 +74,7 @@ class OutFile {
   [[nodiscard]] std::uint32_t crc() const { return crc_; }
 
  private:
-  /// What did not fit as a whole is taken back.
+  /// Removes an incomplete write.
   [[noreturn]] void end_here(int reason) const {
     [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(size_));
     [[maybe_unused]] const off_t at = ::lseek(file_, static_cast<off_t>(size_), SEEK_SET);
@@ -100,12 +100,12 @@ struct McapWriter::State {
     std::uint64_t offset = 0;
   };
   struct Channel {
-    Bytes record;  // as it stands in the file, with its schema
+    Bytes record;  // with its schema, as in the file
     std::uint16_t id = 0;
     std::uint32_t sequence = 0;
     std::uint64_t count = 0;
     bool is_written = false;
-    std::vector<IndexEntry> index;  // in the chunk at hand
+    std::vector<IndexEntry> index;  // for the current chunk
   };
 
   void finish_chunk();
@@ -114,7 +114,7 @@ struct McapWriter::State {
     try {
       file.append(records.bytes(), sync);
     } catch (const Error&) {
-      is_over = is_broken;  // the first time, the summary may still have room
+      is_over = is_broken;  // after the first failure there may still be room for the summary
       is_broken = true;
       throw;
     }
@@ -122,13 +122,13 @@ struct McapWriter::State {
 
   McapOptions options;
   OutFile file;
-  bool is_broken = false;  // takes no more messages
-  bool is_over = false;    // closed, or beyond help
+  bool is_broken = false;  // no more messages can be written
+  bool is_over = false;    // closed, or unusable
   std::map<std::string, std::uint16_t, std::less<>> schemas;
   Writer schema_records;
   Writer channel_records;
   std::vector<Channel> channels;
-  // The chunk at hand.
+  // The current chunk.
   Writer chunk;
   Range chunk_range;
   Clock::time_point chunk_began;
@@ -161,7 +161,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const McapOptions& opt
 McapWriter::~McapWriter() {
   try {
     if (state_ && !state_->is_over) close();
-  } catch (const std::exception&) {  // who wants to know has called close()
+  } catch (const std::exception&) {  // callers that need the error call close() themselves
   }
 }
 
@@ -199,7 +199,7 @@ void McapWriter::message(std::uint16_t id, Stamp stamp, std::span<const std::uin
   if (s.is_over || s.is_broken) return;
   if (s.chunk.size() > 0 && s.chunk.size() + bytes.size() > s.options.chunk_bytes) s.finish_chunk();
   if (s.chunk.size() == 0) s.chunk_began = Clock::now();
-  // All that are known, in the first chunk: who reads a file that was cut off then knows them at once.
+  // All known channels are in the first chunk, so a reader of a truncated file has them at once.
   for (State::Channel& known : s.channels) {
     if (!known.is_written) s.chunk.raw(known.record);
     known.is_written = true;
@@ -293,7 +293,7 @@ void McapWriter::attachment(std::string_view name, std::string_view media_type, 
   if (s.is_over || s.is_broken) return;
   s.finish_chunk();
   Writer content;
-  content.number(std::uint64_t{0});  // when: with the recording
+  content.number(std::uint64_t{0});  // creation time: that of the recording
   content.number(std::uint64_t{0});
   content.text(name);
   content.text(media_type);
@@ -344,7 +344,7 @@ void McapWriter::close() {
   State& s = *state_;
   if (s.is_over) return;
   if (s.is_broken) {
-    s.drop_chunk();  // what did not fit
+    s.drop_chunk();  // the chunk that could not be written
   } else {
     s.finish_chunk();
   }
@@ -354,7 +354,7 @@ void McapWriter::close() {
   end.record(Op::data_end, data_end);
   s.write(end, false);
 
-  // The summary, each kind of record together.
+  // The summary, grouped by kind of record.
   const std::uint64_t summary_start = s.file.size();
   Writer statistics_content;
   statistics_content.number(s.messages);
@@ -391,7 +391,7 @@ void McapWriter::close() {
   }
   const std::uint64_t offsets_start = summary_start + summary.size();
   summary.raw(offsets.bytes());
-  // The checksum covers the footer up to itself.
+  // The checksum covers the footer up to the checksum itself.
   constexpr std::uint64_t kFooterBytes = 20;
   summary.number(static_cast<std::uint8_t>(Op::footer));
   summary.number(kFooterBytes);

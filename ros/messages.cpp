@@ -30,7 +30,7 @@ std::string type_name() {
     return std::string(std::is_signed_v<T> ? "" : "u") + "int" + std::to_string(8 * sizeof(T));
 }
 
-/// A message's lines, and the messages that it holds, each once.
+/// A message definition's lines, followed by those of the types that it uses, each once.
 class Definitions {
  public:
   template <Message M>
@@ -95,7 +95,7 @@ template std::string schema_of<Header>();
 template std::string schema_of<String>();
 
 Time time_of(Stamp stamp) {
-  // Towards −∞: nanoseconds count up from the second in any case.
+  // Rounds towards −∞, as the nanoseconds are never negative.
   const std::int64_t rest = (stamp.ns % kSecond + kSecond) % kSecond;
   const std::int64_t seconds = (stamp.ns - rest) / kSecond;
   using Limits = std::numeric_limits<std::int32_t>;

@@ -11,8 +11,8 @@
 #include "../tracking/pose.hpp"
 #include "cdr.hpp"
 
-/// The messages of ROS 2 that we send, record and read, as Humble and later define them. What bytes and
-/// definitions are made of stands once, in each().
+/// The ROS 2 messages that we send, record and read, as defined from Humble on. Each member is listed once,
+/// in each(), for both bytes and definitions.
 namespace cairn::ros {
 
 struct Time {
@@ -94,7 +94,7 @@ struct Pose {
 struct PoseWithCovariance {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovariance";
   Pose pose;
-  std::array<double, 36> covariance{};  // position before rotation, row by row
+  std::array<double, 36> covariance{};  // position before rotation, row-major
   static void each(auto& m, auto&& visit) {
     visit("pose", m.pose);
     visit("covariance", m.covariance);
@@ -113,7 +113,7 @@ struct Transform {
 
 struct TransformStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/TransformStamped";
-  Header header;  // frame_id: the parent, to which points of the child are taken
+  Header header;  // frame_id: the parent, into which points of the child are transformed
   std::string child_frame_id;
   Transform transform;
   static void each(auto& m, auto&& visit) {
@@ -138,7 +138,7 @@ struct Image {
   std::uint32_t width = 0;
   std::string encoding;  // "mono8", "mono16", "rgb8", "bgr8", "32FC1"
   std::uint8_t is_bigendian = 0;
-  std::uint32_t step = 0;  // bytes from row to row
+  std::uint32_t step = 0;  // bytes per row
   Bytes data;
   static void each(auto& m, auto&& visit) {
     visit("header", m.header);
@@ -154,7 +154,7 @@ struct Image {
 struct CompressedImage {
   static constexpr std::string_view kType = "sensor_msgs/msg/CompressedImage";
   Header header;
-  std::string format;  // "jpeg", "png", or with words such as "rgb8; jpeg compressed bgr8"
+  std::string format;  // "jpeg", "png", or longer, such as "rgb8; jpeg compressed bgr8"
   Bytes data;
   static void each(auto& m, auto&& visit) {
     visit("header", m.header);
@@ -187,7 +187,7 @@ struct CameraInfo {
   std::string distortion_model;
   std::vector<double> d;
   std::array<double, 9> k{};   // of the raw image
-  std::array<double, 9> r{};   // raw to rectified
+  std::array<double, 9> r{};   // from raw to rectified
   std::array<double, 12> p{};  // of the rectified image
   std::uint32_t binning_x = 0;
   std::uint32_t binning_y = 0;
@@ -269,7 +269,7 @@ struct DisparityImage {
   }
 };
 
-// ---- what is found ----
+// ---- results ----
 
 struct ObjectHypothesis {
   static constexpr std::string_view kType = "vision_msgs/msg/ObjectHypothesis";
@@ -331,7 +331,7 @@ struct MapMetaData {
   float resolution = 0;  // m
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  Pose origin;  // of the first cell's corner
+  Pose origin;  // the corner of the first cell
   static void each(auto& m, auto&& visit) {
     visit("map_load_time", m.map_load_time);
     visit("resolution", m.resolution);
@@ -353,13 +353,13 @@ struct OccupancyGrid {
   }
 };
 
-/// The definition of a message and of all that it holds, as recordings and Foxglove have it ("ros2msg"). Of
-/// Image, CompressedImage, CameraInfo, PointCloud2, DisparityImage, Detection3DArray, OccupancyGrid,
+/// The definition of a message and its nested types, in the format of recordings and Foxglove ("ros2msg").
+/// For Image, CompressedImage, CameraInfo, PointCloud2, DisparityImage, Detection3DArray, OccupancyGrid,
 /// TFMessage, TransformStamped, Header and String.
 template <Message M>
 std::string schema_of();
 
-/// Throws Error where a stamp is more than 2³¹ s from 0.
+/// Throws Error if a stamp is more than 2³¹ s from 0.
 Time time_of(Stamp stamp);
 Stamp stamp_of(Time time);
 

@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// To the µm (or its like): beyond that digits say nothing.
+/// Rounded to the µm (or 1e-6 of another unit): further digits carry no information.
 Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   constexpr double kSteps = 1e6;
   return std::round(value * kSteps) / kSteps;
 }
 
-/// To four significant digits.
+/// Rounded to four significant digits.
 Json significant(double value) {
   if (!std::isfinite(value)) return nullptr;
   std::array<char, 32> text{};
@@ -46,7 +46,7 @@ Json matrix(const Rows& rows) {
   return all;
 }
 
-/// What a frame shows of its tracks: labelled with their ids, and where each lies.
+/// The tracks in a frame: labels with track ids, and their positions.
 struct TrackLabels {
   Image<ObjectId> labels;
   std::map<std::int64_t, Rect> boxes;
@@ -73,7 +73,7 @@ Rle rle_of(const TrackLabels& shown, TrackId id) {
                     shown.boxes.at(number(id)));
 }
 
-/// Without a rig there are no metres: the camera is nowhere.
+/// Without a rig there are no metric positions, so the pose is null.
 bool has_place(const Step& step) {
   return !step.is_lost && step.motion.refusal != MotionRefusal::no_rig;
 }
@@ -183,7 +183,7 @@ std::string masks_mots(const Step& step) {
 }
 
 Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Step& step) {
-  // Objects with their track's id in place of their own: the overlay draws and names them by it.
+  // Objects with their track ids, by which the overlay colours and labels them.
   TrackLabels shown = track_labels_of(step);
   Objects tracked;
   std::vector<std::int64_t> drawn;

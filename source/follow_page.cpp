@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// To µm, as in tracks.jsonl.
+/// Rounded to µm, as in tracks.jsonl.
 double rounded(double value) {
   constexpr double kSteps = 1e6;
   return std::round(value * kSteps) / kSteps;
@@ -27,7 +27,7 @@ Json json(Point3 p) {
   return {rounded(p.x), rounded(p.y), rounded(p.z)};
 }
 
-/// The box around all that is seen of a track; empty where nothing is.
+/// The bounding box of a track's visible parts; empty if there are none.
 Rect box_of(const Track& track, const Objects& objects) {
   if (track.object == ObjectId::none) return {};
   Rect box = objects.list[slot(number(track.object)) - 1].box_px;
@@ -43,7 +43,7 @@ bool is_empty(View<const std::uint8_t> mask) {
   return true;
 }
 
-/// `slot`: as in the map, the track's place in the list counted from 1.
+/// `slot`: as in the map, the index of the track in the list, from 1.
 Json label_places(const Step& step) {
   Json all = Json::array();
   for (std::size_t i = 0; i < step.tracks.list.size(); ++i) {
@@ -51,7 +51,7 @@ Json label_places(const Step& step) {
     const Rect box = box_of(track, step.frame.objects);
     if (box.width == 0) continue;
     const Image<std::uint8_t> mask = mask_of(View<const TrackId>(step.ids), track.id, box);
-    // Of two tracks that are seen as one object, one has the pixels.
+    // If two tracks are seen as one object, one of them has the pixels.
     if (is_empty(mask)) continue;
     const LabelPlace place = label_place(mask);
     all.push_back({{"id", i + 1}, {"x", box.x + place.x}, {"y", box.y + place.y}});
@@ -59,7 +59,7 @@ Json label_places(const Step& step) {
   return all;
 }
 
-/// The page needs no more of the pose's uncertainty than that of its place.
+/// Of the pose's uncertainty, the page needs only that of the position.
 void keep_covariance_of_place(Json& pose) {
   if (pose.is_null()) return;
   const Json& rows = pose.at("covariance");
@@ -71,7 +71,7 @@ void keep_covariance_of_place(Json& pose) {
   pose.erase("covariance");
 }
 
-/// Where the odometry's frame lies in the map: a turn about z and a shift. Null where it is not known.
+/// The odometry frame in the map: a rotation about z and a translation. Null if unknown.
 Json place_of_odometry(const LandmarksState& state) {
   if (!state.is_located) return nullptr;
   const Pose& pose = state.located.map_from_odom;
@@ -93,9 +93,9 @@ Json facts(const Step& step, const std::string& name, std::optional<double> mill
   return line;
 }
 
-/// For each pixel the track's place in the list counted from 1: fewer bytes than ids, which grow.
+/// The index of each pixel's track in the list, from 1: smaller than ids, which grow.
 Json packed_tracks(const Step& step) {
-  const auto& list = step.tracks.list;  // by id, rising
+  const auto& list = step.tracks.list;  // sorted by id
   TrackId before = TrackId::none;
   long number_before = 0;
   return packed(View<const TrackId>(step.ids), [&](TrackId id) {

@@ -26,7 +26,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, unknown);
 }
 
-/// The images of a folder in their order.
+/// The images of a folder in order.
 std::vector<fs::path> images_in(const fs::path& folder) {
   std::vector<fs::path> images;
   std::error_code reason;
@@ -60,7 +60,7 @@ std::optional<fs::path> first_file(std::initializer_list<fs::path> candidates) {
               std::to_string(frames) + " frames");
 }
 
-/// A stamp for each name: line by line, or, of an excerpt, the line that the number in the name says.
+/// A stamp for each name: one per line, or, for an excerpt, the line numbered by the name.
 std::vector<Stamp> stamps_by_line(const fs::path& path, const std::vector<std::string>& names) {
   std::vector<Stamp> all = load_stamps(path);
   if (all.size() == names.size()) return all;
@@ -97,12 +97,12 @@ std::vector<std::string> stems_of(const std::vector<fs::path>& files) {
   return names;
 }
 
-/// EuRoC names its images by their stamps.
+/// EuRoC's image names are their stamps.
 std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>& names) {
   constexpr std::size_t kFewestDigits = 16;
   std::vector<Stamp> stamps;
   for (const std::string& name : names) {
-    // A number with zeros before it counts frames.
+    // A number with leading zeros is a frame number.
     const bool may_be = name.size() >= kFewestDigits && name.front() != '0';
     const std::optional<Stamp> stamp = may_be ? parse_stamp(name) : std::nullopt;
     if (!stamp || !std::all_of(name.begin(), name.end(), is_digit)) return std::nullopt;
@@ -173,7 +173,7 @@ FrameList paired_by_stamps(const Side& left, const Side& right, const SourceOpti
               stamp_text(left.stamps->front()) + " and " + stamp_text(right.stamps->front()));
 }
 
-/// By keys that both sides have, such as names or numbers. Both rise.
+/// Pairs by keys present on both sides, such as names or numbers. Both sides are sorted.
 template <class Key>
 StampPairs pair_by_keys(const std::vector<Key>& left, const std::vector<Key>& right) {
   std::map<Key, std::size_t> of_right;
@@ -193,7 +193,7 @@ StampPairs pair_by_keys(const std::vector<Key>& left, const std::vector<Key>& ri
   return found;
 }
 
-/// What is common to all: the range, the order of stamps.
+/// Common to all kinds: the range, and checking the order of stamps.
 FrameList finished(FrameList list, const SourceOptions& options, const std::string& source) {
   const std::size_t all = list.frames.size();
   std::erase_if(list.frames, [&](const ListedFrame& frame) { return !options.frames.contains(frame.index); });
@@ -211,7 +211,7 @@ FrameList finished(FrameList list, const SourceOptions& options, const std::stri
   return list;
 }
 
-// ---- kinds ----
+// ---- kinds of sequences ----
 
 FrameList list_two_folders(const fs::path& left_folder, const fs::path& right_folder,
                            const SourceOptions& options) {
@@ -234,7 +234,7 @@ struct Pattern {
   fs::path folder;
   std::string before;
   std::string after;
-  std::size_t digits = 1;  // at least, padded with zeros
+  std::size_t digits = 1;  // least number, padded with zeros
 };
 
 std::optional<Pattern> pattern_of(const std::string& text) {
@@ -292,7 +292,7 @@ FrameList list_patterns(const std::string& left_text, const std::string& right_t
   return paired(left.side, right.side, pairs, options);
 }
 
-/// mav0/cam0, or cam0 where the folder is mav0 itself.
+/// mav0/cam0, or cam0 if the folder is mav0 itself.
 std::optional<fs::path> euroc_camera_in(const fs::path& folder) {
   for (const char* camera : {"mav0/cam0", "cam0"}) {
     if (is_folder(folder / camera / "data")) return folder / camera;
@@ -314,7 +314,7 @@ struct Stamps {
   std::string from;
 };
 
-/// Stamps of frames in folders of their own.
+/// Stamps of frames in separate folders.
 std::optional<Stamps> stamps_of(const fs::path& source, const std::vector<std::string>& names) {
   if (const auto path = first_file({source / "stamps.txt", source / "times.txt"}))
     return Stamps{stamps_by_line(*path, names), path->string()};
@@ -327,7 +327,7 @@ std::optional<Stamps> stamps_of(const fs::path& source, const std::vector<std::s
   return std::nullopt;
 }
 
-/// The images of the left camera in a folder of their own.
+/// Left images in a separate folder.
 Side left_side(const fs::path& source, const fs::path& folder) {
   Side left = side_in(folder);
   if (const auto path = first_file({source / "stamps.txt", source / "times.txt"})) {
@@ -352,7 +352,7 @@ bool is_in_two_folders(const FrameFiles& frame) {
   return frame.left.parent_path() != frame.folder;
 }
 
-/// KITTI's raw recordings stamp each camera; its odometry benchmark has times.txt for both.
+/// KITTI's raw recordings have stamps per camera; the odometry benchmark has one times.txt.
 FrameList list_two_subfolders(const fs::path& source, const std::vector<FrameFiles>& frames,
                               const SourceOptions& options) {
   const fs::path left_folder = frames.front().left.parent_path();

@@ -64,8 +64,7 @@ class FrameWatch {
   std::optional<Seen> before_;
 };
 
-/// What sources of frames share: a calibration, what they were checked against, and what is to be said of
-/// them.
+/// Base of frame sources: a calibration, the checks of frames, and remarks.
 class SourceSequence : public Sequence {
  public:
   std::optional<SequenceFrame> next() override {

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where this code lies: a program, or a library that somebody else has loaded.
+/// The folder of this code: of the program, or of a library.
 std::vector<fs::path> own_folders() {
   std::vector<fs::path> folders;
   std::error_code unknown;
@@ -30,7 +30,7 @@ std::vector<fs::path> own_folders() {
   return folders;
 }
 
-/// Beside it, above it (a build's tests), and where it is installed.
+/// Searched next to that code, above it (tests of a build), and where modules are installed.
 std::optional<fs::path> module_file(const char* module) {
   for (const fs::path& folder : own_folders()) {
     for (const fs::path& candidate : {folder / module, folder / ".." / module, folder / "cairn" / module,

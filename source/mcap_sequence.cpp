@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// So many images of one camera wait for the other's at most.
+// The most images of one camera that wait for the other …
 constexpr std::size_t kMostWaiting = 64;
-// And no more of all of them together, but for one of each.
+// … and the most bytes of all of them, beyond one each.
 constexpr std::size_t kMostWaitingBytes = std::size_t{512} << 20;
 
 /// One camera's images.
@@ -32,10 +32,10 @@ struct Side {
   ros::McapChannel channel;
   std::size_t seen = 0;
 };
-/// An image that waits for the other camera's.
+/// An image waiting for that of the other camera.
 struct WaitingImage {
   std::size_t index = 0;
-  std::optional<Raster> image;  // none: cannot be read
+  std::optional<Raster> image;  // nullopt if it cannot be decoded
   std::string trouble;
   std::string frame_id;
 };
@@ -88,7 +88,7 @@ class McapSequence : public SourceSequence {
  private:
   using Pairing = StampPairing<WaitingImage>;
 
-  /// The first message of a channel.
+  /// The first message on a channel.
   template <class M>
   std::optional<M> first_of(std::optional<std::uint16_t> channel) {
     if (!channel) return std::nullopt;
@@ -125,7 +125,7 @@ class McapSequence : public SourceSequence {
     };
     const bool is_raw = topics.is_raw && (is_distorted(*left) || is_distorted(*right));
     if (is_raw && !options_.rectify) refuse_raw("with distortion");
-    if (left->k[0] == 0 && left->p[0] == 0) {  // a driver's way to say that it does not know
+    if (left->k[0] == 0 && left->p[0] == 0) {  // a driver's convention for an unknown calibration
       remark(remarks_,
              {"camera_info without a calibration: no metres", 0, sides_[0].channel.topic, false, false});
       return;
@@ -162,7 +162,7 @@ class McapSequence : public SourceSequence {
         ", expected rectified ones, or --rectify with camera_info or --calib FILE of the raw cameras");
   }
 
-  /// Reads on until the side has so many that wait; false at the end.
+  /// Reads until the side has that many waiting; false at the end.
   bool has(std::size_t side, std::size_t count) {
     while (pairing_.waiting(side).size() < count) {
       const auto message = reader_.next();
@@ -220,7 +220,7 @@ class McapSequence : public SourceSequence {
         bytes -= greys_.front().second.bytes.size();
         greys_.pop_front();
       }
-    } catch (const Error&) {  // the colours say it, too, but for rounding
+    } catch (const Error&) {  // colour contains grey, up to rounding
     }
   }
   static Stamp stamp_of(const ros::Header& header, const ros::McapMessage& message) {
@@ -228,7 +228,7 @@ class McapSequence : public SourceSequence {
     return stamp.ns == 0 ? message.logged : stamp;
   }
 
-  /// The next pair of the range, and its number among all.
+  /// The next pair of the range, and its index among all pairs.
   std::optional<std::pair<std::size_t, Pairing::Pair>> next_pair() {
     const auto reading_on = [this](std::size_t side, std::size_t count) { return has(side, count); };
     while (auto both = pairing_.next(reading_on)) {

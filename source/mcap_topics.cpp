@@ -29,7 +29,7 @@ const McapChannel* find(const Channels& channels, const std::string& topic) {
   return found == channels.end() ? nullptr : &found->second;
 }
 
-/// The topic with every `from` replaced; empty where it has none.
+/// The topic with every `from` replaced; empty if `from` does not occur.
 std::string replaced(std::string topic, const std::string& from, const std::string& to) {
   std::size_t at = topic.find(from);
   if (at == std::string::npos) return {};
@@ -37,7 +37,7 @@ std::string replaced(std::string topic, const std::string& from, const std::stri
   return topic;
 }
 
-/// The right camera's topic; nullptr where it is not there.
+/// The topic of the right camera; nullptr if there is none.
 const McapChannel* partner(const Channels& channels, const McapChannel& left) {
   constexpr std::array<std::pair<const char*, const char*>, 3> kSides{
       {{"left", "right"}, {"infra1", "infra2"}, {"cam0", "cam1"}}};
@@ -61,7 +61,7 @@ std::pair<std::string, std::string> split(const McapChannel& channel) {
 bool is_raw(const McapChannel& channel) {
   return split(channel).second.find("raw") != std::string::npos;
 }
-/// The lower, the better.
+/// Rank; lower is better.
 std::tuple<bool, bool, bool, bool> rank(const McapChannel& channel) {
   const std::string name = split(channel).second;
   return {is_raw(channel), is_compressed(channel), name.find("rect") == std::string::npos,

@@ -3,7 +3,7 @@
 #include "dds/ros2_sequence.hpp"
 #include "open_ros2.hpp"
 
-/// Without a module: sanitizers want one program.
+/// Linked directly, without a module: sanitizers need one program.
 namespace cairn::io {
 
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,

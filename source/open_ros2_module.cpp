@@ -3,7 +3,7 @@
 #include "dds/module.hpp"
 #include "open_ros2.hpp"
 
-/// Who asks for no topic loads no DDS.
+/// Loads DDS only if a topic is opened.
 namespace cairn::io {
 
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,

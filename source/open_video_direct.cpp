@@ -3,7 +3,7 @@
 #include "open_video.hpp"
 #include "video/opencv_video.hpp"
 
-/// Without a module: sanitizers want one program.
+/// Linked directly, without a module: sanitizers need one program.
 namespace cairn::io {
 
 std::unique_ptr<Sequence> open_video(const std::filesystem::path& file, const SourceOptions& options,

@@ -4,8 +4,8 @@
 #include "open_video.hpp"
 #include "video/module.hpp"
 
-/// FFmpeg and what OpenCV brings with it are 200 libraries, which take a quarter of a second to load. So they
-/// are loaded with the first video, and no other command pays for them.
+/// FFmpeg and the dependencies of OpenCV's video module are 200 libraries, which take a quarter of a second
+/// to load. So they are loaded with the first video only.
 namespace cairn::io {
 namespace {
 

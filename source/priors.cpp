@@ -24,19 +24,19 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kLongestGapNs = 200'000'000;
 constexpr double kDegree = std::numbers::pi / 180;
 
-// How far wheels and trajectories are trusted: a share of the way and of the turn, and what is left at rest.
+// Assumed accuracy of wheels and trajectories: a share of the distance and of the rotation, plus a constant.
 constexpr double kShareOfWay = 0.05;
 constexpr double kWayM = 0.005;
 constexpr double kShareOfTurn = 0.05;
 constexpr double kTurnRad = 0.3 * kDegree;
-/// Of the directions in which wheels do not move.
+/// For directions in which wheels do not move.
 constexpr double kSidewaysM = 0.003;
 
-// What cannot be true of a robot, or of a car between two poses.
+// Implausible values for a robot, or for a car between two poses.
 constexpr double kFastestWheels = 20;  // m/s
 constexpr double kFastestPoses = 60;   // m/s
 constexpr double kFastestTurn = 20;    // rad/s
-constexpr double kFastestGyro = 35;    // rad/s: 2000 degrees per second, which few gyroscopes reach
+constexpr double kFastestGyro = 35;    // 2000 degrees per second, above the range of most gyroscopes
 
 using Vector3 = std::array<double, 3>;
 
@@ -44,7 +44,7 @@ Pose rotation_of(const Pose& pose) {
   return {pose.rotation, {}};
 }
 
-/// Of independent axes: the camera's, or those that `to_camera` turns into them.
+/// For independent axes: the camera's, or those rotated by `to_camera`.
 Covariance6 covariance_of(const Vector3& sigma_m, const Vector3& sigma_rad, const Pose& to_camera) {
   const auto block = [&](const Vector3& sigma) {
     const Covariance3 squares{sigma[0] * sigma[0], 0, 0, 0, sigma[1] * sigma[1], 0, 0, 0,
@@ -78,7 +78,7 @@ void check_stamps(const fs::path& path, const std::vector<Stamp>& stamps,
   check_rising(stamps, names, path.string());
 }
 
-/// The size that one in ten exceeds; outliers of less are left to between().
+/// The 90th percentile of the magnitudes; less frequent outliers are left to between().
 double common_largest(std::vector<double> sizes) {
   std::erase_if(sizes, [](double size) { return !std::isfinite(size); });
   if (sizes.empty()) return 0;
@@ -94,13 +94,13 @@ void check_common(const fs::path& path, const std::vector<double>& sizes, double
               " and more in one row of ten, expected at most " + text_of("%g ", most) + unit + ": " + hint);
 }
 
-/// The index of the first stamp that is later than `moment`.
+/// The index of the first stamp after `moment`.
 std::size_t after(const std::vector<Stamp>& stamps, Stamp moment) {
   return static_cast<std::size_t>(std::upper_bound(stamps.begin(), stamps.end(), moment) - stamps.begin());
 }
 
-/// Visits the rows' intervals that lie between two moments: visit(i, from, to) for what is common with
-/// (stamps[i − 1], stamps[i]]. False where the file does not cover them, has a gap, or a visit says so.
+/// Calls visit(i, from, to) with the overlap of each interval (stamps[i − 1], stamps[i]] and (before, now].
+/// False if the file does not cover that time, has a gap, or a call returns false.
 template <class Visit>
 bool walk(const std::vector<Stamp>& stamps, Stamp before, Stamp now, const Visit& visit) {
   if (!(before < now) || before < stamps.front() || now > stamps.back()) return false;
@@ -111,7 +111,7 @@ bool walk(const std::vector<Stamp>& stamps, Stamp before, Stamp now, const Visit
   return true;
 }
 
-// ---- speeds of wheels ----
+// ---- wheel speeds ----
 
 class Speeds : public MotionPriors {
  public:
@@ -154,7 +154,7 @@ class Speeds : public MotionPriors {
   }
 
  private:
-  /// Along a circle: where the camera is afterwards, seen from where it was.
+  /// Motion along an arc: the new camera pose in the frame of the old one.
   static Pose arc(double way_m, double turn_rad) {
     constexpr double kStraightRad = 1e-6;
     Pose pose = rotation_about({0, -turn_rad, 0});  // up is -y
@@ -256,7 +256,7 @@ class PoseTrack : public MotionPriors {
   }
 
  private:
-  /// Between the two poses around it: along the line, and about one axis.
+  /// Interpolates between the neighbouring poses: linearly, and by rotation about one axis.
   [[nodiscard]] std::optional<Pose> at(Stamp moment) const {
     if (moment < first() || moment > last()) return std::nullopt;
     const std::size_t i = std::clamp<std::size_t>(after(rows_.stamps, moment), 1, rows_.stamps.size() - 1);
@@ -273,10 +273,10 @@ class PoseTrack : public MotionPriors {
   Rows rows_;
 };
 
-/// A robot's axes x forward, y left, z up as the level camera's x right, y down, z forward.
+/// Converts a robot's axes (x forward, y left, z up) to the level camera's (x right, y down, z forward).
 constexpr Pose kLevelFromRobot{{0, -1, 0, 0, 0, -1, 1, 0, 0}, {}};
 
-/// Stamps for lines that have none.
+/// Stamps for lines without one.
 std::vector<Stamp> stamps_beside(const fs::path& path, const fs::path& source_folder, std::size_t lines) {
   std::string tried;
   for (const fs::path& folder : {path.parent_path(), source_folder}) {
@@ -335,7 +335,7 @@ class Gyroscope : public MotionPriors {
   struct Rows {
     std::vector<Stamp> stamps;
     std::vector<Vector3> rates;  // rad/s
-    bool has_bias = false;       // taken off
+    bool has_bias = false;       // subtracted from the rates
     Vector3 bias{};
   };
   Gyroscope(Rows rows, const Pose& camera_from_imu)
@@ -361,9 +361,9 @@ class Gyroscope : public MotionPriors {
     if (!is_known) return std::nullopt;
     const double time_s = seconds_between(before, now);
     constexpr double kNoiseRad = 0.05 * kDegree;
-    constexpr double kKnownBias = 0.005;    // rad/s, what is left of it
-    constexpr double kUnknownBias = 0.1;    // rad/s; EuRoC's has 0.08 about one axis
-    constexpr double kNothingKnownM = 1e3;  // a gyroscope does not tell a way
+    constexpr double kKnownBias = 0.005;    // rad/s, error of a bias that was subtracted
+    constexpr double kUnknownBias = 0.1;    // rad/s; EuRoC's is 0.08 about one axis
+    constexpr double kNothingKnownM = 1e3;  // a gyroscope does not measure translation
     const double sigma_rad = kNoiseRad + (rows_.has_bias ? kKnownBias : kUnknownBias) * time_s;
     MotionPrior prior;
     prior.kind = PriorKind::gyroscope;
@@ -386,7 +386,7 @@ class Gyroscope : public MotionPriors {
   Pose camera_from_imu_;
 };
 
-/// The mean rate of the first half second, where that is a rest: neither rates nor accelerations waver.
+/// Finds the bias: the mean rate of the first half second, if rates and accelerations are steady then.
 void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations) {
   constexpr double kRestS = 0.5;
   constexpr std::size_t kFewest = 20;
@@ -417,7 +417,7 @@ void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations)
   rows.bias = bias;
 }
 
-/// The rotation in T_BS of one of EuRoC's sensor.yaml: from the sensor to the body.
+/// The rotation in T_BS of an EuRoC sensor.yaml: from the sensor to the body.
 Pose body_from_sensor(const fs::path& path) {
   const std::string text = read_file(path, kMostTextBytes);
   const std::size_t pose = text.find("T_BS");
@@ -442,7 +442,8 @@ Pose body_from_sensor(const fs::path& path) {
 }  // namespace
 
 Pose camera_from_level(double pitch_deg, double roll_deg) {
-  // First down about the camera's x, then about its own view: what was level is seen turned the other way.
+  // Pitch about the camera's x, then roll about its optical axis: level directions appear rotated the other
+  // way.
   const Pose level_from_camera =
       rotation_about({-pitch_deg * kDegree, 0, 0}) * rotation_about({0, 0, roll_deg * kDegree});
   return inverse(level_from_camera);

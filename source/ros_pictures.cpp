@@ -11,7 +11,7 @@
 namespace cairn::io {
 namespace {
 
-/// How an encoding stores a pixel.
+/// Pixel layout of an encoding.
 struct Encoding {
   const char* name;
   std::size_t channels;  // in the message
@@ -23,7 +23,7 @@ constexpr std::array kEncodings{
     Encoding{"bgr8", 3, 1, true},   Encoding{"8UC3", 3, 1, true},    Encoding{"rgba8", 4, 1, false},
     Encoding{"bgra8", 4, 1, true},  Encoding{"mono16", 1, 2, false}, Encoding{"16UC1", 1, 2, false}};
 
-/// What `work` makes; an Error of it begins with the topic.
+/// Runs `work`; prefixes its errors with the topic.
 template <class Work>
 auto on_topic(const std::string& topic, const Work& work) {
   try {

@@ -9,13 +9,13 @@
 
 namespace cairn::io {
 
-/// The pixels of a message: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their names as plain types (8UC1,
-/// 8UC3, 16UC1), without alpha. Throws Error for other encodings, and where the message says what its bytes
-/// are not.
+/// The pixels of a message: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and the equivalent plain types (8UC1,
+/// 8UC3, 16UC1), without alpha. Throws Error for other encodings, and if the data contradict the message's
+/// description.
 Raster raster_of(const ros::Image& image);
 
-/// Both, as load_pair() makes them of files; colours of the right image are dropped. Throws Error, which
-/// begins with the topic.
+/// Both images, as load_pair() reads them from files; the colours of the right image are dropped. Throws
+/// Error, prefixed with the topic.
 PicturePair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
                         const std::string& right_topic, int least_bits, const Pool& pool);
 

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether both images can be read, each for itself.
+/// Whether each of the images can be read by itself.
 bool are_readable(const ListedFrame& files) {
   try {
     (void)load_picture(files.left);
@@ -69,8 +69,7 @@ class FileSequence : public SourceSequence {
       try {
         return load(files);
       } catch (const Error& error) {
-        // Only what cannot be decoded is left out: what is read and does not fit says that this is no
-        // sequence.
+        // Only undecodable files are skipped; images that do not fit mean that this is no sequence.
         if (are_readable(files)) throw;
         remark(remarks_,
                {"frame that cannot be read", 1, files.name + " (" + error.what() + ")", true, true});
@@ -82,7 +81,7 @@ class FileSequence : public SourceSequence {
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
     PicturePair pair = load_pair(files.left, files.right, pool_, bits_);
-    // Of raw images, too: their own size counts.
+    // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
                   text(raw_size_) + " like the frames before");
@@ -113,7 +112,7 @@ class FileSequence : public SourceSequence {
   std::string calib_bytes_;
   Size raw_size_;
   int bits_ = 8;
-  std::size_t at_ = 1;  // of the list; the first is read when it is opened
+  std::size_t at_ = 1;  // index in the list; the first one is read when opening
 };
 
 bool exists(const fs::path& path) {
@@ -231,7 +230,7 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
   }
   check_no_layout(options, source);
   if (const auto recording = recording_in(source)) return open_mcap(*recording, options, pool);
-  const fs::path folder = (fs::path(source) / "").parent_path();  // without a slash at its end
+  const fs::path folder = (fs::path(source) / "").parent_path();  // without a trailing slash
   return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
 }
 

@@ -25,7 +25,7 @@ std::vector<TimedPose> known_poses(const fs::path& path) {
   return std::move(known.poses);
 }
 
-/// The nearest in time; none where none are known at all.
+/// The pose nearest in time; nullopt without any.
 std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, Stamp stamp, const std::string& file) {
   if (poses.empty()) return std::nullopt;
   constexpr std::int64_t kFarthest = 5'000'000;  // ns

@@ -14,8 +14,8 @@
 
 namespace cairn::io {
 
-/// Left and right of one moment among two streams that each come in order: each with the other's nearest, and
-/// not more than `max_skew_ms` apart. Sides: 0 is left, 1 is right.
+/// Pairs the images of two ordered streams: mutual nearest neighbours in time, at most `max_skew_ms` apart.
+/// Sides: 0 is left, 1 is right.
 template <class T>
 class StampPairing {
  public:
@@ -27,13 +27,13 @@ class StampPairing {
     Waiting left;
     Waiting right;
   };
-  /// `alone` is given each image that gets no partner.
+  /// Calls `alone` for each image without a partner.
   StampPairing(double max_skew_ms, std::function<void(std::size_t side, Waiting&&)> alone)
       : max_skew_ns_(max_skew_ms * 1e6), alone_(std::move(alone)) {}
 
   void push(std::size_t side, Stamp stamp, T value) { waiting_[side].push_back({stamp, std::move(value)}); }
-  /// Of a stream that goes on: no more than `most` wait, and a stamp that is not later than the one before on
-  /// its side begins both again, because the clock was set back.
+  /// For live streams: keeps at most `most` waiting; a stamp not later than the previous one of its side
+  /// restarts both sides, since the clock was set back.
   void push_live(std::size_t side, Stamp stamp, T value, std::size_t most) {
     if (last_[side] && stamp <= *last_[side]) leave_all();
     last_[side] = stamp;
@@ -42,8 +42,8 @@ class StampPairing {
   }
   [[nodiscard]] const std::deque<Waiting>& waiting(std::size_t side) const { return waiting_[side]; }
 
-  /// The next pair; nothing once a side has run out. `has(side, count)`: whether so many of a side wait, after
-  /// reading on where that is possible; reading on leaves each side one of those that wait.
+  /// The next pair; nullopt once a side has ended. `has(side, count)` returns whether that many of a side
+  /// wait, after reading on if possible; reading on keeps one waiting image of each side.
   template <class Has>
   std::optional<Pair> next(const Has& has) {
     while (has(0, 1) && has(1, 1)) {
@@ -51,16 +51,16 @@ class StampPairing {
     }
     return std::nullopt;
   }
-  /// The next pair of those that wait; what has not come yet is not waited for.
+  /// The next pair among the waiting images, without reading on.
   std::optional<Pair> next() { return next(waits()); }
 
-  /// The one that waits longest on a side is alone.
+  /// Reports the longest-waiting image of a side as unpaired.
   void leave(std::size_t side) {
     Waiting alone = std::move(waiting_[side].front());
     waiting_[side].pop_front();
     alone_(side, std::move(alone));
   }
-  /// All that wait or that reading on still finds, see next().
+  /// All waiting images, and those found by reading on, see next().
   template <class Has>
   void leave_all(const Has& has) {
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
@@ -70,7 +70,7 @@ class StampPairing {
   void leave_all() { leave_all(waits()); }
 
  private:
-  /// Decides about the two that wait longest, one of each side: they are a pair, or one of them is alone.
+  /// Decides on the longest-waiting image of each side: they form a pair, or one of them is unpaired.
   template <class Has>
   std::optional<Pair> decide(const Has& has) {
     auto& [left, right] = waiting_;
@@ -90,13 +90,13 @@ class StampPairing {
     return std::nullopt;
   }
 
-  /// Between one of the left and one of the right; ns.
+  /// Time between a left and a right image, ns.
   [[nodiscard]] std::int64_t apart(std::size_t left, std::size_t right) const {
     const std::int64_t difference = waiting_[0][left].stamp.ns - waiting_[1][right].stamp.ns;
     return difference < 0 ? -difference : difference;
   }
 
-  /// `has` of next() without reading on.
+  /// The `has` of next() without reading on.
   auto waits() const {
     return [this](std::size_t side, std::size_t count) { return waiting_[side].size() >= count; };
   }

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-/// A century either side of 1970 and then some; sums and differences of two fit 64 bits.
+/// More than a century before and after 1970; sums and differences fit 64 bits.
 constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;
 
 bool is_digits(std::string_view text) {
@@ -33,7 +33,7 @@ std::optional<Stamp> stamp_of(std::int64_t seconds, std::int64_t ns) {
   return Stamp{seconds * kNsPerSecond + ns};
 }
 
-/// The first nine digits behind the point, in ns.
+/// The first nine decimals, in ns.
 std::int64_t fraction_ns(std::string_view digits) {
   constexpr std::size_t kDigits = 9;
   std::string nine(digits.substr(0, kDigits));
@@ -41,7 +41,7 @@ std::int64_t fraction_ns(std::string_view digits) {
   return whole<std::int64_t>(nine).value_or(0);
 }
 
-/// Digits with a point, without rounding through a double: those have 100 ns at the stamps of today.
+/// Parses decimals without a double, whose resolution for current stamps is 100 ns.
 std::optional<Stamp> decimal(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
@@ -115,7 +115,7 @@ std::string stamp_text(Stamp stamp) {
 std::vector<Stamp> load_stamps(const fs::path& path) {
   const std::string text = read_file(path, kMostLogBytes);
   std::vector<Stamp> stamps;
-  // One line with a point says that all are s: "5" before "5.1" is no 5 ns.
+  // One line with a decimal point means that all are seconds: "5" before "5.1" is not 5 ns.
   const std::vector<TextLine> lines = lines_of(text);
   const bool in_seconds =
       std::ranges::all_of(lines, [](const TextLine& line) { return decimal(line.text).has_value(); }) &&

@@ -98,7 +98,7 @@ TrackFrame frame_of(const Json& json) {
   return frame;
 }
 
-/// The words between blanks. (A stream that gets no memory for one reads on as if there were none.)
+/// The words between blanks. (A stream would silently stop when out of memory.)
 std::vector<std::string> words_of(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
   std::vector<std::string> words;
@@ -111,7 +111,7 @@ std::vector<std::string> words_of(std::string_view text) {
   }
 }
 
-/// Calls visit(text, number, has_end) for each line that is not empty.
+/// Calls visit(text, number, has_end) for each non-empty line.
 void each_line(const fs::path& path,
                const std::function<void(const std::string&, std::size_t, bool)>& visit) {
   std::error_code ignored;
@@ -147,7 +147,7 @@ void each_line(const fs::path& path,
   }
 }
 
-/// Calls take(json, line) for each line. Returns whether the last one is cut off, which is passed over.
+/// Calls take(json, line) for each line. Skips a truncated last line; returns whether there is one.
 bool each_json(const fs::path& path, const std::function<void(const Json&, std::size_t)>& take) {
   bool is_cut_off = false;
   each_line(path, [&](const std::string& text, std::size_t line, bool has_end) {
@@ -201,7 +201,7 @@ TrackFile load_tracks(const fs::path& path) {
 }
 
 TrackFile load_mots(const fs::path& path) {
-  constexpr std::int64_t kMostOfMots = 1'000'000;  // frames that are not named are made, too
+  constexpr std::int64_t kMostOfMots = 1'000'000;  // missing frames are filled in up to this number
   constexpr std::int64_t kIgnored = 10;
   std::map<std::int64_t, std::map<std::int64_t, TrackRecord>> masks;
   each_line(path, [&](const std::string& text, std::size_t, bool) {

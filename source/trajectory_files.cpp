@@ -32,7 +32,7 @@ std::array<double, n> numbers(const std::vector<std::string_view>& fields, std::
   return all;
 }
 
-/// Rows of 3×4 numbers whose left part is a rotation, as far as its digits tell.
+/// Lines of 3×4 numbers whose left part is a rotation within its precision.
 Pose pose_of_rows(const std::array<double, 12>& m, const std::string& where) {
   const std::array<double, 9> r{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
   const double determinant = r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
@@ -46,7 +46,7 @@ Pose pose_of_rows(const std::array<double, 12>& m, const std::string& where) {
   }
   if (!is_rotation) throw Error(where + ": the left 3x3 numbers are not a rotation");
   const Pose rounded{r, {m[3], m[7], m[11]}};
-  return pose_of(rounded.translation_m, quaternion(rounded));  // orthonormal beyond the file's digits
+  return pose_of(rounded.translation_m, quaternion(rounded));  // orthonormal beyond the precision of the file
 }
 
 Pose pose_of_quaternion(const std::array<double, 3>& t, const std::array<double, 4>& q,
@@ -180,7 +180,7 @@ Trajectory load_trajectory(const fs::path& path) {
     const std::vector<std::string_view> fields = fields_of(line.text);
     if (!form) {
       form = form_of(line.text, path, line.number);
-      // EuRoC's truth names its columns in the first line, which need not begin with #.
+      // EuRoC's truth has a header of column names, which may lack the #.
       if (*form == TrajectoryForm::euroc && !parse_stamp(fields.front())) continue;
     } else if (form_of(line.text, path, line.number) != *form) {
       throw Error(place(path, line.number) + ": differs in form from the lines before");

@@ -33,7 +33,7 @@ Json load_json(const fs::path& path) {
   return *json;
 }
 
-/// Calls take(line) for each entry of a list, with the file's name before what it throws.
+/// Calls take(line) for each entry of a list, and prefixes errors with the file's name.
 template <class Take>
 void each_in(const fs::path& path, const Json& json, const char* key, const Take& take) {
   try {

@@ -10,7 +10,7 @@
 namespace cairn::report {
 namespace {
 
-/// A plane of disparity d = rise·y + level where it lies inside the rectangle, in px of the left picture.
+/// A surface of disparity d = rise·y + level within a rectangle, in px of the left image.
 struct Surface {
   float rise = 0;
   float level = 0;
@@ -18,7 +18,7 @@ struct Surface {
   float y_first = -1e6F, y_last = 1e6F;
   std::array<float, 3> colour{};  // r, g, b of 0 … 255, before the texture
   float contrast = 0;             // of the texture, grey levels
-  float tile_px = 0;              // side of its tiles; 0 = none
+  float tile_px = 0;              // side of its tiles; 0 = untiled
   std::uint32_t seed = 0;
 
   [[nodiscard]] float disparity_at(float y) const { return rise * y + level; }
@@ -28,8 +28,8 @@ struct Surface {
 };
 
 struct Room {
-  std::vector<Surface> surfaces;  // the wall first
-  float detail_px = 1;            // what the finest texture is wide
+  std::vector<Surface> surfaces;  // the wall comes first
+  float detail_px = 1;            // width of the finest texture
 };
 
 std::uint32_t mixed(std::uint32_t v) {
@@ -40,14 +40,14 @@ std::uint32_t mixed(std::uint32_t v) {
   return v ^ (v >> 16);
 }
 
-/// −1 … 1 for each point of a grid.
+/// Noise in −1 … 1 at grid points.
 float random_at(int x, int y, std::uint32_t seed) {
   const std::uint32_t bits =
       mixed(static_cast<std::uint32_t>(x) + mixed(static_cast<std::uint32_t>(y) + mixed(seed)));
   return static_cast<float>(bits >> 8) / 8388608.0F - 1.0F;
 }
 
-/// The same between the points, bilinear.
+/// Noise at any point, by bilinear interpolation.
 float smooth_noise(float x, float y, std::uint32_t seed) {
   const float x_floor = std::floor(x);
   const float y_floor = std::floor(y);
@@ -59,8 +59,8 @@ float smooth_noise(float x, float y, std::uint32_t seed) {
   return std::lerp(row(iy), row(iy + 1), y - y_floor);
 }
 
-/// Grey levels that a surface's texture adds at a point of the left picture: from fine to coarse, as nature
-/// has it.
+/// The grey level of a surface's texture at a point of the left image, summed over scales as in natural
+/// images.
 float texture(const Surface& surface, float x, float y, float detail_px) {
   float sum = 0;
   float cell_px = detail_px;
@@ -76,8 +76,8 @@ float texture(const Surface& surface, float x, float y, float detail_px) {
   return surface.contrast * sum;
 }
 
-/// The nearest surface that a ray of the right (or the left) camera meets, and where the left picture shows
-/// that point. Surfaces do not rise along x, so both rows are one.
+/// The nearest surface hit by a ray of the right (or left) camera, and where the left image shows that point.
+/// Disparity does not change along x, so a row of one image is a row of the other.
 struct Hit {
   const Surface* surface;
   float x_left;
@@ -89,7 +89,7 @@ Hit nearest_hit(const Room& room, float x, float y, bool right) {
     const float disparity = surface.disparity_at(y);
     return Hit{&surface, right ? x + disparity : x, disparity};
   };
-  Hit nearest = hit_of(room.surfaces.front());  // the wall, which has no end
+  Hit nearest = hit_of(room.surfaces.front());  // the wall, which is unbounded
   for (const Surface& surface : room.surfaces) {
     const Hit hit = hit_of(surface);
     if (hit.disparity_px > nearest.disparity_px && surface.holds(hit.x_left, y)) nearest = hit;
@@ -130,10 +130,10 @@ Image<Gray> grey_of(const Image<Rgb>& image) {
 }
 
 struct BoxPlan {
-  float x;         // of its middle, share of the width
-  float width;     // share of the width, as if it stood at the bottom row
-  float height;    // share of the height, alike
-  float nearness;  // its disparity, share of the largest
+  float x;         // of its centre, share of the width
+  float width;     // share of the width, scaled to the bottom row
+  float height;    // share of the height, scaled likewise
+  float nearness;  // its disparity, as a share of the largest
   std::array<float, 3> colour;
   float contrast;
 };
@@ -182,7 +182,7 @@ Room room_of(Size size, float largest_disparity_px) {
   return room;
 }
 
-/// Baseline and focal length under which the floor is one that a camera 0.6 m above it sees.
+/// Baseline and focal length that place the floor 0.6 m below the camera.
 StereoRig rig_of(Size size, float largest_disparity_px) {
   constexpr float kCameraHeight = 0.6F;  // m
   const float below_horizon = (1 - kHorizon) * static_cast<float>(size.height);

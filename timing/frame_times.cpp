@@ -53,8 +53,8 @@ Elapsed timed(const Work& work) {
   return {elapsed.count(), process_ms() - cpu};
 }
 
-/// The stages of the frame that is being worked on. A stage's processor time runs from the end of the one
-/// before, as the observer's wall time does.
+/// The stages of the current frame. A stage's processor time counts from the end of the previous stage, like
+/// the observer's wall time.
 class StageClock {
  public:
   void begin_frame() {
@@ -79,7 +79,7 @@ class StageClock {
   double mark_ms_ = 0;
 };
 
-/// What estimate_disparity() calls: said by itself, so that no list of stages has to be kept here.
+/// The stages that estimate_disparity() reports; so no list of stages is needed here.
 std::set<std::string, std::less<>> disparity_stages(const StereoPair& pair,
                                                     const std::optional<StereoRig>& rig, const Config& config,
                                                     Exec exec) {
@@ -94,7 +94,7 @@ struct Peer {
   PeerTimes times;
 };
 
-/// Ready, and warm; those that refuse the pair say why and are not asked again.
+/// Warms up the matchers; those that refuse the pair give a reason and are not timed.
 std::vector<Peer> prepare(std::span<const OpenCvMatcher> matchers, const StereoPair& pair,
                           const MatchConfig& config) {
   std::vector<Peer> peers;

@@ -72,12 +72,12 @@ constexpr std::array kQuick{
 }  // namespace
 
 void ReadyMatcher::compute(const StereoPair& pair) const {
-  // In narrower pictures OpenCV 4.6 throws on threads of its own, which nobody can catch.
+  // For narrower images OpenCV 4.6 throws on its own threads, which cannot be caught.
   constexpr int kMargin = 16;
   const cv::StereoMatcher& matcher = *state_->matcher;
   const int least_width = matcher.getNumDisparities() + std::abs(matcher.getMinDisparity()) + kMargin;
   if (pair.size().width < least_width || pair.size().height < kMargin) {
-    throw Error("wants at least " + text(Size{least_width, kMargin}) + " px");
+    throw Error("needs at least " + text(Size{least_width, kMargin}) + " px");
   }
   try {
     state_->matcher->compute(matrix(pair.left()), matrix(pair.right()), state_->sixteenths);

@@ -6,7 +6,7 @@
 
 namespace cairn::report {
 
-// Without a matcher nobody can call these two.
+// Never called, since there is no matcher.
 void ReadyMatcher::compute(const StereoPair&) const {
   throw Error("OpenCV's matchers are not built in");
 }

@@ -11,17 +11,17 @@
 namespace cairn {
 namespace {
 
-constexpr float kOtherLabel = 6;    // of the sum of log likelihood ratios
-constexpr float kMostOfOne = 2.5F;  // no two sightings decide alone: outlines jump
+constexpr float kOtherLabel = 6;    // of the accumulated log-likelihood ratio
+constexpr float kMostOfOne = 2.5F;  // per sighting: no two decide alone, since outlines jump
 constexpr std::size_t kPlaces = 30;
 constexpr double kSpeedSigmas = 3;
-constexpr double kFirstSpeed = 1;  // m/s, standard deviation, of a thing that was seen once
-constexpr int kOfFrames = 5;       // in which min_hits are asked for
-constexpr float kHidden = 0.5F;    // share of a mask
+constexpr double kFirstSpeed = 1;  // m/s, standard deviation, of an object seen once
+constexpr int kOfFrames = 5;       // frames in which min_hits are required
+constexpr float kHidden = 0.5F;    // share of the mask
 constexpr float kInView = 0.5F;
-constexpr double kSteadyShare = 0.5;  // of a measurement's variance, which stays from frame to frame
+constexpr double kSteadyShare = 0.5;  // of a measurement's variance: errors that persist
 
-/// What a frame shows of a track, in the map: one object or the pieces of one.
+/// The sighting of a track in the map frame: one object, or the pieces of one.
 struct Observation {
   const Sighting* main = nullptr;
   std::vector<const Sighting*> all;
@@ -63,7 +63,7 @@ Observation seen_by(std::vector<const Sighting*> sightings, const Pose& map_from
   return seen;
 }
 
-// What is left of a track's confidence after a frame that should show it, and does not.
+// Factor on a track's confidence for each frame that should show it and does not.
 constexpr float kDoubt = 0.8F;
 
 Filter6 moving_from(Point3 position_m, const Covariance3& covariance_m2) {
@@ -75,8 +75,8 @@ Filter6 moving_from(Point3 position_m, const Covariance3& covariance_m2) {
   return filter;
 }
 
-/// Page's test for a change: what speaks for the label is forgotten, so that a thing that stood for long is
-/// found to move as soon as one that did not.
+/// Page's test (CUSUM): evidence for the current label is not accumulated, so an object that was static for
+/// long is found to move as quickly as a new one.
 void weigh_label(Track& track, float moving_against_static, const Place& place) {
   const float ratio = std::clamp(moving_against_static, -kMostOfOne, kMostOfOne);
   track.against_label = std::max(track.against_label + (track.is_moving ? -ratio : ratio), 0.0F);
@@ -85,7 +85,7 @@ void weigh_label(Track& track, float moving_against_static, const Place& place) 
   track.places.push_back(place);
 }
 
-/// The filters after a sighting, and what it says of the label.
+/// Updates the filters with a sighting, and the evidence for the label.
 void update_place(Track& track, const Observation& seen, bool was_cut, Stamp now,
                   const TrackingConfig& config) {
   if (!track.has_place) {
@@ -100,14 +100,14 @@ void update_place(Track& track, const Observation& seen, bool was_cut, Stamp now
                                        seen.position_m, seen.covariance_m2);
   const Innovation moves = innovation(track.as_moving.position_m, of_position(track.as_moving),
                                       seen.position_m, seen.covariance_m2);
-  // What the picture's border cuts off changes the middle of what is seen, though nothing moves.
+  // Clipping by the image border moves the centre of the visible part, though nothing moves.
   if (seen.is_cut || was_cut || seen.all.size() > 1) {
     track.places.clear();
   } else if (seen.main->confidence >= config.high_confidence) {
     weigh_label(track, static_cast<float>(moves.log_likelihood - stands.log_likelihood),
                 {now, seen.position_m, seen.covariance_m2});
   }
-  // A mask that leapt, see associate(), pulls no more than one at the gate.
+  // A jumping mask, see associate(), has no more influence than one at the gate.
   const auto trusted = [&](const Innovation& off) {
     return scaled(seen.covariance_m2, std::max(off.d2 / double{config.gate}, 1.0));
   };
@@ -121,7 +121,7 @@ void blend(T& old, T fresh, float weight) {
 }
 
 void update_looks(Track& track, const Observation& seen) {
-  // The mean of the first five, then a memory of about as many.
+  // The mean of the first five, then an exponential average over about five.
   const float weight = 1.0F / static_cast<float>(std::min(track.hits, 5));
   for (std::size_t i = 0; i < track.look.size(); ++i) blend(track.look.at(i), seen.main->look.at(i), weight);
   blend(track.confidence, seen.main->confidence, weight);
@@ -153,7 +153,8 @@ void update(Track& track, const Observation& seen, bool is_joined, Stamp now, co
   update_looks(track, seen);
 }
 
-/// As much as min_hits sightings say that just found a track: one that is sure enough says it alone.
+/// Whether the accumulated confidence equals that of min_hits sightings that each just start a track; a
+/// single confident sighting may suffice.
 bool is_beyond_doubt(const Track& track, const TrackingConfig& config) {
   return double{track.doubt} <= std::pow(1 - double{config.high_confidence}, config.min_hits);
 }
@@ -163,7 +164,7 @@ int hits_of(const Track& track, int frames) {
   return std::popcount(track.recent & mask);
 }
 
-/// Of one that this frame does not show.
+/// For a track that this frame does not show.
 void miss(Track& track, std::size_t t, const Overlaps& overlaps, Stamp now, const TrackingConfig& config) {
   if (track.state == TrackState::tentative) {
     ++track.misses;
@@ -171,7 +172,7 @@ void miss(Track& track, std::size_t t, const Overlaps& overlaps, Stamp now, cons
     return;
   }
   const int area = overlaps.area[t];
-  // What another track's prediction covers is hidden, too.
+  // What is covered by another track's prediction counts as hidden, too.
   const int hidden = overlaps.nearer[t] + std::max(area - overlaps.predicted[t], 0);
   if (overlaps.in_view[t] < kInView) {
     track.state = TrackState::out_of_view;
@@ -186,7 +187,7 @@ void miss(Track& track, std::size_t t, const Overlaps& overlaps, Stamp now, cons
     track.state = TrackState::dead;
 }
 
-/// Whether a joined object shows this track, too, though it goes by the id of another.
+/// Whether a joined object that carries another track's id also shows this track.
 bool is_in_joined(const Track& track, std::size_t t, const std::vector<ObjectId>& joined,
                   const Overlaps& overlaps) {
   return track.state != TrackState::tentative && std::ranges::any_of(joined, [&](ObjectId object) {
@@ -199,7 +200,7 @@ bool wants_to_move(const Track& track, const TrackingConfig& config) {
       track.places.size() < 3)
     return false;
   const Drift drift = drift_of(track.places);
-  // What stays from frame to frame shifts all places alike.
+  // Constant errors shift all positions alike.
   const double sigma_m_s = drift.sigma_m_s * std::sqrt(1 - kSteadyShare);
   return length(drift.velocity_m_s) - kSpeedSigmas * sigma_m_s > double{config.min_speed};
 }
@@ -222,13 +223,13 @@ void label(Tracks& tracks, const TrackingConfig& config) {
   }
 }
 
-/// What the track says of itself: by the filter that its label chooses.
+/// Sets the reported state from the filter that the label selects.
 void report(Track& track) {
   if (!track.has_place) return;
   const Covariance3 known = track.is_moving ? of_position(track.as_moving) : track.as_static.covariance_m2;
   track.position_m = track.is_moving ? track.as_moving.position_m : track.as_static.position_m;
   track.velocity_m_s = track.is_moving ? track.as_moving.velocity_m_s : Point3{};
-  // A mask is wrong in the same way from frame to frame: that does not average out.
+  // Errors of a mask persist from frame to frame, so they do not average out.
   track.covariance_m2 = sum(known, track.measured_m2, kSteadyShare);
 }
 
@@ -287,7 +288,7 @@ Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
   }
   if (is_lost) {
     for (Track& track : tracks.list) {
-      // Time goes on for what moves, and for how long a thing has been out of sight.
+      // Predict moving tracks, and count the time out of sight.
       track.as_static = predicted(track.as_static, dt_s, double{config.static_noise});
       track.as_moving = predicted(track.as_moving, dt_s, double{config.acceleration_noise});
       const bool ends = track.state == TrackState::tentative ||

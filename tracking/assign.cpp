@@ -12,13 +12,13 @@
 namespace cairn {
 namespace {
 
-/// Rows and columns that may go together, and beside them one more column for each row and one more row for
-/// each column, which leave it alone: a square table.
+/// A square table: rows and columns that may be matched, plus a column for each row and a row for each column
+/// that leave it unmatched.
 class Square {
  public:
   Square(const CostTable& table, const std::vector<int>& rows, const std::vector<int>& columns)
       : rows_(rows.size()), side_(rows.size() + columns.size()), costs_(side_ * side_, 0) {
-    // Dearer than any assignment without one that is forbidden.
+    // Above the cost of any assignment without a forbidden pair.
     constexpr std::int64_t kNever = std::int64_t{1} << 48U;
     const std::int64_t half = table.alone / 2;
     for (std::size_t i = 0; i < side_; ++i) {
@@ -40,7 +40,7 @@ class Square {
 
   [[nodiscard]] std::size_t side() const { return side_; }
 
-  /// For each row its column: of the best assignments the one that comes first.
+  /// The column of each row in the optimal assignment that is first in lexicographic order.
   [[nodiscard]] std::vector<std::size_t> best() const {
     std::vector<std::size_t> column_of = any_best();
     std::vector<std::size_t> row_of(side_);
@@ -50,7 +50,8 @@ class Square {
     for (std::size_t i = 0; i < rows_; ++i) {
       for (std::size_t j = 0; j < column_of[i]; ++j) {
         if (!is_tight[i * side_ + j] || is_settled[j]) continue;
-        // Row i takes column j if the row that has it finds another, in turn, up to the column of row i.
+        // Row i takes column j if the row that has it finds another one, and so on, ending at the column of
+        // row i.
         std::vector<bool> is_tried = is_settled;
         is_tried[j] = true;
         const std::size_t left = column_of[i];
@@ -75,7 +76,7 @@ class Square {
     return {found.begin(), found.end()};
   }
 
-  /// Which pairs some best assignment may have: those without slack under the potentials of one of them.
+  /// The pairs that occur in optimal assignments: those with zero slack under the dual potentials of one.
   [[nodiscard]] std::vector<bool> tight(const std::vector<std::size_t>& column_of) const {
     std::vector<std::int64_t> of_column(side_, 0);
     std::vector<std::int64_t> of_row(side_, 0);
@@ -121,7 +122,7 @@ class Square {
 
 std::vector<int> assign(const CostTable& table) {
   std::vector<int> column_of(static_cast<std::size_t>(table.rows), -1);
-  // What cannot go together, even by way of others, is assigned apart: the time goes with the cube.
+  // Connected components are assigned separately, as the time is cubic in the size.
   DisjointSets sets(static_cast<std::size_t>(table.rows) + static_cast<std::size_t>(table.columns));
   const auto cost = [&](int i, int j) {
     return table.costs[static_cast<std::size_t>(i) * static_cast<std::size_t>(table.columns) +

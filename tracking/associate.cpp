@@ -12,14 +12,14 @@
 namespace cairn {
 namespace {
 
-constexpr double kPerUnit = 1024;     // costs are whole numbers of these
+constexpr double kPerUnit = 1024;     // costs are integers in units of 1 / kPerUnit
 constexpr double kLookWeight = 10;    // at appearance_weight 1
-constexpr double kSizeWeight = 2;     // for each factor e
-constexpr double kOverlapWeight = 5;  // for masks that do not meet
+constexpr double kSizeWeight = 2;     // per factor of e
+constexpr double kOverlapWeight = 5;  // for disjoint masks
 constexpr float kJoinedShare = 0.5F;  // of a predicted mask
 constexpr float kSameMask = 0.5F;     // intersection over union
 constexpr float kPartShare = 0.7F;    // of a piece
-constexpr int kPartsInARow = 5;       // frames: what comes in pieces for longer is several things
+constexpr int kPartsInARow = 5;       // frames; an object that comes in pieces for longer is several objects
 
 bool is_confirmed(const Track& track) {
   return track.state != TrackState::tentative && track.state != TrackState::dead;
@@ -29,7 +29,7 @@ float share(int part, int whole) {
   return whole > 0 ? static_cast<float>(part) / static_cast<float>(whole) : 0.0F;
 }
 
-/// ≥ 1: how much larger the larger one is.
+/// The ratio of the sizes, larger to smaller, ≥ 1.
 double ratio(Vec3 a, Vec3 b) {
   constexpr double kLeast = 0.02;  // m
   const auto size = [kLeast](Vec3 v) { return std::max(std::hypot(double{v.x}, double{v.y}), kLeast); };
@@ -55,7 +55,7 @@ class Costs {
     }
   }
 
-  /// In 1/1024, or CostTable::kForbidden.
+  /// In units of 1 / kPerUnit, or CostTable::kForbidden.
   [[nodiscard]] std::int64_t operator()(std::size_t t, std::size_t s) const {
     const Track& track = tracks_.list[t];
     const Sighting& seen = sightings_[s];
@@ -65,12 +65,12 @@ class Costs {
     double cost = kOverlapWeight * (1 - double{overlap}) + kLookWeight * double{config_.appearance_weight} *
                                                                (1 - double{likeness(track.look, seen.look)});
     if (is_joined(seen.object)) {
-      // Its middle lies between the things that it is: their masks say which.
+      // Its centre is between the objects that it joins: the masks decide.
       if (!covers) return CostTable::kForbidden;
       cost += double{config_.gate};
     } else if (track.has_place && seen.has_place) {
       const Innovation found = nearest(track, s);
-      // The middle of what is seen leaps where a mask is cut off or gets a piece more; the mask stays.
+      // The centre jumps if a mask is clipped or gains a piece, but the masks still overlap.
       const bool is_same_mask = overlap >= kSameMask;
       if (found.d2 > double{config_.gate} && !is_same_mask) return CostTable::kForbidden;
       cost += std::min(found.d2, double{config_.gate}) + found.log_widening +
@@ -83,7 +83,7 @@ class Costs {
 
  private:
   [[nodiscard]] bool is_joined(ObjectId object) const { return std::ranges::binary_search(joined_, object); }
-  /// Of the two filters, the one that it is likelier for: a thing may begin to move, or stop.
+  /// The innovation of the likelier of the two filters, as the object may start or stop moving.
   [[nodiscard]] Innovation nearest(const Track& track, std::size_t s) const {
     const Filter3 stands = predicted(track.as_static, dt_s_, double{config_.static_noise});
     const Covariance3 expected_m2 =
@@ -106,7 +106,7 @@ class Costs {
   std::vector<Covariance3> covariances_m2_;
 };
 
-/// Matches tracks and sightings that have none yet.
+/// Matches tracks and sightings that are unmatched so far.
 void match(const Costs& cost, const std::vector<std::size_t>& sightings, std::int64_t alone,
            std::vector<int>& sighting_of, std::vector<bool>& is_taken) {
   std::vector<std::size_t> rows;
@@ -157,7 +157,7 @@ std::vector<Match> associate(const Tracks& tracks, const std::vector<Sighting>& 
   std::vector<std::size_t> unsure;
   for (std::size_t s = 0; s < sightings.size(); ++s)
     (sightings[s].confidence >= config.high_confidence ? sure : unsure).push_back(s);
-  // A pair that costs more than twice the gate is none, even where nothing else is near.
+  // Pairs above twice the gate are not matched, even without an alternative.
   const std::int64_t alone = 2 * std::llround(double{config.gate} * kPerUnit);
   match(cost, sure, alone, sighting_of, is_taken);
   match(cost, unsure, alone, sighting_of, is_taken);

@@ -49,7 +49,7 @@ std::vector<Arm> arms_of(const Config& config, Size image, float step) {
 
 Lead lead_of(const ArmScore& score) {
   constexpr double kOneSided95 = 1.645;
-  constexpr double kLeast = 1e-3;  // a present that finds nothing is led by whatever finds something
+  constexpr double kLeast = 1e-3;  // bounds the divisor for a configuration that finds nothing
   const std::size_t count = std::min(score.of_arm.size(), score.of_present.size());
   if (count < 2) return {};
   const auto n = static_cast<double>(count);

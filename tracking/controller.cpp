@@ -11,7 +11,7 @@ namespace {
 constexpr int kFirstSamples = 2;  // frames of the first round
 constexpr float kLeastStep = 2;
 constexpr float kMostStep = 8;
-constexpr double kObvious = 0.5;  // a lead that needs no rivals
+constexpr double kObvious = 0.5;  // a lead large enough to skip further rounds
 
 std::string value_of(const Config& config, const std::string& option) {
   const std::vector<OptionInfo> all = options(config);
@@ -28,7 +28,7 @@ void Controller::begin_search(Size image) {
   for (const Arm& arm : arms_of(config_.segmentation, image, step_)) {
     if (std::ranges::find(reported_, arm) == reported_.end()) round_.push_back({arm, {}, {}});
   }
-  // What helped once may help again.
+  // Try first what helped last.
   std::stable_partition(round_.begin(), round_.end(),
                         [&](const ArmScore& s) { return s.arm.option == last_option_; });
   at_ = 0;
@@ -39,7 +39,7 @@ void Controller::begin_block() {
   FollowConfig config = config_;
   set(config.segmentation, round_[at_].arm.option, round_[at_].arm.value);
   candidate_.emplace(config, rig_, exec_);
-  left_ = samples_ + 1;  // the first frame has none before it
+  left_ = samples_ + 1;  // one more, as the first frame has no predecessor
   credit_ -= left_;
 }
 
@@ -53,7 +53,7 @@ std::optional<ControlEvent> Controller::end_block() {
   at_ = 0;
   round_ = halved(std::move(round_), config_.control.lead);
   samples_ = std::min(4 * samples_, config_.control.window);
-  if (round_.empty()) step_ = step_ < kMostStep ? 2 * step_ : kLeastStep;  // nothing near: look farther
+  if (round_.empty()) step_ = step_ < kMostStep ? 2 * step_ : kLeastStep;  // search farther
   const auto best =
       std::ranges::find_if(round_, [&](const ArmScore& s) { return is_better(s, config_.control); });
   if (best == round_.end() || since_report_ < config_.control.hold) return std::nullopt;

@@ -12,12 +12,12 @@ Point3 point(Vec3 v) {
   return {double{v.x}, double{v.y}, double{v.z}};
 }
 
-/// map_from_camera of a camera that looks level along the map's x.
+/// Pose of a level camera that looks along the map's x axis.
 Pose level_pose() {
   return {{0, 0, 1, -1, 0, 0, 0, -1, 0}, {}};
 }
 
-/// The turn about the vertical.
+/// Rotation about the vertical.
 Pose heading_of(const Pose& map_from_camera) {
   const Point3 ahead = map_from_camera.rotated({0, 0, 1});
   return rotation_about({0, 0, std::atan2(ahead.y, ahead.x)});

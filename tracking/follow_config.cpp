@@ -29,7 +29,7 @@ bool is_of_following(std::string_view option) {
 
 void set(FollowConfig& config, std::string_view name, std::string_view value) {
   if (option_walk::set_known(config, name, value)) return;
-  if (!is_of_following(name)) set(config.segmentation, name, value);  // says where it went
+  if (!is_of_following(name)) set(config.segmentation, name, value);  // the error names the new option
   option_walk::refuse_unknown(name, options(config));
 }
 

@@ -11,8 +11,7 @@
 namespace cairn {
 namespace {
 
-/// Without a rig, masks are remembered in the picture: any rig does that leads there and back, as long as the
-/// camera is taken to stand.
+/// Without a rig, masks are remembered in image coordinates: for a static camera any rig maps there and back.
 StereoRig picture_rig(Size size) {
   return {.focal_px = static_cast<float>(size.width),
           .cx_px = static_cast<float>(size.width) / 2,
@@ -35,7 +34,7 @@ Image<TrackId> ids_of(const Tracks& tracks, const Objects& objects, const Exec& 
   return ids;
 }
 
-/// 255 where things that move are expected to show, none where none moves. `map_from_camera`: as expected.
+/// 255 where moving objects are expected, else 0. `map_from_camera`: the predicted pose.
 Image<std::uint8_t> expected_movers(const Remembered& remembered, const Tracks& tracks,
                                     const Pose& map_from_camera, Stamp now, const StereoRig& rig, Size size,
                                     const Exec& exec) {
@@ -89,7 +88,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   validate(config, pair.size(), rig_.has_value());
   Observed stage(exec_);
 
-  // What the frame shows; by hierarchy as far as to the regions that may be objects …
+  // Segment the frame; with `hierarchy`, up to the candidate regions …
   Given given{pair.left(), pair.left_rgb(), pair.right(), {}};
   const bool has_tree = config.fusion.method == FusionMethod::hierarchy;
   GrownScene grown;
@@ -102,7 +101,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   const Ground& ground = has_tree ? grown.cut.scene.found.ground : step.frame.ground;
   const Image<float>& confidence = has_tree ? grown.confidence : step.frame.confidence;
 
-  // … how the camera moved …
+  // … estimate the camera motion …
   if (frames_ == 0) {
     odometry_ = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
     is_over_floor_ = !map_from_camera && ground.plane.has_value();
@@ -110,7 +109,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   if (map_from_camera) {
     step.motion.refusal = MotionRefusal::off;
     step.motion.now_from_before = inverse(*map_from_camera) * odometry_.map_from_camera;
-    odometry_ = begin_odometry(*map_from_camera);  // should a later frame have no pose, it goes on from here
+    odometry_ = begin_odometry(*map_from_camera);  // the start if a later frame has no pose
   } else if (rig_) {
     const bool has_wheels = prior && prior->kind == PriorKind::wheels;
     const Pose expected_step = has_wheels ? prior->now_from_before : odometry_.last_step;
@@ -138,7 +137,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   const Covariance6 since_key = covariance_since_key(odometry_);
   tracks_ = tied_to_key(std::move(tracks_), pose, odometry_.key_covariance, step.motion.is_new_segment);
 
-  // … where the tracks should show, which helps to choose objects …
+  // … predict the tracks, which helps to choose objects …
   const Image<std::int16_t> best_right = std::move(grown.cut.scene.matches.best_right);
   const StereoRig rig = rig_.value_or(picture_rig(pair.size()));
   const Warped warped = warp(remembered_, tracks_, pose, stamp, rig, pair.size(), exec_);
@@ -157,7 +156,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   before_ = stamp;
   ++frames_;
 
-  // … and which of them are which track.
+  // … match objects and tracks …
   const Overlaps overlaps = overlaps_of(warped, tracks_, frame.objects, frame.disparity);
   const auto sightings = sight(frame, pair.left(), pair.left_rgb(), rig_, config_.tracking);
   const auto matches =
@@ -169,7 +168,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   step.tracks = tracks_;
   step.ids = ids_of(tracks_, frame.objects, exec_);
 
-  // How far all this is to be trusted.
+  // … and judge how reliable the result is.
   const bool looks_for_floor = config.ground.source == GroundSource::automatic;
   reliability_ = judge(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, reliability_);
   step.reliability = reliability_;

@@ -20,10 +20,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-constexpr double kNearest_m = 0.01;  // points nearer than this are behind the lens
+constexpr double kNearest_m = 0.01;  // nearer points are behind the lens
 constexpr double kHuber = 1.5;       // standard deviations
 constexpr double kOutlier = 6.0;     // standard deviations
-constexpr double kMaxSigma_m = 0.1;  // of the translation; a motion less sure is none
+constexpr double kMaxSigma_m = 0.1;  // of the translation; a less certain motion is refused
 constexpr double kMaxSigma_rad = 0.1;
 
 double squared_error_px(const FollowedCorner& corner, const Pose& pose, const StereoRig& rig) {
@@ -48,7 +48,7 @@ Pose pose_of_vectors(const cv::Mat& rotation_vector, const cv::Mat& translation)
   return pose;
 }
 
-/// Of the motions that three corners allow, the one that suits a fourth best; nullopt where there is none.
+/// Of the solutions for three corners, the one with the least error for a fourth; nullopt if there is none.
 std::optional<Pose> motion_of(const std::array<const FollowedCorner*, 4>& sample, const StereoRig& rig) {
   std::array<cv::Point3d, 3> points;
   std::array<cv::Point2d, 3> rays;
@@ -66,15 +66,15 @@ std::optional<Pose> motion_of(const std::array<const FollowedCorner*, 4>& sample
   for (std::size_t k = 0; k < rotations.size(); ++k) {
     const Pose pose = pose_of_vectors(rotations[k], translations[k]);
     const double error = squared_error_px(*sample[3], pose, rig);
-    if (!(error < least)) continue;  // NaN, too
+    if (!(error < least)) continue;  // also skips NaN
     least = error;
     best = pose;
   }
   return best;
 }
 
-/// As many rounds as make it likely that one sample held inliers alone; some in any case, since the expected
-/// motion has many inliers without being the best.
+/// The number of RANSAC rounds after which one sample probably contained only inliers. At least 30, since the
+/// expected motion may have many inliers and still not be the best.
 int rounds_wanted(int inliers, std::size_t n, const OdometryConfig& config) {
   const double clean = std::pow(static_cast<double>(inliers) / static_cast<double>(n), 4.0);
   constexpr int kLeast = 30;
@@ -83,7 +83,7 @@ int rounds_wanted(int inliers, std::size_t n, const OdometryConfig& config) {
   return std::max(kLeast, rounds < config.iterations ? static_cast<int>(rounds) : config.iterations);
 }
 
-/// The motion with most inliers; the first of several.
+/// The motion with the most inliers; the first of equals.
 Pose best_hypothesis(const std::vector<FollowedCorner>& corners, const StereoRig& rig, const Pose& start,
                      const OdometryConfig& config) {
   const std::size_t n = corners.size();
@@ -109,20 +109,20 @@ Pose best_hypothesis(const std::vector<FollowedCorner>& corners, const StereoRig
   return best;
 }
 
-/// exp(ξ) · pose, its rotation made orthonormal again.
+/// exp(ξ) · pose, re-orthonormalised.
 Pose moved_by(const Vector6& xi, const Pose& pose) {
   Pose step = rotation_about({xi(3), xi(4), xi(5)});
-  step.translation_m = {xi(0), xi(1), xi(2)};  // first order in ξ's coupling, which vanishes as it converges
+  step.translation_m = {xi(0), xi(1), xi(2)};  // first-order coupling: ξ vanishes as the fit converges
   const Pose moved = step * pose;
   return pose_of(moved.translation_m, quaternion(moved));
 }
 
-/// What one corner says of the motion, linearised at a pose.
+/// The residual of a corner, linearised at a pose.
 struct Linear {
   Matrix36 jacobian;
   Vector3 residual;
   Matrix3 information;
-  double mahalanobis = 0;  // square root
+  double mahalanobis = 0;  // not squared
   int dof = 2;
   bool usable = false;
 };
@@ -197,7 +197,7 @@ Normal normal_equations(const std::vector<FollowedCorner>& corners,
   return sum;
 }
 
-/// Marks the corners that the pose explains; how many those are.
+/// Marks the corners consistent with the pose and returns their number.
 int mark_inliers(const std::vector<FollowedCorner>& corners, const Pose& pose, const StereoRig& rig,
                  const OdometryConfig& config, std::vector<std::uint8_t>& is_inlier) {
   const double limit = double(config.reprojection_error) * double(config.reprojection_error);
@@ -227,7 +227,7 @@ MotionFit fit_motion(const std::vector<FollowedCorner>& corners, const StereoRig
     fit.refusal = MotionRefusal::few_inliers;
     return fit;
   }
-  // Later rounds take in those that the hypothesis of three corners missed narrowly.
+  // Later rounds add corners that the three-point hypothesis missed narrowly.
   constexpr int kRounds = 3;
   constexpr int kSteps = 8;
   Normal normal;
@@ -259,8 +259,8 @@ MotionFit fit_motion(const std::vector<FollowedCorner>& corners, const StereoRig
     return fit;
   }
   RowMajor6 covariance = std::max(1.0, fit.chi2_per_dof) * factors.solve(Matrix6::Identity()).eval();
-  // What all corners share does not average out, however many there are: an error of the disparities, which
-  // scales the motion, and one of the places, which turns it.
+  // Errors common to all corners do not average out: an error of the disparities scales the motion, one of
+  // the positions rotates it.
   constexpr double kCommonScale = 0.01;
   constexpr double kCommon_px = 0.1;
   const double common_m = kCommonScale * length(pose.translation_m);

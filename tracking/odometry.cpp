@@ -35,9 +35,9 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr double kKeyframeTurn_rad = 20 * kRadians;
 constexpr int kFramesUntilLost = 5;
-constexpr int kCoherentSteps = 2;         // between three frames in a row
-constexpr double kChi2Wheels = 22.46;     // 6 degrees of freedom, 0.999
-constexpr double kChi2Gyroscope = 16.27;  // 3
+constexpr int kCoherentSteps = 2;         // in consecutive frames
+constexpr double kChi2Wheels = 22.46;     // χ² with 6 degrees of freedom, 0.999
+constexpr double kChi2Gyroscope = 16.27;  // χ² with 3 degrees of freedom, 0.999
 constexpr int kSlippingFrames = 3;
 
 Matrix6 matrix(const Covariance6& rows) {
@@ -58,7 +58,7 @@ Eigen::Matrix3d rotation_of(const Pose& pose) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data());
 }
 
-/// Of ξ with true = exp(ξ) · pose, in the frame that `pose` leads on to.
+/// Adjoint for ξ with true = exp(ξ) · pose, in the target frame of `pose`.
 Matrix6 adjoint(const Pose& pose) {
   const Eigen::Matrix3d r = rotation_of(pose);
   Matrix6 a = Matrix6::Zero();
@@ -68,7 +68,7 @@ Matrix6 adjoint(const Pose& pose) {
   return a;
 }
 
-/// Of a motion with its end's axes, along the map's.
+/// Rotates the covariance of a motion from the axes of its end to those of the map.
 Matrix6 along_map(const Covariance6& moved, const Pose& map_from_now) {
   Matrix6 turn = Matrix6::Zero();
   turn.topLeftCorner<3, 3>() = rotation_of(map_from_now);
@@ -76,8 +76,8 @@ Matrix6 along_map(const Covariance6& moved, const Pose& map_from_now) {
   return turn * matrix(moved) * turn.transpose();
 }
 
-/// Of a pose in the map that was reached from another by a motion with the covariance `moved`, which is in
-/// the frame of the camera at its end.
+/// Covariance of a pose in the map after a motion with the covariance `moved`, which is in the frame of the
+/// camera at its end.
 Covariance6 carried_on(const Covariance6& before, const Pose& map_from_before, const Covariance6& moved,
                        const Pose& map_from_now) {
   Matrix6 lever = Matrix6::Identity();
@@ -88,12 +88,12 @@ Covariance6 carried_on(const Covariance6& before, const Pose& map_from_before, c
 // ---- images ----
 
 cv::Mat borrowed(View<const Gray> image) {
-  // OpenCV has no view of constant pixels; none of its functions here writes to its input.
+  // cv::Mat has no const view; no function called here writes to its input.
   return {image.height(), image.width(), CV_8UC1, const_cast<Gray*>(image.row(0)),
           static_cast<std::size_t>(image.stride())};
 }
 
-constexpr int kSmallWidth = 40;  // px, of the image by which a turn is guessed
+constexpr int kSmallWidth = 40;  // px, width of the images for guess_turn()
 
 cv::Mat small_image(const cv::Mat& image) {
   const double scale = double(kSmallWidth) / image.cols;
@@ -115,7 +115,7 @@ std::shared_ptr<Keyframe> look_at(View<const Gray> left, const OdometryConfig& c
   return frame;
 }
 
-/// Median of the 3×3 around a pixel; NaN where fewer than five have a disparity.
+/// Median disparity of the 3×3 pixels around (x, y); NaN if fewer than five are valid.
 double disparity_at(View<const float> disparity_px, int x, int y) {
   std::array<float, 9> found{};
   std::size_t count = 0;
@@ -132,7 +132,7 @@ double disparity_at(View<const float> disparity_px, int x, int y) {
   return *middle;
 }
 
-/// Where corners may lie: 255.
+/// Mask of pixels where corners may be: 255.
 cv::Mat allowed(const DisparityMap& disparity, View<const float> confidence, View<const std::uint8_t> moving,
                 const OdometryConfig& config) {
   const Size size = disparity.disparity_px.size();
@@ -174,7 +174,7 @@ void find_corners(Keyframe& frame, View<const Gray> left, const DisparityMap& di
   }
 }
 
-/// The corners of `key` in the image now, looked for where `now_from_key` has them.
+/// Tracks the corners of `key` into the current image, starting where `now_from_key` predicts them.
 std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, const Pose& now_from_key,
                                    const DisparityMap& disparity, const StereoRig& rig,
                                    const OdometryConfig& config) {
@@ -189,7 +189,7 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
     if (p.z < kNearest_m) continue;
     const cv::Point2f at(static_cast<float>(double(rig.focal_px) * p.x / p.z + double(rig.cx_px)),
                          static_cast<float>(double(rig.focal_px) * p.y / p.z + double(rig.cy_px)));
-    // Half a window beyond the border the search cannot succeed.
+    // Farther than half a window outside the image, tracking cannot succeed.
     const auto margin = static_cast<float>(config.win_size) / 2;
     if (!(at.x > -margin && at.y > -margin && at.x < width + margin && at.y < height + margin)) continue;
     before.push_back(key.corners[k].at_px);
@@ -209,7 +209,8 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
                            until, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-4);
   std::vector<std::uint8_t> found_back(found.size(), 1);
   if (config.fb_max_error > 0) {
-    // Back by the way that was predicted, so that a corner that went astray does not find home by itself.
+    // Starts the backward search from the prediction, so that a lost corner does not find its way back
+    // trivially.
     for (std::size_t k = 0; k < back.size(); ++k) back[k] = after[k] - (predicted[k] - before[k]);
     cv::calcOpticalFlowPyrLK(now.pyramid, key.pyramid, after, back, found_back, error, window,
                              config.max_level, until, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-4);
@@ -229,9 +230,8 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
   return followed;
 }
 
-/// The turn by which the small image of the frame before suits the one now best, without regard to their
-/// brightness: the shift with the least mean absolute difference (the small blurry images of Klein and
-/// Murray, ECCV 2008, with all shifts tried).
+/// The rotation that best aligns the small images, whatever their brightness: the shift with the least mean
+/// absolute difference (small blurry images, Klein and Murray, ECCV 2008; here all shifts are tried).
 Pose guess_turn(const cv::Mat& before, const cv::Mat& now, cv::Size full, const StereoRig& rig) {
   constexpr int kMost_x = 24;
   constexpr int kMost_y = 8;
@@ -271,13 +271,13 @@ Pose guess_turn(const cv::Mat& before, const cv::Mat& now, cv::Size full, const 
     }
   }
   const double scale = double(full.width) / kSmallWidth / double(rig.focal_px);
-  // What stood on the axis before is right of it by the shift now.
+  // A point on the optical axis moved to the right by the shift.
   return rotation_about({-std::atan(best_y * scale), std::atan(best_x * scale), 0});
 }
 
 // ---- priors ----
 
-/// What the prior says of the motion since the keyframe.
+/// The prior for the motion since the keyframe.
 struct PriorTerm {
   MotionTerm term;
   Matrix6 covariance = Matrix6::Zero();
@@ -310,7 +310,7 @@ bool is_usable(const MotionPrior& prior) {
   return Eigen::LLT<Matrix6>(p).info() == Eigen::Success;
 }
 
-/// Whether what was seen and what the prior says are farther apart than both allow.
+/// Whether measured motion and prior differ by more than their covariances allow.
 bool disagree(const MotionFit& seen, const PriorTerm& expected, PriorKind kind) {
   const Vector6 off = difference(seen.now_from_key, expected.term.now_from_key);
   const Matrix6 sum = matrix(seen.covariance) + expected.covariance;
@@ -321,7 +321,7 @@ bool disagree(const MotionFit& seen, const PriorTerm& expected, PriorKind kind) 
   return off.dot(sum.ldlt().solve(off)) > kChi2Wheels;
 }
 
-/// Whether a motion is none, as far as its covariance can tell.
+/// Whether a motion is zero within its uncertainty.
 bool stands_still(const Pose& motion, const Covariance6& covariance) {
   const Matrix6 p = matrix(covariance);
   constexpr double kStill_m = 0.002;
@@ -332,7 +332,7 @@ bool stands_still(const Pose& motion, const Covariance6& covariance) {
          angle_of(motion) <= std::max(kStill_rad, 3 * sigma_rad);
 }
 
-/// How far off a motion may be that was only thought to go on as before.
+/// Uncertainty of a motion extrapolated from the last step.
 Covariance6 covariance_of_guess(const Pose& step) {
   constexpr double kRest_m = 0.05;
   constexpr double kRest_rad = 3 * kRadians;
@@ -346,8 +346,7 @@ Covariance6 covariance_of_guess(const Pose& step) {
 constexpr double kPlace_m = 1;
 constexpr double kPlace_rad = 30 * kRadians;
 
-/// Of a place of which only the neighbourhood is known: what was seen since has nothing in common with what
-/// was seen before.
+/// For a position known only roughly: what is seen from here on shares nothing with what was seen before.
 Covariance6 covariance_of_new_place() {
   Vector6 variances;
   variances << Eigen::Vector3d::Constant(kPlace_m * kPlace_m),
@@ -355,7 +354,7 @@ Covariance6 covariance_of_new_place() {
   return rows_of(variances.asDiagonal());
 }
 
-/// At least as large as that of a new place.
+/// Raises the variances to those of a new place.
 Covariance6 as_of_new_place(Covariance6 covariance) {
   const Covariance6 least = covariance_of_new_place();
   for (std::size_t k = 0; k < 6; ++k) covariance[7 * k] = std::max(covariance[7 * k], least[7 * k]);
@@ -364,7 +363,7 @@ Covariance6 as_of_new_place(Covariance6 covariance) {
 
 // ---- one frame ----
 
-/// The present frame with all that is asked of it.
+/// The current frame with the inputs of odometry.
 struct PresentFrame {
   View<const Gray> left;
   const DisparityMap& disparity;
@@ -386,7 +385,7 @@ Attempt attempt(const Keyframe& key, const Keyframe& now, const Pose& start, con
   return made;
 }
 
-/// The better of two tries: the one that is not refused, then the one with more inliers.
+/// Prefers an attempt that is not refused, then more inliers.
 bool is_better(const Attempt& a, const Attempt& b) {
   const bool a_refused = a.fit.refusal != MotionRefusal::none;
   const bool b_refused = b.fit.refusal != MotionRefusal::none;
@@ -394,7 +393,8 @@ bool is_better(const Attempt& a, const Attempt& b) {
   return a.fit.inliers > b.fit.inliers;
 }
 
-/// Tries the expected motion as a start, then, where that finds little, the turn that the small images show.
+/// Starts from the expected motion, then, if that has few inliers, from the rotation between the small
+/// images.
 Attempt motion_from(const PlacedKeyframe& key, const OdometryState& state, const Keyframe& now,
                     const Pose& expected_step, const PresentFrame& present) {
   const Pose before_from_key = inverse(state.map_from_camera) * key.map_from_key;
@@ -426,7 +426,7 @@ bool is_usable(const PresentFrame& present) {
          (present.moving.empty() || present.moving.size() == size);
 }
 
-/// The frame as a keyframe where it has corners enough, else none.
+/// The frame as a keyframe if it has enough corners, else nullptr.
 std::shared_ptr<const Keyframe> as_keyframe(std::shared_ptr<Keyframe> frame, const PresentFrame& present) {
   find_corners(*frame, present.left, present.disparity, present.confidence, present.moving, present.rig,
                present.config);
@@ -443,8 +443,8 @@ OdometryState begin_odometry(const Pose& map_from_camera) {
 }
 
 OdometryState stood_on_floor(OdometryState state, const Pose& level) {
-  // The floor of one frame against that of another: √2 of what its plane is off the true one on the rendered
-  // sequences, 6 mm and 0.19° an axis (root mean square of 17 frames).
+  // Difference of the floor planes of two frames: √2 of the error of one, measured on the rendered sequences
+  // as 6 mm and 0.19° per axis (RMS of 17 frames).
   constexpr double kHeight_m = 0.01;
   constexpr double kTilt_rad = 0.3 * kRadians;
   state.key.map_from_key = level * inverse(state.map_from_camera) * state.key.map_from_key;
@@ -500,7 +500,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
     return step;
   }
 
-  // ---- what was seen ----
+  // ---- measure the motion ----
   Pose expected_step = before.lost ? Pose{} : before.last_step;
   if (prior && prior->kind == PriorKind::wheels) expected_step = prior->now_from_before;
   if (prior && prior->kind == PriorKind::gyroscope) expected_step.rotation = prior->now_from_before.rotation;
@@ -517,7 +517,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
     Attempt again = motion_from(before.spare, before, *now, expected_step, present);
     const bool is_coherent = again.fit.refusal == MotionRefusal::none;
     state.coherent_in_a_row = before.lost && is_coherent ? before.coherent_in_a_row + 1 : 0;
-    // Of noise, too, one frame may suit the next by chance: who is lost asks for more.
+    // A single match may be chance or noise, so relocalisation requires consecutive ones.
     if (is_coherent && (!before.lost || state.coherent_in_a_row >= kCoherentSteps)) {
       best = std::move(again);
       by_spare = true;
@@ -535,7 +535,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
   motion.chi2_per_dof = static_cast<float>(fit.chi2_per_dof);
   motion.refusal = fit.refusal;
 
-  // ---- what the prior says of it ----
+  // ---- compare with the prior ----
   const Pose before_from_key = inverse(before.map_from_camera) * state.key.map_from_key;
   if (prior && motion.refusal == MotionRefusal::none) {
     const PriorTerm expected = expected_from(*prior, before_from_key, state.covariance_to_key);
@@ -552,7 +552,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
     }
   }
 
-  // ---- where the camera is ----
+  // ---- update the pose ----
   if (motion.refusal == MotionRefusal::none) {
     state.map_from_camera = state.key.map_from_key * inverse(fit.now_from_key);
     state.covariance =
@@ -590,7 +590,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
     motion.covariance = state.covariance_to_key;
   }
 
-  // ---- what the next frame is compared with ----
+  // ---- choose the next keyframe ----
   const bool seen = motion.refusal == MotionRefusal::none;
   bool wants_key = !state.key.frame;
   if (seen) {

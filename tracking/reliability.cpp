@@ -15,7 +15,7 @@ namespace cairn {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kEveryRow = 4;  // of the rows, so many are enough for a share
+constexpr int kEveryRow = 4;  // a share needs only every fourth row
 
 template <class T>
 View<const T> some_rows(View<const T> all) {
@@ -57,8 +57,7 @@ void judge_pair(const Frame& frame, const Evidence& evidence, Witnesses& seen) {
 
 // ---- temporal ----
 
-/// Tracks that the frame before showed and that should be in view, against the objects that are tracked, over
-/// the pixels that have a disparity.
+/// IoU of the tracks predicted to be in view with the tracked objects, over the pixels that have a disparity.
 std::optional<float> temporal_of(const Step& step, const Warped& warped) {
   constexpr float kInView = 0.5F;
   constexpr int kFewestPixels = 16;
@@ -73,7 +72,7 @@ std::optional<float> temporal_of(const Step& step, const Warped& warped) {
     rows.push_back(mask.track);
     sure_before.push_back(double{track->confidence});
   }
-  // Objects that are too unsure to found a track are never expected, so they are no surprise either.
+  // Objects too uncertain to start a track are never predicted, so they do not count as unexpected.
   const std::size_t columns = objects.list.size();
   std::vector<bool> counts(columns, false);
   for (const Track& track : step.tracks.list) {
@@ -111,7 +110,7 @@ std::optional<float> temporal_of(const Step& step, const Warped& warped) {
         pairs.push_back({static_cast<double>(both) / (expected[i] + found[j] - both), i, j});
     }
   }
-  // The best pair first; ties by track, then by object.
+  // Best pair first; ties by track, then by object.
   std::ranges::stable_sort(pairs, std::ranges::greater{}, &Pair::iou);
   std::vector<bool> row_taken(rows.size(), false);
   std::vector<bool> column_taken(columns, false);
@@ -138,14 +137,14 @@ std::optional<FloorInCamera> floor_of_frame(const Step& step, const std::optiona
 }
 
 FloorInCamera moved(const FloorInCamera& floor, const Pose& now_from_before) {
-  const Point3 place = inverse(now_from_before).translation_m;  // of the camera now, seen from before
+  const Point3 place = inverse(now_from_before).translation_m;  // the camera now, in the previous frame
   return {now_from_before.rotated(floor.up), floor.height_m + dot(floor.up, place)};
 }
 
-/// Not known before a floor was seen for the first time: there may be none.
+/// nullopt until a floor was seen for the first time: there may be none.
 std::optional<float> floor_agreement(const std::optional<FloorInCamera>& expected,
                                      const std::optional<FloorInCamera>& seen, const Ground& ground) {
-  constexpr double kEnough = 0.2;  // of what lies under the horizon, this share on the floor is all one asks
+  constexpr double kEnough = 0.2;  // floor share of the pixels under the horizon for full agreement
   constexpr double kAngle = 3 * kDegree;
   constexpr double kHeightM = 0.05;
   if (!expected && !seen) return std::nullopt;
@@ -210,7 +209,7 @@ std::optional<float> scan_of(const Step& step, const LaserScan& scan, const Ster
 constexpr int kEveryPixel = 2;
 constexpr float kFlatPx = 1.05F;  // three standard deviations of a disparity
 
-/// The plane of least squares through an object's disparities, none where they do not span one.
+/// The least-squares plane through an object's disparities; nullopt if they are degenerate.
 std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sd = 0, sxd = 0, syd = 0;
   const Rect box = object.box_px;

@@ -7,11 +7,11 @@
 namespace cairn {
 namespace {
 
-// A region fits a track not at all, and wholly.
+// IoU of a region with a track below which it does not fit, and above which it fits fully.
 constexpr float kNoFit = 0.3F;
 constexpr float kWholeFit = 0.8F;
 
-/// Per node and track, in pixels: how much of the node is expected to show the track.
+/// For each node and track: number of pixels of the node where the track is predicted.
 std::vector<std::int32_t> expected_in(const MergeTree& tree, const Superpixels& superpixels,
                                       const Warped& warped, std::size_t tracks,
                                       const std::vector<TrackId>& ids) {
@@ -79,7 +79,7 @@ ChosenObjects choose_candidates(const MergeTree& tree, const std::vector<float>&
                                 const ChoiceLimits& limits, float low_confidence) {
   ChosenObjects chosen = choose_by_scores(tree, scores, limits);
   if (low_confidence >= limits.min_score) return chosen;
-  // No region that holds a part of an object.
+  // Exclude regions that overlap an object.
   std::vector<float> left = scores;
   std::vector<bool> is_taken(tree.nodes.size());
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {

@@ -9,17 +9,17 @@
 namespace cairn {
 namespace {
 
-constexpr int kLightness = 8;  // bins, of 12.5
-constexpr int kChroma = 8;     // bins of a* and of b*, of 16; neutral grey in the middle of one
+constexpr int kLightness = 8;  // bins, 12.5 wide
+constexpr int kChroma = 8;     // bins of a* and of b*, 16 wide; neutral grey at the centre of one
 constexpr int kNeutral = 4 * kChroma + 4;
 
-// How well a mask tells where the middle of what is seen of a thing is: an edge by pixels, its outline by its
-// size. Measured: docs/stages/tracking.md
+// Accuracy of the centre of the visible part, as given by a mask: an edge in pixels, an outline relative to
+// its size. Measured: docs/stages/tracking.md
 constexpr double kEdgeSigma = 0.5;     // px
 constexpr double kExtentShare = 0.05;  // of the extent
 constexpr double kDepthShare = 0.1;    // of the depth extent
-// The middle of a mask that is not that of a whole thing lies up to a quarter of its extent off, that of one
-// which the picture's border cuts up to a half: uniform distributions have σ = 1/√12 of their width.
+// The centre of a mask that covers an object incompletely is off by up to a quarter of its extent; up to half
+// if the image border clips it. A uniform distribution has σ = width / √12.
 constexpr double kDoubtShare = 0.144;
 constexpr double kCutShare = 0.289;
 
@@ -42,7 +42,7 @@ Bins bins_of_colour(double red, double green, double blue) {
   const double r = linear(red);
   const double g = linear(green);
   const double b = linear(blue);
-  // CIE 15:2018, of sRGB under D65.
+  // CIE 15:2018, for sRGB under D65.
   const double x = cube_root((0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047);
   const double y = cube_root(0.2126729 * r + 0.7151522 * g + 0.0721750 * b);
   const double z = cube_root((0.0193339 * r + 0.1191920 * g + 0.9503041 * b) / 1.08883);
@@ -51,7 +51,7 @@ Bins bins_of_colour(double red, double green, double blue) {
           static_cast<std::uint8_t>(chroma_bin(500 * (x - y)) * kChroma + chroma_bin(200 * (y - z)))};
 }
 
-/// Of colours of 5 bits each: a picture asks for 10⁵, of which few are different.
+/// Index of the colour with 5 bits per channel: an image needs 10⁵ look-ups of few different colours.
 std::size_t entry(Rgb c) {
   return (std::size_t{c.r} >> 3U) << 10U | (std::size_t{c.g} >> 3U) << 5U | std::size_t{c.b} >> 3U;
 }
@@ -80,7 +80,7 @@ ColourHistogram histogram(const Counts& counts) {
   return look;
 }
 
-/// Whether the mask goes on for 2 px to each side: at its border, colours are mixed.
+/// Whether the mask extends 2 px to each side: colours are mixed at its border.
 bool is_inside(View<const ObjectId> labels, int x, int y) {
   const ObjectId id = labels(x, y);
   return x >= 2 && y >= 2 && x < labels.width() - 2 && y < labels.height() - 2 && labels(x - 2, y) == id &&
@@ -110,7 +110,7 @@ std::vector<ColourHistogram> looks_of(const Objects& objects, View<const Gray> l
       if (is_inside(labels, x, y)) count(inside[i]);
     }
   }
-  // Of a thin thing, nothing lies inside.
+  // A thin object has no interior pixels.
   constexpr int kEnough = 30;  // px
   std::vector<ColourHistogram> looks;
   looks.reserve(all.size());
@@ -120,11 +120,11 @@ std::vector<ColourHistogram> looks_of(const Objects& objects, View<const Gray> l
 }
 
 struct Cut {
-  bool x = false;  // by the picture's left or right border
+  bool x = false;  // clipped by the left or right image border
   bool y = false;
 };
 
-/// Across the ray by the mask's outline, along it by the disparity.
+/// Across the ray from the mask's outline, along it from the disparity.
 Covariance3 covariance_of(Point3 p, Vec3 extent_m, const Object& object, Cut cut, const StereoRig& rig) {
   const double focal = rig.focal_px;
   const double doubt = std::sqrt(1 - std::clamp(double{object.confidence}, 0.0, 1.0));

@@ -35,13 +35,13 @@ struct Grid {
   double operator()(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-/// The column for each row so that the sum is greatest, −1 for none. Scores ≥ 0.
+/// The assignment of columns to rows with the greatest sum, −1 = none. Scores ≥ 0.
 std::vector<int> best_assignment(const Grid& scores) {
   const std::size_t side = std::max(scores.rows, scores.columns);
   std::vector<int> columns(scores.rows, -1);
   if (scores.rows == 0 || scores.columns == 0) return columns;
-  // dlib sums integers. 2^46 steps over the greatest score: differences of 1e-13 still count, and two such
-  // numbers cannot overflow.
+  // dlib sums integers. With 2^46 steps up to the greatest score, differences of 1e-13 still count, and the
+  // sum of two cannot overflow.
   const double greatest = *std::max_element(scores.values.begin(), scores.values.end());
   if (greatest <= 0) return columns;
   const double steps = std::ldexp(1.0, 46) / greatest;
@@ -59,10 +59,10 @@ std::vector<int> best_assignment(const Grid& scores) {
   return columns;
 }
 
-/// All frames with ids 0 … n − 1.
+/// All frames, with ids renumbered 0 … n − 1.
 struct Sequence {
   std::vector<ScoredFrame> frames;
-  std::vector<double> true_frames;  // by id: in how many frames it is
+  std::vector<double> true_frames;  // number of frames of each id
   std::vector<double> our_frames;
 
   [[nodiscard]] std::size_t true_objects() const { return true_frames.size(); }
@@ -99,7 +99,7 @@ double sum_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// How well two ids go together over the whole sequence, before anything is matched.
+/// Similarity of two ids over the whole sequence, before matching.
 Grid alignment(const Sequence& sequence) {
   Grid common(sequence.true_objects(), sequence.our_objects());
   for (const ScoredFrame& frame : sequence.frames) {
@@ -133,7 +133,7 @@ void score_hota(const Sequence& sequence, TrackErrors& errors) {
   const double true_count = sum_of(sequence.true_frames);
   const double our_count = sum_of(sequence.our_frames);
   if (true_count == 0 || our_count == 0) {
-    errors.loc_a = 1;  // so says TrackEval
+    errors.loc_a = 1;  // as TrackEval defines it
     return;
   }
   const Grid aligned = alignment(sequence);
@@ -186,12 +186,12 @@ void score_hota(const Sequence& sequence, TrackErrors& errors) {
 }
 
 std::vector<std::vector<int>> clear_matches(const Sequence& sequence) {
-  constexpr double kKept = 1000;  // far above any sum of similarities: what was matched before stays so
+  constexpr double kKept = 1000;  // far above any sum of similarities, so earlier matches persist
   std::vector<std::int64_t> before(sequence.true_objects(), -1);
   std::vector<std::vector<int>> all;
   for (const ScoredFrame& frame : sequence.frames) {
     all.emplace_back(frame.truth.size(), -1);
-    if (frame.truth.empty() || frame.ours.empty()) continue;  // so does TrackEval: `before` stays
+    if (frame.truth.empty() || frame.ours.empty()) continue;  // as in TrackEval: `before` persists
     Grid scores(frame.truth.size(), frame.ours.size());
     for (std::size_t i = 0; i < scores.rows; ++i) {
       for (std::size_t j = 0; j < scores.columns; ++j) {
@@ -216,8 +216,8 @@ void score_clear(const Sequence& sequence, TrackErrors& errors) {
   constexpr double kMostly = 0.8;
   constexpr double kHardly = 0.2;
   const std::vector<std::vector<int>> matches = clear_matches(sequence);
-  std::vector<std::int64_t> last(sequence.true_objects(), -1);  // that it was matched with, ever
-  std::vector<char> tracked(sequence.true_objects(), 0);        // in the frame before
+  std::vector<std::int64_t> last(sequence.true_objects(), -1);  // last id matched, ever
+  std::vector<char> tracked(sequence.true_objects(), 0);        // in the previous frame
   std::vector<int> stretches(sequence.true_objects(), 0);
   std::vector<double> matched(sequence.true_objects(), 0.0);
   for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
@@ -245,7 +245,6 @@ void score_clear(const Sequence& sequence, TrackErrors& errors) {
   const int true_count = errors.right + errors.missed;
   errors.motp /= std::max(1, errors.right);
   errors.mota = static_cast<double>(errors.right - errors.wrong - errors.switches) / std::max(1, true_count);
-  // TrackEval leaves a sequence without detections at MOTA 0; what has no truth, too.
   for (std::size_t t = 0; t < sequence.true_objects(); ++t) {
     const double share = matched[t] / sequence.true_frames[t];
     errors.mostly_tracked += share > kMostly ? 1 : 0;
@@ -253,6 +252,7 @@ void score_clear(const Sequence& sequence, TrackErrors& errors) {
     errors.mostly_lost += share < kHardly ? 1 : 0;
     errors.fragments += std::max(0, stretches[t] - 1);
   }
+  // As TrackEval does for a sequence without detections; here also for one without truth.
   if (true_count == 0 || sequence.our_objects() == 0) errors.mota = 0;
 }
 
@@ -266,8 +266,8 @@ void score_identity(const Sequence& sequence, TrackErrors& errors) {
       }
     }
   }
-  // Unmatched, a pair costs all of its frames, matched those that it has not in common: the cheapest choice
-  // is the one with most frames in common.
+  // An unmatched pair costs all of its frames, a matched one those not in common, so the cheapest assignment
+  // is the one with the most frames in common.
   const std::vector<int> chosen = best_assignment(common);
   double right = 0;
   for (std::size_t t = 0; t < chosen.size(); ++t) {
@@ -336,8 +336,8 @@ std::vector<ScoredFrame> oracle_ids(std::vector<ScoredFrame> frames) {
 ScoredFrame scored_frame(View<const TrackId> ours, View<const TruthId> truth, const ScoredFrameRules& rules) {
   assert(ours.size() == truth.size());
   std::map<TruthId, int> true_area;
-  std::map<TrackId, int> our_area;          // outside don't-care
-  std::map<TrackId, int> our_on_dont_care;  // inside
+  std::map<TrackId, int> our_area;          // excluding don't-care pixels
+  std::map<TrackId, int> our_on_dont_care;  // don't-care pixels only
   std::map<std::pair<TruthId, TrackId>, int> common;
   for (int y = 0; y < truth.height(); ++y) {
     for (int x = 0; x < truth.width(); ++x) {
@@ -393,7 +393,7 @@ Steadiness steadiness(const std::vector<ScoredFrame>& frames) {
   double differences = 0;
   struct ObjectHistory {
     double iou = 0;
-    bool was_found = false;  // since it came into view
+    bool was_found = false;  // since it entered the view
     bool is_lost = false;
   };
   std::map<std::int64_t, ObjectHistory> before;
@@ -422,7 +422,7 @@ Steadiness steadiness(const std::vector<ScoredFrame>& frames) {
 }
 
 double squared_mahalanobis(Point3 error_m, const Covariance3& c) {
-  // Cholesky; an indefinite matrix has no such distance.
+  // Cholesky decomposition; an indefinite matrix has no such distance.
   const double l00 = std::sqrt(c[0]);
   const double l10 = c[3] / l00;
   const double l20 = c[6] / l00;

@@ -42,7 +42,7 @@ Compared pair_up(const std::vector<TimedPose>& estimated, const std::vector<Time
   for (const TimedPose& pose : estimated) {
     const std::size_t index = nearest(truth, pose.stamp);
     if (std::abs(seconds_between(pose.stamp, truth[index].stamp)) > max_skew_s) continue;
-    if (!all.pairs.empty() && index <= last) continue;  // a true pose is used once
+    if (!all.pairs.empty() && index <= last) continue;  // each true pose is used once
     if (all.pairs.empty()) first = index;
     last = index;
     all.pairs.push_back({pose.map_from_camera, truth[index].map_from_camera});
@@ -61,7 +61,7 @@ std::vector<double> distances(const std::vector<Pair>& pairs) {
   return sums;
 }
 
-/// The estimated motion from one pose to another, seen from the true one.
+/// The estimated motion between two poses, relative to the true one.
 Pose motion_error(const Pair& from, const Pair& to) {
   const Pose estimated = inverse(from.estimated) * to.estimated;
   const Pose truth = inverse(from.truth) * to.truth;

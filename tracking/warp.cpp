@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Of the difference between a disparity and a warped one, three standard deviations of 0.35 px · √2.
+// Between a disparity and a warped one: three standard deviations of 0.35 px · √2.
 constexpr float kApart = 1.5F;  // px
 
 const Track* find(const Tracks& tracks, TrackId id) {
@@ -19,7 +19,7 @@ const Track* find(const Tracks& tracks, TrackId id) {
   return at != tracks.list.end() && at->id == id ? &*at : nullptr;
 }
 
-/// A pixel that two opposite neighbours of one track enclose is of that track.
+/// Assigns a pixel to a track if two opposite neighbours belong to it.
 void close_gaps(Warped& warped) {
   const Size size = warped.ids.size();
   const auto fill = [&](int x, int y, int dx, int dy) {
@@ -40,7 +40,7 @@ void close_gaps(Warped& warped) {
 Warped warp(const Remembered& remembered, const Tracks& tracks, const Pose& map_from_camera, Stamp now,
             const StereoRig& rig, Size image, const Exec& exec) {
   Warped warped{{}, Image<TrackId>(image, TrackId::none, exec.pool), Image<float>(image, kNan, exec.pool)};
-  Image<std::int32_t> covered(image, 0, exec.pool);  // by which mask last, counted from 1
+  Image<std::int32_t> covered(image, 0, exec.pool);  // last mask that covered the pixel, counted from 1
   const Pose camera_from_map = inverse(map_from_camera);
   const double focal_baseline = double{rig.focal_px} * double{rig.baseline_m};
   for (const Remembered::Mask& mask : remembered.masks) {
@@ -78,7 +78,7 @@ Remembered remember(Remembered before, const Tracks& tracks, const Objects& obje
                     const StereoRig& rig) {
   Remembered after;
   after.masks.reserve(tracks.list.size());
-  std::vector<std::int32_t> mask_of(objects.list.size() + 1, -1);  // none: not remembered from this frame
+  std::vector<std::int32_t> mask_of(objects.list.size() + 1, -1);  // −1 = not remembered from this frame
   auto old = before.masks.begin();
   for (const Track& track : tracks.list) {
     while (old != before.masks.end() && old->track < track.id) ++old;

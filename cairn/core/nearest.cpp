@@ -25,7 +25,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
-  name = name.substr(0, 100);  // what is longer resembles no name, and need not be compared in full
+  name = name.substr(0, 100);  // longer names are not similar to any
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(3, name.size() / 2) + 1;
   for (const std::string& candidate : candidates) {

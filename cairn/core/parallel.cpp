@@ -14,9 +14,8 @@
 #include <oneapi/tbb/task_group.h>
 #endif
 
-// ThreadSanitizer does not see how oneTBB's library, built without it, hands work from thread to thread: it
-// is told so here. A closure that is read before that is not watched; for oneTBB's headers see
-// tests/tsan.supp.
+// ThreadSanitizer does not see how oneTBB's library, built without it, passes work between threads, so it is
+// annotated here. Reads of a closure before that are excluded; for oneTBB's headers see tests/tsan.supp.
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
 #define CAIRN_NOT_WATCHED __attribute__((no_sanitize("thread"), noinline))
@@ -29,7 +28,7 @@ namespace cairn {
 #if CAIRN_WITH_TBB
 namespace {
 
-/// What a thread did before give(), another one may rely on after take(). For ThreadSanitizer only.
+/// A happens-before edge from give() to take(), for ThreadSanitizer only.
 class HandOver {
  public:
 #if defined(__SANITIZE_THREAD__)
@@ -45,7 +44,7 @@ class HandOver {
 #endif
 };
 
-// At the end of a scope, however it is left.
+// At the end of a scope, also after an exception.
 struct GiveLast {
   HandOver& over;
   ~GiveLast() { over.give(); }
@@ -78,11 +77,10 @@ class Workers {
 
   void run(int count, int grain, const std::function<void(int, int)>& body) {
 #if CAIRN_WITH_TBB
-    // As many equal parts as threads × 4: enough to even out the load, few enough that per-range set-up stays
-    // cheap.
+    // threads × 4 equal parts: enough to balance the load, few enough to keep the set-up per range cheap.
     const int part = std::max(grain, (count + threads_ * 4 - 1) / (threads_ * 4));
     const int parts = (count + part - 1) / part;
-    // Isolated: who waits for the last part must not begin a side work meanwhile, which takes much longer.
+    // Isolated: a thread that waits for the last part must not start side work, which takes much longer.
     HandOver begun;
     HandOver done;
     const TakeLast last{done};
@@ -117,8 +115,8 @@ class Workers {
  private:
   int threads_;
 #if CAIRN_WITH_TBB
-  // Asked for more threads than there are processors, oneTBB would print a warning and refuse. The limit only
-  // ever rises.
+  // oneTBB would print a warning and refuse to use more threads than there are processors. The limit is only
+  // ever raised.
   oneapi::tbb::global_control limit_;
   oneapi::tbb::task_arena arena_;
 #endif
@@ -166,8 +164,8 @@ class SideWork::Running {
     const TakeLast last{done_};
     workers_->arena().execute([this]() CAIRN_NOT_WATCHED { group_.wait(); });
   }
-  /// Does not cancel the group: that would end the loops inside the work, too, which then went on with what
-  /// they had not written.
+  /// Does not cancel the group: that would also end the loops inside the work, which would then continue on
+  /// incomplete results.
   void give_up() {
     given_up_ = true;
     wait();
@@ -208,7 +206,7 @@ SideWork::~SideWork() {
   if (!running_) return;
   try {
     running_->give_up();
-  } catch (...) {  // nobody asks any more what came of it
+  } catch (...) {  // the result is no longer needed
   }
 }
 

@@ -91,7 +91,7 @@ Pool::Buffer Pool::take(std::size_t bytes) const {
   {
     const std::lock_guard lock(store_->mutex);
     const auto found = store_->free.lower_bound(bytes);
-    // A much larger buffer would be missing where it is needed, and the frame's peak would grow.
+    // Handing out a much larger buffer would make a later large request allocate, raising the frame's peak.
     if (found != store_->free.end() && found->first <= bytes + bytes / 4) {
       Buffer buffer(found->second, found->first, store_);
       store_->free.erase(found);

@@ -10,7 +10,7 @@
 
 #if CAIRN_WITH_HWY
 #include <cairn/core/highway_targets.hpp>
-// After what tells it which targets there are.
+// After highway_targets.hpp, which selects the targets.
 #include <hwy/targets.h>
 #endif
 
@@ -24,7 +24,7 @@ constexpr std::array kNames{std::pair{Target::best, std::string_view("best")},
                             std::pair{Target::avx512, std::string_view("avx512")},
                             std::pair{Target::neon, std::string_view("neon")}};
 
-/// Whether the kernels are compiled for it: see each_target-inl.hpp.
+/// Whether the kernels are compiled for this target: see each_target-inl.hpp.
 constexpr bool is_compiled(Target target) {
   if (target == Target::scalar) return true;
 #if CAIRN_WITH_HWY
@@ -42,7 +42,7 @@ bool runs_here(Target target) {
   // Every 64-bit ARM processor has it. Highway asks for AES as well, which is not used here.
   if (target == Target::neon) return true;
 #elif CAIRN_WITH_HWY
-  // Asked once: in a virtual machine the processor's answer takes as long as some rows of an image.
+  // Queried once: in a virtual machine, CPUID takes as long as several rows of an image.
   static const std::int64_t supported = hwy::SupportedTargets();
   const auto has = [](std::int64_t bit) { return (supported & bit) != 0; };
 #if HWY_ARCH_X86

@@ -14,21 +14,21 @@ using sparse::kWindow;
 using sparse::kWindowArea;
 using sparse::Place;
 
-constexpr int kCoarseWidth = 400;  // px; at most, where points are looked for
-constexpr int kFineWidth = 1400;   // px; at most, where there are too few of them
+constexpr int kCoarseWidth = 400;  // px; greatest width of the images searched …
+constexpr int kFineWidth = 1400;   // px; … and where these have too little texture
 constexpr std::size_t kEnoughPoints = 100;
 constexpr std::size_t kMostPoints = 500;
-constexpr float kLeastAlike = 0.75F;    // correlation of a match, −1 … 1
-constexpr float kRivalRatio = 1.2F;     // of what the second best place lacks of 1 to what the best lacks
-constexpr float kRivalMargin = 0.005F;  // and this much more
-constexpr int kNear = 2;                // px; so close is no rival, and leads back well enough
+constexpr float kLeastAlike = 0.75F;    // least correlation of a match, −1 … 1
+constexpr float kRivalRatio = 1.2F;     // least ratio of 1 − score, of a rival to the best place
+constexpr float kRivalMargin = 0.005F;  // added to that bound
+constexpr int kNear = 2;                // px; a place this near is no rival, and confirms the search back
 
-/// An image for correlation: its pixels, and of the window at each its sum and one over its deviation.
+/// An image for correlation: its pixels, the sum of the window at each, and the inverse of its deviation.
 struct Level {
   View<const Gray> gray;
   Image<float> values;
   Image<float> sums;
-  Image<float> scales;  // 0 where the window is plain
+  Image<float> scales;  // 0 for a uniform window
 };
 
 void sum_window(View<const Gray> image, int x, int y, float& total, float& scale) {
@@ -62,12 +62,12 @@ Level make_level(View<const Gray> gray, const Exec& exec) {
   return level;
 }
 
-/// Scores of all places of one search, kept from point to point so that nothing is allocated anew.
+/// Scores of all places of one search; kept to reuse the memory for the next point.
 struct Scores {
   Rect places;
   std::vector<float> score;
   [[nodiscard]] float* row(int y) { return score.data() + static_cast<std::ptrdiff_t>(y) * places.width; }
-  /// No neighbour has more.
+  /// No neighbour has a higher score.
   [[nodiscard]] bool is_peak(int x, int y) {
     const float here = row(y)[x];
     for (int j = std::max(0, y - 1); j <= std::min(places.height - 1, y + 1); ++j) {
@@ -79,7 +79,7 @@ struct Scores {
   }
 };
 
-/// Σ window · image for each place of a row. The sums are whole numbers that float holds exactly.
+/// Σ window · image for each place of a row: integers that float represents exactly.
 void correlate_row(const Level& from, Point p, const Level& in, Rect places, int y, float* sums) {
   std::fill_n(sums, places.width, 0.0F);
   for (int j = 0; j < kWindow; ++j) {
@@ -109,7 +109,7 @@ void correlate(const Level& from, Point p, const Level& in, Scores& scores) {
   }
 }
 
-/// Everywhere around `p` where a point may be found again.
+/// The search area for `p`.
 Rect places_around(Point p, Size size) {
   const int columns = static_cast<int>(kWidestDisparity * static_cast<float>(size.width));
   const int rows = std::max(4, static_cast<int>(kMostRowsOff * static_cast<float>(size.height)));
@@ -120,7 +120,7 @@ Rect places_around(Point p, Size size) {
   return {x0, y0, x1 - x0 + 1, y1 - y0 + 1};
 }
 
-/// The place most alike; nullopt where it is little alike, or another nearly as much.
+/// The most similar place; nullopt if the similarity is low, or a rival is nearly as similar.
 std::optional<Point> most_alike(const Level& from, Point p, const Level& in, Scores& scores) {
   scores.places = places_around(p, in.gray.size());
   correlate(from, p, in, scores);
@@ -140,7 +140,7 @@ std::optional<Point> most_alike(const Level& from, Point p, const Level& in, Sco
   return Point{scores.places.x + at.x, scores.places.y + at.y};
 }
 
-/// An image at full size and halved again and again; the last is the coarsest.
+/// An image pyramid, from full size to the coarsest level.
 class Pyramid {
  public:
   Pyramid(View<const Gray> full, const Exec& exec) : levels_{full} {
@@ -157,8 +157,8 @@ class Pyramid {
   std::vector<View<const Gray>> levels_;
 };
 
-/// From the level where `p` of one image was found at `start` of the other, to the finest one; the one counts
-/// as the left.
+/// Tracks a match of `p` at `start` from level `from` to full resolution. Of the result, `image` is the left
+/// one.
 std::optional<Correspondence> follow(const Pyramid& image, const Pyramid& other, std::size_t from, Point p,
                                      Point start) {
   constexpr int kMiddle = kWindow / 2;
@@ -180,8 +180,8 @@ bool has_border(View<const Gray> image, Point p) {
   return p.x > 0 && p.y > 0 && p.x + kWindow < image.width() && p.y + kWindow < image.height();
 }
 
-/// From the right image's window where the left one's leads nowhere: the sharper picture's window is told
-/// from the blurred one's better than the other way round.
+/// Tries the window of the right image if that of the left one is lost: a sharp window is found in a blurred
+/// image more reliably than the reverse.
 std::optional<Correspondence> follow_either(const Pyramid& left, const Pyramid& right, std::size_t from,
                                             Point p, Point start) {
   if (const auto found = follow(left, right, from, p, start)) return found;

@@ -28,7 +28,7 @@ std::string percent_text(double share) {
   return text_of("%.0f %%", 100 * share);
 }
 
-/// What the checks look at, and what they found.
+/// The input of the checks, and their findings.
 struct Case {
   const PairMeasures& measures;
   const std::optional<StereoRig>& rig;
@@ -40,7 +40,7 @@ struct Case {
            Camera camera = Camera::pair) {
     findings.push_back({kind, severity, value, std::move(says), {}, camera});
   }
-  /// A warning from one limit on, broken from the other.
+  /// A warning from `warn` on, broken from `broken` on.
   static std::optional<Severity> severity(double value, float warn, float broken) {
     if (value >= static_cast<double>(broken)) return Severity::broken;
     if (value >= static_cast<double>(warn)) return Severity::warning;
@@ -53,7 +53,7 @@ struct Case {
   }
 };
 
-/// Whether a geometry was found, which all that follows rests on.
+/// Whether the points share an epipolar geometry, which all further checks require.
 bool check_points(Case& c) {
   const RowAlignment& rows = c.measures.rows;
   const int textured = c.measures.textured_points;
@@ -75,8 +75,8 @@ bool check_points(Case& c) {
   return true;
 }
 
-/// Whether enough points agree for what is said of their disparities: by chance alone some do, as in a
-/// mirrored picture.
+/// Whether enough points are consistent to judge their disparities: some always are by chance, as in a
+/// mirrored image.
 bool is_certain(const PairMeasures& measures, const DiagnosisConfig& config) {
   const RowAlignment& rows = measures.rows;
   return static_cast<int>(measures.disparities_px.size()) >= config.least_points &&
@@ -84,12 +84,12 @@ bool is_certain(const PairMeasures& measures, const DiagnosisConfig& config) {
           100 * rows.agreeing_share() >= static_cast<double>(config.least_certain_share));
 }
 
-/// True where both pictures are one: a pixel for a pixel, or as far as its points tell.
+/// True if both images are the same: all pixels equal, or nearly all points at disparity 0.
 bool check_same(Case& c) {
   const PairMeasures& measures = c.measures;
   constexpr double kNoDisparity = 0.25;  // px
   const double zeros = c.share_below(kNoDisparity) - c.share_below(-kNoDisparity);
-  const bool is_plain = measures.left_exposure.contrast == 0;  // a black picture equals any other
+  const bool is_plain = measures.left_exposure.contrast == 0;  // a black image equals any other
   if (measures.identical && !is_plain) {
     c.add(FindingKind::same_picture, Severity::broken, 100, "all pixels are equal in both");
     return true;
@@ -105,8 +105,8 @@ bool check_same(Case& c) {
   return true;
 }
 
-/// True where nearly all points are negative, none of the range holds them, and it would once exchanged: a
-/// doffs above 0 allows negative disparities, but whoever searches a positive range expects none.
+/// True if nearly all disparities are negative and outside the range, but inside it after exchanging the
+/// images. With doffs > 0 negative disparities are valid, but a positive range does not expect them.
 bool fits_exchanged(const Case& c) {
   const double first = c.range.min_disparity;
   const double last = first + c.range.num_disparities - 1;
@@ -116,7 +116,7 @@ bool fits_exchanged(const Case& c) {
          100 * inside_exchanged >= static_cast<double>(c.config.break_swapped);
 }
 
-/// True where the cameras are in order.
+/// True if the cameras are not swapped.
 bool check_order(Case& c) {
   const double doffs = c.rig ? static_cast<double>(c.rig->doffs_px) : 0.0;
   const double negative = c.share_below(-1);
@@ -149,7 +149,7 @@ void check_rows(Case& c) {
   }
 }
 
-/// A range that `nearest` fits in, with a quarter to spare, a multiple of 16.
+/// The smallest range, a multiple of 16, that includes `nearest` with a quarter to spare.
 int suggested_range(double nearest) {
   return std::min(1024, 16 * static_cast<int>(std::ceil(std::max(1.0, 1.25 * nearest) / 16)));
 }
@@ -184,7 +184,7 @@ void check_range(Case& c) {
             ": match.num_disparities=" + std::to_string(suggested_range(nearest - first)) + " would do");
 }
 
-/// Of a segmented frame, whose surfaces end where the range does.
+/// For segmented frames: disparities pile up at the end of a range that is too small.
 void check_end_of_range(Case& c, const DisparityMap& map) {
   const int last = c.range.min_disparity + c.range.num_disparities - 1;
   std::int64_t known = 0;
@@ -205,7 +205,7 @@ void check_end_of_range(Case& c, const DisparityMap& map) {
             std::to_string(suggested_range(1.6 * c.range.num_disparities)));
 }
 
-/// Of a segmented frame.
+/// For segmented frames.
 void check_floor(Case& c, const Frame& frame) {
   if (frame.ground.plane || frame.ground.refusal == Refusal::off) return;
   c.add(FindingKind::no_floor, Severity::note, 100 * known_share(frame.disparity),
@@ -282,7 +282,7 @@ void check_sharpness(Case& c) {
     c.add(FindingKind::blur, Severity::warning, worse, "edges are wide in both images: " + numbers);
     return;
   }
-  // Noise makes edges narrow, so the other camera's alone blame nobody.
+  // Noise makes edges narrower, so a ratio alone does not show which camera is at fault.
   const bool is_unequal =
       worse >= static_cast<double>(c.config.least_unequal_edge) && worse >= ratio * std::min(left, right);
   if (worse < limit && !is_unequal) return;
@@ -291,7 +291,7 @@ void check_sharpness(Case& c) {
         camera_of(left > right, right > left));
 }
 
-/// What can be said of a calibration by the size of the pictures alone.
+/// Checks the calibration against the size of the images.
 void check_camera(Case& c) {
   if (!c.rig) return;
   const StereoRig& rig = *c.rig;
@@ -317,7 +317,7 @@ void check_camera(Case& c) {
   }
 }
 
-/// Distances that nobody sees with a stereo camera: a wrong unit of the baseline.
+/// Checks for distances that are implausible with a stereo camera, as from a wrong unit of the baseline.
 void check_distances(Case& c) {
   if (!c.rig) return;
   const double scale = static_cast<double>(c.rig->focal_px) * static_cast<double>(c.rig->baseline_m);
@@ -335,7 +335,7 @@ void check_distances(Case& c) {
               text_of("%.3g m away", far ? nearest : furthest) + ": a wrong unit of length?");
     return;
   }
-  // Centimetres taken for metres: 1 m and more between the cameras is rare, and looks far away where it is.
+  // Centimetres given as metres: a baseline of 1 m or more is rare, and used for far scenes.
   constexpr double kLongBaseline = 1;
   const bool is_far = baseline >= kLongBaseline && nearest >= static_cast<double>(c.config.warn_nearest);
   if (baseline <= static_cast<double>(c.config.warn_baseline) && !is_far) return;
@@ -344,8 +344,8 @@ void check_distances(Case& c) {
             text_of("%.3g m if that is in centimetres: metres are expected", nearest / 100));
 }
 
-/// Disparities that one of a point's nearest points has as well, roughly: a false match is alone with its
-/// own.
+/// The disparities similar to that of one of the nearest points. False matches are rarely similar to their
+/// neighbours.
 std::vector<float> supported_disparities(const std::vector<Correspondence>& points) {
   constexpr std::size_t kNeighbours = 4;
   constexpr float kAlike = 0.15F;
@@ -365,17 +365,17 @@ std::vector<float> supported_disparities(const std::vector<Correspondence>& poin
     int alike = 0;
     for (std::size_t i = 0; i < count; ++i)
       alike += std::abs(nearest[i].second - c.disparity()) <= tolerance ? 1 : 0;
-    if (alike > 1) supported.push_back(c.disparity());  // itself is one of them
+    if (alike > 1) supported.push_back(c.disparity());  // the point itself counts as one
   }
   std::sort(supported.begin(), supported.end());
   return supported;
 }
 
-/// Some thousand of a map's disparities, ascending.
+/// A sample of a few thousand disparities, ascending.
 std::vector<float> some_disparities(View<const float> disparity_px) {
   constexpr std::int64_t kMost = 4096;
   const std::int64_t area = disparity_px.size().area();
-  const std::int64_t step = std::max<std::int64_t>(1, area / kMost) | 1;  // odd: no column alone
+  const std::int64_t step = std::max<std::int64_t>(1, area / kMost) | 1;  // odd, to sample all columns
   std::vector<float> some;
   for (std::int64_t i = 0; i < area; i += step) {
     const float d =
@@ -488,7 +488,7 @@ std::vector<Finding> diagnose(const Frame& frame, View<const Gray> left, View<co
   }
   Case c{measures, rig, config.match, limits};
   check_camera(c);
-  // A plain wall has disparities of 0 as well.
+  // A plain wall has disparities of 0, too.
   const bool has_points = frame.epipolar.outcome == EpipolarOutcome::aligned ||
                           frame.epipolar.outcome == EpipolarOutcome::corrected ||
                           (measures.identical && measures.left_exposure.contrast > 0);

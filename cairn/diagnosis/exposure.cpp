@@ -21,9 +21,9 @@ int level_below(const std::array<std::int64_t, kLevels>& counts, std::int64_t pi
   return kLevels - 1;
 }
 
-constexpr int kRadius = 4;  // px, of the windows compared
+constexpr int kRadius = 4;  // px, of the windows to compare
 
-/// nullopt beyond the border and where the camera had no level for it.
+/// Mean of the window; nullopt if it leaves the image or contains clipped pixels.
 std::optional<double> mean_around(View<const Gray> image, float x_px, float y_px) {
   const auto x0 = static_cast<int>(std::lround(x_px)) - kRadius;
   const auto y0 = static_cast<int>(std::lround(y_px)) - kRadius;
@@ -56,7 +56,7 @@ Exposure measure_exposure(View<const Gray> image) {
 
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing) {
   constexpr double kMiddle = 128;
-  constexpr double kScale = 4;         // grey levels, of what windows usually differ by
+  constexpr double kScale = 4;         // grey levels; typical difference between windows
   constexpr double kLeastSpread = 20;  // grey levels between the darker and the brighter windows
   std::vector<Equation<2>> equations;
   std::vector<double> differences;

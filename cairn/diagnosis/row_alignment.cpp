@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kAgreeRows = 1.0;
 constexpr double kCloseRows = 0.5;
-constexpr double kGain = 1.15;  // so many times as many points must be close before a distortion is believed
+constexpr double kGain = 1.15;  // a distortion must bring this factor more points close than the line does
 constexpr double kCertain = 5;  // standard errors of the roll
 
 using LineTerms = std::array<double, 2>;
 using FieldTerms = std::array<double, 7>;
 
-/// Makes places and disparities of the order of 1.
+/// Normalises positions and disparities to the order of 1.
 struct Frame {
   double middle_x = 0;
   double middle_y = 0;
@@ -41,7 +41,7 @@ Frame frame_of(const Correspondences& found) {
           disparities.empty() ? 0.0 : quantile(disparities, 0.5), 0.5 * found.size.width};
 }
 
-/// What a pair's rows do: of each correspondence, how many rows it should be off.
+/// The expected row difference of each correspondence.
 struct Rows {
   std::array<double, 2> line{};
   std::vector<double> expected;
@@ -70,7 +70,7 @@ std::ptrdiff_t within(const Correspondences& found, const std::vector<double>& e
   return count;
 }
 
-/// The line nearest to the distortion itself, over the points that it explains.
+/// The line nearest to the fitted distortion, over the points consistent with it.
 std::array<double, 2> line_through(const Correspondences& found, std::vector<Equation<2>> equations,
                                    const std::vector<double>& expected) {
   std::vector<Equation<2>> kept;
@@ -83,7 +83,7 @@ std::array<double, 2> line_through(const Correspondences& found, std::vector<Equ
   return fit_robustly<2>(kept, kAlmostSquares);
 }
 
-/// Whether a roll is more than what few points on a small part of the picture make up.
+/// Whether the roll is significant: a few points in a small part of the image can suggest one by chance.
 bool is_certain(const std::vector<Equation<2>>& equations, const std::array<double, 2>& line) {
   double count = 0;
   double sum = 0;

@@ -13,16 +13,16 @@ namespace cairn {
 namespace {
 
 constexpr int kBands = 16;
-constexpr std::size_t kMostTried = 6;  // frames whose points are looked for in neighbours
+constexpr std::size_t kMostTried = 6;  // frames to match with their neighbours
 constexpr double kLeastCorrelation = 0.6;
-constexpr double kClearCorrelation = 0.2;    // above that of no lag
-constexpr double kClearAgreement = 1.25;     // times that of no lag
-constexpr double kTellingCorrelation = 0.1;  // above that of any other lag: the lags can be told apart
+constexpr double kClearCorrelation = 0.2;    // above the correlation of lag 0
+constexpr double kClearAgreement = 1.25;     // times the agreement of lag 0
+constexpr double kTellingCorrelation = 0.1;  // above that of any other lag: the lags are distinguishable
 constexpr double kTellingAgreement = 1.1;    // times that of any other lag
-constexpr double kUnexplained = 0.5;         // of what one lag lacks of a correlation of 1, that two may lack
-constexpr std::size_t kLeastPart = 6;        // changes, of a part with a lag of its own
+constexpr double kUnexplained = 0.5;   // 1 − correlation of two lags, as a share of that of one; at most
+constexpr std::size_t kLeastPart = 6;  // changes; shortest part with a lag of its own
 
-/// Mean change of each band of rows from one picture to the next, grey levels.
+/// Mean change of each band of rows between consecutive images, in grey levels.
 using Change = std::array<double, kBands>;
 
 Change change(View<const Gray> before, View<const Gray> after) {
@@ -47,7 +47,7 @@ bool is_still(const Change& change) {
   return std::all_of(change.begin(), change.end(), [](double band) { return band == 0; });
 }
 
-/// Each band less its mean over time: what stays the same says nothing about when.
+/// Each band minus its mean over time: constant changes carry no timing.
 std::vector<Change> without_means(std::span<const Change> changes) {
   std::vector<Change> rest(changes.begin(), changes.end());
   for (std::size_t band = 0; band < kBands; ++band) {
@@ -58,7 +58,7 @@ std::vector<Change> without_means(std::span<const Change> changes) {
   return rest;
 }
 
-/// What a correlation is made of.
+/// The sums of a correlation coefficient.
 struct Sums {
   double products = 0;
   double of_left = 0;
@@ -78,7 +78,7 @@ std::size_t index(int lag) {
   return static_cast<std::size_t>(lag + Synchrony::kMostLag);
 }
 
-/// Of left[i] with right[i + lag].
+/// Over left[i] and right[i + lag].
 Sums sums_of(std::span<const Change> left, std::span<const Change> right, int lag) {
   Sums sums;
   const int count = static_cast<int>(left.size());
@@ -103,19 +103,19 @@ SumsByLag sums_by_lag(std::span<const Change> left, std::span<const Change> righ
   return sums;
 }
 
-/// The lag that explains a part by far better than the other part's.
+/// Whether `lag` explains a part much better than `other`.
 bool is_clear(const SumsByLag& part, int lag, int other) {
   const double correlation = part[index(lag)].correlation();
   return correlation >= kLeastCorrelation &&
          correlation >= part[index(other)].correlation() + kClearCorrelation;
 }
 
-/// The best of all places and pairs of lags; nullopt where none is clearly better than `by_one`, the best
-/// correlation of one lag for all.
+/// The best change of lag over all frames and pairs of lags; nullopt if none is clearly better than `by_one`,
+/// the best correlation with one lag throughout.
 std::optional<LagChange> find_change(std::span<const Change> left, std::span<const Change> right,
                                      double by_one) {
   std::optional<LagChange> best;
-  // Change i leads from frame i to frame i + 1: that across the place belongs to no part.
+  // Change i is from frame i to frame i + 1; the change across the boundary belongs to neither part.
   for (std::size_t from = kLeastPart + 1; from + kLeastPart <= left.size(); ++from) {
     const SumsByLag first = sums_by_lag(left.first(from - 1), right.first(from - 1));
     const SumsByLag second = sums_by_lag(left.subspan(from), right.subspan(from));

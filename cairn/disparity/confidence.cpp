@@ -14,7 +14,7 @@ constexpr int kGrain = 48;  // rows; each range first sums a whole window's heig
 constexpr int kRadius = kConfidenceWindow / 2;
 constexpr float kJump = 1.0F;  // px
 
-/// Two counts in one number: a whole window's fit.
+/// Both counts fit one number, for a whole window.
 using Counts = kernels::HolesAndJumps;
 static_assert(kConfidenceWindow * kConfidenceWindow < 256);
 
@@ -37,7 +37,7 @@ int inside(int p, int length) {
   return std::min(p + kRadius, length - 1) - std::max(p - kRadius, 0) + 1;
 }
 
-/// Counts around each pixel, for rows from the top down.
+/// Window counts around each pixel, for rows from top to bottom.
 class WindowCounts {
  public:
   WindowCounts(View<const Counts> marks, int first_row, const kernels::ConfidenceKernels& run)

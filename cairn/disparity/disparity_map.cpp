@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-/// Throws unless every finite value lies within bounds and there is one.
+/// Throws unless there is a finite value, and all of them are within bounds.
 void require_values(View<const float> disparity_px) {
   bool any = false;
   for (int y = 0; y < disparity_px.height(); ++y) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 
-/// Disparity smoothed over the valid pixels; holes stay.
+/// Disparity smoothed over the valid pixels; holes remain.
 Image<std::int16_t> smoothed(View<const std::int16_t> disparity16, const Kernel& kernel, const Exec& exec) {
   const Size size = disparity16.size();
   const int r = kernel.radius;

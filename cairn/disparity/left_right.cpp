@@ -19,7 +19,7 @@ using kernels::Claim;
 
 constexpr int kGrain = 32;  // rows
 
-/// How many rows up or down a match may lie.
+/// The largest row offset of a match, up or down.
 int largest_row_offset(const Matches& matches) {
   int largest = 0;
   for (int y = 0; y < matches.row_offset.height(); ++y) {
@@ -30,9 +30,9 @@ int largest_row_offset(const Matches& matches) {
   return largest;
 }
 
-/// What the left winners say about a row of the right image: each pixel goes to the cheapest left one that
-/// claims it. Rows up to `band` away may point at it. One entry of `claims` is to spare, after the last, for
-/// the left pixels that claim none: so nothing is decided by a jump.
+/// Votes of the left winners for a row of the right image: the cheapest left pixel claims each right pixel.
+/// Left rows up to `band` away can match this row. `claims` has one extra entry at the end for left pixels
+/// that match another row, so the loop has no branch.
 void vote_across_rows(const Matches& matches, int right_y, int band, Claim* claims) {
   const auto [width, height] = matches.best.size();
   std::fill_n(claims, width + 1, kernels::kNoClaim);
@@ -48,7 +48,7 @@ void vote_across_rows(const Matches& matches, int right_y, int band, Claim* clai
   }
 }
 
-/// Where row_offset tells which row a match lies in. `back(x, y)`: the disparity of a right pixel.
+/// For matches with a row_offset. `back(x, y)`: the disparity of a right pixel.
 template <class Back>
 void compare_across_rows(const Matches& matches, int y, int max_diff, const Back& back, Reject* verdict) {
   const std::int16_t* const best = matches.best.row(y);
@@ -65,7 +65,7 @@ Image<Reject> compare_with_votes_across_rows(const Matches& matches, int max_dif
   const auto width = static_cast<std::size_t>(size.width);
   Image<Reject> verdict(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
-    // The rows of votes that a left row may look into: its own and `band` up and down.
+    // Votes of the right rows that a left row can match: its own, and `band` up and down.
     const int kept = 2 * band + 1;
     std::vector<Claim> memory(static_cast<std::size_t>(kept) * (width + 1));
     const auto claims_of = [&](int right_y) {

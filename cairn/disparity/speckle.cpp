@@ -8,7 +8,7 @@
 namespace cairn {
 namespace {
 
-/// Valid disparities, neighbours that differ by at most `range`. Nothing is within a range of NaN.
+/// Connects valid disparities that differ by at most `range`. NaN is within no range.
 struct DisparityRow {
   const float* d;
   float range;

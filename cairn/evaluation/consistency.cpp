@@ -35,7 +35,7 @@ Moments moments(View<const Gray> image) {
   return {mean, std::sqrt(std::max(0.0, static_cast<double>(squares) / count - mean * mean))};
 }
 
-/// What the left picture would show of a grey level of the right one.
+/// Maps grey levels of the right image to those of the left one.
 struct GreyScale {
   double gain = 1;
   double offset = 0;
@@ -48,11 +48,11 @@ GreyScale right_to_left(View<const Gray> left, View<const Gray> right) {
   return {gain, to.mean - gain * from.mean};
 }
 
-/// The right image's own winner for the pixel that shows what left (x, y) does.
+/// Whether the right image's winner for the matched pixel agrees.
 bool is_confirmed(const std::int16_t* best_right, int width, int x, float disparity_px) {
   const auto at = static_cast<int>(std::lround(static_cast<float>(x) - disparity_px));
   if (at < 0 || at >= width || best_right[at] == kNoMatch) return false;
-  // A winner is a whole pixel, which may be half a pixel off what it was refined to.
+  // Winners are integers and can be half a pixel from the refined disparity.
   return std::abs(static_cast<float>(best_right[at]) - disparity_px) <= kConfirmedPx + 0.5F;
 }
 
@@ -65,7 +65,7 @@ double grey_at(const Gray* row, int width, float x) {
 
 constexpr int kStillRadius = 2;
 
-/// Whether left (x, y) looks as it did.
+/// Whether the image around left (x, y) is unchanged.
 bool is_still(View<const Gray> before, View<const Gray> now, int x, int y) {
   int sum = 0;
   int count = 0;
@@ -153,7 +153,8 @@ Steadiness steadiness(View<const Gray> left_before, View<const Gray> left,
       const float now = disparity_px(x, y);
       if (std::isnan(before) && std::isnan(now)) continue;
       ++all.seen;
-      // A comparison with NaN is false: with a disparity in one frame alone the pixel is unsteady.
+      // Comparisons with NaN are false: with a disparity in only one of the frames, the pixel counts as
+      // unsteady.
       if (!(std::abs(now - before) <= kConfirmedPx)) ++all.unsteady;
     }
   }

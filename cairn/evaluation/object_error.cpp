@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPhantomShare = 0.25;
 
-/// How many pixels each true object, each of ours, and each two of them have in common.
+/// Pixel counts of each true object, each of ours, and each pair.
 struct Overlaps {
   std::map<TruthId, int> truth;
   std::map<ObjectId, int> ours;
@@ -34,7 +34,7 @@ struct Overlaps {
 Overlaps count_overlaps(View<const ObjectId> ours, View<const TruthId> truth) {
   Overlaps count;
   const auto add = [&count](TruthId t, ObjectId o, int pixels) {
-    if (o != ObjectId::none) count.ours[o];  // listed even where all of it is don't-care
+    if (o != ObjectId::none) count.ours[o];  // listed even if all of its pixels are don't-care
     if (t == TruthId::dont_care) {
       if (o != ObjectId::none) count.ours_on_dont_care[o] += pixels;
       return;
@@ -56,7 +56,7 @@ Overlaps count_overlaps(View<const ObjectId> ours, View<const TruthId> truth) {
   return count;
 }
 
-/// Over-segmentation after Hoover et al., "An experimental comparison of range image segmentation
+/// Over-segmentation as defined by Hoover et al., "An experimental comparison of range image segmentation
 /// algorithms", 1996, with a threshold of one half.
 bool is_over_segmented(TruthId t, const Overlaps& count) {
   int parts = 0;
@@ -138,7 +138,7 @@ std::vector<Point> boundary(View<const std::uint8_t> mask, View<const std::uint8
   return points;
 }
 
-/// Of `points`, the share within `tolerance_px` of any of `others`.
+/// The share of `points` within `tolerance_px` of any of `others`.
 double share_near(const std::vector<Point>& points, const std::vector<Point>& others, Size size,
                   int tolerance_px) {
   Image<std::uint8_t> near(size, 0, {});

@@ -19,7 +19,7 @@ Kernel gaussian(float sigma) {
     const auto at = static_cast<std::size_t>(i);
     kernel.weights[at] = static_cast<int>(std::lround(kWeightSum * bell(i) / total));
     kernel.weights[0] -= 2 * kernel.weights[at];
-    if (kernel.weights[at] > 0) kernel.radius = i;  // taps that rounded to nothing are not visited
+    if (kernel.weights[at] > 0) kernel.radius = i;  // skips taps rounded to 0
   }
   return kernel;
 }

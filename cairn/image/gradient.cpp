@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 
-/// The last three rows of a picture that were smoothed, and working memory: what a band of rows needs.
+/// Working memory of a band of rows: the last three smoothed rows.
 class SmoothedRows {
  public:
   SmoothedRows(const kernels::GradientKernels& run, const Kernel& kernel, Size size, int channels)
@@ -27,8 +27,8 @@ class SmoothedRows {
     for (auto& row : smooth_) row.resize(sums_.size());
   }
 
-  /// Calls found(y, above, here, below) for the rows first … last − 1, smoothed; what is outside is
-  /// replicated. `row_at(y)` gives the samples of a row of the picture.
+  /// Calls found(y, above, here, below) for the smoothed rows first … last − 1, with replicated borders.
+  /// `row_at(y)` returns the samples of a row.
   template <class RowAt, class Found>
   void for_each(RowAt row_at, int first, int last, Found found) {
     const auto smooth_row = [&](int y) {
@@ -45,7 +45,7 @@ class SmoothedRows {
     }
   }
 
-  /// Working memory of one row.
+  /// Working memory of a row.
   [[nodiscard]] std::uint32_t* sums() { return sums_.data(); }
 
  private:

@@ -14,7 +14,7 @@ namespace {
 constexpr int kRadius = kContrastWindow / 2;
 constexpr float kPixels = kContrastWindow * kContrastWindow;
 
-/// The sums of 3 × 3 pixels of row y, and of `margin` more on both sides.
+/// Sums over 3 × 3 pixels for row y, including `margin` columns on both sides.
 void smooth_row(View<const Gray> image, int y, int margin, std::vector<std::int32_t>& sums) {
   const auto row = [&](int v) { return image.row(std::clamp(v, 0, image.height() - 1)); };
   const Gray* const above = row(y - 1);
@@ -37,7 +37,7 @@ Image<float> local_contrast(View<const Gray> image, const Exec& exec) {
   const auto padded = static_cast<std::size_t>(size.width + 2 * kRadius);
   Image<float> contrast(size, exec.pool);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
-    // The rows of the window, the newest in place of the oldest, and their sums by column.
+    // Ring buffer of the window's rows, and their column sums.
     std::vector<std::vector<std::int32_t>> rows(kContrastWindow, std::vector<std::int32_t>(padded));
     std::vector<std::int32_t> sums(padded);
     std::vector<std::int32_t> squares(padded);
@@ -68,7 +68,7 @@ Image<float> local_contrast(View<const Gray> image, const Exec& exec) {
         const auto end = static_cast<std::size_t>(x + kContrastWindow - 1);
         sum += sums[end];
         square += squares[end];
-        // All sums are of 9 pixels each: exact, and the variance is never below 0.
+        // Sums over 9 pixels are exact integers, so the variance is never negative.
         const auto mean = static_cast<float>(sum) / kPixels;
         const auto spread = static_cast<float>(kContrastWindow * kContrastWindow * square - sum * sum);
         const float variance = spread / (kPixels * kPixels);

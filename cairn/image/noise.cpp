@@ -11,14 +11,14 @@
 namespace cairn {
 namespace {
 
-constexpr std::size_t kGreatestResponse = 8 * 255;  // to the noise kernel
+constexpr std::size_t kGreatestResponse = 8 * 255;  // of the noise kernel
 
-/// How many pixels respond how strongly to the noise kernel.
+/// Histogram of the noise kernel's responses.
 using Responses = std::array<std::int64_t, kGreatestResponse + 1>;
 
 Responses responses(View<const Gray> image, int first_row, int last_row, const Exec& exec) {
   const kernels::NoiseKernels& run = kernels::noise_kernels(exec);
-  // Two counters for each response: neighbours often respond alike, and one would wait for the other.
+  // Two histograms in turn: neighbours often have the same response, and one counter would stall on itself.
   std::array<Responses, 2> counts{};
   std::vector<std::uint16_t> response(static_cast<std::size_t>(image.width()));
   for (int y = first_row; y < last_row; ++y) {
@@ -57,8 +57,8 @@ float noise_sigma(View<const Gray> image, const Exec& exec) {
   std::int64_t below = 0;
   std::size_t median = 0;
   while (2 * (below + histogram[median]) < total) below += histogram[median++];
-  // Whole grey levels are coarse next to the noise of a good camera: the median is interpolated within its
-  // level.
+  // Integer responses are coarse compared with the noise of a good camera, so the median is interpolated
+  // within its bin.
   const auto share = (static_cast<double>(total) / 2 - static_cast<double>(below)) /
                      static_cast<double>(std::max<std::int64_t>(histogram[median], 1));
   return static_cast<float>((static_cast<double>(median) + share - 0.5) / (6 * 0.6745));

@@ -17,12 +17,13 @@ int mirrored(int y, int height) {
   return y < height ? y : height - 2;
 }
 
-/// Running sums of the window's columns; row after row, the time does not depend on the window's size.
+/// Running column sums of the window, so the time per row does not depend on its size.
 class ColumnSums {
  public:
   ColumnSums(View<const Gray> image, int half) : image_(image), half_(half), sums_(columns(image)) {}
 
-  /// The sums over the rows y ± half that lie inside the image. y = any first row, then one more each time.
+  /// Sums over the rows y ± half inside the image. The first call may have any y, each further one the next
+  /// y.
   const std::vector<int>& at(int y) {
     if (started_) {
       change(y - half_ - 1, -1);
@@ -48,7 +49,7 @@ class ColumnSums {
   bool started_ = false;
 };
 
-/// ⌊numerator / count⌋ by a multiplication: exact for numerators below 2^22 and counts below 2^10, as in
+/// ⌊numerator / count⌋ by multiplication. Exact for numerators below 2^22 and counts below 2^10, because
 /// numerator·(factor − 2^32 / count) < 2^32 / count.
 class Quotient {
  public:

@@ -20,13 +20,13 @@ std::array<float, 4> cubic(float t) {
 
 namespace {
 
-constexpr int kPatch = 3;  // blocks; the best point of each patch of so many squared is taken
-constexpr float kLeastTexture = 24.0F * kWindowArea;  // squared differences over two pixels, least direction
-constexpr float kMostResidual = 0.5F;                 // squared residual of a match, of the texture itself
+constexpr int kPatch = 3;  // blocks; the best point of each kPatch × kPatch blocks is kept
+constexpr float kLeastTexture = 24.0F * kWindowArea;  // squared differences over 2 px, least direction
+constexpr float kMostResidual = 0.5F;                 // squared residual of a match, relative to the texture
 constexpr int kRefinements = 2;
-constexpr float kFurthest = 1.5F;  // that refinements may lead in each direction
+constexpr float kFurthest = 1.5F;  // px; total move of a refinement in each direction
 
-/// Out of four rows, 1 3 3 1 of each column, behind and before a copy of the first and the last.
+/// Column sums of four rows with the weights 1 3 3 1, with the first and last column replicated.
 void sum_columns(const std::array<const Gray*, 4>& rows, int width, std::int16_t* sums) {
   const Gray* r0 = rows[0];
   const Gray* r1 = rows[1];
@@ -67,7 +67,7 @@ Image<Gray> halved(View<const Gray> image, const Exec& exec) {
 
 namespace {
 
-/// Sums of products of the gradient's two components.
+/// The structure tensor of a block.
 struct Tensor {
   int xx = 0;
   int xy = 0;
@@ -78,7 +78,7 @@ struct Tensor {
     yy += other.yy;
     return *this;
   }
-  /// The texture in the direction that has least of it (the lesser eigenvalue).
+  /// The lesser eigenvalue: texture in the weakest direction.
   [[nodiscard]] float least() const {
     const float mean = 0.5F * (static_cast<float>(xx) + static_cast<float>(yy));
     const float half_difference = 0.5F * (static_cast<float>(xx) - static_cast<float>(yy));
@@ -87,7 +87,7 @@ struct Tensor {
   }
 };
 
-/// Every block's tensor. The image's outermost pixels have no gradient, and no block.
+/// The tensor of each block. The outermost pixels have no gradient and belong to no block.
 Image<Tensor> block_tensors(View<const Gray> image, const Exec& exec) {
   const Size blocks{std::max(0, (image.width() - 2) / kBlock), std::max(0, (image.height() - 2) / kBlock)};
   Image<Tensor> tensors(blocks, Tensor{}, exec.pool);
@@ -107,7 +107,7 @@ Image<Tensor> block_tensors(View<const Gray> image, const Exec& exec) {
   return tensors;
 }
 
-/// Not more than enough, all over the image.
+/// At most `most` points, spread evenly over the list.
 std::vector<Point> thinned(const std::vector<Point>& points, std::size_t most) {
   if (points.size() <= most) return points;
   std::vector<Point> some;
@@ -149,7 +149,7 @@ namespace {
 
 using Window = std::array<float, kWindowArea>;
 
-/// Column by column, so that the order of the additions is that of vectors.
+/// Adds column by column, so the order of additions is that of vector code.
 float sum_of_products(const Window& a, const Window& b) {
   std::array<float, kWindow> columns{};
   for (std::size_t k = 0; k < kWindowArea; k += kWindow) {
@@ -171,7 +171,7 @@ void remove_mean(Window& values) {
   for (float& v : values) v -= mean;
 }
 
-/// A point of the left image's, and what is needed to move its window.
+/// The window of a left point, with its gradients and their products.
 struct Template {
   Window grey{};
   Window along{};
@@ -179,7 +179,7 @@ struct Template {
   float xx = 0;
   float xy = 0;
   float yy = 0;
-  float energy = 0;  // squared grey levels; they are less their mean
+  float energy = 0;  // of the window without its mean
 };
 
 Template template_at(View<const Gray> image, Point p) {
@@ -196,7 +196,7 @@ Template template_at(View<const Gray> image, Point p) {
     }
   }
   remove_mean(t.grey);
-  remove_mean(t.along);  // so that a difference in brightness moves nothing
+  remove_mean(t.along);  // makes the step independent of brightness
   remove_mean(t.down);
   t.xx = sum_of_products(t.along, t.along);
   t.xy = sum_of_products(t.along, t.down);
@@ -205,8 +205,8 @@ Template template_at(View<const Gray> image, Point p) {
   return t;
 }
 
-/// The window at a place between pixels; nullopt beyond the border. Down the columns by the cubic: a linear
-/// step would favour half rows.
+/// The window at a subpixel place; nullopt outside the image. Vertically by cubic interpolation: linear
+/// interpolation is biased towards half rows.
 std::optional<Window> window_at(View<const Gray> image, Place place) {
   const int x = static_cast<int>(std::floor(place.x));
   const int y = static_cast<int>(std::floor(place.y));

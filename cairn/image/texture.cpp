@@ -21,7 +21,7 @@ constexpr std::array kShifts{Shift{1, 0}, Shift{0, 1}, Shift{1, 1}, Shift{1, -1}
 
 constexpr int kGrain = 48;  // rows; each range first sums a whole window's height
 
-/// One row of numbers for each shift; too small to be worth a place in the pool.
+/// One row of numbers for each shift; too small for the pool.
 template <class T>
 using RowPerShift = std::array<std::vector<T>, kShifts.size()>;
 
@@ -32,8 +32,8 @@ RowPerShift<T> row_per_shift(int length) {
   return rows;
 }
 
-/// Per column x and shift: Σ min((I(q) − I(q+s))², most) over the rows of the window, kept up to date as the
-/// window moves down; `radius` zeros on either side.
+/// Per column x and shift: Σ min((I(q) − I(q+s))², most) over the rows of the window, updated as the window
+/// moves down; `radius` zeros on either side.
 template <class Sum>
 class ColumnSums {
  public:
@@ -46,7 +46,7 @@ class ColumnSums {
 
   void add_row(int y) { for_each_pair(y, run_.add); }
   void remove_row(int y) { for_each_pair(y, run_.remove); }
-  /// Begins with the zeros.
+  /// Starts with the zeros.
   [[nodiscard]] const Sum* of(std::size_t shift) const { return sums_[shift].data(); }
 
  private:
@@ -67,35 +67,35 @@ class ColumnSums {
   RowPerShift<Sum> sums_;
 };
 
-/// How many of [p − radius, p + radius] begin a pair that ends inside [0, length).
+/// The number of positions in [p − radius, p + radius] whose pair is inside [0, length).
 int pairs_along(int p, int radius, int shift, int length) {
   const int first = std::max({0, -shift, p - radius});
   const int last = std::min({length, length - shift, p + radius + 1});
   return std::max(0, last - first);
 }
 
-/// The least sum of `count` squares that is not below a mean of `threshold`. Exact: 24 bits times 10.
+/// The smallest sum of `count` squares with a mean of at least `threshold`. Exact: 24 bits times 10.
 std::uint32_t least_sum(float threshold, int count) {
   return static_cast<std::uint32_t>(std::ceil(double{threshold} * count));
 }
 
 constexpr std::uint16_t kGreatestSquare = 255 * 255;
 
-/// Squares need not count with more than a whole window's limit, as one that does is enough texture for any
+/// Squares are clipped to the limit of a whole window: a single one of that size is enough texture for any
 /// window.
 std::uint16_t most_that_counts(const TextureLimit& limit) {
   const std::uint32_t least = least_sum(limit.threshold, limit.window_size * limit.window_size);
   return static_cast<std::uint16_t>(std::min(least, std::uint32_t{kGreatestSquare}));
 }
 
-/// A window has at most 31² squares: with small limits 16 bits hold their sums, and 26 bits any.
+/// Whether sums of up to 31² clipped squares fit 16 bits; 26 bits always suffice.
 bool fit_16_bits(const TextureLimit& limit) {
   return std::uint32_t{most_that_counts(limit)} *
              static_cast<std::uint32_t>(limit.window_size * limit.window_size) <=
          0xFFFF;
 }
 
-/// Judges rows from the top down.
+/// Judges rows from top to bottom.
 template <class Sum>
 class MoravecRows {
  public:
@@ -147,7 +147,7 @@ class MoravecRows {
   ColumnSums<Sum> columns_;
   std::vector<Sum> blocks_;  // working memory
   std::vector<Sum> sums_;
-  RowPerShift<Sum> limits_;  // the least sum that is enough texture
+  RowPerShift<Sum> limits_;  // the smallest sum that is enough texture
   std::array<int, kShifts.size()> pairs_down_{};
 };
 
@@ -165,7 +165,7 @@ Image<std::uint8_t> judge(View<const Gray> image, const TextureLimit& limit,
 }  // namespace
 
 Image<std::uint8_t> lacks_texture(View<const Gray> image, const TextureLimit& limit, const Exec& exec) {
-  if (image.size() == Size{1, 1}) return Image<std::uint8_t>(image.size(), 1, exec.pool);  // not one pair
+  if (image.size() == Size{1, 1}) return Image<std::uint8_t>(image.size(), 1, exec.pool);  // has no pair
   const kernels::TextureKernels& run = kernels::texture_kernels(exec);
   return fit_16_bits(limit) ? judge(image, limit, run.narrow_squares, exec)
                             : judge(image, limit, run.wide_squares, exec);

@@ -20,15 +20,15 @@ using sparse::kWindowArea;
 using sparse::Place;
 using sparse::refine;
 
-// Lengths are pixels of the halved images, but where a name says rows or px of the full ones.
-constexpr float kRivalRatio = 1.25F;  // of the best match in rows further off to the best at all
+// Lengths are pixels of the halved images, unless the name says rows or px: then of the full images.
+constexpr float kRivalRatio = 1.25F;  // times the lowest cost: the least in rows more than one away
 constexpr float kAgreeRows = 0.5F;
 constexpr int kLeastPoints = 16;
 constexpr std::size_t kLeastPointsForRoll = 24;
 constexpr std::size_t kMostPoints = 60;
 constexpr float kCertain = 4.0F;  // standard errors
 
-/// Squared difference of two windows less the square of their mean difference (ZSSD), times their area.
+/// Zero-mean sum of squared differences of two windows (ZSSD), times their area.
 int difference(View<const Gray> left, Point a, View<const Gray> right, Point b) {
   int sum = 0;
   int squares = 0;
@@ -47,7 +47,7 @@ int difference(View<const Gray> left, Point a, View<const Gray> right, Point b) 
 struct Search {
   int first_px = 0;  // disparities
   int last_px = 0;
-  int rows = 0;  // up and down
+  int rows = 0;  // in each direction
 };
 
 struct Candidate {
@@ -55,7 +55,7 @@ struct Candidate {
   int cost = std::numeric_limits<int>::max();
 };
 
-/// The window that is most alike; nullopt where one in other rows is nearly as much so, or there is none.
+/// The most similar window; nullopt if there is none, or a window in more distant rows is nearly as similar.
 std::optional<Candidate> find(View<const Gray> left, Point p, View<const Gray> right, const Search& search) {
   std::vector<Candidate> best_of_row;
   for (int y = p.y - search.rows; y <= p.y + search.rows; ++y) {
@@ -80,13 +80,13 @@ std::optional<Candidate> find(View<const Gray> left, Point p, View<const Gray> r
   return best;
 }
 
-/// A point found again: the column of the right image, and how many rows it is off.
+/// A matched point: column in the right image, and row difference.
 struct Sighting {
   float x_px = 0;
   float rows = 0;
 };
 
-/// A pair at its full size, and halved.
+/// A pair at full and at half size.
 struct Pyramid {
   View<const Gray> left;
   View<const Gray> right;
@@ -94,8 +94,8 @@ struct Pyramid {
   View<const Gray> right_half;
 };
 
-/// The middle of what the halved images' window shows is looked at again in the full ones, where sub-pixel
-/// places are finer, and are read as shift_rows() will write them.
+/// Finds `p` at half size and refines the centre of its window at full size, where subpixel positions are
+/// more accurate. They are read as shift_rows() will write them.
 std::optional<Sighting> sight(const Pyramid& pyramid, Point p, const Search& search) {
   const auto match = find(pyramid.left_half, p, pyramid.right_half, search);
   if (!match) return std::nullopt;
@@ -125,7 +125,7 @@ std::vector<Sighting> sight_all(const Pyramid& pyramid, const Search& search, co
   return sightings;
 }
 
-// ---- from sightings to a line ----
+// ---- fitting a line to the sightings ----
 
 float median(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -148,8 +148,8 @@ std::vector<Sighting> within(const std::vector<Sighting>& all, const Line& line,
   return near;
 }
 
-/// The line that a quarter of the sightings cannot pull away. Pairs that lie half of them apart give the
-/// slope (Theil 1950, Sen 1968).
+/// A robust line: tolerates a quarter of outliers. Slopes are those of pairs half of the sightings apart
+/// (Theil 1950, Sen 1968).
 Line line_by_medians(std::vector<Sighting> all, float middle_px) {
   std::stable_sort(all.begin(), all.end(),
                    [](const Sighting& a, const Sighting& b) { return a.x_px < b.x_px; });
@@ -167,7 +167,7 @@ Line line_by_medians(std::vector<Sighting> all, float middle_px) {
   return line;
 }
 
-/// The line by least squares; level unless its slope is certain and moves the image's ends apart visibly.
+/// The least-squares line; level unless its slope is significant and visibly moves the image's ends.
 Line line_by_squares(const std::vector<Sighting>& all, float middle_px) {
   const auto count = static_cast<double>(all.size());
   double mean_x = 0;
@@ -221,18 +221,18 @@ EpipolarOffset judge(const std::vector<Sighting>& all, float max_rows, int width
   return offset;
 }
 
-// ---- moving rows ----
+// ---- shifting rows ----
 
-constexpr int kSteps = 64;    // of a row
-constexpr int kWeights = 64;  // what the four add up to: 16 bits hold any sum of theirs
+constexpr int kSteps = 64;    // per row
+constexpr int kWeights = 64;  // sum of the four weights: 16 bits hold every weighted sum
 
 using Taps = std::array<std::vector<std::int16_t>, 4>;
 
-/// Columns first … last − 1 all start from the same row.
+/// The columns first … last − 1 interpolate from the same rows.
 struct Run {
   int first = 0;
   int last = 0;
-  int row = 0;  // of the second of the four, minus y
+  int row = 0;  // of the second of the four rows, minus y
 };
 
 std::array<std::int16_t, 4> whole_weights(int step) {
@@ -242,7 +242,7 @@ std::array<std::int16_t, 4> whole_weights(int step) {
   return {whole(w[0]), static_cast<std::int16_t>(kWeights - others), whole(w[2]), whole(w[3])};
 }
 
-/// A short loop on copies of all that it needs, so that compilers turn it into vectors.
+/// A short loop over local copies, so that compilers vectorise it.
 void blend(const std::array<const Gray*, 4>& rows, const Taps& taps, Run run, Gray* out) {
   const Gray* r0 = rows[0];
   const Gray* r1 = rows[1];

@@ -42,8 +42,8 @@ Matches match_windows(const StereoPair& pair, const MatchConfig& config, const E
   }
 
   const auto rows = kernels::window_kernels(config.cost, exec).match_rows;
-  // A band first sums up the window's rows above it, at about a third of a row's price: few and large ones,
-  // but two for each thread, to even out what else the processors do.
+  // A band first sums the window rows above it, at about a third of the cost of a row. So the bands are
+  // large; but two for each thread, to balance the load.
   const int bands = 2 * exec.threads();
   const int grain = std::max(2 * config.window_size, (pair.size().height + bands - 1) / bands);
   parallel_for(exec, pair.size().height, grain, [&](int first, int last) { rows(task, first, last); });

@@ -14,7 +14,7 @@ using kernels::SemiGlobalKernels;
 using kernels::SemiGlobalPenalties;
 using kernels::SemiGlobalTask;
 
-constexpr int kLeastColumns = 16;  // one thread's, at least
+constexpr int kLeastColumns = 16;  // least number per thread
 
 std::uint8_t in_cost_units(float penalty) {
   const auto steps = std::lround(penalty * static_cast<float>(kernels::kGreatestCost));
@@ -41,14 +41,14 @@ Matches make_matches(Size size, MatchMaps maps, const Pool& pool) {
           Image<float>(minimum, pool),     Image<float>(minimum, pool)};
 }
 
-/// One reversed row of the right image: where it has pixels.
+/// One reversed row of the right image: 255 for its pixels, 0 for the margins.
 Image<std::uint8_t> inside_row(const SearchLayout& layout, const Pool& pool) {
   Image<std::uint8_t> row({layout.length(), 1}, 0, pool);
   std::fill_n(row.row(0) + layout.pad(), layout.width, std::uint8_t{255});
   return row;
 }
 
-/// So many rows that what the path up leaves is still in the cache when the paths across want it.
+/// Rows per block; keeps the upward pass in cache for the horizontal ones.
 int rows_at_a_time(const SearchLayout& layout, const Exec& exec) {
   constexpr int kCandidates = 1 << 17;  // two bytes each
   const int rows =

@@ -11,7 +11,7 @@ namespace {
 
 using OfTarget = const WindowKernels* (*)(Target);
 
-/// One for each of kCosts.
+/// In the order of kCosts.
 template <std::size_t... kNumbers>
 constexpr std::array<OfTarget, sizeof...(kNumbers)> of_costs(std::index_sequence<kNumbers...>) {
   return {window_kernels<kCosts[kNumbers].value>...};

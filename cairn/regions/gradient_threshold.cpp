@@ -13,7 +13,7 @@ constexpr int kGrain = 16;  // rows
 }  // namespace
 
 void level_below(double threshold, Image<std::uint16_t>& gradient, const Exec& exec) {
-  // Gradients are whole numbers: below the threshold is below the next whole number up.
+  // Gradients are integers, so `< threshold` equals `< ceil(threshold)`.
   const auto least = static_cast<std::uint16_t>(std::clamp(std::ceil(threshold), 0.0, double{UINT16_MAX}));
   if (least == 0) return;
   parallel_for(exec, gradient.height(), kGrain, [&](int first, int last) {

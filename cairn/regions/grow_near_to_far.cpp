@@ -15,9 +15,9 @@ struct Arc {
   std::int32_t neighbour;
 };
 
-/// The untried arcs of the visited node, cheapest first. Its mean moves with every fusion and takes all arc
-/// values along; but the cheapest arc is always the first one below the mean or the first one above it. So
-/// two heaps, one for each side, and only arcs that the mean passes change sides.
+/// The untried arcs of the visited node, cheapest first. Each fusion moves the node's mean and with it the
+/// cost of every arc; but the cheapest arc is always the next one below or above the mean. So there are two
+/// heaps, one for each side, and only arcs that the mean passes change sides.
 class UntriedArcs {
  public:
   void reset(double mean) {
@@ -48,7 +48,7 @@ class UntriedArcs {
   }
 
  private:
-  // Heap orders: the arc that compares greatest is in front.
+  // Heap order: the arc that compares greatest is at the front.
   struct Lower {
     bool operator()(const Arc& a, const Arc& b) const {
       return a.mean < b.mean || (a.mean == b.mean && a.place > b.place);
@@ -77,12 +77,12 @@ class UntriedArcs {
   double mean_ = 0;
 };
 
-/// Ascending with falling means; means that differ little may share a key.
+/// Ascending for falling means; similar means may share a key.
 std::uint32_t key_of(double mean) {
   return static_cast<std::uint32_t>(~ascending_bits(mean) >> 32U);
 }
 
-/// Nodes sorted by their keys, else in the order given: three rounds of counting.
+/// Stable radix sort of the nodes by their keys, in three passes.
 void sort_by_keys(ScratchList<Arc>& arcs, const Exec& exec) {
   constexpr std::uint32_t kDigitBits = 11;
   constexpr std::uint32_t kDigits = 1U << kDigitBits;
@@ -101,7 +101,7 @@ void sort_by_keys(ScratchList<Arc>& arcs, const Exec& exec) {
   }
 }
 
-/// From the highest mean to the lowest, ties in raster order. Nodes that cannot fuse are left out.
+/// Descending by mean, ties in raster order; without the nodes that cannot fuse.
 ScratchList<Arc> near_to_far(const GrowingRegions& regions, const Exec& exec) {
   ScratchList<Arc> order(slot(regions.count()) + 1, exec.pool);
   for (std::int32_t i = 0; i < regions.count(); ++i) {
@@ -121,11 +121,11 @@ ScratchList<Arc> near_to_far(const GrowingRegions& regions, const Exec& exec) {
   return order;
 }
 
-/// The lists of a visit; they keep their memory from one visit to the next.
+/// Working memory of a visit; reused by the next one.
 struct Visit {
   explicit Visit(const Exec& exec) : neighbours(0, exec.pool) {}
   UntriedArcs untried;
-  ScratchList<std::int32_t> neighbours;  // every one that the visit saw
+  ScratchList<std::int32_t> neighbours;  // all neighbours seen in this visit
 };
 
 void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& criteria, Visit& visit) {
@@ -147,7 +147,7 @@ void visit_node(GrowingRegions& regions, std::int32_t node, const GrowCriteria& 
   bool grew = false;
   while (!visit.untried.empty()) {
     const Arc arc = visit.untried.take_cheapest();
-    // Once the cheapest arc is beyond Eq. (1), so are all, and as nothing fuses nothing moves the mean.
+    // If the cheapest arc fails Eq. (1), all do, and without a fusion the mean does not change.
     if (!absorption.is_near(arc.mean)) break;
     if (!absorption.admits(regions.brief(arc.neighbour))) continue;
     const std::size_t known = visit.neighbours.size();

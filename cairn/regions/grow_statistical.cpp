@@ -11,7 +11,7 @@
 namespace cairn {
 namespace {
 
-/// A region with its place in raster order before it, so that sorting needs no look at the regions.
+/// A region with its raster position in the upper half, so that sorting does not access the regions.
 using Placed = std::uint64_t;
 Placed placed(const GrowingRegions& regions, std::int32_t region) {
   return (static_cast<std::uint64_t>(regions.place(region)) << 32U) | static_cast<std::uint32_t>(region);
@@ -20,8 +20,7 @@ std::int32_t region_of(Placed entry) {
   return static_cast<std::int32_t>(entry & 0xFFFFFFFFU);
 }
 
-/// Sorts what is in order but for a few that come too late: those are sorted apart. The lists keep their
-/// memory from one call to the next.
+/// Sorts lists that are nearly in order: late entries are sorted apart and merged. Reuses its memory.
 class SortStragglers {
  public:
   void operator()(std::vector<Placed>& entries) {
@@ -48,15 +47,14 @@ class SortStragglers {
   std::vector<Placed> sorted_;
 };
 
-/// A neighbour of the visited region. Nothing but the visited region changes during a visit, so the mean is
-/// kept here.
+/// A neighbour of the visited region. Only the visited region changes during a visit, so the mean is cached.
 struct Neighbour {
   Placed entry;
   double mean;
   bool operator<(const Neighbour& other) const { return entry < other.entry; }
 };
 
-/// The lists of a visit and of a pass; they keep their memory from one to the next.
+/// Working memory of a visit and of a pass; reused by the next one.
 struct Visit {
   explicit Visit(const Exec& exec) : found(0, exec.pool) {}
   ScratchList<std::int32_t> found;
@@ -67,7 +65,7 @@ struct Visit {
   SortStragglers sort_order;
 };
 
-/// Lists of neighbours are short, and mostly in order as regions are numbered so.
+/// Insertion sort for short lists: most are nearly in order, as regions are numbered so.
 void sort(std::vector<Neighbour>& neighbours) {
   constexpr std::size_t kFew = 32;
   if (neighbours.size() > kFew) {
@@ -82,7 +80,7 @@ void sort(std::vector<Neighbour>& neighbours) {
   }
 }
 
-/// `found` as neighbours.
+/// Converts region ids to neighbours.
 void look_at(const GrowingRegions& regions, const ScratchList<std::int32_t>& found,
              std::vector<Neighbour>& neighbours) {
   neighbours.resize(found.size());
@@ -92,8 +90,8 @@ void look_at(const GrowingRegions& regions, const ScratchList<std::int32_t>& fou
   }
 }
 
-/// Which of the neighbours first … are near enough to be asked more, 64 at most. One bit each: a branch would
-/// go wrong at every other.
+/// A bit for each of up to 64 neighbours from `first` on: similar enough to be checked further. Without a
+/// branch, which would be mispredicted half of the time.
 std::uint64_t near_ones(const Absorption& absorption, const std::vector<Neighbour>& neighbours,
                         std::size_t first) {
   const std::size_t count = std::min<std::size_t>(neighbours.size() - first, 64);
@@ -104,7 +102,7 @@ std::uint64_t near_ones(const Absorption& absorption, const std::vector<Neighbou
   return near;
 }
 
-/// The first of the neighbours from `first` on that may be absorbed; their number where there is none.
+/// The first neighbour from `first` on that may be absorbed; their number if there is none.
 std::size_t first_admitted(const Absorption& absorption, const GrowingRegions& regions,
                            const std::vector<Neighbour>& neighbours, std::size_t first) {
   for (; first < neighbours.size(); first += 64) {
@@ -116,8 +114,8 @@ std::size_t first_admitted(const Absorption& absorption, const GrowingRegions& r
   return neighbours.size();
 }
 
-/// One round: every neighbour is tried once. Those that fuse leave the list, what they bring along joins it.
-/// `next`: the first that fuses.
+/// One round: tries every neighbour once. Fused ones leave the list, and their neighbours join it. `next`:
+/// the first that fuses.
 void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorption, Visit& visit,
               std::size_t next) {
   std::vector<Neighbour>& neighbours = visit.neighbours;
@@ -142,7 +140,7 @@ void try_each(GrowingRegions& regions, std::int32_t region, Absorption& absorpti
   neighbours.swap(visit.merged);
 }
 
-/// Lets `region` grow; false where nothing fused.
+/// Grows `region`; false if nothing fused.
 bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& criteria, Visit& visit) {
   Absorption absorption(regions.brief(region), regions.squares(region), criteria);
   if (!absorption.may_absorb() || !has_near_neighbour(regions, region, absorption)) return false;
@@ -159,9 +157,8 @@ bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& crit
   }
 }
 
-/// One pass over all living regions; false where nothing fused. Regions whose own and whose neighbours'
-/// statistics have not changed since they were last visited would refuse the same neighbours again, so they
-/// are passed over: `stale` marks the others.
+/// One pass over all living regions; false if nothing fused. A region is visited only if it is `stale`: its
+/// statistics or those of a neighbour changed since its last visit. Otherwise the outcome would be the same.
 bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::uint8_t>& stale, Visit& visit) {
   std::vector<Placed>& order = visit.order;
   order.resize(slot(regions.count()) + 1);
@@ -171,7 +168,7 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
     count += static_cast<std::size_t>(regions.is_alive(i)) & static_cast<std::size_t>(stale[i] != 0);
   }
   order.resize(count);
-  // Basins are numbered in this order; but a region that absorbed an earlier one goes by that one's place.
+  // Basins are numbered in raster order, but a region takes the place of an earlier one that it absorbed.
   visit.sort_order(order);
   bool fused = false;
   for (const Placed entry : order) {
@@ -187,7 +184,7 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
   return fused;
 }
 
-/// The first in raster order of the neighbours that have no valid pixel and are no floor; −1 = none.
+/// The first neighbour in raster order without valid pixels that is not floor; −1 = none.
 std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
   std::int32_t best = -1;
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
@@ -197,10 +194,10 @@ std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
   return best;
 }
 
-/// Whether (a, b) stands before (c, d) in the order of the first numbers, then of the second.
+/// Whether (a, b) < (c, d) in lexicographic order.
 bool stands_before(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
 #ifdef __SIZEOF_INT128__
-  // One comparison, without a branch.
+  // One comparison without a branch.
   __extension__ using Both = unsigned __int128;
   return ((Both{a} << 64U) | b) < ((Both{c} << 64U) | d);
 #else
@@ -208,15 +205,15 @@ bool stands_before(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint6
 #endif
 }
 
-/// The neighbour that a small region fuses with; −1 where all are floor. Hides the region's mean.
+/// The neighbour that a small region fuses with; −1 if all are floor. Hides the region's mean.
 std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
   const bool has_mean = regions.valid_count(region) > 0;
-  // So that the region, where it is named among its neighbours, is not like itself.
+  // Hidden because the region can be in its own list of neighbours.
   const double mean = regions.hide_mean(region);
   const std::uint64_t none = ascending_bits(std::numeric_limits<double>::infinity());
   std::uint64_t least = none;
   Placed best = 0;
-  // Without a branch: which neighbour is the most similar yet cannot be foretold.
+  // Without a branch, which would be unpredictable.
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
     const double theirs = regions.mean(neighbour);
     const std::uint64_t value = ascending_bits(has_mean ? std::abs(mean - theirs) : theirs);
@@ -228,8 +225,8 @@ std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
   return least != none ? region_of(best) : first_unseen(regions, region);
 }
 
-/// Small regions in the order in which they fuse: by size, then in raster order. A fusion always makes a
-/// larger region, so sizes are gone through once, upwards.
+/// Small regions in the order of their fusion: by size, then in raster order. A fusion always makes a larger
+/// region, so one pass over ascending sizes is enough.
 class SmallRegions {
  public:
   SmallRegions(const GrowingRegions& regions, std::int64_t min_region_area, const Exec& exec)
@@ -238,7 +235,7 @@ class SmallRegions {
         sizes_(size_count(regions, min_region_area)),
         lists_(static_cast<std::size_t>(sizes_), {-1, -1}, exec.pool),
         blocks_(slot(regions.count()) / 4, exec.pool) {
-    // Without a branch: which regions live cannot be foretold.
+    // Without a branch: which regions are alive is unpredictable.
     Scratch<std::int32_t> small(slot(regions.count()) + 1, exec.pool);
     std::int32_t count = 0;
     for (std::int32_t i = 0; i < regions.count(); ++i) {
@@ -252,7 +249,7 @@ class SmallRegions {
     const bool is_unseen = regions_.valid_count(region) == 0;
     return (has_few_pixels | is_unseen) & !regions_.is_floor(region);
   }
-  /// `region` is_small().
+  /// Requires is_small(region).
   void enter(std::int32_t region) {
     const Placed entry = placed(regions_, region);
     OfOneSize& list = lists_[regions_.pixel_count(region)];
@@ -265,7 +262,7 @@ class SmallRegions {
     Block& block = blocks_.begin()[list.last];
     block.entries[static_cast<std::size_t>(block.count++)] = entry;
   }
-  /// Calls fuse(region) for each; fuse() may enter larger ones.
+  /// Calls fuse(region) for each small region; fuse() may enter larger ones.
   template <class Fuse>
   void for_each(Fuse fuse) {
     std::vector<Placed> of_one_size;
@@ -279,7 +276,7 @@ class SmallRegions {
       sort(of_one_size);
       for (const Placed entry : of_one_size) {
         const std::int32_t region = region_of(entry);
-        // Others may have fused with it meanwhile; then it stands among the larger ones too.
+        // It may have absorbed others meanwhile; it is then also entered under its larger size.
         if (regions_.is_alive(region) && regions_.pixel_count(region) == pixels) fuse(region);
       }
     }
@@ -287,17 +284,17 @@ class SmallRegions {
 
  private:
   static constexpr std::int32_t kInBlock = 7;
-  /// Some entries of one size. A cache line, as one entry each would be fetched for itself.
+  /// Up to seven entries of one size in a cache line: linked singly, each would be a cache miss.
   struct alignas(64) Block {
-    std::int32_t next;  // of the same size, −1 = none
+    std::int32_t next;  // the next block of this size, −1 = none
     std::int32_t count;
     std::array<Placed, kInBlock> entries;
   };
-  struct OfOneSize {  // blocks, in the order in which they came
+  struct OfOneSize {  // linked list of blocks, in the order of entry
     std::int32_t first;
     std::int32_t last;
   };
-  /// One more than the most pixels that an entry can have.
+  /// One more than the largest pixel count of an entry.
   static std::int32_t size_count(const GrowingRegions& regions, std::int64_t min_region_area) {
     std::int64_t all_pixels = 0;
     bool has_unseen = false;
@@ -306,7 +303,7 @@ class SmallRegions {
       all_pixels += lives ? regions.pixel_count(i) : 0;
       has_unseen |= lives & (regions.valid_count(i) == 0);
     }
-    // Regions without valid pixel count as small at any size.
+    // Regions without valid pixels count as small at any size.
     return static_cast<std::int32_t>(
         has_unseen ? all_pixels + 1 : std::clamp<std::int64_t>(min_region_area, 0, all_pixels + 1));
   }
@@ -314,7 +311,7 @@ class SmallRegions {
   const GrowingRegions& regions_;
   std::int64_t min_region_area_;
   std::int32_t sizes_;
-  Scratch<OfOneSize> lists_;  // per number of pixels
+  Scratch<OfOneSize> lists_;  // by pixel count
   ScratchList<Block> blocks_;
 };
 
@@ -331,7 +328,7 @@ void fuse_small_regions(GrowingRegions& regions, std::int64_t min_region_area, c
 }
 
 bool has_near_neighbour(GrowingRegions& regions, std::int32_t region, const Absorption& absorption) {
-  // Without a branch: whether the next one is near cannot be foretold.
+  // Without a branch, which would be unpredictable.
   bool has_one = false;
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
     has_one |= absorption.is_near(regions.mean(neighbour)) & (neighbour != region);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kGrain = 16;  // rows
 
-/// What the values of some pixels beside each other sum up to: the difference of two sums up to a pixel.
+/// Sums over adjacent pixels of a row, as differences of prefix sums.
 class GreySums {
  public:
   GreySums(View<const Gray> values, const kernels::LabelKernels& run)
@@ -61,10 +61,10 @@ class DisparitySums {
   std::vector<std::uint64_t> up_to_;
   std::vector<std::uint64_t> squares_up_to_;
 };
-constexpr int kMostSummed = 0xFFFF;  // pixels whose sums surely fit
+constexpr int kMostSummed = 0xFFFF;  // pixels; up to here no sum overflows
 
-/// A row's runs added to the nodes. While counting, a box holds its right and lower end in place of width and
-/// height, and no upper one: that is the first pixel's row.
+/// Adds a row's runs to the nodes. Until the end, a box holds its right and lower edge instead of width and
+/// height; the upper edge follows from the first pixel.
 template <class Sums>
 void count_row(const RegionId* label, int y, int width, const Sums& sums, const std::int32_t* ends, int runs,
                RegionGraph::Node* nodes) {
@@ -83,7 +83,7 @@ void count_row(const RegionId* label, int y, int width, const Sums& sums, const 
   }
 }
 
-/// The regions' sizes, places and sums.
+/// Sizes, boxes and sums of the regions.
 template <class Sums>
 std::vector<RegionGraph::Node> count_nodes(View<const RegionId> labels, int count, Sums sums,
                                            const kernels::LabelKernels& run) {
@@ -110,14 +110,14 @@ std::vector<RegionGraph::Node> count_nodes(View<const RegionId> labels, int coun
   return nodes;
 }
 
-/// Pairs of regions that touch, the smaller number in `a`.
+/// Pairs of touching regions, with a < b.
 struct Touches {
   ScratchList<std::int32_t> a;
   ScratchList<std::int32_t> b;
 
   Touches(std::size_t capacity, const Exec& exec) : a(capacity, exec.pool), b(capacity, exec.pool) {}
   [[nodiscard]] std::size_t size() const { return a.size(); }
-  /// Appends what find(room) writes there, at most `most` pairs; it returns how many.
+  /// Appends the pairs that find(room) writes and counts, at most `most`.
   template <class Find>
   void append(std::size_t most, Find find) {
     std::int32_t* const room = a.room_for(most + kernels::kListSlack);
@@ -127,7 +127,7 @@ struct Touches {
   }
 };
 
-/// Which regions touch. Some pairs are found more than once.
+/// All touching regions; some pairs are found repeatedly.
 Touches find_touches(View<const RegionId> labels, const kernels::LabelKernels& run, const Exec& exec) {
   const int width = labels.width();
   const std::vector<RegionId> nothing(slot(width), RegionId{-1});
@@ -144,14 +144,14 @@ Touches find_touches(View<const RegionId> labels, const kernels::LabelKernels& r
   return touches;
 }
 
-/// A pair of regions that touch.
+/// A pair of touching regions.
 struct Pair {
   std::int32_t a;
   std::int32_t b;
 };
 
-/// The pairs by their smaller number, each once; in which order those of one number are is left open. Counts
-/// them for either number.
+/// The pairs grouped by `a`, without duplicates, in no particular order within a group. Also counts the pairs
+/// of each node as `a` and as `b`.
 Scratch<Pair> distinct(const Touches& touches, std::int32_t* counts_a, std::int32_t* counts_b,
                        std::int32_t nodes, std::size_t& count, const Exec& exec) {
   const std::int32_t* const touch_a = touches.a.begin();
@@ -165,7 +165,7 @@ Scratch<Pair> distinct(const Touches& touches, std::int32_t* counts_a, std::int3
   for (std::size_t i = 0; i < touches.size(); ++i) grouped[next[touch_a[i]]++] = {touch_a[i], touch_b[i]};
 
   Scratch<std::int32_t> last_room(slot(nodes), -1, exec.pool);
-  std::int32_t* const last_a = last_room.data();  // that each b was met with
+  std::int32_t* const last_a = last_room.data();  // the last `a` seen with each `b`
   count = 0;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const auto [a, b] = grouped[i];
@@ -179,18 +179,17 @@ Scratch<Pair> distinct(const Touches& touches, std::int32_t* counts_a, std::int3
   return pairs;
 }
 
-/// Compact adjacency from touches: every pair in both directions once, neighbours ascending. Pairs are put
-/// into their places by their smaller numbers, by their larger ones, and by the smaller ones again: after
-/// that each list is in order, and nothing was compared.
+/// Compact adjacency from touches: every pair in both directions once, neighbours ascending. A radix sort:
+/// grouping by `a`, then by `b`, then by `a` again leaves each list in order without a comparison.
 void link(RegionGraph& graph, std::int32_t nodes, const Touches& touches, const Exec& exec) {
   Scratch<std::int32_t> larger_room(slot(nodes), 0, exec.pool);
   Scratch<std::int32_t> smaller_room(slot(nodes), 0, exec.pool);
-  std::int32_t* const larger = larger_room.data();    // how many neighbours a node has; then where …
-  std::int32_t* const smaller = smaller_room.data();  // … the next one belongs
+  std::int32_t* const larger = larger_room.data();    // first the number of neighbours of a node …
+  std::int32_t* const smaller = smaller_room.data();  // … then the place of the next one
   std::size_t count = 0;
   const Scratch<Pair> by_smaller = distinct(touches, larger, smaller, nodes, count, exec);
 
-  // In a list the smaller neighbours come before the larger ones.
+  // Lists start with the smaller neighbours.
   graph.first_arc.resize(slot(nodes) + 1);
   std::int32_t* const first = graph.first_arc.data();
   Scratch<std::int32_t> before_room(slot(nodes), exec.pool);
@@ -222,7 +221,7 @@ void link(RegionGraph& graph, std::int32_t nodes, const Touches& touches, const 
   }
 }
 
-/// The nodes and the arcs know nothing of each other, and take about as long.
+/// Nodes and arcs are independent and take about the same time, so they are computed concurrently.
 template <class Sums>
 RegionGraph count_and_link(View<const RegionId> labels, int count, const Sums& sums, const Exec& exec) {
   const kernels::LabelKernels& run = kernels::label_kernels(exec);
@@ -257,7 +256,7 @@ RegionGraph build_graph(View<const RegionId> labels, int count, View<const Gray>
 Segmentation apply_merges(View<const RegionId> labels, const RegionGraph& graph, const Merges& merged_into,
                           double value_scale, const Exec& exec) {
   const std::size_t count = graph.nodes.size();
-  // Survivors move together first, so that what is summed and sorted is as short as their number.
+  // Compacts the survivors first, so that sums and sorting cover only these.
   std::vector<RegionGraph::Node> merged;
   std::vector<std::int32_t> compact(count, -1);
   for (std::size_t i = 0; i < count; ++i) {

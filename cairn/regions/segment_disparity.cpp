@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPerPixel = 16.0;  // the graph counts in 1/16 px
 
-/// Pixels of one row that are neighbours and of one kind.
+/// A run of pixels of one kind in a row.
 struct Run {
   std::int32_t begin;
   std::int32_t end;
@@ -46,7 +46,7 @@ Basins split_floor(const Basins& basins, View<const std::uint8_t> floor, const E
     append_runs(basins.labels.row(y), floor.row(y), size.width, runs);
     row_begin.push_back(runs.size());
   }
-  // The earlier run becomes the root, so that roots are first in raster order.
+  // The earlier run becomes the root, so roots are first in raster order.
   DisjointSets sets(runs.size());
   std::int32_t floor_run = -1;
   for (std::size_t y = 0; y + 1 < row_begin.size(); ++y) {
@@ -81,7 +81,7 @@ Basins split_floor(const Basins& basins, View<const std::uint8_t> floor, const E
 Image<std::uint8_t> floor_with_holes(const Basins& basins, View<const std::uint8_t> floor,
                                      View<const std::int16_t> values, const Exec& exec) {
   const Size size = basins.labels.size();
-  // Of each basin: pixels on the floor less pixels with another value.
+  // For each basin: number of floor pixels − number of other pixels with a value.
   std::vector<std::int32_t> balance(slot(basins.count));
   for (int y = 0; y < size.height; ++y) {
     const RegionId* const basin = basins.labels.row(y);

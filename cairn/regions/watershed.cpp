@@ -17,11 +17,11 @@ using kernels::kWordBits;
 using kernels::Word;
 
 constexpr int kGrain = 16;  // rows
-constexpr int kBlock = 64;  // rows that ways are followed through at once
+constexpr int kBlock = 64;  // rows per block of path following
 constexpr Word kLastBit = Word{1} << (kWordBits - 1);
 
-/// What there is one bit of for each pixel. The first four: where the pixel flows to; at most one of them is
-/// set, and the numbers are the order in which ties are decided.
+/// The bits of each pixel. The first four are the direction of flow, at most one set, in the order that
+/// decides ties.
 enum Plane : std::uint8_t {
   kUp,
   kLeft,
@@ -34,10 +34,9 @@ enum Plane : std::uint8_t {
   kPlanes
 };
 
-/// Bit planes of an image: 64 pixels are dealt with in one step, and all planes fit the second-level cache. A
-/// row holds its words of all planes, one plane after the other. Each plane has a word of zeros behind its
-/// last in every row, and there is a row of zeros above and one below, so that no neighbour needs a bounds
-/// check.
+/// Bit planes of an image: one step processes 64 pixels, and all planes fit the second-level cache. A row
+/// holds the words of all planes, one plane after the other. Each plane is padded by a word of zeros at the
+/// end of each row and by rows of zeros above and below, so neighbours need no bounds check.
 class Bits {
  public:
   Bits(Size size, const Exec& exec)
@@ -50,15 +49,15 @@ class Bits {
 
   [[nodiscard]] Size size() const { return size_; }
   [[nodiscard]] int words() const { return words_; }
-  /// From a plane's word to the same one of the row below.
+  /// Distance from a word to the same word of the row below.
   [[nodiscard]] std::ptrdiff_t row_stride() const { return std::ptrdiff_t{kPlanes} * (words_ + 1); }
-  /// From a plane's word to the same one of another plane.
+  /// Distance from a word to the same word of another plane.
   [[nodiscard]] std::ptrdiff_t step(Plane from, Plane to) const {
     return (std::ptrdiff_t{to} - from) * (words_ + 1);
   }
   [[nodiscard]] Word* at(Plane plane, int y) { return planes_.data() + offset(plane, y); }
   [[nodiscard]] const Word* at(Plane plane, int y) const { return planes_.begin() + offset(plane, y); }
-  /// The bits of word `w` that stand for pixels of the image.
+  /// The bits of word `w` that are inside the image.
   [[nodiscard]] Word inside(int w) const {
     const int rest = size_.width - w * kWordBits;
     return rest >= kWordBits ? ~Word{0} : (Word{1} << rest) - 1;
@@ -74,7 +73,7 @@ class Bits {
   Scratch<Word> planes_;
 };
 
-/// Whether the left neighbours have the bit.
+/// The bits of the left neighbours.
 Word of_left(const Word* word) {
   return (*word << 1U) | (word[-1] >> (kWordBits - 1));
 }
@@ -82,14 +81,14 @@ Word of_right(const Word* word) {
   return (*word >> 1U) | (word[1] << (kWordBits - 1));
 }
 
-/// Rows of heights with a frame that is higher than all: nothing flows out. Three of them at a time.
+/// Rows of heights with a border higher than any height, so nothing flows out. Keeps three rows.
 class FramedRows {
  public:
   FramedRows(View<const std::uint16_t> heights, int words)
       : heights_(heights), length_(slot(words * kWordBits + 2)) {
     for (auto& row : rows_) row.resize(length_, UINT16_MAX);
   }
-  /// Row y may be one outside. The three last ones fetched stay.
+  /// Row y may be just outside the image. The last three rows remain valid.
   const std::uint16_t* fetch(int y) {
     std::vector<std::uint16_t>& row = rows_.at(slot((y + 3) % 3));
     if (y < 0 || y >= heights_.height()) {
@@ -106,7 +105,7 @@ class FramedRows {
   std::array<std::vector<std::uint16_t>, 3> rows_;
 };
 
-/// Clears what the comparison says of pixels outside the image, and notes who does not flow.
+/// Clears the bits outside the image and marks the pixels that do not flow.
 void finish_row(Bits& bits, int y) {
   const int last = bits.words() - 1;
   for (const Plane plane : {kUp, kLeft, kRight, kDown, kEqualRight, kEqualBelow}) {
@@ -125,7 +124,7 @@ void finish_row(Bits& bits, int y) {
   bits.at(kReached, y)[last + 1] = 0;
 }
 
-/// Every pixel flows to its lowest neighbour, where that is lower.
+/// Every pixel flows to its lowest neighbour if that is lower.
 Bits flow_downhill(View<const std::uint16_t> heights, const Exec& exec) {
   const kernels::LabelKernels& run = kernels::label_kernels(exec);
   Bits bits(heights.size(), exec);
@@ -146,7 +145,7 @@ Bits flow_downhill(View<const std::uint16_t> heights, const Exec& exec) {
   return bits;
 }
 
-/// Finds the plateau pixels at distance 1: beside a pixel of the same height that flows downhill.
+/// Finds the plateau pixels at distance 1: next to a pixel of the same height that flows downhill.
 void flow_beside(Bits& bits, const Exec& exec) {
   const std::ptrdiff_t stride = bits.row_stride();
   parallel_for(exec, bits.size().height, kGrain, [&](int first, int last) {
@@ -155,7 +154,7 @@ void flow_beside(Bits& bits, const Exec& exec) {
         const Word* const still = bits.at(kStill, y) + w;
         const Word* const equal_right = bits.at(kEqualRight, y) + w;
         const Word* const equal_below = bits.at(kEqualBelow, y) + w;
-        // Outside nothing is still, but nothing is equal either.
+        // Outside the image nothing is still, but nothing is equal either.
         const Word up = *still & equal_below[-stride] & ~still[-stride];
         const Word left = *still & ~up & of_left(equal_right) & ~of_left(still);
         const Word right = *still & ~(up | left) & *equal_right & ~of_right(still);
@@ -170,9 +169,9 @@ void flow_beside(Bits& bits, const Exec& exec) {
   });
 }
 
-/// Lets the plateau pixels from distance 2 on flow, one level of distance after the other. Plateaus without
-/// lower border stay still. Heights need not be compared any more: pixels that touch and do not flow have
-/// the same height, for the higher one would flow, and so have one at distance 1 and a still one.
+/// Lets the plateau pixels at distance 2 and more flow, in breadth-first order. Plateaus without a lower
+/// border stay still. Heights need not be compared again: adjacent pixels that do not flow have the same
+/// height, as the higher one would flow, and the same holds for a still pixel next to one at distance 1.
 class Flooding {
  public:
   Flooding(Bits& bits, const Exec& exec)
@@ -182,7 +181,7 @@ class Flooding {
         next_(now_.size(), exec.pool) {
     Word* const reached = bits.at(kReached, 0);
     for (int y = 0; y < bits.size().height; ++y) {
-      std::fill_n(bits.at(kEqualRight, y), bits.words(), Word{0});  // has told all that it knew
+      std::fill_n(bits.at(kEqualRight, y), bits.words(), Word{0});  // reused for the next level
       for (std::ptrdiff_t i = y * bits.row_stride(); i < y * bits.row_stride() + bits.words(); ++i) {
         still_[i] &= ~reached[i];
         now_[now_count_] = i;
@@ -200,8 +199,8 @@ class Flooding {
           found(*word);
       };
       // Ties: a pixel may be reached from several sides, and "up" must win. So the whole level first claims
-      // the pixels below (for them it is "up"), then those to the right, to the left, and above. In a word
-      // right and left can take turns once all claims from other words to the right of them are known.
+      // the pixels below (for them it is "up"), then those to the right, to the left, and above. Within a
+      // word, right and left can alternate once the claims from the word to the left are known.
       for_each_word([&](std::ptrdiff_t w) { claim(w + stride, pixels[w], kUp); });
       for_each_word([&](std::ptrdiff_t w) {
         if ((pixels[w] & kLastBit) != 0) claim(w + 1, 1, kLeft);
@@ -218,7 +217,7 @@ class Flooding {
   }
 
  private:
-  /// Without a branch: most claims find nothing, but no one can foretell which.
+  /// Without a branch: most claims find nothing, unpredictably.
   void claim(std::ptrdiff_t word, Word pixels, Plane direction) {
     const Word found = pixels & still_[word];
     Word& claimed = still_[word + bits_.step(kStill, next_level_)];
@@ -238,8 +237,7 @@ class Flooding {
 
   Bits& bits_;
   Word* still_;
-  // The pixels of a level are bits of a plane, and of the words that hold some there is a list. Words are
-  // counted from the plane's first.
+  // A level is a bit plane, plus a list of its non-zero words, as indices from the start of the plane.
   Plane level_ = kReached;
   Plane next_level_ = kEqualRight;
   Scratch<std::ptrdiff_t> now_;
@@ -248,9 +246,8 @@ class Flooding {
   std::ptrdiff_t next_count_ = 0;
 };
 
-/// The ways that pixels flow, in stretches: what flows within a row to the same pixel of it, from where it
-/// leaves the row or goes no farther, lies side by side. Stretches are numbered along each row from
-/// y · width on.
+/// Drainage paths, in stretches. The pixels of a row that drain to the same pixel of that row, where the path
+/// leaves the row or ends, are contiguous: a stretch. Stretches of row y are numbered from y · width.
 class DrainagePaths {
  public:
   DrainagePaths(const Bits& bits, Image<RegionId>& labels, const Exec& exec)
@@ -264,7 +261,8 @@ class DrainagePaths {
     go_on();
   }
 
-  /// Numbers the basins in the order of their first stretches, writes the labels; returns how many there are.
+  /// Numbers the basins in the order of their first stretches and writes the labels; returns the number of
+  /// basins.
   int label() {
     Scratch<RegionId> label_of(to_.size(), exec_.pool);
     RegionId* const label = label_of.data();
@@ -280,11 +278,11 @@ class DrainagePaths {
     for (int y = 0; y < labels_.height(); ++y) {
       const std::int32_t first = y * width;
       const std::int32_t last = number(labels_(width - 1, y));
-      // All ends of a row first: which label a stretch writes is known then before the next one's is read.
+      // All ends of a row first: the loop below then does not wait for loads.
       for (std::int32_t i = first; i <= last; ++i) ends[slot(i - first)] = to[to[i]];
       for (std::int32_t i = first; i <= last; ++i) {
         const std::int32_t end = ends[slot(i - first)];
-        // Without a branch, as in kernels: −1 where the basin has no number yet, 0 else.
+        // Without a branch: −1 if the basin has no number yet, else 0.
         const std::int32_t is_new = number(label[end]) >> 31;
         const RegionId known{(number(label[end]) & ~is_new) | (count & is_new)};
         count -= is_new;
@@ -332,7 +330,7 @@ class DrainagePaths {
     });
   }
 
-  /// Basin floors of several rows: leads all of them to their first stretch.
+  /// Joins basin floors that span several rows: all their stretches lead to the first one.
   void join_floors() {
     const auto end_of = [&](std::int32_t i) {
       while (to_[i] != i) {
@@ -360,8 +358,8 @@ class DrainagePaths {
     for (const std::int32_t i : joined) to_[i] = end_of(i);
   }
 
-  /// Follows the ways that lead up, as long as they do and stay in one block of rows. A stretch then leads to
-  /// a floor, or to where its way goes on otherwise, which still leads to itself.
+  /// Follows the paths upward within a block of rows. A stretch then leads to a floor, or to the first
+  /// stretch that does not lead up in this block, which still leads to itself.
   void go_up() {
     const int blocks = (labels_.height() + kBlock - 1) / kBlock;
     parallel_for(exec_, blocks, 1, [&](int first, int last) {
@@ -372,7 +370,7 @@ class DrainagePaths {
     });
   }
 
-  /// Follows the others to their ends. From below, so that most of what a way meets is at its end already.
+  /// Follows the other paths to their ends. From the bottom up, so most of the paths met are complete.
   void go_on() {
     ScratchList<std::int32_t> rest(static_cast<std::size_t>(labels_.size().area() / 16), exec_.pool);
     for (int y = kBlock; y < labels_.height(); y += kBlock) {
@@ -389,7 +387,7 @@ class DrainagePaths {
         const std::int32_t i = stretch(x, y);
         const std::int32_t end = to_[to_[stretch(x, y + 1)]];
         to_[i] = end;
-        // Whether it is an end is known of rows below, where all is led on; the others come again.
+        // Rows below are complete, so their ends are known; the rest is repeated.
         room[found] = i;
         found += static_cast<std::size_t>((end < decided) | (to_[end] != end));
       });
@@ -411,7 +409,7 @@ class DrainagePaths {
   const Bits& bits_;
   Image<RegionId>& labels_;
   const Exec& exec_;
-  Scratch<std::int32_t> to_;  // for each stretch one farther down its way; itself at the end
+  Scratch<std::int32_t> to_;  // the next stretch along the path; itself at the end
 };
 
 }  // namespace

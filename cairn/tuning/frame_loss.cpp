@@ -12,7 +12,7 @@ Loss loss_of(const FrameObjects& frame) {
   loss.weight = static_cast<double>(frame.errors.truth.size());
   for (const TrueObjectScore& score : frame.errors.truth) loss.sum += score.capped_error();
   const ObjectSummary summary = summarise({frame});
-  loss.faults = summary.our_objects - summary.right_50;  // neither counts where the truth is partial
+  loss.faults = summary.our_objects - summary.right_50;  // both exclude frames with partial truth
   return loss;
 }
 
@@ -36,7 +36,7 @@ std::vector<bool> held_out(int count, double share, bool sequence, std::uint32_t
   std::fill(out.end() - wanted, out.end(), true);
   if (sequence) return out;
   std::mt19937 random(seed);
-  // Drawn without std::shuffle, whose result no standard fixes.
+  // std::shuffle's result differs between standard libraries.
   for (std::size_t i = out.size(); i > 1; --i) {
     const bool last = out[i - 1];
     const std::size_t other = random() % i;

@@ -12,13 +12,13 @@
 namespace cairn {
 namespace {
 
-/// A frame's measure, and what the next frame is compared with.
+/// A frame's measure, and the disparities to compare with the next frame.
 struct Outcome {
   FrameMeasure measure;
   Image<float> disparity_px{};
 };
 
-/// The options that a pair's disparities depend on before there is a ground.
+/// The options that determine the disparities before the ground is fitted.
 std::string matching_settings(const Config& config) {
   constexpr std::array<std::string_view, 8> kStages{
       "epipolar_correction.", "match.",      "semi_global.", "subpixel.",
@@ -36,7 +36,7 @@ DisparityMap copy_of(const DisparityMap& map, const Exec& exec) {
   return {map.disparity_px.clone(exec.pool), map.reject.clone(exec.pool)};
 }
 
-/// The whole method; what is matched already is not matched again.
+/// Runs the whole method; reuses the disparities if the matching options are unchanged.
 Frame segment_again(const TuningFrame& frame, const Config& config, MatchedOnce& matched, const Exec& exec) {
   validate(config, frame.pair.size(), frame.rig.has_value());
   std::string settings = matching_settings(config);
@@ -46,7 +46,7 @@ Frame segment_again(const TuningFrame& frame, const Config& config, MatchedOnce&
   }
   Exec watched = exec;
   watched.observe = [&](std::string_view stage, const Artifact& artifact, double) {
-    // Not from the pool, which goes with its thread.
+    // Not from the pool, which is destroyed with its thread.
     if (stage == "combine") matched.disparity = copy_of(*std::get<const DisparityMap*>(artifact), {});
   };
   Frame found = segment(frame.pair, frame.rig, config, watched);
@@ -111,7 +111,7 @@ Outcome judge(const TuningFrame& frame, const std::vector<Setting>& settings, Tu
   return {};
 }
 
-/// The losses of the frames among themselves: steadiness needs two.
+/// The losses between consecutive frames: steadiness needs two.
 void compare_neighbours(const std::vector<TuningFrame>& frames, const std::vector<std::size_t>& indices,
                         std::vector<Outcome>& outcomes) {
   for (std::size_t k = 0; k < indices.size(); ++k) {
@@ -169,7 +169,7 @@ std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<Tuning
           outcomes[k] = judge(frames[i], settings, options.goal, matched[i], exec);
         },
         options.target);
-  } catch (const Error&) {  // by validate(): the frames fitted the configuration that the search started from
+  } catch (const Error&) {  // by validate(): the settings do not suit the frames, as the first ones did
     return contradiction(indices.size());
   }
   if (stopped) return std::nullopt;

@@ -54,7 +54,7 @@ class Searcher {
     return true;
   }
 
-  /// nullopt where these settings were measured before, or the search is over.
+  /// nullopt if these settings were measured before, or the search is over.
   std::optional<std::vector<Loss>> measured(const std::vector<Setting>& settings) {
     if (over_ || seen_.contains(key_of(settings))) return std::nullopt;
     if (result_.evaluations >= config_.evaluations) {
@@ -76,7 +76,7 @@ class Searcher {
     result_.end = end;
   }
 
-  /// Whether anything became better.
+  /// Returns whether any setting improved the loss.
   bool sweep(double step) {
     bool better = false;
     for (const std::size_t i : order()) {
@@ -86,7 +86,7 @@ class Searcher {
     return better;
   }
 
-  /// Drawn without std::shuffle, whose result no standard fixes.
+  /// std::shuffle's result differs between standard libraries.
   std::vector<std::size_t> order() {
     std::vector<std::size_t> all(tunables_.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -110,7 +110,7 @@ class Searcher {
     return better;
   }
 
-  /// The same way again for as long as it helps.
+  /// Repeats a successful step for as long as it improves the loss.
   void go_on(std::size_t i, std::size_t way, double step) {
     for (;;) {
       const auto around = neighbours(tunables_[i], result_.best[i].value, step);
@@ -173,7 +173,8 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
     sum += gain;
     squares += gain * gain;
   }
-  // mean > k standard errors, squared and without divisions; the gain of a single frame gives equality.
+  // mean > k standard errors, squared and without division; gains of a single frame only are equal, not
+  // greater.
   const double mean_square = sum * sum / count;
   constexpr double kRounding = 1e-9;
   const double k2 = margin.standard_errors * margin.standard_errors;
@@ -182,12 +183,12 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
 
 namespace {
 
-/// Student's t for 95 % both ways.
+/// Two-sided 95 % quantile of Student's t distribution.
 double t_quantile(std::size_t degrees) {
   constexpr std::array kTable{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
   if (degrees <= kTable.size()) return kTable[degrees - 1];
   const auto n = static_cast<double>(degrees);
-  return 1.960 + 2.372 / n + 3.0 / (n * n);  // the first terms of its series in 1/n, to 0.001 here
+  return 1.960 + 2.372 / n + 3.0 / (n * n);  // first terms of its series in 1/n; accurate to 0.001 here
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ const OptionInfo& option_named(const std::vector<OptionInfo>& all, std::string_v
   return *std::find_if(all.begin(), all.end(), [&](const OptionInfo& option) { return option.name == name; });
 }
 
-/// Whether the option is read, or is once one of `varied` has another value.
+/// Whether the option is active, or becomes active with another value of one in `varied`.
 bool may_be_read(std::string_view name, const std::vector<Tunable>& varied,
                  const std::vector<OptionInfo>& all) {
   const OptionInfo& option = option_named(all, name);
@@ -93,15 +93,15 @@ std::string text_of(double value, TunableKind kind) {
   return {begin, written.ptr};
 }
 
-/// To three digits, so that the result can be read.
+/// Rounds to three significant digits, for readability.
 double rounded(double value) {
   if (value == 0) return 0;
   const double scale = std::pow(10.0, 2 - std::floor(std::log10(std::abs(value))));
   return std::round(value * scale) / scale;
 }
 
-/// `value` where the tunable may have it: inside its limits, whole and odd as it asks. At least one step away
-/// from `from`.
+/// The nearest valid value to `value`: within the limits, an integer or odd if required, and at least one
+/// step away from `from`.
 double allowed(const Tunable& tunable, double value, double from) {
   if (tunable.kind == TunableKind::number) return std::clamp(rounded(value), tunable.lowest, tunable.highest);
   const double way = value < from ? -1 : 1;
@@ -112,7 +112,8 @@ double allowed(const Tunable& tunable, double value, double from) {
   return value < tunable.lowest || value > tunable.highest ? from : value;
 }
 
-/// From off or 0 no factor leads anywhere: what the presets give, or else a small part of the range.
+/// Values to try for an option that is 0 or off, where a factor has no effect: those of the presets, else a
+/// small share of the range.
 std::vector<double> values_when_off(const Tunable& tunable) {
   constexpr double kSmallPart = 1.0 / 64;
   std::vector<double> values;
@@ -127,7 +128,7 @@ std::vector<double> values_when_off(const Tunable& tunable) {
 
 std::vector<Tunable> tunables() {
   std::vector<Tunable> all;
-  Config config;  // fields() takes its struct by reference to non-const
+  Config config;  // not const, because fields() takes a non-const reference
   for_each_section(config, [&](std::string_view section, auto& stage) {
     fields(stage, [&](std::string_view name, auto& value, std::string_view, std::string_view,
                       const auto& domain, const Condition& = {}) {

@@ -13,10 +13,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Nothing that gains less is worth a configuration of one's own.
+/// A smaller gain is not worth a configuration of its own.
 constexpr Margin kLeastGain{.least_share = 0.01};
 
-// ---- what is tuned, on what ----
+// ---- options and frames ----
 
 void check(const std::vector<TuningFrame>& frames, const TuneConfig& config) {
   if (frames.empty()) throw Error("frames: found none, expected one or more to tune on");
@@ -47,7 +47,7 @@ bool mostly_sequence(const std::vector<TuningFrame>& frames) {
 void choose_tunables(const std::vector<std::string>& wanted, const Config& start, Tuning& tuning) {
   const bool objects = tuning.goal == TuningGoal::objects;
   std::vector<std::string> patterns = wanted.empty() ? usual_tunables(start, objects) : wanted;
-  // Islands agree with the right image: contradictions would let them all pass.
+  // Consistency cannot judge it: false islands agree with the right image, so the search would let them pass.
   if (wanted.empty() && tuning.goal == TuningGoal::consistency) std::erase(patterns, "speckle.size");
   tuning.tunables = tunables(patterns, start);
   if (objects) return;
@@ -61,7 +61,7 @@ void choose_tunables(const std::vector<std::string>& wanted, const Config& start
   }
 }
 
-/// Frames of one name show the same scene: they stay together.
+/// Frames with the same name show the same scene, so they stay on one side of the split.
 std::vector<bool> frames_held_out(const std::vector<TuningFrame>& frames, const TuneConfig& config,
                                   bool sequence) {
   std::vector<bool> out(frames.size(), false);
@@ -91,7 +91,7 @@ Tuning prepared(const std::vector<TuningFrame>& frames, const TuneConfig& config
   return tuning;
 }
 
-/// Why the start should be kept; empty where what was found is better.
+/// The reason to keep the starting settings; empty if the result is better.
 std::string reason_to_keep(const Tuning& tuning) {
   const SearchResult& s = tuning.search;
   if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain)) {
@@ -107,7 +107,7 @@ std::string reason_to_keep(const Tuning& tuning) {
 
 // ---- the search ----
 
-/// One search, as far as it has come.
+/// The state of a tuning run.
 class TuningRun {
  public:
   TuningRun(const std::vector<TuningFrame>& frames, const TuneConfig& config, const Exec& exec,
@@ -130,7 +130,7 @@ class TuningRun {
     search_config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
       return is_read(settings, tuning_.tunables[i].name);
     };
-    // What a calibration says of a frame is the frame's: the search starts from what all have in common.
+    // Calibrations may change options per frame, so the search starts from the options common to all frames.
     const std::vector<Setting> start = settings_of(frames_.front().config, tuning_.tunables);
     tuning_.search = search(
         tuning_.tunables, start, [&](const auto& settings) { return measure(settings); }, search_config,
@@ -189,7 +189,7 @@ class TuningRun {
     return losses_of(latest_);
   }
 
-  /// What was measured last is the best so far.
+  /// Records the settings that were just measured as the best so far.
   void keep(const std::vector<Setting>& settings) {
     const bool is_start = !knows_start();
     if (is_start && !std::isfinite(mean_loss(losses_of(latest_))))

@@ -15,17 +15,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long the end waits for readers to have what was sent last.
+/// How long to wait at the end until readers have received the last messages.
 constexpr auto kLastWords = 1s;
 
-/// A topic, and what became of the frames.
+/// A topic and its counters.
 template <ros::Message M>
 class Topic {
  public:
   Topic(const Participant& participant, std::string name)
       : name_(std::move(name)), writer_(participant, name_) {}
 
-  /// `make` is only asked where somebody listens; none: the frame does not have it.
+  /// Calls `make` only if there are readers; it returns nullopt if the frame lacks the data.
   template <class Make>
   void publish(const Make& make) {
     if (!writer_.has_reader()) return;
@@ -109,7 +109,7 @@ class Ros2Sink : public live::Sink {
       try {
         publish(**frame);
       } catch (const std::exception& error) {
-        trouble_ = error.what();  // said at the end; the next frame may be better
+        trouble_ = error.what();  // reported at the end; the next frame may succeed
       }
     }
   }
@@ -145,7 +145,7 @@ class Ros2Sink : public live::Sink {
     floor_.publish([&] { return cloud_of(Space::floor); });
   }
 
-  /// Below the least disparity, which counts from the principal points in the message.
+  /// Below the least disparity, which the message counts from the principal points.
   [[nodiscard]] float hole_of_ros(const MatchConfig& config) const {
     return static_cast<float>(config.min_disparity) + (rig_ ? rig_->doffs_px : 0.0F) - 1.0F;
   }
@@ -178,7 +178,7 @@ class Ros2Sink : public live::Sink {
   Topic<ros::TFMessage> transforms_;
   live::NewestSlot<live::LiveFramePtr> slot_;
   std::string trouble_;
-  std::thread thread_;  // of work(); begins when all else is there
+  std::thread thread_;  // runs work(); last member, so that it starts after all others exist
 };
 
 }  // namespace

@@ -46,7 +46,7 @@ void check_token(const std::string& token) {
   }
 }
 
-/// Of "localhost:8765", "[::1]:8765", "127.0.0.1": the name, the port's digits or none.
+/// Splits "localhost:8765", "[::1]:8765" or "127.0.0.1" into a name and the port's digits, if any.
 struct HostAndPort {
   std::string name;
   std::string port;
@@ -68,7 +68,7 @@ std::optional<HostAndPort> parts_of(std::string_view host) {
   return HostAndPort{lower(name), std::string(port)};
 }
 
-/// An address in one spelling; none where the text is no address.
+/// An address in canonical form; nullopt if the text is no address.
 std::optional<std::string> address_of(const std::string& text) {
   std::array<unsigned char, 16> bytes{};
   std::array<char, INET6_ADDRSTRLEN> written{};
@@ -102,7 +102,7 @@ std::string cookie_of(std::string_view cookies, std::string_view name) {
   return {};
 }
 
-/// Cookies know hosts, not ports: two robots behind two tunnels have one name each by the port.
+/// Cookies are per host, not per port. The port in the name separates two robots behind two tunnels.
 std::string cookie_name(std::string_view host) {
   const auto parts = parts_of(host);
   return "cairn_" + (parts && !parts->port.empty() ? parts->port : std::string("view"));
@@ -115,7 +115,7 @@ void read_view_address(const std::string& text, ViewOptions& options) {
     throw Error("--view: found '" + text + "', expected an address and a port, such as 127.0.0.1:8765");
   };
   std::string address = text;
-  // More than one colon and no bracket: an IPv6 address by itself.
+  // Several colons without brackets: an IPv6 address without a port.
   const bool is_bare = !text.starts_with('[') && std::count(text.begin(), text.end(), ':') > 1;
   if (!is_bare) {
     const auto parts = parts_of(text);
@@ -154,7 +154,7 @@ std::string random_token() {
 }
 
 bool is_equal_in_constant_time(std::string_view a, std::string_view b) {
-  // The length of the right one is no secret.
+  // The length of the secret may be known.
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const char other = b.empty() ? '\0' : b[i % b.size()];
@@ -200,8 +200,7 @@ Access::Access(const ViewOptions& options)
   }
 }
 
-/// A page of elsewhere whose name an attacker lets lead here (DNS rebinding) asks for that name. By an
-/// address nobody is led astray.
+/// Under DNS rebinding, a request names the attacker's host. Addresses cannot be rebound.
 bool Access::is_own(std::string_view host) const {
   const auto parts = parts_of(host);
   if (!parts) return false;
@@ -209,7 +208,7 @@ bool Access::is_own(std::string_view host) const {
   return !is_loopback_ && address_of(parts->name).has_value();
 }
 
-/// A page of another origin may not use the cookie that a browser sends along. Programs send no origin.
+/// A page of another origin must not use the browser's cookie. Programs send no origin.
 bool Access::may_connect(const ViewRequest& request) const {
   if (request.origin.empty()) return true;
   const std::string own = (is_tls_ ? "https://" : "http://") + lower(request.host);

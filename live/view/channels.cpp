@@ -31,7 +31,7 @@ std::string jpeg_of(const io::Picture& picture) {
   return io::encode_jpeg(rows, kJpegQuality);
 }
 
-/// 0 = hole, 1 … 255 over the disparities that are searched.
+/// 0 = hole, 1 … 255 over the search range.
 ros::Image disparity_of(const ros::Header& header, View<const float> disparity_px, const MatchConfig& match) {
   Image<Gray> grey(disparity_px.size());
   const auto low = static_cast<float>(match.min_disparity);

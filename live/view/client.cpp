@@ -36,7 +36,7 @@ Json advertisement() {
   return {{"op", "advertise"}, {"channels", all}};
 }
 
-/// The list under a key, at most as long as anything that makes sense.
+/// The list for a key, up to a sensible length.
 const nlohmann::json& list_of(const nlohmann::json& message, const char* key) {
   constexpr std::size_t kMost = 1000;
   const io::JsonLine line(message);
@@ -104,7 +104,7 @@ void Client::on_text(const std::string& text) {
     const auto message = io::parsed_json(text);
     if (!message) throw Error("found text that is not JSON, expected {\"op\": …}");
     handle(*message);
-  } catch (const std::exception& error) {  // what records may throw more than Error
+  } catch (const std::exception& error) {  // a recorder may throw other exceptions than Error
     complain(error.what());
   }
 }
@@ -139,7 +139,7 @@ void Client::handle(const nlohmann::json& message) {
           name != each.end() && name->is_string())
         names.insert(name->get<std::string>());
     }
-    // Whoever asked sees what has become of it, also where it was refused.
+    // Reports the state to the client, even if the request was refused.
     wants_answer = !names.empty() || has_id;
     if (names.empty()) names.insert("");
   }
@@ -175,7 +175,7 @@ void Client::unsubscribe(const nlohmann::json& list) {
   }
 }
 
-/// No names are all.
+/// No names means all.
 void Client::watch(const nlohmann::json& message, bool on) {
   const std::set<std::string> names = names_in(message);
   if (names.empty()) {
@@ -227,7 +227,7 @@ std::optional<Outgoing> Client::next() {
     return out;
   }
   if (!to_tell_.empty()) {
-    // Their values as they are by now, however often they changed meanwhile.
+    // Sends current values, as they may have changed several times meanwhile.
     out.text =
         text_of({{"op", "parameterValues"}, {"parameters", parameters_.values(std::exchange(to_tell_, {}))}});
     return out;

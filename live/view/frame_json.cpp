@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// To seven significant digits, which is what a float holds; null where it is not finite.
+/// With the seven significant digits of a float; null if not finite.
 Json json(double value) {
   if (!std::isfinite(value)) return nullptr;
   std::array<char, 32> text{};
@@ -39,7 +39,7 @@ std::string text_of(const Json& json) {
 
 /// A box in the left camera's frame.
 struct Box {
-  Pose camera_from_box;  // of its middle
+  Pose camera_from_box;  // at its centre
   Vec3 size_m;
 };
 
@@ -47,7 +47,7 @@ Point3 point(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
-/// Upright on the floor where that is known, else along the camera's axes.
+/// Aligned with the floor if it is known, else with the camera's axes.
 std::optional<Box> box_of(const Object& object, const std::optional<FloorFrame>& floor) {
   if (object.box_on_floor && floor) {
     const FloorBox& box = *object.box_on_floor;
@@ -67,7 +67,7 @@ std::optional<Box> box_of(const Object& object, const std::optional<FloorFrame>&
   return all;
 }
 
-/// The lower four around, then the upper ones above them; lower is −z of the box.
+/// The lower four corners, then the upper ones in the same order; lower is −z of the box.
 Json corners_of(const Box& box) {
   Json all = Json::array();
   for (const double z : {-0.5, 0.5}) {
@@ -81,11 +81,11 @@ Json corners_of(const Box& box) {
 
 // ---- objects ----
 
-/// An object that viewers are shown, under the id that the labels have.
+/// An object to show, with its id in the labels.
 struct ShownObject {
   std::int64_t id = 0;
   const Object* object = nullptr;
-  const Track* track = nullptr;  // none where no tracks were looked for
+  const Track* track = nullptr;  // nullptr without tracking
 };
 
 std::vector<ShownObject> shown_objects(const Step& step) {
@@ -129,7 +129,7 @@ Json object_json(const ShownObject& shown, const std::optional<FloorFrame>& floo
   return j;
 }
 
-// ---- the rest of the statistics ----
+// ---- statistics ----
 
 Json rig_json(const std::optional<StereoRig>& rig) {
   if (!rig) return nullptr;
@@ -178,7 +178,7 @@ Json image_json(const LiveFrame& frame) {
 // ---- the scene ----
 
 Json colour_json(std::int64_t id, double opacity) {
-  constexpr std::int64_t kColours = 1000;  // object_colour() begins again after as many
+  constexpr std::int64_t kColours = 1000;  // the number of different colours of object_colour()
   const Rgb c = io::object_colour(ObjectId{static_cast<std::int32_t>(id % kColours)});
   return {{"r", json(c.r / 255.0)}, {"g", json(c.g / 255.0)}, {"b", json(c.b / 255.0)}, {"a", opacity}};
 }
@@ -219,7 +219,7 @@ Json entity_json(const ShownObject& shown, const Box& box, const Json& stamp,
                   {"color", colour_json(shown.id, 1)},
                   {"text", words_of(shown)}};
   const Json none = Json::array();
-  // An object that is seen no more is gone with its lifetime, whatever became of it.
+  // Entities of objects no longer seen expire by their lifetime.
   return {{"timestamp", stamp},
           {"frame_id", camera_frame},
           {"id", std::to_string(shown.id)},
@@ -290,7 +290,7 @@ std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& r
     if (const auto box = box_of(*shown.object, floor))
       entities.push_back(entity_json(shown, *box, stamp, camera_frame));
   }
-  // All that the frame before showed is gone; what is still there comes with the entities.
+  // Deletes all entities of the previous frame; those still present are sent again.
   const Json deletion{{"timestamp", stamp}, {"type", 1}, {"id", ""}};
   return text_of({{"deletions", Json::array({deletion})}, {"entities", entities}});
 }
@@ -333,7 +333,7 @@ const std::string_view kStatsSchema = R"({
   }
 })";
 
-// What of foxglove.SceneUpdate our messages fill; the lists that stay empty are of any kind.
+// The fields of foxglove.SceneUpdate that our messages use; the item type of empty lists is arbitrary.
 const std::string_view kSceneSchema = R"({
   "type": "object", "title": "foxglove.SceneUpdate",
   "$defs": {

@@ -36,7 +36,7 @@ Json json_value(const OptionInfo& option) {
   throw Error("option " + name + ": found " + io::shown(found) + ", expected " + expected);
 }
 
-/// A value as set() reads it. JavaScript has one kind of number: 3.0 is a whole one.
+/// The value as text for set(). JavaScript has one number type: 3.0 is an integer.
 std::string text_of(const OptionInfo& option, const nlohmann::json& value) {
   if (option.type == "bool") {
     if (!value.is_boolean()) refuse(option.name, value, "true or false");
@@ -70,7 +70,7 @@ std::vector<OptionInfo> Parameters::options() const {
   return run_.config ? cairn::options(*run_.config()) : std::vector<OptionInfo>{};
 }
 
-/// What is no option, and yet a switch.
+/// Parameters that are switches but not options.
 std::vector<std::pair<std::string, bool>> Parameters::live() const {
   std::vector<std::pair<std::string, bool>> all;
   if (run_.pause) all.emplace_back(kPause, run_.is_paused && run_.is_paused());
@@ -85,7 +85,7 @@ Json Parameters::values(const std::set<std::string>& names) const {
   for (const OptionInfo& option : options()) {
     if (!is_wanted(option.name)) continue;
     Json parameter{{"name", option.name}, {"value", json_value(option)}};
-    if (option.type == "float") parameter["type"] = "float64";  // or 1.0 would be taken for a whole number
+    if (option.type == "float") parameter["type"] = "float64";  // else 1.0 would count as an integer
     all.push_back(std::move(parameter));
   }
   for (const auto& [name, value] : live()) {
@@ -120,7 +120,7 @@ void Parameters::set(const nlohmann::json& list) {
     const auto option = std::ranges::find(known, name, &OptionInfo::name);
     if (option == known.end()) {
       FollowConfig any;
-      cairn::set(any, name.substr(0, 80), "");  // says which is meant, or where it went
+      cairn::set(any, name.substr(0, 80), "");  // its error names the similar or the new option
       throw Error("option " + io::shown(name) + ": unknown option");
     }
     texts.emplace_back(name, value.is_null() ? first_.at(name) : text_of(*option, value));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <utility>  // before Boost 1.74, whose awaitable.hpp needs it in C++20
+#include <utility>  // required by awaitable.hpp of Boost 1.74 in C++20
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -35,7 +35,7 @@
 #include "client.hpp"
 #include "frame_json.hpp"
 
-// All of Boost.Beast is in this one file: it takes longer to compile than the rest of the folder together.
+// Boost.Beast is confined to this file: compiling it takes longer than the rest of the folder.
 namespace cairn::live {
 namespace {
 
@@ -48,14 +48,14 @@ using ErrorCode = beast::error_code;
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 15s;   // for a request, an answer, a handshake
-constexpr auto kIdle = 30s;       // after which a viewer that neither reads nor answers is gone
-constexpr auto kGoodbye = 500ms;  // for the viewers to hear of the end
-constexpr std::size_t kCompressedFrame = 1 << 16;  // bytes: of a compressed message
-constexpr int kSendBuffer = 1 << 17;  // bytes: more would only wait in the system, and grow old there
+constexpr auto kIdle = 30s;       // without reading or answering, until a viewer is disconnected
+constexpr auto kGoodbye = 500ms;  // to notify viewers at the end
+constexpr std::size_t kCompressedFrame = 1 << 16;  // bytes, of a compressed message
+constexpr int kSendBuffer = 1 << 17;               // bytes; a larger buffer would only add delay
 constexpr std::uint32_t kMostHeader = 8 * 1024;
 constexpr std::uint64_t kMostBody = 1024;
 constexpr std::uint64_t kAllFrames = ~std::uint64_t{0};
-constexpr int kMostVisitors = 32;  // connections besides the viewers'
+constexpr int kMostVisitors = 32;  // connections other than viewers
 
 using Response = http::response<http::string_body>;
 
@@ -63,7 +63,7 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// A connection that is shown frames.
+/// A connection that receives frames.
 class Viewer {
  public:
   Viewer() = default;
@@ -73,7 +73,7 @@ class Viewer {
   /// The messages of one frame.
   virtual void offer(const std::vector<ViewMessagePtr>& messages) = 0;
   virtual void changed(const std::set<std::string>& parameters) = 0;
-  /// What is waiting is sent.
+  /// Sends what is queued.
   virtual void pump() = 0;
   virtual void say_goodbye() = 0;
   [[nodiscard]] virtual ChannelBits subscribed() const = 0;
@@ -96,7 +96,7 @@ Response answer(const char* type, std::string text) {
   return response;
 }
 
-/// What every answer says: nobody keeps it, frames it, or is told where it came from.
+/// Headers of every answer: no caching, no framing, no referrer.
 void harden(Response& response) {
   response.set(http::field::server, "cairn");
   response.set(http::field::cache_control, "no-store");
@@ -113,7 +113,7 @@ void harden(Response& response) {
 
 }  // namespace
 
-/// All but offer() and what encodes is done by one thread.
+/// All functions but offer() and the encoder run on one thread.
 class ViewServer::Hub {
  public:
   Hub(ViewOptions options, ViewedRun run)
@@ -130,7 +130,7 @@ class ViewServer::Hub {
         try {
           io_.run();
           return;
-        } catch (const std::exception&) {  // of one answer: the others go on
+        } catch (const std::exception&) {  // a failed answer does not affect the others
         }
       }
     });
@@ -140,10 +140,10 @@ class ViewServer::Hub {
   Hub(const Hub&) = delete;
   Hub& operator=(const Hub&) = delete;
 
-  // From the run's thread:
+  // Called from the run's thread:
 
   void offer(const LiveFramePtr& frame) {
-    LiveFramePtr old = frame;  // which goes when the lock is gone: its images are large
+    LiveFramePtr old = frame;  // freed after the lock is released: its images are large
     {
       const std::lock_guard lock(mutex_);
       if (is_closed_) return;
@@ -187,10 +187,10 @@ class ViewServer::Hub {
     return text;
   }
 
-  // From the server's thread:
+  // Called from the server's thread:
 
   [[nodiscard]] const Access& access() const { return access_; }
-  /// Nobody is let in any more.
+  /// New connections are refused.
   [[nodiscard]] bool is_ending() const { return !acceptor_.is_open(); }
   [[nodiscard]] bool is_on_network() const { return !is_loopback(options_.address); }
   [[nodiscard]] Parameters& parameters() { return parameters_; }
@@ -213,9 +213,10 @@ class ViewServer::Hub {
     skipped_before_ += viewer.skipped();
     note_subscriptions();
   }
-  /// Somebody subscribed or left: the frame at hand is for them, too.
+  /// Called when a viewer subscribes or leaves. New subscribers also get the current frame.
   void note_subscriptions() { note_demand(0); }
-  /// The demand has changed: of a viewer that had frame number `had`, and wants the one at hand if it is newer.
+  /// Called when the demand changes: by a viewer that has received frame number `had`, and needs the current one if
+  /// that is newer.
   void note_demand(std::uint64_t had) {
     ChannelBits all = 0;
     std::uint64_t skipped = skipped_before_;
@@ -232,7 +233,7 @@ class ViewServer::Hub {
     }
     wake_.notify_one();
   }
-  /// Tells those who watch them what parameters have changed, whoever changed them.
+  /// Sends changed parameters to their subscribers, whoever changed them.
   void tell_changes() {
     const std::set<std::string> changed = parameters_.take_changes();
     if (changed.empty()) return;
@@ -259,7 +260,7 @@ class ViewServer::Hub {
   }
 
  private:
-  // ---- the socket ----
+  // ---- listening ----
 
   void load_tls() {
     tls_.emplace(asio::ssl::context::tls_server);
@@ -290,7 +291,7 @@ class ViewServer::Hub {
   void accept() {
     acceptor_.async_accept([this](ErrorCode error, tcp::socket socket) {
       if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
-      if (error) {  // no more files may be open, for instance
+      if (error) {  // e.g. too many open files
         pause_.expires_after(100ms);
         pause_.async_wait([this](ErrorCode) { accept(); });
         return;
@@ -317,12 +318,12 @@ class ViewServer::Hub {
     pause_.async_wait([this](ErrorCode) { until_gone(); });
   }
 
-  // ---- answers ----
+  // ---- HTTP answers ----
 
   Response page(std::string_view host) {
     const std::string nonce = random_token();
     Response response = answer("text/html; charset=utf-8", io::live_page(nonce));
-    // 'self' is no WebSocket's origin in older browsers. The host is one of ours: Access has seen to it.
+    // In older browsers 'self' does not include WebSockets. The host is one of ours: Access has checked it.
     response.set("Content-Security-Policy",
                  "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
                      "'; img-src 'self' data: blob:; connect-src 'self' " +
@@ -353,9 +354,9 @@ class ViewServer::Hub {
     return state;
   }
 
-  // ---- frames ----
+  // ---- encoding frames ----
 
-  /// On a thread of its own: encodes what somebody wants of the newest frame, each message once.
+  /// Runs on its own thread: encodes the newest frame's messages that have subscribers, each once.
   void encode_frames() {
     std::array<ViewMessagePtr, kChannels> made;
     std::unique_lock lock(mutex_);
@@ -387,14 +388,14 @@ class ViewServer::Hub {
       message->frame = number;
       ++encoded_;
       return message;
-    } catch (const std::exception& error) {  // no memory is no reason to end the robot's run
+    } catch (const std::exception& error) {  // running out of memory here must not end the robot's run
       trouble_ = std::string(channels()[index_of(channel)].topic) + " could not be sent: " + error.what();
       return nullptr;
     }
   }
 
   void deliver(const std::vector<ViewMessagePtr>& messages, std::uint64_t revision) {
-    // Nothing is destroyed meanwhile: what ends a viewer is called by the system's answers alone.
+    // Viewers are not destroyed meanwhile: only completion handlers do that.
     for (Viewer* viewer : std::set<Viewer*>(viewers_)) {
       viewer->offer(messages);
       viewer->pump();
@@ -417,14 +418,14 @@ class ViewServer::Hub {
   int visitors_ = 0;
   std::set<Viewer*> viewers_;
   std::size_t most_clients_ = 0;
-  std::uint64_t skipped_before_ = 0;  // by viewers who left
+  std::uint64_t skipped_before_ = 0;  // by viewers that left
   std::uint64_t revision_ = 0;
 
-  std::mutex mutex_;  // of the next
+  std::mutex mutex_;  // guards the members below
   std::condition_variable wake_;
   LiveFramePtr newest_;
   std::uint64_t newest_number_ = 0;
-  bool is_new_ = false;  // it, or somebody who wants it
+  bool is_new_ = false;  // a new frame, or a new subscription
   bool is_delivering_ = false;
   bool is_closed_ = false;
   ChannelBits wanted_ = 0;
@@ -432,9 +433,9 @@ class ViewServer::Hub {
   std::atomic<int> clients_ = 0;
   std::atomic<std::uint64_t> skipped_ = 0;
   std::atomic<std::uint64_t> encoded_ = 0;
-  std::string trouble_;  // the encoder's
+  std::string trouble_;  // of the encoder
 
-  // Behind all that connections use: what is still open goes with it.
+  // Last member, so that open connections are destroyed before what they use.
   asio::io_context io_{1};
   std::optional<asio::ssl::context> tls_;
   tcp::acceptor acceptor_{io_};
@@ -460,7 +461,7 @@ beast::tcp_stream& socket_of(TlsStream& stream) {
   return stream.next_layer();
 }
 
-/// A moving picture for whoever has no script: one JPEG behind the other.
+/// A motion JPEG stream for clients without scripts.
 template <class Hub, class Stream>
 class MovingPicture : public Viewer, public std::enable_shared_from_this<MovingPicture<Hub, Stream>> {
  public:
@@ -543,7 +544,7 @@ class MovingPicture : public Viewer, public std::enable_shared_from_this<MovingP
   bool is_writing_ = false;
 };
 
-/// A client of the protocol.
+/// A client of the WebSocket protocol.
 template <class Hub, class Stream>
 class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, Stream>> {
  public:
@@ -568,7 +569,8 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     stream_.read_message_max(kMostClientBytes);
     stream_.auto_fragment(false);
     if (hub_.is_on_network()) {
-      // Wi-Fi does not carry raw labels at the rate of a camera. The price is this thread's time, for each viewer.
+      // Uncompressed labels at a camera's rate exceed the bandwidth of Wi-Fi. Compression costs this thread
+      // time for each viewer.
       websocket::permessage_deflate deflate;
       deflate.server_enable = true;
       deflate.compLevel = 1;
@@ -577,7 +579,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
       stream_.write_buffer_bytes(kCompressedFrame);
     }
     hub_.add(*this);
-    is_writing_ = true;  // the handshake
+    is_writing_ = true;  // during the handshake
     stream_.async_accept(request, [self = this->shared_from_this()](ErrorCode error) {
       if (error) return self->end();
       self->is_writing_ = false;
@@ -624,7 +626,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
   [[nodiscard]] std::uint64_t skipped() const override { return client_.skipped(); }
 
  private:
-  /// Not while answers wait that it does not read.
+  /// Pauses reading while the client does not read its answers.
   void read() {
     if (is_over_ || !client_.may_ask()) return;
     is_reading_ = true;
@@ -647,7 +649,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     read();
     pump();
   }
-  /// Not before the handshake is over: that writes, too.
+  /// Not before the end of the handshake, which also writes.
   void close() {
     stream_.async_close(websocket::close_reason(websocket::close_code::going_away, "the run is over"),
                         [self = this->shared_from_this()](ErrorCode) { self->end(); });
@@ -669,7 +671,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
   bool is_over_ = false;
 };
 
-/// A connection until it is known what it is for: one request, one answer.
+/// A connection until its purpose is known: one request, one answer.
 template <class Hub, class Stream>
 class Visitor : public std::enable_shared_from_this<Visitor<Hub, Stream>> {
  public:
@@ -703,7 +705,7 @@ class Visitor : public std::enable_shared_from_this<Visitor<Hub, Stream>> {
       return say(plain(http::status::payload_too_large, "found a longer request, expected at most 8 kB"));
     }
     if (error) {
-      // What is no HTTP gets a word, who went away none.
+      // Answers a request that is not HTTP, but not a closed connection.
       if (error.category() == http::make_error_code(http::error::bad_method).category() &&
           error != http::error::end_of_stream && error != http::error::partial_message)
         return say(plain(http::status::bad_request, "found no HTTP request"));

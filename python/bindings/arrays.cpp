@@ -27,7 +27,7 @@ std::string described(const py::array& array) {
          py::str(array.dtype()).cast<std::string>();
 }
 
-/// An ndarray as it is; what only claims to be like one (a PIL image) as an ndarray.
+/// Converts an array-like object, such as a PIL image, to an ndarray.
 py::array array_like(const py::object& value, const char* name, const std::string& expected) {
   if (py::isinstance<py::array>(value)) return py::reinterpret_borrow<py::array>(value);
   const bool is_like = py::hasattr(value, "__array__") || py::hasattr(value, "__array_interface__") ||
@@ -38,7 +38,7 @@ py::array array_like(const py::object& value, const char* name, const std::strin
   refuse(name, value.is_none() ? "None" : "a value of type " + type_of(value), expected);
 }
 
-/// An image's sides as the library counts them.
+/// The size of an image in the library's order.
 Size size_of(const py::array& array, const char* name, const std::string& expected) {
   constexpr py::ssize_t kMostPixels = py::ssize_t{1} << 28;
   const py::ssize_t height = array.shape(0);
@@ -48,7 +48,7 @@ Size size_of(const py::array& array, const char* name, const std::string& expect
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
-/// Whether the pixels of a row lie side by side, and the rows one behind the other at whole pixels.
+/// Whether the pixels of a row are contiguous and the rows a whole number of pixels apart.
 bool has_plain_rows(const py::array& array, py::ssize_t pixel_bytes) {
   const bool aligned = (array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0;
   const bool dense = array.shape(1) == 1 || array.strides(1) == pixel_bytes;
@@ -73,7 +73,7 @@ bool is_kind(const py::array& array, const char* kinds) {
   return std::string(kinds).find(array.dtype().kind()) != std::string::npos;
 }
 
-/// The kinds of other types, as numpy has them, that are converted.
+/// Type kinds, in numpy's notation, that are converted.
 template <class T>
 constexpr const char* kConverted = "";
 template <>

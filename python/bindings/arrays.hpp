@@ -17,17 +17,17 @@
 #include <utility>
 #include <vector>
 
-/// numpy arrays and the library's images. An array is borrowed wherever its rows lie in memory as the library
-/// wants them; a result is the library's own memory, kept alive by its array.
+/// Conversion between numpy arrays and images. An array is borrowed if its memory layout allows; a result is
+/// the library's own memory, kept alive by its array.
 namespace cairn::python {
 
 namespace py = pybind11;
 
-// ---- in: each says with kType what the stubs call it ----
+// ---- inputs; kType is their name in the stubs ----
 
-/// A two-dimensional array of numbers, borrowed where each row is contiguous, else copied. Throws Error that
-/// begins with `name` for another shape or type. uint8 takes bool, float other floating types, int32 other
-/// integers.
+/// A two-dimensional array of numbers, borrowed if each row is contiguous, else copied. Other shapes and
+/// types throw an Error that starts with `name`. uint8 accepts bool, float other floating-point types, int32
+/// other integers.
 template <class T>
 class Borrowed {
  public:
@@ -53,7 +53,7 @@ class Floats : public Borrowed<float> {
   using Borrowed<float>::Borrowed;
 };
 
-/// Disparities from outside: floats, each a hole (NaN, ±inf) or within ±kMaxDisparity. Throws Error.
+/// Disparities given by the user: floats, each a hole (NaN, ±inf) or within ±kMaxDisparity. Throws Error.
 class Disparities : public Floats {
  public:
   Disparities(const py::object& value, const char* name);
@@ -63,14 +63,14 @@ class Labels : public Borrowed<std::int32_t> {
  public:
   static constexpr const char* kType = "LabelsLike";
   using Borrowed<std::int32_t>::Borrowed;
-  /// The same as ids of regions or objects.
+  /// Ids of regions or objects, in the same way.
   template <class Id>
   [[nodiscard]] View<const Id> as() const {
     return {reinterpret_cast<const Id*>(view().data()), size(), view().stride()};
   }
 };
 
-/// None: an empty view.
+/// None gives an empty view.
 class Mask {
  public:
   static constexpr const char* kType = "MaskLike";
@@ -84,16 +84,16 @@ class Mask {
   std::optional<Borrowed<std::uint8_t>> mask_;
 };
 
-/// An image, grey or in colour, as the stages take it. Borrows grey rows, and colour in the order R, G, B;
-/// the grey of colours and the order B, G, R need an image of their own, from `pool`.
+/// An image, grey or in colour, as input of the stages. Borrows grey rows, and colour in the order R, G, B;
+/// converting colour to grey, or the order B, G, R, needs an image of its own, from `pool`.
 class Picture {
  public:
   static constexpr const char* kType = "ImageLike";
   Picture(const py::object& value, const char* name, bool bgr, const Pool& pool);
   [[nodiscard]] View<const Gray> gray() const { return gray_; }
-  [[nodiscard]] View<const Rgb> rgb() const { return rgb_; }  // empty where it is grey
+  [[nodiscard]] View<const Rgb> rgb() const { return rgb_; }  // empty for grey images
   [[nodiscard]] Size size() const { return gray_.size(); }
-  /// Grey, or colour in the order R, G, B, as an array of its own.
+  /// An array, grey or in colour in the order R, G, B.
   [[nodiscard]] py::object copy() const;
 
  private:
@@ -104,14 +104,14 @@ class Picture {
   View<const Rgb> rgb_;
 };
 
-/// A DisparityMap as a stage takes it: one of ours, or floats made into one.
+/// A DisparityMap as input of a stage: one of ours, or made from floats.
 class DisparityInput {
  public:
   static constexpr const char* kType = "DisparityLike";
   DisparityInput(const py::object& value, const char* name, const Exec& exec);
   [[nodiscard]] const DisparityMap& map() const { return own_ ? *own_ : *borrowed_; }
   [[nodiscard]] Size size() const { return map().disparity_px.size(); }
-  /// A map that a stage may take over.
+  /// A map that a stage may move from.
   [[nodiscard]] DisparityMap taken(const Exec& exec);
 
  private:
@@ -123,9 +123,9 @@ class DisparityInput {
 /// Throws Error unless both have the same size.
 void expect_size(Size found, const std::string& name, Size expected, const std::string& other);
 
-// ---- out ----
+// ---- results ----
 
-/// An image of its own of what is borrowed.
+/// A copy of a borrowed image.
 template <class T>
 Image<T> copied(View<const T> from, const Pool& pool = {}) {
   Image<T> image(from.size(), pool);
@@ -133,7 +133,7 @@ Image<T> copied(View<const T> from, const Pool& pool = {}) {
   return image;
 }
 
-/// The numbers that a pixel is made of, as numpy knows them.
+/// The components of a pixel as a numpy type.
 template <class T>
 struct NumbersOf {
   using Type =
@@ -146,7 +146,7 @@ struct NumbersOf<Rgb> {
   static constexpr int kCount = 3;
 };
 
-/// The image's pixels as an array that keeps `owner` alive; None where there are none.
+/// The image's pixels as an array that keeps `owner` alive; None for an empty image.
 template <class T>
 py::object array_over(const Image<T>& image, const py::object& owner, bool writable = false) {
   if (image.empty()) return py::none();
@@ -165,7 +165,7 @@ py::object array_over(const Image<T>& image, const py::object& owner, bool writa
   return array;
 }
 
-/// The value lives as long as the arrays over it.
+/// The value lives as long as the arrays that refer to it.
 template <class T>
 std::pair<const T&, py::capsule> kept_alive(T value) {
   auto owned = std::make_unique<T>(std::move(value));
@@ -175,14 +175,14 @@ std::pair<const T&, py::capsule> kept_alive(T value) {
   return {kept, std::move(owner)};
 }
 
-/// The image itself becomes the array: moved, not copied. None where it is empty.
+/// Moves the image into an array, without copying. None if it is empty.
 template <class T>
 py::object array_from(Image<T> image) {
   const auto [pixels, owner] = kept_alive(std::move(image));
   return array_over(pixels, owner, true);
 }
 
-/// Numbers that become an array of this shape, {}: a flat one.
+/// Moves numbers into an array of this shape; {} = one-dimensional.
 template <class T>
 struct Numbers {
   std::vector<T> values;
@@ -196,7 +196,7 @@ py::object array_from(Numbers<T> numbers) {
   return py::array(py::dtype::of<T>(), shape, kept.values.data(), owner);
 }
 
-/// Runs the work while other Python threads run theirs.
+/// Releases the GIL during the work.
 template <class Work>
 auto released(Work&& work) {
   const py::gil_scoped_release release;
@@ -207,7 +207,7 @@ auto released(Work&& work) {
 
 namespace pybind11::detail {
 
-/// What a function returns, as an array.
+/// Converts a function's result to an array.
 template <class T>
 struct as_array {
   static handle cast(T made, return_value_policy, handle) {

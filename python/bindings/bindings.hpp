@@ -19,12 +19,12 @@ void bind_grouping(pybind11::module_& m);    // cut_superpixels … groups_of
 void bind_objects(pybind11::module_& m);     // fuse, measure
 void bind_frame(pybind11::module_& m);       // segment, estimate_disparity, Segmenter
 void bind_evaluation(pybind11::module_& m);  // comparison with truth
-void bind_diagnosis(pybind11::module_& m);   // what is wrong with a rig
-void bind_tuning(pybind11::module_& m);      // options that do best on frames
-void bind_io(pybind11::module_& m);          // files and pictures
+void bind_diagnosis(pybind11::module_& m);   // finding faults of a rig
+void bind_tuning(pybind11::module_& m);      // search for the best options
+void bind_io(pybind11::module_& m);          // files and images
 void bind_follow(pybind11::module_& m);      // sequences
 
-/// Colour where the file has it, else grey.
+/// Colour if the file has it, else grey.
 pybind11::object picture_array(io::Picture picture);
 
 }  // namespace cairn::python

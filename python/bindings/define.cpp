@@ -10,7 +10,7 @@
 namespace cairn::python {
 namespace {
 
-/// The text between the brackets of "List[…]" and the like; nullopt for another type.
+/// The text between the brackets of "List[…]" and similar; nullopt for another type.
 std::optional<std::string> inside(const std::string& type, std::string_view outer) {
   if (!type.starts_with(outer) || type.size() <= outer.size() || type[outer.size()] != '[')
     return std::nullopt;
@@ -35,8 +35,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-/// A value in a repr(): arrays as their type and shape, numbers with seven digits, long lists as their
-/// length.
+/// A value in a repr(): arrays as type and shape, numbers with seven digits, long lists as their length.
 std::string brief(const py::handle& value) {
   constexpr std::size_t kMostEntries = 8;
   const auto as_text = [](const py::handle& any) { return py::str(any).cast<std::string>(); };
@@ -70,7 +69,7 @@ void refuse(const std::string& name, const py::handle& value, const std::string&
 std::optional<int> whole(const py::handle& value) {
   if (PyNumber_Check(value.ptr()) == 0) return std::nullopt;
   const double number = PyFloat_AsDouble(value.ptr());
-  const bool is_number = PyErr_Occurred() == nullptr;  // no complex one, no array
+  const bool is_number = PyErr_Occurred() == nullptr;  // neither complex nor an array
   PyErr_Clear();
   if (!is_number || number != std::floor(number) || std::abs(number) > std::numeric_limits<int>::max())
     return std::nullopt;

@@ -22,41 +22,41 @@
 #include "rig.hpp"
 #include "values.hpp"
 
-/// Functions and classes for Python. A function is described once, by a C++ function and the names of its
-/// arguments: conversion, refusals, checks of size, help and stubs come from that. So does a class, by the
-/// list of what it shows: attributes, repr() and stubs.
+/// Definition of functions and classes for Python. A function is described once, by a C++ function and the
+/// names of its arguments, from which conversion, error messages, size checks, help and stubs follow. A class
+/// is described by the list of its members: attributes, repr() and stubs.
 namespace cairn::python {
 
 struct Parameter {
   std::string name;
   std::string type;       // as in the stubs
-  py::object fallback;    // null: it must be given
-  bool is_named = false;  // only by name
+  py::object fallback;    // null: required
+  bool is_named = false;  // keyword-only
 };
 
-/// What a call says besides the function's own arguments.
+/// The arguments common to many functions.
 struct Call {
   Exec exec;
   bool bgr = false;
-  Config config;  // of a stage
-  // Of what takes options by group:
+  Config config;  // for a stage
+  // For functions with options by group:
   std::string preset = "default";
   py::object given_config;
   py::kwargs options;
   [[nodiscard]] PyConfig settings() const { return config_of(given_config, preset, options); }
 };
 
-/// Options as keywords: by their own names, for a stage; or a dict for each group, with preset and config or
-/// alone.
+/// Options as keywords: by their own names, for a stage; or as a dict for each group, with preset and config
+/// or without.
 enum class Keywords : std::uint8_t { none, of_stage, by_group, groups_alone };
 struct Options {
   Keywords keywords = Keywords::none;
   Groups groups{};
-  void (*settle)(Config&) = nullptr;                  // what the stage does whatever the configuration says
-  bool is_released = keywords == Keywords::of_stage;  // other Python threads run meanwhile
+  void (*settle)(Config&) = nullptr;                  // overrides what the stage always needs
+  bool is_released = keywords == Keywords::of_stage;  // releases the GIL
 };
 
-/// What a function is called with.
+/// The parameters of a function.
 struct Signature {
   std::string title;  // "segment", "Rig.from_file"
   Options options;
@@ -68,15 +68,15 @@ struct Signature {
   void add(const py::arg& argument, py::object fallback = {});
   void add(const py::arg_v& argument) { add(argument, argument.value); }
   void add(const py::kw_only&) { is_named_ = true; }
-  void finish();  // adds what all such functions take
-  /// The values of its own parameters; the others go to `call`. Throws ArgumentError.
+  void finish();  // adds the common parameters
+  /// The values of the function's own parameters; the others go to `call`. Throws ArgumentError.
   std::vector<py::object> bind(const py::args& args, const py::kwargs& named, Call& call) const;
-  /// "segment(left: ImageLike, …) -> Frame", words, and a line for each option.
+  /// The docstring: "segment(left: ImageLike, …) -> Frame", `words`, and a line for each option.
   [[nodiscard]] std::string doc(const std::string& words) const;
 
   bool is_named_ = false;
 };
-/// Keeps for the stubs which options a function takes.
+/// Records the options of a function for the stubs.
 void note_options(py::module_& m, const Signature& signature);
 
 /// "preset: found 3, expected a str". Throws ArgumentError.
@@ -88,9 +88,9 @@ std::optional<int> whole(const py::handle& value);
 template <class T>
 concept Input = requires {
   T::kType;
-};  // made of what the caller gave, by a constructor of its own
+};  // constructible from the caller's argument
 
-/// One argument: what it is made of, and kept by, during a call.
+/// An argument during a call: the converted value and what keeps it alive.
 template <class T>
 struct Taken {
   py::detail::make_caster<T> made;
@@ -141,14 +141,14 @@ struct Taken<std::optional<T>> {
   std::optional<T>& get() { return made; }
 };
 
-/// The standard deviation of an image's noise, grey levels.
+/// The standard deviation of an image's noise, in grey levels.
 struct NoiseSigma {
   static constexpr const char* kType = "float";
   float value = 0;
-  NoiseSigma(const py::object& given, const char* name);  // throws Error unless it can be one
+  NoiseSigma(const py::object& given, const char* name);  // throws Error for invalid values
 };
 
-/// The size of what lies over the image's pixels; nothing for all else.
+/// The size of a value with one entry per pixel; empty for other values.
 template <class T>
 Size size_over_pixels(const T& value) {
   if constexpr (requires {
@@ -170,7 +170,7 @@ Size size_over_pixels(const T& value) {
   }
 }
 
-/// Throws Error unless all have the size of the first. Two images are left to StereoPair::from().
+/// Throws Error unless all have the size of the first. Two images are checked by StereoPair::from().
 template <class... T>
 void expect_one_size(const Signature& signature, const T&... values) {
   std::optional<std::pair<Size, const Parameter*>> first;
@@ -188,8 +188,7 @@ void expect_one_size(const Signature& signature, const T&... values) {
 
 // ---- calls ----
 
-/// A value as a Python object. What is referred to is a part of `owner`; images are shown as they are,
-/// read-only.
+/// A value as a Python object. A reference is part of `owner`; images become read-only arrays.
 template <class T>
 py::object object_of(T&& value, const py::object& owner) {
   using Value = std::remove_cvref_t<T>;
@@ -202,7 +201,7 @@ py::object object_of(T&& value, const py::object& owner) {
   }
 }
 
-/// What a function returns, as a Python object; a reference is into its first argument.
+/// A function's result as a Python object; a reference is part of the first argument.
 struct ToPython {
   using Result = py::object;
   template <class R>
@@ -211,7 +210,7 @@ struct ToPython {
   }
   py::object operator()() const { return py::none(); }
 };
-/// What a constructor returns, by itself.
+/// Tags the result of a constructor.
 template <class T>
 struct ToNew {
   using Result = T*;
@@ -255,7 +254,7 @@ typename To::Result invoke(const F& function, const Signature& signature, const 
   }
 }
 
-/// A function for Python: what it is called with, and the call.
+/// A function for Python: its signature, and the call.
 template <class Result>
 struct Callable {
   Signature signature;
@@ -278,7 +277,7 @@ Callable<typename To::Result> callable_as(std::type_identity<R(P...)>, std::stri
             return invoke<To, kTakesCall, R, P...>(function, signature, args, named);
           }};
 }
-/// Of `function(const Call&, arguments…)` or `function(arguments…)`, and the arguments' names and defaults.
+/// For `function(const Call&, arguments…)` or `function(arguments…)`, with the arguments' names and defaults.
 template <class To = ToPython, class F, class... A>
 auto callable(std::string title, Options options, F function, const A&... arguments) {
   using Kind = decltype(kind_of(std::function{function}));
@@ -297,7 +296,7 @@ template <class F, class... A>
 void define(py::module_& m, const char* name, const char* words, F function, const A&... arguments) {
   define(m, name, Options{}, words, std::move(function), arguments...);
 }
-/// A stage: `function(call, arguments…)` works on call.config, whose groups are its keywords.
+/// Defines a stage: `function(call, arguments…)` uses call.config, whose groups are its keywords.
 template <class F, class... A>
 void stage(py::module_& m, const char* name, Groups groups, const char* words, F function,
            const A&... arguments) {
@@ -306,9 +305,9 @@ void stage(py::module_& m, const char* name, Groups groups, const char* words, F
 
 // ---- classes ----
 
-/// What a text in JSON says.
+/// Parses JSON text.
 py::object parsed(const std::string& json);
-/// repr() of what a class shows: "Region(pixel_count=12, …)".
+/// repr() with the members of a class: "Region(pixel_count=12, …)".
 std::string repr_of(const py::object& self);
 
 template <class T>
@@ -321,19 +320,19 @@ class Class {
     if constexpr (kHasParts<T>) class_.def(pickled<T>());
   }
 
-  /// An attribute: a member, or a function of the object. Images are shown as they are, read-only.
+  /// An attribute: a member, or a function of the object. Images become read-only arrays.
   template <class Get>
   Class& shows(const char* name, Get get, const char* words) {
     using Value = std::invoke_result_t<Get, const T&>;
     return property(name, get, words, spelt<Value>());
   }
-  /// The same of an image that may be empty: None.
+  /// The same for an image that may be empty: then None.
   template <class Get>
   Class& may_show(const char* name, Get get, const char* words) {
     using Value = std::invoke_result_t<Get, const T&>;
     return property(name, get, words, "Optional[" + spelt<Value>() + "]");
   }
-  /// `function(self, arguments…)`.
+  /// A method: `function(self, arguments…)`.
   template <class F, class... A>
   Class& method(const char* name, const std::string& words, F function, const A&... arguments) {
     auto made = callable(name_ + "." + name, Options{}, std::move(function), py::arg("self"), arguments...);
@@ -346,7 +345,7 @@ class Class {
     class_.def_static(name, std::move(made.call), made.signature.doc(words).c_str());
     return *this;
   }
-  /// Its constructor: `function(arguments…)` returns one, or a std::unique_ptr to one.
+  /// The constructor: `function(arguments…)` returns an object or a std::unique_ptr to one.
   template <class F, class... A>
   Class& made_by(Options options, const std::string& words, F function, const A&... arguments) {
     auto made = callable<ToNew<T>>(name_, std::move(options), std::move(function), arguments...);
@@ -360,7 +359,7 @@ class Class {
     note_options(module_, made.signature);
     return *this;
   }
-  /// Shows what `json` says, an object, as items, as attributes and as a dict.
+  /// Exposes the JSON object returned by `json` as items, as attributes and as a dict.
   Class& shows_json(std::string (*json)(const T&)) {
     const auto as_dict = [json](const T& self) { return parsed(json(self)).template cast<py::dict>(); };
     method("as_dict", "All of it, as the command writes it.", as_dict);
@@ -377,12 +376,12 @@ class Class {
         },
         py::arg("name"));
   }
-  /// Its repr() in words of its own.
+  /// Replaces the repr().
   Class& says(std::string (*words)(const T&)) {
     class_.attr("__repr__") = py::cpp_function(words, py::name("__repr__"), py::is_method(class_));
     return *this;
   }
-  /// As of pybind11.
+  /// As in pybind11.
   template <class... X>
   Class& def(X&&... x) {
     class_.def(std::forward<X>(x)...);

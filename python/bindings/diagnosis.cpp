@@ -14,7 +14,7 @@ namespace {
 
 // ---- measuring ----
 
-/// The images of many pairs, kept as long as the pairs.
+/// The images of several pairs, kept alive with the pairs.
 struct Sequence {
   std::vector<Picture> pictures;
   std::vector<StereoPair> pairs;
@@ -70,7 +70,7 @@ void set_limit(const std::string& name, T& limit, const Range<T>& range, const p
               (std::is_integral_v<T> ? "whole number, " : "number, ") + range_text(range));
 }
 
-/// Keys are those of fields(DiagnosisConfig).
+/// The keys are those of fields(DiagnosisConfig).
 DiagnosisConfig limits_of(const std::optional<py::dict>& limits) {
   DiagnosisConfig config;
   for (const auto& [key, value] : limits.value_or(py::dict())) {

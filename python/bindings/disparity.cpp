@@ -27,7 +27,7 @@ struct Verdicts {
   }
 };
 
-/// combine() itself takes a list of fixed length; the union of the verdicts is one verdict.
+/// combine() takes a list of fixed length, so the verdicts are united into one.
 Image<Reject> united(const Verdicts& verdicts, Size size, const Pool& pool) {
   Image<Reject> all(size, Reject::none, pool);
   for (const Borrowed<Reject>& verdict : verdicts.all) {
@@ -39,7 +39,7 @@ Image<Reject> united(const Verdicts& verdicts, Size size, const Pool& pool) {
   return all;
 }
 
-/// enum.IntFlag: names the bits of an array of reasons, and of a union of them.
+/// An enum.IntFlag, which names the bits in an array of reasons.
 py::object reject_enum() {
   py::list members;
   members.append(py::make_tuple("none", 0));

@@ -61,7 +61,7 @@ void bind_evaluation(py::module_& m) {
       .shows("matched", &DisparityErrors::matched, "of these, pixels with a disparity of ours")
       .shows("density", &DisparityErrors::density, "0 to 1: matched / known")
       .shows("bad_of_matched", &by_threshold<&DisparityErrors::bad_of_matched>,
-             "by threshold in px: share of the matched that is off by more")
+             "by threshold in px: share of the matched pixels with a larger error")
       .shows("bad_of_known", &by_threshold<&DisparityErrors::bad_of_known>,
              "the same of the known; a hole counts as bad")
       .shows("mean_absolute_px", &DisparityErrors::mean_absolute_px,
@@ -69,7 +69,7 @@ void bind_evaluation(py::module_& m) {
       .shows("root_mean_square_px", &DisparityErrors::root_mean_square_px,
              "root of the mean square of the same, px; NaN where no pixel is matched")
       .shows("sigma_px", &DisparityErrors::sigma_px,
-             "the same over those that are off by 1 px at most: sigma of a right match")
+             "the same over errors of at most 1 px: sigma of a correct match")
       .def(py::self += py::self);
   Class<TrueObjectScore>(m, "TrueObjectScore", "How well one true object was found.")
       .shows("id", &TrueObjectScore::id, "its number in the truth, from 1 on")
@@ -99,7 +99,7 @@ void bind_evaluation(py::module_& m) {
       .shows("frames", &ObjectSummary::frames, "number of frames")
       .shows("true_objects", &ObjectSummary::true_objects, "that were scored")
       .shows("our_objects", &ObjectSummary::our_objects, "all of ours but those mostly on don't-care")
-      .shows("phantoms", &ObjectSummary::phantoms, "objects of ours that hardly lie on a true one")
+      .shows("phantoms", &ObjectSummary::phantoms, "reported objects that hardly overlap a true one")
       .shows("mean_error", &ObjectSummary::mean_error, "of the paper's E, each capped at 2; 0 is best")
       .shows("median_error", &ObjectSummary::median_error, "of the same, 0 to 2")
       .shows("mean_iou", &ObjectSummary::mean_iou, "over all scored objects, 0 to 1")

@@ -55,7 +55,7 @@ Numbers<double> matrix(const std::array<double, N>& numbers) {
   return {{numbers.begin(), numbers.end()}, {kSide, kSide}};
 }
 
-/// Throws Error unless it is a square of finite numbers.
+/// Throws Error unless it is a square matrix of finite numbers.
 py::array_t<double> square(const py::object& value, py::ssize_t side, const std::string& name) {
   const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
   PyErr_Clear();
@@ -129,7 +129,7 @@ Stamp stamp_from(const py::object& stamp_ns, std::optional<double> seconds) {
 
 struct Settings {
   PyConfig segmentation;
-  FollowConfig config;  // segmentation left out
+  FollowConfig config;  // without segmentation
   std::set<std::string> own;
 
   [[nodiscard]] FollowConfig suited(const io::Calibration& calibration) const {
@@ -182,12 +182,12 @@ Groups follow_groups() {
 
 // ---- steps ----
 
-/// A step, its pictures, and what `cairn follow` says of it.
+/// A step, its images, and the output of `cairn follow` for it.
 struct PyStep {
   std::shared_ptr<Step> step;
-  py::object frame;  // a PyFrame over step->frame
+  py::object frame;  // a PyFrame that refers to step->frame
   std::string json;
-  std::map<std::int64_t, std::int64_t> landmarks;  // by track
+  std::map<std::int64_t, std::int64_t> landmarks;  // by track id
   std::vector<std::pair<std::string, std::int64_t>> events;
 };
 
@@ -335,19 +335,19 @@ std::string value_of(const PyFollower& self, const std::string& name) {
     if (option.name == name) return option.value;
   }
   FollowConfig copy;
-  set(copy, name, "");  // throws, with the nearest name
+  set(copy, name, "");  // throws and suggests the nearest name
   return {};
 }
 
 // ---- classes ----
 
-/// A member that a track has only with a place in metres, else None.
+/// An attribute of tracks with a metric position, else None.
 template <auto member>
 auto if_placed(const Track& self) {
   return self.has_place ? std::optional(self.*member) : std::nullopt;
 }
 
-/// A member of the library's step.
+/// An attribute from the library's step.
 template <auto member>
 const auto& of_step(const PyStep& self) {
   return (*self.step).*member;
@@ -405,7 +405,7 @@ void bind_results(py::module_& m) {
           [](const Track& t) { return t.has_place ? std::optional(matrix(t.covariance_m2)) : std::nullopt; },
           "3 x 3 of position_m, m²; None without a rig")
       .shows("velocity_m_s", &if_placed<&Track::velocity_m_s>,
-             "(x, y, z), m/s; 0 where it stands; None without a rig")
+             "(x, y, z), m/s; 0 if static; None without a rig")
       .shows("extent_m", &if_placed<&Track::extent_m>,
              "(x, y, z) in the camera's frame, m: the box around its points; None without a rig")
       .shows("confidence", &Track::confidence, "0 to 1, smoothed")
@@ -466,7 +466,7 @@ void bind_results(py::module_& m) {
       .shows("motion", &of_step<&Step::motion>, "the camera's Motion")
       .shows(
           "tracks",
-          [](const PyStep& self) {  // with the covariance in the map, as in tracks.jsonl
+          [](const PyStep& self) {  // in the map frame, as in tracks.jsonl
             std::vector<Track> tracks = self.step->tracks.list;
             for (Track& track : tracks)
               track.covariance_m2 =

@@ -8,7 +8,7 @@ namespace py = pybind11;
 
 namespace cairn::python {
 
-/// In place of follow.cpp where sequences are not built.
+/// Replaces follow.cpp in a build without sequences.
 void bind_follow(py::module_& m) {
   for (const char* name : {"Follower", "follow", "follow_options"}) {
     m.def(

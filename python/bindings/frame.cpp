@@ -27,23 +27,23 @@ std::unique_ptr<PyFrame> frame_of(const py::tuple& state) {
   return frame;
 }
 
-/// Everything that a call needs to know besides its images.
+/// The inputs of a call besides its images.
 struct Recipe {
   PyConfig config;
   PyCalibration calibration;
 
-  /// Throws Error where the calibration is for other images.
+  /// Throws Error if the calibration is for images of another size.
   [[nodiscard]] Config for_size(Size size) const {
     calibration.check(size);
     return config.suited(calibration.calibration);
   }
-  /// Of a frame that is to be computed: what it is made with.
+  /// The provenance of a frame to be computed.
   [[nodiscard]] io::Provenance provenance(Size size, bool external_disparity) const {
     return {config.preset, for_size(size), calibration.calibration.rig, {}, external_disparity};
   }
 };
 
-/// Keeps the times of the stages.
+/// Records the times of the stages.
 void time_stages(Exec& exec, std::vector<io::StageTime>& times) {
   exec.observe = [&times](std::string_view stage, const Artifact&, double milliseconds) {
     times.push_back({std::string(stage), milliseconds});
@@ -75,7 +75,8 @@ std::unique_ptr<PyFrame> segment_any(const Call& call, Picture& left,
   if (disparity_map.is_none())
     return segment_pair(std::move(left), Picture(right, "right", call.bgr, call.exec.pool), recipe,
                         call.exec);
-  if (!right.is_none()) throw Error("right: found an image beside disparity_map, expected one of the two");
+  if (!right.is_none())
+    throw Error("right: found an image together with disparity_map, expected one of the two");
   return segment_given(std::move(left), DisparityInput(disparity_map, "disparity_map", call.exec), recipe,
                        call.exec);
 }
@@ -88,7 +89,7 @@ SceneDisparity disparity_of_pair(const Call& call, const Picture& left, const Pi
   return released([&] { return estimate_disparity(pair, rig.rig(), wanted, call.exec); });
 }
 
-/// segment() for video; the pool and the threads are a Segmenter's own.
+/// segment() for video; a Segmenter has its own pool and threads.
 struct PySegmenter {
   PySegmenter(Recipe made_with, Exec exec)
       : recipe(std::move(made_with)),
@@ -98,7 +99,7 @@ struct PySegmenter {
   Segmenter segmenter;
 };
 
-/// Its buffers stay behind: the copy has a pool of its own.
+/// The copy has a pool of its own: buffers are not copied.
 py::tuple segmenter_state(const PySegmenter& self) {
   return versioned(py::make_tuple(state_of(self.recipe.config), state_of(self.recipe.calibration),
                                   py::cast(self.segmenter.exec())));
@@ -124,7 +125,7 @@ Image<Rgb> overlay(const PyFrame& self) {
   });
 }
 
-// ---- in metres ----
+// ---- metric results ----
 
 const StereoRig& rig_of_frame(const PyFrame& self) {
   if (!self.provenance.rig) throw Error("rig: found none, expected one: a frame without a rig has no metres");
@@ -135,7 +136,7 @@ std::optional<FloorFrame> floor_frame_of(const PyFrame& self) {
   return floor_frame(self.frame.ground, self.provenance.rig);
 }
 
-/// A scan or a grid of what is seen from the floor.
+/// A scan or grid of what is seen from the floor.
 template <auto make>
 auto from_floor(const PyFrame& self) {
   const auto floor = floor_frame_of(self);
@@ -146,7 +147,7 @@ auto from_floor(const PyFrame& self) {
   return floor ? std::optional(made()) : std::nullopt;
 }
 
-/// NaN where there is none.
+/// NaN if there is none.
 Numbers<float> points_of_pixels(const PyFrame& self) {
   const StereoRig& rig = rig_of_frame(self);
   const View<const float> d = self.frame.disparity.disparity_px;
@@ -182,12 +183,12 @@ Numbers<float> depth_of(const PyFrame& self) {
 
 // ---- classes ----
 
-/// A member of the frame.
+/// An attribute from the frame.
 template <auto member>
 const auto& part(const PyFrame& self) {
   return self.frame.*member;
 }
-/// What only one of the methods makes; None in a frame of the other.
+/// An attribute of frames of one method; None in frames of the other.
 template <auto member>
 auto part_of_some(const PyFrame& self) {
   const auto& part = self.frame.*member;
@@ -228,7 +229,7 @@ void bind_frame_class(py::module_& m) {
       .method("scan",
               "The nearest obstacle in each direction: an ObstacleScan. None without a rig or a ground.",
               &from_floor<&scan_obstacles>)
-      .method("grid", "What stands where on the floor: an ObstacleGrid. None without a rig or a ground.",
+      .method("grid", "The obstacles on the floor: an ObstacleGrid. None without a rig or a ground.",
               &from_floor<&map_obstacles>)
       .method("depth_m", "(H, W) float32, m: how far each pixel is along the view; NaN = hole.", &depth_of)
       .method("points",

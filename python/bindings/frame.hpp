@@ -11,7 +11,7 @@
 
 namespace cairn::python {
 
-/// A frame, what it was made of and how. The frame may be a part of something else that it keeps alive.
+/// A frame with its inputs. The frame may be part of an object that it keeps alive.
 struct PyFrame {
   PyFrame(Picture l, std::shared_ptr<Frame> whole, io::Provenance how)
       : left(std::move(l)), owner(std::move(whole)), frame(*owner), provenance(std::move(how)) {}

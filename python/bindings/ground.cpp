@@ -10,8 +10,7 @@
 namespace cairn::python {
 namespace {
 
-/// The options, with what the calibration knows of the ground. Throws Error where they ask for more than
-/// that.
+/// The options, completed by the calibration's ground. Throws Error if they need more than it has.
 GroundConfig ground_config(const Config& config, const KnownRig& rig) {
   GroundConfig ground = config.ground;
   ground.known = rig.calibration.ground;
@@ -19,7 +18,7 @@ GroundConfig ground_config(const Config& config, const KnownRig& rig) {
   return ground;
 }
 
-/// Of a DisparityMap, or of floats: those alone that deserve trust.
+/// For a DisparityMap: only its supported disparities; for floats: all.
 struct MapOrEvidence {
   static constexpr const char* kType = DisparityInput::kType;
   std::optional<DisparityInput> map;

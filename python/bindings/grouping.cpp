@@ -10,7 +10,7 @@
 namespace cairn::python {
 namespace {
 
-/// One row of as many pixels as the tree's superpixels have: only the area of the image matters.
+/// One row with as many pixels as the tree's superpixels have: only the image's area matters.
 Size size_of(const MergeTree& tree) {
   std::int64_t area = 0;
   for (int i = 0; i < tree.superpixels; ++i) area += tree.nodes[slot(i)].area;

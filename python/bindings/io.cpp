@@ -86,7 +86,7 @@ void bind_io(py::module_& m) {
         return released([&] { return io::draw_objects(left.gray(), left.rgb(), objects, floor.view()); });
       },
       "left"_a, "objects"_a, "floor"_a = py::none());
-  // Where an image's pixels are read from: for the test that none are copied.
+  // The address of an image's pixels, for the test that none are copied.
   define(
       m, "_address_of_pixels", "",
       [](const Picture& image) {

@@ -10,7 +10,7 @@
 namespace cairn::python {
 namespace {
 
-/// Two images of one size that the configuration fits. Where the ground comes from does not matter here.
+/// Two images of the same size, valid for the configuration. The source of the ground is irrelevant here.
 StereoPair pair_of(const Picture& left, const Picture& right, const Call& call) {
   auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
   Config any_ground = call.config;

@@ -10,7 +10,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// It is found when the first array is made; a missing one is better told at once.
+/// Fails at import if numpy is missing, rather than with the first array.
 void need_numpy() {
   try {
     py::module_::import("numpy");
@@ -24,13 +24,13 @@ void need_numpy() {
 }  // namespace
 
 PYBIND11_MODULE(_cairn, m) {
-  // Users know these by the package's name, and so do error messages and help().
+  // The names shown to users, in error messages and help(), are those of the package.
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "cairn";
 
   need_numpy();
   py::options docs;
-  docs.disable_function_signatures();  // define() writes them as the stubs want them
+  docs.disable_function_signatures();  // define() writes them in the format of the stubs
   py::register_exception<cairn::Error>(m, "Error", PyExc_ValueError);
   m.attr("Error").attr("__doc__") =
       "Bad input: what was found, what was expected, which argument, option or file. The command says the "

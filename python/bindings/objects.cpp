@@ -48,7 +48,7 @@ Image<Space> space_of(const Call& call, const Objects& objects, const DisparityI
   return label_space(cues, rig.rig(), call.config.ground, call.exec);
 }
 
-/// One of them, or with a slice a list of some.
+/// An element, or for a slice a list.
 py::object chosen(const py::object& self, const py::object& index) {
   const auto& list = self.cast<const Objects&>().list;
   const auto count = static_cast<py::ssize_t>(list.size());
@@ -97,7 +97,7 @@ void bind_classes(py::module_& m) {
           },
           "3 x 3, m^2: how well the centre is known");
 
-  Class<Object>(m, "Object", "Something that stands or hangs in front of the background.")
+  Class<Object>(m, "Object", "An object in front of the background.")
       .shows("id", &Object::id, "from 1, the nearest, on; its pixels in the map of objects")
       .shows(
           "distance_m",
@@ -150,13 +150,12 @@ void bind_classes(py::module_& m) {
       .shows("range_max_m", &ObstacleScan::range_max_m, "how far it reaches, m")
       .shows(
           "ranges_m", [](const ObstacleScan& self) { return Numbers<float>{self.ranges_m}; },
-          "(N,) float32, m; NaN: no obstacle is seen there, which does not say that there is none")
+          "(N,) float32, m; NaN: no obstacle seen there, though there may be one")
       .method("__len__", "Directions.", [](const ObstacleScan& self) { return self.ranges_m.size(); });
 
-  Class<ObstacleGrid>(
-      m, "ObstacleGrid",
-      "What stands where on the floor: rows along y, from the right to the left, of cells along x, "
-      "from the camera forward.")
+  Class<ObstacleGrid>(m, "ObstacleGrid",
+                      "Obstacles on the floor: rows along y, from the right to the left, of cells along x, "
+                      "from the camera forward.")
       .shows("cell_size_m", &ObstacleGrid::cell_size_m, "side of a cell, m")
       .shows(
           "origin_in_floor_m",

@@ -14,11 +14,11 @@
 namespace cairn::python {
 namespace {
 
-/// A value as the library reads it from a command line.
+/// A value in the syntax of the command line.
 std::string option_text(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
   if (py::hasattr(value, "dtype") && py::hasattr(value, "tolist")) return option_text(value.attr("tolist")());
-  // 64.0 is 64.
+  // 64.0 is accepted as 64.
   if (py::isinstance<py::float_>(value) && value.attr("is_integer")().cast<bool>() &&
       std::abs(value.cast<double>()) <= double(1LL << 53))
     return py::str(py::int_(py::reinterpret_borrow<py::object>(value)));
@@ -44,7 +44,7 @@ bool is_file_name(const py::object& value) {
   return py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__");
 }
 
-/// A keyword that is no group: perhaps an option by its name alone, or one misspelt.
+/// Handles a keyword that is no group: an option without its group, or a misspelling.
 [[noreturn]] void refuse_keyword(const std::string& name) {
   std::string text = "there is no keyword argument '" + name + "'";
   for (const OptionInfo& option : options(Config{})) {
@@ -68,7 +68,7 @@ void set_groups(Config& config, const py::dict& groups) {
   }
 }
 
-/// Only once all are set: in which order they were set does not matter.
+/// Checked after all are set, since their order does not matter.
 void require_effects(const Config& config, const py::dict& groups) {
   for (const auto& [key, value] : groups) {
     for (const auto& [name, text] : settings_of(key.cast<std::string>(), value)) require_active(config, name);
@@ -95,13 +95,13 @@ PyConfig built(const std::string& preset, const std::optional<std::string>& file
 PyConfig make_config(const std::string& preset, const std::optional<std::string>& file,
                      const py::dict& groups, const Elsewhere& elsewhere = {}) {
   PyConfig made = built(preset, file, groups, elsewhere, std::nullopt);
-  // The number of disparities was given if it does not follow the default.
+  // The number of disparities counts as given if it differs from the default.
   const int other = made.config.match.num_disparities + 1;
   made.range_given = built(preset, file, groups, elsewhere, other).config.match.num_disparities != other;
   return made;
 }
 
-/// The values of the options by group: of those that it reads, or only those that differ from its preset.
+/// The values of the options by group: all active ones, or only those that differ from the preset.
 py::dict by_group(const PyConfig& self, bool only_changes) {
   const std::vector<OptionInfo> base = options(Config::preset(self.preset));
   py::dict groups;
@@ -116,7 +116,7 @@ py::dict by_group(const PyConfig& self, bool only_changes) {
   return groups;
 }
 
-/// As the constructor would take it.
+/// In the syntax of the constructor.
 std::string config_repr(const PyConfig& self) {
   std::string text = "Config('" + self.preset + "'";
   for (const auto& [group, entries] : by_group(self, true))
@@ -129,7 +129,7 @@ py::object option_of(const PyConfig& self, const std::string& name) {
     if (option.name == name) return option_value(option);
   }
   Config copy;
-  set(copy, name, "");  // throws, with the nearest name
+  set(copy, name, "");  // throws and suggests the nearest name
   return py::none();
 }
 
@@ -187,7 +187,7 @@ PyConfig config_of(const py::object& config, const std::string& preset, const py
                         ", expected a cairn.Config, the name of a file, or None");
   auto made = config.cast<PyConfig>();
   if (preset != "default" && preset != made.preset) {
-    throw Error("preset: found '" + preset + "' beside a config of preset '" + made.preset +
+    throw Error("preset: found '" + preset + "' together with a config of preset '" + made.preset +
                 "', expected one of the two");
   }
   set_groups(made.config, groups);
@@ -210,7 +210,7 @@ void set_flat(Config& config, const Groups& groups, const py::dict& keywords) {
     set(config, name, option_text(value));
     names.push_back(std::move(name));
   }
-  // A stage called by itself is done, whatever the other groups say.
+  // A stage called directly runs, whatever the options of other groups say.
   for (const std::string& name : names) require_active(config, name, groups);
 }
 

@@ -26,22 +26,23 @@
 #include "options.hpp"
 #include "rig.hpp"
 
-/// What pickle and copy.deepcopy keep of a value: tuples, numbers, text and arrays; and the value of them.
+/// Conversion of values to the state stored by pickle and copy.deepcopy: tuples, numbers, text and arrays;
+/// and back.
 namespace cairn::python {
 
-/// What tune() found: what the command's report has, and the configuration to use.
+/// The result of tune(): the command's report, and the configuration to use.
 struct PyTuning {
   std::string json;
   PyConfig config;
 };
 
-// ---- what the library's structs are made of ----
+// ---- members of the library's structs ----
 
-/// A struct's members, as a tuple of references.
+/// A struct's members as a tuple of references.
 template <class T>
 struct Parts;
 
-// Naming a member too few or too many does not compile, so none is forgotten when one is added.
+// Naming too few or too many members does not compile, so new members cannot be forgotten.
 #define CAIRN_PARTS(Type, ...)      \
   template <>                       \
   struct Parts<Type> {              \
@@ -111,7 +112,7 @@ CAIRN_PARTS(LagChange, from, before, after, motion)
 CAIRN_PARTS(Synchrony, frames, motion, agreement, left_repeats, right_repeats, change)
 CAIRN_PARTS(PyTuning, json, config)
 CAIRN_PARTS(Finding, kind, severity, number, says, frames, camera)
-// follow.cpp has those of sequences.
+// Those of sequences are in follow.cpp.
 
 // ---- to Python and back ----
 
@@ -185,7 +186,7 @@ void restore(const py::handle& state, T& value) {
   } else if constexpr (kIsOptional<T>) {
     if (!state.is_none()) restore(state, value.emplace());
   } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
-    value = state.cast<T>();  // its entries are no objects to restore into
+    value = state.cast<T>();  // its entries are not nested state
   } else if constexpr (kIsVector<T> || kIsArray<T>) {
     const auto all = py::reinterpret_borrow<py::list>(state);
     if constexpr (kIsVector<T>) value.resize(all.size());
@@ -206,7 +207,7 @@ void restore(const py::handle& state, T& value) {
   }
 }
 
-/// A state is of one version: what has to be kept for years is kept in files.
+/// A state belongs to one version; long-term storage is for files.
 inline py::tuple versioned(py::object state) {
   return py::make_tuple(CAIRN_VERSION, std::move(state));
 }
@@ -217,7 +218,7 @@ inline py::object of_this_version(const py::tuple& state) {
   return state[1];
 }
 
-/// For class_::def: pickle, copy.copy and copy.deepcopy of a class that is its members.
+/// For class_::def: pickle, copy.copy and copy.deepcopy of a class by its members.
 template <class T>
 auto pickled() {
   return py::pickle([](const T& self) { return versioned(state_of(self)); },

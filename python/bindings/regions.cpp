@@ -16,9 +16,9 @@
 namespace cairn::python {
 namespace {
 
-// ---- arrays from outside that index others ----
+// ---- index arrays given by the user ----
 
-/// How many regions the labels tell apart. Throws Error unless each of 0 … count − 1 has a pixel.
+/// The number of regions in the labels. Throws Error unless each of 0 … count − 1 has a pixel.
 int count_of(View<const std::int32_t> labels) {
   const auto area = static_cast<std::size_t>(labels.size().area());
   std::vector<bool> seen;
@@ -41,7 +41,7 @@ int count_of(View<const std::int32_t> labels) {
   return static_cast<int>(seen.size());
 }
 
-/// Throws Error unless every entry names a survivor: a region that ended in itself.
+/// Throws Error unless every entry is a survivor, that is, a region merged into itself.
 void check_merges(const Merges& merged_into, std::size_t count) {
   if (merged_into.size() != count) {
     throw Error("merged_into: found " + std::to_string(merged_into.size()) + " entries, expected " +

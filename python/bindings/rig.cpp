@@ -56,7 +56,7 @@ Points ground_points(const PyCalibration& self) {
   return all;
 }
 
-/// A member of the calibration itself, or of what it knows of the ground.
+/// An attribute of the calibration, or of its ground.
 template <auto member>
 auto of_calibration(const PyCalibration& self) {
   if constexpr (std::is_invocable_v<decltype(member), const io::Calibration&>) {

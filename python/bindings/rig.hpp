@@ -17,14 +17,14 @@ struct PyCalibration {
   io::Calibration calibration;
   std::filesystem::path path;
 
-  /// Throws Error where it is for other images.
+  /// Throws Error if it is for images of another size.
   void check(Size size) const {
     io::check_size(calibration, size, path);
     io::check_search_range(calibration, path);
   }
 };
 
-/// What a Rig, a Calibration or None says. Throws Error for anything else.
+/// Accepts a Rig, a Calibration or None. Throws Error for anything else.
 struct KnownRig : PyCalibration {
   static constexpr const char* kType = "RigLike";
   KnownRig(const py::object& value, const char* name);

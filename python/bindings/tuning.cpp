@@ -16,7 +16,7 @@ namespace {
 
 // ---- frames ----
 
-/// What a TuningFrame borrows from.
+/// The arrays that a TuningFrame borrows from.
 struct PyTuningFrame {
   std::string name;
   Picture left;
@@ -39,7 +39,7 @@ struct PyTuningFrame {
   }
 };
 
-/// Throws Error for ids that no truth has.
+/// Throws Error for ids that are not in the truth.
 void check_ids(View<const std::int32_t> ids) {
   for (int y = 0; y < ids.height(); ++y) {
     for (int x = 0; x < ids.width(); ++x) {
@@ -70,7 +70,7 @@ std::optional<T> some(const py::object& array, const char* name) {
   return array.is_none() ? std::nullopt : std::optional<T>(std::in_place, array, name);
 }
 
-/// The same of arrays; None where one is not known.
+/// The same as arrays; None if unknown.
 PyTuningFrame frame_of(const py::object& left, const py::object& right, const py::object& rig,
                        const py::object& objects, const py::object& truth_px, const py::object& hidden,
                        bool partial, const std::string& name) {
@@ -110,7 +110,7 @@ std::vector<PyTuningFrame> read_frames(const std::filesystem::path& folder, bool
   return frames;
 }
 
-/// The frames themselves, and pairs made into such.
+/// Accepts frames, and converts pairs to frames.
 struct Frames {
   static constexpr const char* kType = "Iterable[Union[TuningFrame, Tuple[ImageLike, ImageLike]]]";
   std::vector<py::object> kept;
@@ -150,18 +150,18 @@ struct Frames {
 
 // ---- the search ----
 
-/// Ctrl-C and what progress() raises. KeyboardInterrupt ends the search, which keeps the best so far; any
-/// other exception goes on to the caller.
+/// Handles Ctrl-C and exceptions of progress(). KeyboardInterrupt ends the search, which keeps the best
+/// result so far; other exceptions propagate to the caller.
 class Interrupts {
  public:
-  /// On any thread; only the caller's hears of signals.
+  /// On any thread; signals reach the caller's only.
   bool asked() {
     if (std::this_thread::get_id() != caller_) return stopped_;
     const py::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) take();
     return stopped_;
   }
-  /// Where a call into Python has failed, with the lock.
+  /// After a failed call into Python, with the GIL held.
   void take() {
     if (PyErr_ExceptionMatches(PyExc_KeyboardInterrupt) == 0) throw py::error_already_set();
     PyErr_Clear();
@@ -206,7 +206,7 @@ PyTuning tune_frames(const Call& call, const Frames& frames, const std::vector<s
   const Tuning found = released([&] {
     return tune(borrowed, search, call.exec, {[&] { return interrupts.asked(); }, tell});
   });
-  if (found.before.empty()) {  // there is no best so far
+  if (found.before.empty()) {  // there is no best result yet
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
   }

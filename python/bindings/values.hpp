@@ -22,7 +22,7 @@
 
 #include "arrays.hpp"
 
-/// What the library's small values are in Python, and what each type is called in the stubs.
+/// Python equivalents of the library's small values, and their names in the stubs.
 namespace cairn::python {
 
 /// Tuples of numbers, and ids as numbers.
@@ -58,7 +58,7 @@ struct Plain<T> {
 template <class T>
 using PlainOf = decltype(Plain<T>::of(std::declval<T>()));
 
-/// An object of Python's whose type the stubs call `kType`.
+/// A Python object whose type in the stubs is `kType`.
 template <std::size_t N>
 struct Text {
   char text[N]{};

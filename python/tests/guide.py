@@ -50,7 +50,7 @@ def video(pairs, rig):
 def followed(folder):
     found = []
     # [follow]
-    for step in cairn.follow(folder, tracking={"min_hits": 2}):  # whatever `cairn follow` takes
+    for step in cairn.follow(folder, tracking={"min_hits": 2}):  # any source of `cairn follow`
         x, y, z = step.map_from_camera[:3, 3]  # where the camera is, m
         for track in step.tracks:
             if track.state == "confirmed":
@@ -85,7 +85,7 @@ def tuned(folder, left, right, rig):
     # [tune]
     frames = cairn.load_tuning_frames(folder, truth=True)  # each with left.png, right.png, calib.txt, objects.png
     tuning = cairn.tune(frames, options=["superpixels.count", "objects.*"], evaluations=5, holdout=0.25)
-    print(tuning)  # the losses before and after, on the frames held out, too
+    print(tuning)  # losses before and after, also on the frames held out
     better = cairn.segment(left, right, rig, config=tuning.config)
     # [/tune]
     return tuning, better

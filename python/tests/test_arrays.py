@@ -173,7 +173,7 @@ def test_disparities_may_be_any_floats_but_no_integers(sample):
         cairn.segment(sample.left, disparity_map=truth[:, 1:])
     with pytest.raises(cairn.Error):
         cairn.segment(sample.left, disparity_map=np.full((240, 320), 1e9, np.float32))
-    with pytest.raises(cairn.Error, match="beside disparity_map"):
+    with pytest.raises(cairn.Error, match="together with disparity_map"):
         cairn.segment(sample.left, sample.right, disparity_map=truth)
 
 

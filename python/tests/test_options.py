@@ -109,7 +109,7 @@ def test_what_is_no_option_is_refused(sample):
         cairn.segment(sample.left, sample.right, preset="papr")
     with pytest.raises(cairn.Error, match="config: found 3"):
         cairn.segment(sample.left, sample.right, config=3)
-    with pytest.raises(cairn.Error, match="preset: found 'paper' beside a config"):
+    with pytest.raises(cairn.Error, match="preset: found 'paper' together with a config"):
         cairn.segment(sample.left, sample.right, preset="paper", config=cairn.Config())
     with pytest.raises(cairn.Error, match="rig: found 'calib.txt'"):
         cairn.segment(sample.left, sample.right, "calib.txt")

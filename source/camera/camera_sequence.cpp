@@ -22,8 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// How soon next() notices that it is stopped: nobody is waked up for that, so that stop() may be called in a
-/// signal handler.
+/// Polling interval for stop(), which may run in a signal handler and so cannot notify next().
 constexpr auto kNotice = 50ms;
 
 template <class... Values>
@@ -58,7 +57,7 @@ class CameraSequence : public SourceSequence {
   }
   ~CameraSequence() override {
     CameraSequence::stop();
-    cameras_.clear();  // before what their threads use
+    cameras_.clear();  // before the members that their threads use
   }
 
   std::optional<SequenceFrame> next() override {
@@ -99,7 +98,7 @@ class CameraSequence : public SourceSequence {
   }
 
  private:
-  // ---- on the cameras' threads ----
+  // ---- called on the cameras' threads ----
 
   void offer(CameraImage&& image) {
     {
@@ -131,7 +130,7 @@ class CameraSequence : public SourceSequence {
     newest_ = std::move(image);
   }
 
-  // ---- on the thread of whoever takes the frames ----
+  // ---- called on the consumer's thread ----
 
   std::optional<SequenceFrame> advance() override {
     std::optional<SequenceFrame> frame;
@@ -156,7 +155,7 @@ class CameraSequence : public SourceSequence {
     return (&camera == cameras_.front().get() ? "the left camera: " : "the right camera: ") + state.trouble;
   }
 
-  /// One camera without images is no pair.
+  /// The sequence ends when either camera does.
   bool has_ended() {
     for (const auto& camera : cameras_) {
       if (!camera->state().has_ended) continue;
@@ -224,7 +223,7 @@ class CameraSequence : public SourceSequence {
     }
   }
 
-  /// None where it is not one of the range, or not later than the one before.
+  /// nullopt if it is outside the range, or not later than the previous one.
   std::optional<SequenceFrame> frame_of(CameraImage&& image) {
     if (image.right.size() != image.left.gray.size()) {
       throw Error(names_.source + ": the right camera gives " + text(image.right.size()) + ", expected " +
@@ -267,7 +266,7 @@ class CameraSequence : public SourceSequence {
     if (has_ended_) note_once("the pipeline ended", "after " + std::to_string(count_) + " frames");
   }
 
-  /// A remark with a count that grows.
+  /// Adds or updates a remark with a count.
   void note(const char* what, std::uint64_t count, const std::string& first) {
     if (count == 0) return;
     const auto known = std::find_if(remarks_.begin(), remarks_.end(),
@@ -279,7 +278,7 @@ class CameraSequence : public SourceSequence {
     }
   }
 
-  /// A remark in words that change.
+  /// Adds or updates a remark with changing text.
   void note_once(const std::string& head, const std::string& words) {
     const std::string what = head + ": " + words;
     const auto known = std::find_if(remarks_.begin(), remarks_.end(), [&](const SourceRemark& other) {
@@ -315,7 +314,7 @@ class CameraSequence : public SourceSequence {
   bool has_ended_ = false;
   std::atomic<bool> is_stopped_ = false;
 
-  mutable std::mutex mutex_;  // of the next four
+  mutable std::mutex mutex_;  // guards the next four
   std::condition_variable changed_;
   std::optional<CameraImage> newest_;
   std::uint64_t replaced_ = 0;

@@ -35,7 +35,7 @@ Image<Gray> copied(Size size, const Samples& samples, const Pool& pool) {
   return gray;
 }
 
-/// In 1/256: what a step of luminance, and of the colour differences, is worth.
+/// Scale factors of luminance and of the colour differences, in 1/256.
 struct Weights {
   int black;
   int luminance;
@@ -62,7 +62,7 @@ std::uint8_t clamped(int value) {
   return static_cast<std::uint8_t>(std::clamp(value >> 8, 0, 255));
 }
 
-/// One row; colour differences are worked out once for the 1 << kShift pixels that share them.
+/// Converts a row; colour differences are computed once for 1 << kShift pixels.
 template <int kStep, int kShift>
 void colour_row(const FrameBytes& bytes, int y, const Weights& weights, Rgb* to) {
   constexpr int kShared = 1 << kShift;
@@ -156,7 +156,7 @@ Layout layout_of(std::string_view name) {
 
 TwoFrames halves_of(const FrameBytes& bytes, Layout layout) {
   const bool side_by_side = layout == Layout::side_by_side;
-  // Of shared colour differences each half must have its own.
+  // Halves must not share colour differences.
   const int parts = 2 << (side_by_side ? bytes.second.shift_x : bytes.second.shift_y);
   const int length = side_by_side ? bytes.size.width : bytes.size.height;
   if (length < parts || length % parts != 0) {

@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Eight bits, in any order: what a source has is taken as it is, so that its grey is exact.
+/// 8-bit formats in any layout: the source's own is used, so that grey values are exact.
 constexpr const char* kCaps =
     "video/x-raw, format={ NV12, I420, YV12, NV21, YUY2, UYVY, YVYU, Y42B, Y444, GRAY8, RGB, BGR, RGBx, "
     "BGRx, "
@@ -37,7 +37,7 @@ struct UnrefSample {
   void operator()(GstSample* sample) const { gst_sample_unref(sample); }
 };
 
-/// One line: the message, and the last line of what it was about.
+/// Formats an error as one line: the message, and the last line of its details.
 std::string words_of(const GError& error, const char* debug) {
   std::string words = error.message != nullptr ? error.message : "unknown error";
   if (debug != nullptr) {
@@ -120,7 +120,7 @@ class GstCamera : public Camera {
     g_object_set(sink_.get(), "max-buffers", 1U, "drop", TRUE, "enable-last-sample", FALSE, nullptr);
     const Ref<GstPad> pad(gst_element_get_static_pad(sink_.get(), "sink"));
     gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, &GstCamera::on_buffer, this, nullptr);
-    // Stamps of all pipelines count by the steady clock.
+    // All pipelines use the monotonic clock.
     const Ref<GstClock> clock(gst_system_clock_obtain());
     gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
     start();
@@ -160,7 +160,7 @@ class GstCamera : public Camera {
     static_cast<GstCamera*>(self)->number(GST_PAD_PROBE_INFO_BUFFER(info));
     return GST_PAD_PROBE_OK;
   }
-  /// On the pipeline's thread: counts what comes, so that it is known what was replaced in the sink.
+  /// On the pipeline's thread: counts buffers, to find those replaced in the sink.
   void number(const GstBuffer* buffer) {
     const std::lock_guard lock(mutex_);
     ++came_;
@@ -169,7 +169,7 @@ class GstCamera : public Camera {
   std::uint64_t number_of(const GstBuffer* buffer) {
     const std::lock_guard lock(mutex_);
     std::uint64_t found = 0;
-    // The newest: buffers are used again.
+    // The newest one, since buffers are reused.
     for (const auto& [known, number] : numbered_) {
       if (known == buffer) found = std::max(found, number);
     }
@@ -180,18 +180,18 @@ class GstCamera : public Camera {
 
   void start() {
     const GstStateChangeReturn paused = gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
-    // A camera's images are taken as they come, a file's at the pace of their stamps.
+    // Cameras deliver at their own rate, files at the pace of their stamps.
     g_object_set(sink_.get(), "sync", paused == GST_STATE_CHANGE_NO_PREROLL ? FALSE : TRUE, nullptr);
     if (paused == GST_STATE_CHANGE_FAILURE ||
         gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) {
-      // By the destructor of the pipeline alone it would be left running.
+      // The pipeline's destructor alone does not stop it.
       std::string words = error_words();
       gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
       throw Error("the pipeline cannot be started" + (words.empty() ? "" : ": " + words));
     }
   }
 
-  /// Of an error that the pipeline has had since; empty where it had none.
+  /// The error that the pipeline has reported meanwhile; empty without one.
   [[nodiscard]] std::string error_words() const {
     GstMessage* message = gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_ERROR);
     if (message == nullptr) return {};
@@ -242,12 +242,11 @@ class GstCamera : public Camera {
     return {std::chrono::duration_cast<std::chrono::nanoseconds>(arrived.time_since_epoch()).count()};
   }
 
-  /// Those that were replaced in the sink; and where the source numbers its buffers, also those that never
-  /// came here.
+  /// Frames replaced in the sink and, if the source numbers its buffers, those that never arrived.
   std::uint64_t dropped_before(const GstBuffer& buffer) {
     std::uint64_t dropped = 0;
     if (const std::uint64_t number = number_of(&buffer); number > 0) {
-      if (number > taken_ + 1) dropped = number - taken_ - 1;  // before the first one, too
+      if (number > taken_ + 1) dropped = number - taken_ - 1;  // including those before the first
       taken_ = number;
     }
     const std::uint64_t offset = GST_BUFFER_OFFSET(&buffer);
@@ -258,8 +257,8 @@ class GstCamera : public Camera {
   }
 
   GstRequest request_;
-  std::mutex mutex_;        // of the next two
-  std::uint64_t came_ = 0;  // buffers at the sink
+  std::mutex mutex_;        // guards the next two
+  std::uint64_t came_ = 0;  // buffers that arrived at the sink
   std::array<std::pair<const GstBuffer*, std::uint64_t>, 8> numbered_{};
   Ref<GstElement> pipeline_;
   Ref<GstElement> sink_;

@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// How soon a wait notices that it is in vain.
+/// Interval at which a wait checks whether to give up.
 constexpr auto kNotice = 50ms;
 
 std::string seconds_of(std::chrono::milliseconds time) {
@@ -54,7 +54,7 @@ void KeptCamera::work() {
       const std::lock_guard lock(mutex_);
       state_.is_connected = false;
       state_.trouble = std::move(why);
-      // What never worked is told at once: a wrong name or format does not get better.
+      // An error of the first opening is reported at once: a wrong name or format does not go away.
       state_.has_failed = size_.area() == 0;
       if (state_.has_failed) return;
     }
@@ -81,7 +81,7 @@ void KeptCamera::read(Camera& camera) {
         state_.is_connected = false;
         return;
       }
-      // The first image of all may take as long as whoever opened it waits.
+      // The first image may take as long as the timeout for opening.
       if (is_first && !has_image) continue;
       const std::chrono::milliseconds most = has_image ? times_.silence : times_.first_image;
       if (Clock::now() - last > most) throw Error("delivers no frame for " + seconds_of(most));

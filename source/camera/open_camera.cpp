@@ -49,7 +49,7 @@ int side_in(const std::string& source, const std::string& key, const std::string
   return static_cast<int>(*number);
 }
 
-/// One key=value of a V4L2 source.
+/// A key=value option of a V4L2 source.
 void set_key(V4l2Request& request, std::string& layout, const std::string& source, const std::string& part) {
   const std::size_t equals = part.find('=');
   const std::string key = part.substr(0, equals);
@@ -83,7 +83,7 @@ void check(const SourceOptions& options, const std::string& source) {
 GstRequest gst_request(const std::string& part, const std::string& source) {
   GstRequest request;
   if (is_rtsp(part)) {
-    // 50 ms even out the network; what comes later than that is not waited for.
+    // A buffer of 50 ms compensates for network jitter; later packets are dropped.
     request.pipeline =
         "rtspsrc name=cairn_source latency=50 drop-on-latency=true ! application/x-rtp,media=video ! "
         "decodebin";

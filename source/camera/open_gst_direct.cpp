@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "gst_camera.hpp"
 
-/// Without a module: sanitizers want one program.
+/// Linked directly, without a module: sanitizers need one program.
 namespace cairn::io {
 
 std::unique_ptr<Camera> open_gst(const GstRequest& request) {

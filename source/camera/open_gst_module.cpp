@@ -3,7 +3,7 @@
 #include "../load_module.hpp"
 #include "gst_camera.hpp"
 
-/// GStreamer is loaded with the first pipeline, so that no other command pays for it.
+/// Loads GStreamer with the first pipeline, so that other commands do not pay for it.
 namespace cairn::io {
 
 std::unique_ptr<Camera> open_gst(const GstRequest& request) {

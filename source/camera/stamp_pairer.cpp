@@ -9,9 +9,9 @@
 namespace cairn::io {
 namespace {
 
-/// More of one side do not wait for the other: at 30 Hz a quarter of a second.
+/// Images of one side kept waiting for the other: a quarter of a second at 30 Hz.
 constexpr std::size_t kMostWaiting = 8;
-/// A skew that changes by more from pair to pair is no drift: another image has become the nearest.
+/// A larger change of skew between pairs is not drift: another image has become the nearest.
 constexpr double kJumpMs = 3;
 
 }  // namespace
@@ -54,7 +54,7 @@ StampPairer::Skew StampPairer::skew() const {
   Skew skew = extent_;
   const double spread = line_.count * line_.time2 - line_.time * line_.time;
   if (line_.count > 2 && spread > 0) {
-    // ms in a second are 1000 ppm.
+    // 1 ms/s = 1000 ppm.
     skew.drift_ppm = 1000 * (line_.count * line_.time_skew - line_.time * line_.skew) / spread;
     skew.drift_over_s = line_.last_time;
   }

@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Newer than some kernel headers.
+// For older kernel headers.
 #ifndef V4L2_PIX_FMT_Y8I
 #define V4L2_PIX_FMT_Y8I v4l2_fourcc('Y', '8', 'I', ' ')
 #endif
@@ -30,13 +30,13 @@ using Clock = std::chrono::steady_clock;
 struct Format {
   std::string_view name;
   std::uint32_t code;
-  int bytes_each;  // per pixel; 0: compressed
+  int bytes_each;  // per pixel; 0 = compressed
 };
-/// What is taken where no format is asked for: both images in one where there are, then the cheapest.
+/// Formats by preference if none is requested: both images in one first, then the cheapest.
 constexpr std::array kFormats = {Format{"Y8I", V4L2_PIX_FMT_Y8I, 2}, Format{"GREY", V4L2_PIX_FMT_GREY, 1},
                                  Format{"YUYV", V4L2_PIX_FMT_YUYV, 2}, Format{"MJPG", V4L2_PIX_FMT_MJPEG, 0}};
 constexpr std::uint32_t kBuffers = 4;
-/// The kernel reports frames that were damaged on the way with EIO; as many in a row are no accident.
+/// The kernel reports damaged frames with EIO; this many in a row are a failure.
 constexpr int kMostErrors = 8;
 
 std::string name_of(std::uint32_t code) {
@@ -50,7 +50,7 @@ std::string reason() {
   return std::strerror(errno);
 }
 
-/// One open device; all that is undone when it is closed.
+/// An open device; closing it releases everything.
 class Device {
  public:
   Device(const std::string& path, V4l2Ops& ops) : ops_(ops), fd_(ops.open(path.c_str())) {
@@ -155,7 +155,7 @@ class V4l2Camera : public Camera {
   }
 
   std::optional<CameraImage> next(std::chrono::milliseconds timeout) override {
-    if (device_.wait(timeout) <= 0) return std::nullopt;  // also where a signal came
+    if (device_.wait(timeout) <= 0) return std::nullopt;  // also after a signal
     v4l2_buffer buffer = Device::empty_buffer();
     if (!device_.control(VIDIOC_DQBUF, buffer)) return failed();
     const auto arrived = Clock::now();
@@ -180,7 +180,7 @@ class V4l2Camera : public Camera {
   [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
 
  private:
-  // ---- what it is asked for ----
+  // ---- negotiating the format ----
 
   void check_capabilities() {
     v4l2_capability can{};
@@ -259,7 +259,7 @@ class V4l2Camera : public Camera {
 
   void check_halves() const {
     if (request_.layout == Layout::one || format_->code == V4L2_PIX_FMT_Y8I) return;
-    // Where it cannot be halved, that is found out before a frame is.
+    // Fails early if the image cannot be halved.
     (void)halves_of(format_->code == V4L2_PIX_FMT_YUYV ? yuyv_bytes(size_, nullptr, 0, coding_)
                                                        : grey_bytes(size_, nullptr, 0),
                     request_.layout);
@@ -283,7 +283,7 @@ class V4l2Camera : public Camera {
     }
   }
 
-  // ---- its frames ----
+  // ---- frames ----
 
   std::optional<CameraImage> failed() {
     switch (errno) {
@@ -303,7 +303,7 @@ class V4l2Camera : public Camera {
   }
 
   void count_gap(std::uint32_t sequence) {
-    // Wraps around, as the kernel's counter does; one that begins again is no gap.
+    // Wraps around like the kernel's counter; a counter that restarts is no gap.
     if (has_sequence_) {
       const auto step = static_cast<std::int32_t>(sequence - sequence_);
       if (step > 1) dropped_ += static_cast<std::uint64_t>(step) - 1;
@@ -312,7 +312,7 @@ class V4l2Camera : public Camera {
     has_sequence_ = true;
   }
 
-  /// None where it is too short or damaged.
+  /// nullopt if it is too short or damaged.
   std::optional<CameraImage> image_of(std::span<const std::uint8_t> bytes) {
     if (format_->bytes_each == 0) return image_of_jpeg(bytes);
     const std::size_t row =

@@ -12,7 +12,7 @@ std::string without_password(std::string text) {
     const std::size_t at = text.substr(0, end).rfind('@');
     if (at != std::string::npos && at >= from) text.replace(from, at - from, "***");
   }
-  // Properties of GStreamer's elements.
+  // Names of GStreamer properties.
   for (const char* property : {"user-id=", "user-pw=", "proxy-id=", "proxy-pw=", "password="}) {
     std::size_t at = 0;
     while ((at = text.find(property, at)) != std::string::npos) {

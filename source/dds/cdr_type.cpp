@@ -14,7 +14,7 @@ namespace {
 
 struct CdrType : ddsi_sertype {};
 
-/// Padded to a multiple of four bytes, as RTPS sends it; `size` is without the padding.
+/// Padded to a multiple of four bytes, as in RTPS; `size` excludes the padding.
 struct CdrData : ddsi_serdata {
   CdrData(const ddsi_sertype* cdr_type, ddsi_serdata_kind data_kind, ros::Bytes value)
       : ddsi_serdata{}, bytes(std::move(value)), length(bytes.size()) {
@@ -29,7 +29,7 @@ const CdrData& own(const ddsi_serdata* data) {
   return *static_cast<const CdrData*>(data);
 }
 
-/// Nothing is thrown through Cyclone's C: nullptr where memory is short.
+/// No exception may cross Cyclone's C code: nullptr if memory runs out.
 CdrData* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) noexcept {
   try {
     return new CdrData(type, kind, ros::Bytes(size));
@@ -38,17 +38,17 @@ CdrData* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size
   }
 }
 
-// ---- values ----
+// ---- samples ----
 
 bool equal_keys(const ddsi_serdata*, const ddsi_serdata*) {
-  return true;  // without a key all values are of one instance
+  return true;  // without a key, all samples belong to one instance
 }
 
 std::uint32_t size_of(const ddsi_serdata* data) {
   return static_cast<std::uint32_t>(own(data).length);
 }
 
-/// From the network: fragments in order, which may overlap.
+/// From the network: fragments in order, possibly overlapping.
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
                              std::size_t size) {
   CdrData* const data = make(type, kind, size);
@@ -81,7 +81,7 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
   return make(type, SDK_KEY, 4);
 }
 
-/// A sample is the bytes themselves.
+/// A sample consists of the serialised bytes.
 ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
   if (kind != SDK_DATA) return make(type, kind, 4);
   const auto& bytes = *static_cast<const ros::Bytes*>(sample);
@@ -167,13 +167,13 @@ void free_type(ddsi_sertype* type) {
   delete static_cast<CdrType*>(type);
 }
 
-// Samples are never made by Cyclone here: values are taken as bytes (dds_takecdr).
+// Cyclone never allocates samples here: they are taken as bytes (dds_takecdr).
 void zero_samples(const ddsi_sertype*, void*, std::size_t) {}
 void realloc_samples(void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {}
 void free_samples(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
 
 bool equal_types(const ddsi_sertype*, const ddsi_sertype*) {
-  return true;  // their names are compared before
+  return true;  // their names have been compared
 }
 std::uint32_t hash_of_type(const ddsi_sertype*) {
   return 0;

@@ -16,9 +16,9 @@
 namespace cairn::dds {
 namespace {
 
-/// Beyond it there are no ports left (7400 + 250 · domain).
+/// Larger domains have no ports (7400 + 250 · domain).
 constexpr unsigned kLastDomain = 232;
-/// How long a writer waits for slow readers; ROS's own is the same.
+/// How long a writer waits for slow readers; the same as in ROS.
 constexpr dds_duration_t kMostBlocking = DDS_MSECS(100);
 
 std::string environment(const char* name) {
@@ -40,7 +40,7 @@ std::string configured(const std::string& domain) {
   return "<CycloneDDS><Domain>" + domain + "</Domain></CycloneDDS>";
 }
 
-/// Unicast to this computer only; loopback has no multicast.
+/// Unicast to this computer only, as loopback has no multicast.
 std::string localhost_discovery(const std::string& general) {
   return configured("<General>" + general +
                     "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
@@ -48,7 +48,7 @@ std::string localhost_discovery(const std::string& general) {
                     R"(<Peers><Peer address="127.0.0.1"/></Peers></Discovery>)");
 }
 
-/// What ROS_LOCALHOST_ONLY (up to Humble) and ROS_AUTOMATIC_DISCOVERY_RANGE (from Iron on) ask for.
+/// As requested by ROS_LOCALHOST_ONLY (up to Humble) and ROS_AUTOMATIC_DISCOVERY_RANGE (from Iron on).
 std::string discovery_range() {
   const std::string localhost_only = environment("ROS_LOCALHOST_ONLY");
   if (localhost_only == "1") {
@@ -69,13 +69,14 @@ std::string discovery_range() {
               ", expected SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
 }
 
-/// What an error of the whole domain begins with.
+/// The prefix of errors that concern the whole domain.
 std::string domain_words(std::uint32_t id) {
   const std::string uri = environment("CYCLONEDDS_URI");
   return "DDS domain " + std::to_string(id) + (uri.empty() ? "" : " with CYCLONEDDS_URI=" + uri);
 }
 
-/// A domain's configuration is the process's: it is made with the first participant, and goes with the last.
+/// The configuration of a domain in this process: created with the first participant, destroyed with the
+/// last.
 std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
   static std::mutex mutex;
   static std::weak_ptr<Entity> known;
@@ -83,7 +84,7 @@ std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
   const std::lock_guard lock(mutex);
   if (auto domain = known.lock()) return domain;
   const dds_entity_t domain = dds_create_domain(settings.id, settings.configuration.c_str());
-  if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;  // somebody else of this process made it
+  if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;  // created elsewhere in this process
   auto made = std::make_shared<Entity>(domain, domain_words(settings.id));
   known = made;
   return made;
@@ -228,7 +229,7 @@ std::optional<ros::Bytes> BytesReader::take() {
     if (dds_takecdr(reader_.handle(), &data, 1, &info, DDS_ANY_STATE) <= 0 || data == nullptr)
       return std::nullopt;
     const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> owned(data, &ddsi_serdata_unref);
-    if (!info.valid_data) continue;  // a writer has gone
+    if (!info.valid_data) continue;  // a writer disappeared
     const auto bytes = bytes_of(data);
     return ros::Bytes(bytes.begin(), bytes.end());
   }

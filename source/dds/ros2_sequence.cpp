@@ -24,11 +24,11 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kPrefix = "ros2:";
-/// How soon next() notices that it is stopped, where stop() was called in a signal handler.
+/// Polling interval for stop(), which may run in a signal handler.
 constexpr auto kNotice = 50ms;
-/// How long a first pair waits for the cameras' camera_info.
+/// How long the first pair waits for the cameras' camera_info.
 constexpr auto kInfoWait = 2s;
-/// Without a pair for so long, the cameras count as lost.
+/// Time without a pair after which the cameras count as lost.
 constexpr auto kSilence = 3s;
 constexpr std::array kSides{"left", "right"};
 
@@ -71,7 +71,7 @@ class Ros2Sequence : public io::SourceSequence {
   [[nodiscard]] std::string name() const override { return prefix_.empty() ? "/" : prefix_; }
   [[nodiscard]] std::string stamps_from() const override { return "header.stamp of " + topics_[0]; }
 
-  /// next() looks every 50 ms: nothing of DDS is called, so that a signal's handler may call this.
+  /// next() polls every 50 ms, so this calls no DDS function and is safe in a signal handler.
   void stop() override { is_stopped_ = true; }
 
   [[nodiscard]] io::SourceStatus status() const override {
@@ -95,7 +95,7 @@ class Ros2Sequence : public io::SourceSequence {
   using Pairing = io::StampPairing<Received>;
   using Pair = Pairing::Pair;
 
-  static constexpr std::size_t kMostWaiting = 4;  // of one side for the other
+  static constexpr std::size_t kMostWaiting = 4;  // images of one side waiting for the other
 
   static std::string prefix_of(const std::string& source) {
     const std::string name = source.substr(kPrefix.size());
@@ -118,8 +118,8 @@ class Ros2Sequence : public io::SourceSequence {
     return frame;
   }
 
-  /// The pair that the next image completes; none where there is no image. What cannot be a message is left
-  /// out: anybody may write on a topic.
+  /// The pair completed by the next image; nullopt without an image. Invalid messages are skipped, since any
+  /// node may publish on a topic.
   std::optional<Pair> taken() {
     while (true) {
       bool is_idle = true;
@@ -145,7 +145,7 @@ class Ros2Sequence : public io::SourceSequence {
     }
   }
 
-  /// Takes the cameras' parameters, as far as they have come; true where both are known.
+  /// Reads the cameras' parameters that have arrived; true if both are known.
   bool take_infos() {
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
       while (std::optional<ros::CameraInfo> info = infos_[side].take()) last_infos_[side] = std::move(info);
@@ -227,7 +227,7 @@ class Ros2Sequence : public io::SourceSequence {
     }
   }
 
-  /// None where it is not one of the range, or not later than the one before.
+  /// nullopt if it is outside the range, or not later than the previous one.
   std::optional<io::SequenceFrame> frame_of(const Pair& pair) {
     const Stamp stamp = ros::stamp_of(pair.left.value.image.header.stamp);
     if (last_stamp_ && stamp <= *last_stamp_) {
@@ -260,7 +260,7 @@ class Ros2Sequence : public io::SourceSequence {
     note("image without its other half within --max-skew", unpaired_, before);
     note("image that was sent but not received", lost(), before);
   }
-  /// A remark with a count that grows.
+  /// Adds or updates a remark with a count.
   void note(const char* what, std::uint64_t count, const std::string& before) {
     if (count == 0) return;
     const auto known = std::find_if(remarks_.begin(), remarks_.end(),

@@ -47,7 +47,7 @@ class VideoFile {
     if (count >= 1 && count < 1e12) count_ = static_cast<std::size_t>(count);
   }
 
-  /// Moves to the next frame; false after the last.
+  /// Advances to the next frame; false after the last.
   bool advance() {
     if (!capture_.grab()) return false;
     const double ms = capture_.get(cv::CAP_PROP_POS_MSEC);
@@ -58,10 +58,10 @@ class VideoFile {
     ++grabbed_;
     return true;
   }
-  /// Of the frame that it moved to.
+  /// Stamp of the current frame.
   [[nodiscard]] Stamp stamp() const { return stamp_; }
   [[nodiscard]] std::size_t index() const { return grabbed_ - 1; }
-  /// Its image; nothing where it cannot be decoded.
+  /// The current image; nullopt if it cannot be decoded.
   std::optional<cv::Mat> image() {
     cv::Mat image;
     if (!capture_.retrieve(image) || image.empty() || image.depth() != CV_8U ||
@@ -82,7 +82,7 @@ class VideoFile {
     });
   }
 
-  /// Words where the file ends before the end that its header states; "" else.
+  /// A message if the file ends earlier than its header states; else "".
   [[nodiscard]] std::string cut_off() const {
     if (!count_) return {};
     const double length_s = static_cast<double>(*count_) / fps_;
@@ -132,7 +132,7 @@ Picture picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
   return picture;
 }
 
-/// What sequences of one and of two videos share.
+/// Base of sequences from one and from two videos.
 class VideoSequence : public SourceSequence {
  public:
   VideoSequence(std::string name, const fs::path& beside, const SourceOptions& options, Pool pool)
@@ -148,15 +148,15 @@ class VideoSequence : public SourceSequence {
   }
 
  protected:
-  /// Both images of the next frame that is asked for.
+  /// Both images of the next frame of the range.
   struct NextFrame {
     std::size_t index = 0;
     Stamp stamp;
-    std::optional<PicturePair> pair;  // none: cannot be decoded
+    std::optional<PicturePair> pair;  // nullopt if it cannot be decoded
   };
   virtual std::optional<NextFrame> next_pair() = 0;
 
-  /// To be called once by those who derive.
+  /// Must be called once by derived classes.
   void begin(const fs::path& file) {
     file_ = file;
     first_ = advance();
@@ -264,7 +264,7 @@ class TwoVideos : public VideoSequence {
   bool has(std::size_t side, std::size_t count) {
     VideoFile& video = videos_[side];
     while (pairing_.waiting(side).size() < count && video.advance()) {
-      // A pair's number is never above that of its frames, so earlier ones are not asked for.
+      // A pair's number is at most that of its frames, so earlier frames can be skipped.
       const bool is_before = video.index() < options().frames.first;
       pairing_.push(side, video.stamp(), {video.index(), is_before ? std::nullopt : video.image()});
     }
@@ -279,7 +279,7 @@ class TwoVideos : public VideoSequence {
       if (options().frames.contains(index))
         return NextFrame{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
     }
-    // What is left over of the longer one has no partner.
+    // The rest of the longer one has no counterpart.
     pairing_.leave_all(reading_on);
     const std::string left_words = videos_[0].cut_off();
     end_early(left_words.empty() ? videos_[1].cut_off() : left_words);

@@ -28,7 +28,7 @@ TEST_F(BadInput, PicturesThatAreNone) {
     refuses({"disparity", good[0], path(bad), "-o", path("d.png")}, {bad});
     refuses({"segment", path(bad), good[1], "-o", path("out")}, {bad});
   }
-  refuses({"segment", path("good"), good[1]}, {"good"});  // a folder for a picture
+  refuses({"segment", path("good"), good[1]}, {"good"});  // a folder instead of an image
 }
 
 TEST_F(BadInput, PairsThatAreNone) {
@@ -101,7 +101,7 @@ TEST_F(BadInput, OptionsWithoutEffect) {
   for (const std::string& preset : preset_names()) {
     for (const OptionInfo& option : options(Config::preset(preset))) {
       if (option.active) continue;
-      // Its own value, too: who sets it believes that it counts.
+      // Even its current value: setting an option implies that it matters.
       refuses({"config", "--preset", preset, "--set", option.name + "=" + option.value},
               {option.name + " has no effect with ", "; set ", " first"});
       write(at("dead.yaml"), option.name + ": " + option.value + "\n");

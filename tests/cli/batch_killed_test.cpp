@@ -23,7 +23,7 @@ class BatchKilled : public CommandTest {
   }
 };
 
-// A worker killed at any moment (SIGKILL, which it cannot notice) and called again, fifty times.
+// A worker killed at any moment (SIGKILL, which cannot be handled) and restarted, fifty times.
 TEST_F(BatchKilled, HasTheRowsOfAnUndisturbedRun) {
   constexpr int kFrames = 12;
   constexpr int kKills = 50;
@@ -50,7 +50,7 @@ TEST_F(BatchKilled, HasTheRowsOfAnUndisturbedRun) {
       ++killed;
       continue;
     }
-    // It was done before: once more from the beginning.
+    // The shard was completed: start over.
     ASSERT_EQ(WEXITSTATUS(status), 0);
     ++finished;
     ASSERT_EQ(run({"batch", "merge", path("run"), "-o", path("rows")}).code, 0);

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 class Batch : public CommandTest {
  protected:
-  /// A folder `in` of small frames.
+  /// A folder `in` with small frames.
   void frames(int count) const {
     for (int i = 0; i < count; ++i) {
       const std::string name = "in/" + std::string(i < 10 ? "0" : "") + std::to_string(i);
@@ -55,18 +55,18 @@ class Batch : public CommandTest {
     for (std::string line; std::getline(in, line);) all.push_back(line);
     return all;
   }
-  /// What stands before a row in work/.
+  /// The digest before each row in work/.
   [[nodiscard]] std::string digest_of(const std::string& run_name, const std::string& row) const {
     const Json json = Json::parse(content(at(run_name + "/run.json")));
     return io::sha256(json["run"].get<std::string>() + row).substr(0, 16);
   }
-  /// Of an undisturbed worker on all frames.
+  /// The result of an undisturbed worker on all frames.
   [[nodiscard]] std::string undisturbed() const {
     plan("alone");
     work("1/1", "alone");
     return merged("alone");
   }
-  /// A worker that goes on while the test does other things.
+  /// A worker that runs concurrently with the test.
   [[nodiscard]] pid_t begin(const std::string& shard, rlim_t most_bytes = RLIM_INFINITY) const {
     const std::string folder = path("run");
     const std::string err = path("err");
@@ -76,7 +76,7 @@ class Batch : public CommandTest {
     ::dup2(nothing, STDOUT_FILENO);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), STDERR_FILENO);
     if (most_bytes != RLIM_INFINITY) {
-      std::signal(SIGXFSZ, SIG_IGN);  // so that a write fails as on a full disk
+      std::signal(SIGXFSZ, SIG_IGN);  // so that writing fails as on a full disk
       const rlimit limit{most_bytes, most_bytes};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
@@ -101,7 +101,7 @@ TEST_F(Batch, HasARowOfEachFrameInTheirOrder) {
     EXPECT_EQ(row["image"]["width"], 48 + 2 * i);
     EXPECT_TRUE(row.contains("objects"));
     EXPECT_FALSE(row.contains("timings_ms"));
-    // The same as cairn segment has it.
+    // The same as from cairn segment.
     const Outcome single = run({"segment", path("in/0" + std::to_string(i)), "--json"});
     const Json document = Json::parse(single.out);
     for (const char* key : {"image", "rig", "epipolar", "ground", "floor_frame", "objects", "left_out"})
@@ -272,7 +272,7 @@ TEST_F(Batch, ReadsPairsSequencesAndSeveralInputs) {
     EXPECT_TRUE(row.contains("objects")) << row["frame"];
   }
   EXPECT_EQ(names, (std::vector<std::string>{"in/00", "in/02", "in/00/left.png", "l/000000", "l/000002"}));
-  // Cut anywhere, the bad one in the middle is alone in having an error.
+  // Wherever it is split, only the bad frame in the middle has an error.
   work("1/1", "all");
   const std::string expected = merged("all");
   const std::vector<Json> rows = parsed(expected);
@@ -372,7 +372,7 @@ TEST_F(Batch, GoesOnFromWholeRowsOnly) {
   plan();
   const pid_t child = begin("1/1");
   const fs::path rows = at("run/work/part-1-of-1.rows");
-  // Dead after the first row, or in the middle of another one.
+  // Killed after the first row, or within a row.
   for (int i = 0; i < 2000 && (!fs::exists(rows) || fs::file_size(rows) == 0); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   ::kill(child, SIGKILL);
@@ -405,7 +405,7 @@ TEST_F(Batch, LosesNothingOnAFullDisk) {
   frames(4);
   const std::string expected = undisturbed();
   plan();
-  // Full in the middle of the rows, and while the part is made from them.
+  // The disk is full while rows are written, and while the part is assembled.
   for (const std::size_t room : {expected.size() / 2, expected.size() + 40}) {
     fs::remove_all(at("run/parts"));
     EXPECT_EQ(ended(begin("1/1", room)), 2);

@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 class Bench : public CommandTest {
  protected:
-  /// What --json says of a run that must succeed.
+  /// The --json output of a run that must succeed.
   [[nodiscard]] Json measured(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "bench");
     arguments.insert(arguments.end(), {"--json", path("bench.json")});
@@ -29,14 +29,14 @@ std::vector<std::string> names_of(const Json& list) {
   return names;
 }
 
-TEST_F(Bench, DrawsAPairWhereNobodyGivesOneAndSaysSo) {
+TEST_F(Bench, RendersAPairIfNoneIsGivenAndSaysSo) {
   const auto before = everything();
   const Outcome outcome = run({"bench", "--size", "160x120", "--frames", "2", "--no-opencv"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   for (const char* words :
-       {"drawn by the program, 160x120", "median ms", "p99 ms", "match", "frames per second", "image buffers",
-        "supported: scalar", "bad-2", "2 frames after the first"}) {
+       {"rendered room, 160x120", "median ms", "p99 ms", "match", "frames per second", "image buffers",
+        "supported: scalar", "bad-2", "2 frames after a warm-up frame"}) {
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
   }
   EXPECT_EQ(everything(), before);
@@ -99,7 +99,7 @@ TEST_F(Bench, JudgesOursAndOpenCvsMatchersWhereTheTruthIsGiven) {
   EXPECT_EQ(found.at("accuracy").at("both_cameras"), false);
   const Json& rows = found.at("accuracy").at("matchers");
   EXPECT_EQ(rows.at(0).at("name"), "cairn");
-  // Random dots of one disparity: whoever matches at all is right.
+  // Random dots of one disparity: every matcher that finds a match is correct.
   for (const Json& row : rows) {
     EXPECT_EQ(row.at("known_px"), (160 - 32) * 72);
     EXPECT_GT(row.at("density"), 0.5) << row;
@@ -128,10 +128,10 @@ TEST_F(Bench, TakesAFolderWithItsTruthAndLeavesOutWhatIsHidden) {
   EXPECT_EQ(found.at("accuracy").at("matchers").at(0).at("known_px"), (160 - 64) * 72 - 10);
 }
 
-TEST_F(Bench, SaysWhenOpenCvRefusesThePair) {
+TEST_F(Bench, SaysWhyOpenCvCannotMatchThePair) {
   const Outcome outcome = run({"bench", "--size", "70x40", "--frames", "1"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(outcome.out.find("StereoBM refuses this pair") != std::string::npos ||
+  EXPECT_TRUE(outcome.out.find("StereoBM cannot match this pair") != std::string::npos ||
               outcome.out.find("not built in") != std::string::npos)
       << outcome.out;
 }

@@ -5,7 +5,7 @@
 
 #include "command.hpp"
 
-/// Cameras on the command line: live, record and what they say.
+/// Cameras on the command line: live and record, and their messages.
 namespace cairn::command {
 namespace {
 
@@ -36,7 +36,7 @@ TEST_F(Cameras, RecordTakesTheFirstFramesOfAPipeline) {
   EXPECT_NE(outcome.out.find("recorded 4 frames"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("stamps from the pipeline"), std::string::npos) << outcome.out;
   EXPECT_TRUE(fs::exists(at("out/000003/right.png")));
-  // And is read again as a sequence with the same stamps.
+  // The result is readable as a sequence with the same stamps.
   EXPECT_EQ(run({"record", path("out"), "-o", path("again")}).code, 0);
   EXPECT_EQ(content(at("out/stamps.txt")), content(at("again/stamps.txt")));
 }

@@ -22,13 +22,13 @@
 
 #include "support/temporary_folder.hpp"
 
-/// The command as others run it: a process with arguments, an exit code, and what it wrote.
+/// The command as an external process, with arguments, exit code and output.
 namespace cairn::command {
 
 namespace fs = std::filesystem;
 
 struct Outcome {
-  int code = -1;  // of exit; 128 + signal where it was killed
+  int code = -1;  // of exit; 128 + signal if it was killed
   std::string out;
   std::string err;
 };
@@ -42,12 +42,12 @@ inline void write(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// A folder of the test's own, gone after it, and the command run from inside.
+/// A temporary folder in which the command runs.
 class CommandTest : public testing::Test {
  protected:
   CommandTest() { fs::create_directories(root_ / "work"); }
 
-  /// Where inputs and outputs of the test live.
+  /// Path of the test's inputs and outputs.
   [[nodiscard]] fs::path at(const std::string& name) const { return root_ / "work" / name; }
   [[nodiscard]] std::string path(const std::string& name) const { return at(name).string(); }
   /// Every file and folder in it.
@@ -58,7 +58,7 @@ class CommandTest : public testing::Test {
     return all;
   }
 
-  /// `folder`: of the test's own, where it is run.
+  /// `folder`: working folder, inside the test's own.
   [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, const std::string& out = {},
                             const std::string& folder = {}) const {
     const std::string out_path = out.empty() ? (root_ / "out").string() : out;
@@ -93,8 +93,8 @@ class CommandTest : public testing::Test {
     return outcome;
   }
 
-  /// The command must refuse: exit code 2, nothing on stdout, one line on stderr that has all these words, no
-  /// new file.
+  /// The command must refuse: exit code 2, nothing on stdout, one line on stderr that contains all these
+  /// words, no new file.
   void refuses(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
     const auto before = everything();
     const Outcome outcome = run(arguments);

@@ -184,7 +184,7 @@ TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {
   EXPECT_TRUE(fs::exists(at("all/b/objects.json")));
   EXPECT_FALSE(fs::exists(at("all/objects.json")));
   EXPECT_LT(outcome.out.find("a:"), outcome.out.find("b:"));
-  EXPECT_EQ(outcome.err.find("cairn: note: no floor: "), 0U);  // no progress bar where stderr is no terminal
+  EXPECT_EQ(outcome.err.find("cairn: note: no floor: "), 0U);  // no progress bar, as stderr is no terminal
 }
 
 TEST_F(Command, SegmentComparesPresets) {
@@ -245,7 +245,7 @@ TEST_F(Command, LaterSettingsWin) {
   };
   EXPECT_EQ(disparities({}), 24);  // the frame's own calibration
   EXPECT_EQ(disparities({"--preset", "paper"}), 24);
-  EXPECT_EQ(disparities({"--config", path("preset.yaml")}), 24);  // a preset is no setting of this option
+  EXPECT_EQ(disparities({"--config", path("preset.yaml")}), 24);  // a preset does not set it
   EXPECT_EQ(disparities({"--config", path("options.yaml")}), 20);
   EXPECT_EQ(disparities({"--config", path("options.yaml"), "--set", "match.num_disparities=16"}), 16);
   EXPECT_EQ(disparities({"--set", "match.num_disparities=16", "--set", "match.num_disparities=12"}), 12);
@@ -272,7 +272,7 @@ TEST_F(Command, SegmentTakesADisparityMapInsteadOfTheRightPicture) {
   for (const std::string& input : {pair[0], path("pair")}) {
     const Outcome outcome = run({"segment", input, "--disparity", path("map.pfm"), "-o", path("out")});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("disparity.pfm"), std::string::npos);  // said, since 16 bits hold no −9
+    EXPECT_NE(outcome.err.find("disparity.pfm"), std::string::npos);  // warned: PNG cannot hold −9
     EXPECT_TRUE(fs::exists(at("out/disparity.pfm")));
     EXPECT_FALSE(fs::exists(at("out/confidence.png")));
     EXPECT_TRUE(Json::parse(content(at("out/objects.json"))).at("external_disparity").get<bool>());
@@ -320,7 +320,7 @@ TEST_F(Command, DisparityWritesTheFormThatTheNameAsksFor) {
 
 TEST_F(Command, TablesListTheReasonsInForceAndWhatIsForWantOfTexture) {
   const auto pair = pair_in("pair");
-  for (const char* side : {"pair/left.png", "pair/right.png"}) {  // a plain wall beside the dots
+  for (const char* side : {"pair/left.png", "pair/right.png"}) {  // a plain wall next to the dots
     Image<Gray> image = io::load_picture(at(side)).gray;
     for (int y = 0; y < 72; ++y) std::fill_n(image.row(y) + 48, 48, Gray{9});
     io::save_png(at(side), image.view());
@@ -351,8 +351,7 @@ TEST_F(Command, ThreadsAndTargetsChangeNoBitOfAResult) {
   }
 }
 
-/// Two frames with truth beside a third without a result: what `evaluate` makes of results that equal their
-/// truth.
+/// Two frames with truth, and a third without a result: `evaluate` with results equal to the truth.
 TEST_F(Command, EvaluateFindsNoErrorInTheTruthItself) {
   Image<std::uint16_t> ids({96, 72}, 0, {});
   for (int y = 10; y < 40; ++y) std::fill_n(ids.row(y) + 10, 30, std::uint16_t{1});
@@ -374,7 +373,7 @@ TEST_F(Command, EvaluateFindsNoErrorInTheTruthItself) {
   }
   write(at("truth/a/partial"), "");
   write(at("truth/b/partial"), "");
-  EXPECT_NE(run({"evaluate", path("result"), path("truth")}).out.find("precision           not known"),
+  EXPECT_NE(run({"evaluate", path("result"), path("truth")}).out.find("precision           undefined"),
             std::string::npos);
 }
 

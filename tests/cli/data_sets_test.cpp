@@ -4,7 +4,7 @@
 
 #include "command.hpp"
 
-/// Data sets as they are downloaded, in small: from their folders to results that are evaluated.
+/// Data sets in their downloaded layout, in miniature: from folders to evaluated results.
 namespace cairn::command {
 namespace {
 
@@ -20,7 +20,7 @@ class DataSets : public CommandTest {
       fs::copy_file(from, at(to));
     }
   }
-  /// objects.json's stamp of this frame in out/.
+  /// stamp_ns in objects.json of this frame in out/.
   [[nodiscard]] Json stamp_of(const std::string& frame) const {
     return Json::parse(content(at("out/" + frame + "/objects.json"))).at("stamp_ns");
   }

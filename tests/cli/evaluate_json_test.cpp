@@ -61,7 +61,7 @@ class EvaluateJson : public CommandTest {
     return {"evaluate", path("result"), path("truth"), "--json", file};
   }
 
-  /// What the command writes, and what it prints beside.
+  /// The output files of the command, and its printed output.
   [[nodiscard]] std::pair<Json, std::string> evaluated() const {
     const Outcome outcome = run(arguments(path("all.json")));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -76,12 +76,12 @@ class EvaluateJson : public CommandTest {
     fill(ids, {50, 10, 30, 50}, 7);
     save("truth/a/objects.png", ids);
     ids = Image<std::uint16_t>(kSize, 0, {});
-    fill(ids, {10, 10, 30, 24}, 1);  // four fifths of the true one
-    fill(ids, {10, 45, 30, 20}, 2);  // on nothing
+    fill(ids, {10, 10, 30, 24}, 1);  // four fifths of the true object
+    fill(ids, {10, 45, 30, 20}, 2);  // on no object
     save("result/a/objects.png", ids);
   }
 
-  /// Upper half: right. Lower half, which the right camera does not see: off by 3 px, then a hole.
+  /// Upper half: correct. Lower half, hidden from the right camera: an error of 3 px, then a hole.
   void write_disparities_of_a() const {
     Image<std::uint16_t> disparity(kSize, 6 * 256, {});
     save("truth/a/disp_left.png", disparity);
@@ -109,7 +109,7 @@ TEST_F(EvaluateJson, TellsWhatBecameOfEachObject) {
   EXPECT_EQ(found.at("ours"), 1);
   EXPECT_DOUBLE_EQ(found.at("iou"), 0.8);
   EXPECT_DOUBLE_EQ(found.at("error"), 0.25);
-  // Boundaries of 116 and 104 px; 78 of each lie within 1 px of the other.
+  // Boundaries of 116 and 104 px; 78 of each are within 1 px of the other.
   EXPECT_NEAR(found.at("boundary_f"), 2.0 * 78 / (116 + 104), 1e-9);
   const Json& missed = a.at("true")[1];
   EXPECT_EQ(missed.at("id"), 7);
@@ -129,7 +129,7 @@ TEST_F(EvaluateJson, TellsWhatBecameOfEachObject) {
   EXPECT_EQ(b.at("true")[0].at("ours"), 5);
   EXPECT_EQ(b.at("true")[0].at("error"), 0);
   EXPECT_EQ(b.at("counts").at("ours"), 1);
-  EXPECT_TRUE(b.at("counts").at("right_50").is_null());  // a partial truth cannot tell
+  EXPECT_TRUE(b.at("counts").at("right_50").is_null());  // undefined for a partial truth
   EXPECT_TRUE(b.at("counts").at("phantoms").is_null());
 }
 
@@ -182,7 +182,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
   prints("found               IoU >= 0.5: " + percent(s.at("recall_50")) +
          "   IoU >= 0.75: " + percent(s.at("recall_75")));
   prints("precision           IoU >= 0.5: " + percent(s.at("precision_50")) + "   IoU >= 0.75: " +
-         percent(s.at("precision_75")) + "   of " + s.at("ours").dump() + " objects of ours");
+         percent(s.at("precision_75")) + "   of " + s.at("ours").dump() + " reported objects");
   prints("phantoms            " + text_of("%.2f", s.at("phantoms_per_frame")));
   prints("E                   mean " + percent(s.at("mean_error")) + "   median " +
          percent(s.at("median_error")));
@@ -192,7 +192,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
          text_of("%.3f", s.at("mean_boundary_f_found")));
   prints("over: " + s.at("over_segmented").dump() + "   under: " + s.at("under_segmented").dump());
   const Json& confident = s.at("confident");
-  prints("confidence >= 0.8   " + confident.at("ours").dump() + " objects of ours, " +
+  prints("confidence >= 0.8   " + confident.at("ours").dump() + " reported objects, " +
          percent(confident.at("precision_50")));
   for (const char* pixels : {"both_cameras", "all"}) {
     const Json& d = whole.at("summary").at("disparity").at(pixels);
@@ -205,7 +205,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
            text_of("%.3f px", d.at("sigma_px")));
   }
   EXPECT_EQ(whole.at("without_result"), Json({"c"}));
-  // And the summary's numbers themselves, so that both cannot be wrong together.
+  // Also checks the summary's numbers, in case both were wrong in the same way.
   EXPECT_DOUBLE_EQ(s.at("recall_50"), 2.0 / 3);
   EXPECT_DOUBLE_EQ(s.at("precision_50"), 0.5);
   EXPECT_DOUBLE_EQ(s.at("mean_error"), 0.75);
@@ -260,7 +260,7 @@ TEST_F(EvaluateJson, NamesTheFramesThatAreLeftOut) {
   }
 }
 
-// ---- runs side by side ----
+// ---- comparison of runs ----
 
 /// Cells of a CSV without quotes, row by row, by the names in its first line.
 std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) {
@@ -274,7 +274,7 @@ std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) 
   const auto names = split(lines.at(0), ',');
   std::vector<std::map<std::string, std::string>> rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const auto cells = split(lines[i] + ",.", ',');  // so that an empty last one counts
+    const auto cells = split(lines[i] + ",.", ',');  // so that an empty last cell counts
     EXPECT_EQ(cells.size(), names.size() + 1) << lines[i];
     rows.emplace_back();
     for (std::size_t c = 0; c < names.size(); ++c) rows.back()[names[c]] = cells.at(c);
@@ -299,7 +299,7 @@ TEST_F(EvaluateJson, RunsAreARowEachAndTheSameNumbers) {
   EXPECT_EQ(rows[0].at("disparity.both_cameras.bad_of_matched.1"),
             summary.at("disparity").at("both_cameras").at("bad_of_matched").at("1").dump());
   EXPECT_EQ(rows[0].at("timings_ms.total.median"), summary.at("timings_ms").at("total").at("median").dump());
-  // Partial truth and no disparity: nothing is known.
+  // With partial truth and no disparity everything is unknown.
   EXPECT_EQ(rows[1].at("objects.frames"), "1");
   EXPECT_EQ(rows[1].at("objects.recall_50"), "1.0");
   EXPECT_EQ(rows[1].at("objects.precision_50"), "");

@@ -23,7 +23,7 @@ Json list(Point3 p) {
   return {p.x, p.y, p.z};
 }
 
-/// What a frame shows, and what the made-up result says of it.
+/// The content of a frame, and the simulated result for it.
 struct Seen {
   int id = 0;      // the true object; 0: none
   int track = 0;   // 0: not found
@@ -35,7 +35,7 @@ struct Seen {
   std::string state = "confirmed";
 };
 
-/// A sequence with truth and result, whose map lies elsewhere than the truth's world.
+/// A sequence with truth and result, whose map has another origin than the truth's world.
 class EvaluateSequence : public CommandTest {
  protected:
   const Pose map_from_world_{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {3, -2, 0.5}};
@@ -120,7 +120,7 @@ class EvaluateSequence : public CommandTest {
   std::string lines_;
 };
 
-/// Twelve frames. Object 1 stands and changes its id in the sixth, object 2 moves from frame 3 on, is not
+/// Twelve frames. Object 1 is static and changes its id in the sixth; object 2 moves from frame 3 on, is not
 /// found in frame 4, and is labelled from frame 6 on; object 3 is too small to count.
 class DrawnSequence : public EvaluateSequence {
  protected:
@@ -144,7 +144,7 @@ TEST_F(DrawnSequence, TracksAndOracleIdsAreScored) {
   EXPECT_EQ(json.at("summary").at("frames"), 12);
   EXPECT_EQ(ours.at("CLR_TP"), 23);
   EXPECT_EQ(ours.at("CLR_FN"), 1);
-  EXPECT_EQ(ours.at("CLR_FP"), 0);  // the small one is neither right nor wrong
+  EXPECT_EQ(ours.at("CLR_FP"), 0);  // the small one is ignored
   EXPECT_EQ(ours.at("IDSW"), 1);
   EXPECT_EQ(ours.at("Frag"), 1);
   EXPECT_EQ(ours.at("MT"), 2);
@@ -234,8 +234,8 @@ TEST_F(EvaluateSequence, InAPartialTruthWhatIsNotLabelledIsNotWrong) {
   EXPECT_TRUE(json.at("summary").at("objects").at("precision_50").is_null());
 }
 
-/// Objects 1 and 2 are out of view for 11 frames and come back; object 3 does not. 1 is known again, 2 is
-/// taken for 3; meanwhile somebody has carried 1 by a metre.
+/// Objects 1 and 2 are out of view for 11 frames and come back; object 3 does not. 1 is recognised, 2 is
+/// mistaken for 3, and 1 was moved by a metre meanwhile.
 TEST_F(EvaluateSequence, LandmarksAndChangesAreScored) {
   for (int k = 0; k < 34; ++k) {
     const bool back = k >= 22;
@@ -288,7 +288,7 @@ TEST_F(EvaluateSequence, TwoFilesOfPosesAreCompared) {
   const Json trajectory = Json::parse(content(at("t.json"))).at("summary").at("trajectory");
   EXPECT_EQ(trajectory.at("compared"), 21);
   EXPECT_NEAR(trajectory.at("end_drift"), 0.01, 1e-6);
-  // KITTI's: up to the first pose beyond a metre, divided by the metre.
+  // KITTI: up to the first pose beyond one metre, per metre.
   EXPECT_NEAR(trajectory.at("t_rel"), 0.011, 1e-6);
   EXPECT_NE(outcome.out.find("t_rel 1.10 %"), std::string::npos) << outcome.out;
   write(at("late.tum"), "99 0 0 0 0 0 0 1\n100 1 0 0 0 0 0 1\n");
@@ -308,7 +308,7 @@ TEST_F(EvaluateSequence, ATrajectoryIsComparedWithAFolderOfFrames) {
   const Json trajectory = Json::parse(content(at("t.json"))).at("summary").at("trajectory");
   EXPECT_EQ(trajectory.at("compared"), 5);
   EXPECT_NEAR(trajectory.at("path_m"), 0.4, 1e-6);
-  EXPECT_NEAR(trajectory.at("ate_rmse_m"), 0, 1e-6);  // turned round, which the alignment undoes
+  EXPECT_NEAR(trajectory.at("ate_rmse_m"), 0, 1e-6);  // rotated, which the alignment compensates
 }
 
 TEST_F(EvaluateSequence, MotsTextIsComparedByTheNumberOfTheFrame) {

@@ -12,13 +12,14 @@
 
 #include "command.hpp"
 
-/// What goes wrong around the command: signals, memory, pipes, names, links.
+/// Faults in the environment of the command: signals, memory, pipes, names, links.
 namespace cairn::command {
 namespace {
 
 class Faults : public CommandTest {
  protected:
-  /// The command in the tests' folder, after `prepare` in its process; stdout and stderr go to files.
+  /// Runs the command in the tests' folder, after calling `prepare` in its process; stdout and stderr go to
+  /// files.
   [[nodiscard]] pid_t begin(std::vector<std::string> words, const std::function<void()>& prepare = {}) const {
     words.insert(words.begin(), CAIRN_COMMAND);
     std::vector<char*> argv;
@@ -51,7 +52,7 @@ class Faults : public CommandTest {
     return end(begin(words, prepare));
   }
 
-  /// What the files of a folder of results hold, but for times; hidden ones and folders are left out.
+  /// The content of a result folder without times, hidden files and folders.
   [[nodiscard]] std::map<std::string, std::string> results_in(const std::string& folder) const {
     std::map<std::string, std::string> all;
     if (!fs::exists(at(folder))) return all;
@@ -64,7 +65,7 @@ class Faults : public CommandTest {
       std::string& bytes = all[fs::relative(entry->path(), at(folder)).string()];
       bytes = content(entry->path());
       if (entry->path().filename() != "objects.json") continue;
-      nlohmann::json json = nlohmann::json::parse(bytes);  // throws where it is half a file
+      nlohmann::json json = nlohmann::json::parse(bytes);  // throws for a truncated file
       json.erase("timings_ms");
       bytes = json.dump();
     }
@@ -183,7 +184,7 @@ TEST_F(Faults, AClosedOutputIsNoticedAndNoResultTakesItsPlace) {
   EXPECT_EQ(results_in("out"), results_in("alone"));
 }
 
-/// Without a stream of its own the next file that is opened would be stdout.
+/// Without stdout, the next file to be opened would become stdout.
 TEST_F(Faults, LinesForAClosedOutputGetIntoNoFile) {
   if (run({"follow", "--help"}).code != 0) GTEST_SKIP() << "sequences are not built in";
   for (int i = 0; i < 3; ++i) pair_in("in/" + std::to_string(i));
@@ -250,7 +251,7 @@ TEST_F(Faults, LinksAreFollowedAndLoopsRefused) {
   refuses({"segment", path("dangling.png"), pair[1]}, {"dangling.png"});
 }
 
-/// What comes through a pipe has no length that could be believed.
+/// Input from a pipe has no known length.
 TEST_F(Faults, AFileThatIsCutOffWhileItIsReadIsRefused) {
   const auto pair = pair_in("pair");
   const std::string whole = content(pair[0]);

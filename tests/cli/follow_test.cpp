@@ -7,7 +7,7 @@
 
 #include "command.hpp"
 
-/// cairn follow: what it writes, what it refuses, and how it ends.
+/// cairn follow: its output, refusals and exit.
 namespace cairn::command {
 namespace {
 
@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 class Follow : public CommandTest {
  protected:
-  /// A camera that stands still before the things of a sample.
+  /// A static camera in front of a sample's objects.
   void standing(int frames, const std::string& folder = "in") const {
     for (int i = 0; i < frames; ++i) {
       const fs::path frame = at(folder + "/" + std::to_string(i));
@@ -191,7 +191,8 @@ TEST_F(Follow, KnownPosesAreTakenAsTheyAre) {
 TEST_F(Follow, AScanJudgesTheDisparities) {
   standing(3);
   write(at("in/stamps.txt"), "0\n0.1\n0.2\n");
-  // 41 beams from 0.4 rad to the right on, to a wall 0.3 m away that no disparity shows; none at 0.2 s.
+  // 41 beams from 0.4 rad to the right on, to a wall at 0.3 m that contradicts the disparities; none at 0.2
+  // s.
   std::string scan = "t_s,angle_min,angle_increment";
   for (int i = 0; i < 41; ++i) scan += ",r" + std::to_string(i);
   for (const char* stamp : {"0", "0.1"}) {
@@ -218,7 +219,7 @@ TEST_F(Follow, AScanJudgesTheDisparities) {
 
 TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
   standing(30);
-  // As in tests/unit/control_test.cpp: one object of the scene is found only when the least area is halved.
+  // As in tests/unit/control_test.cpp: one object of the scene is found only if the minimum area is halved.
   const std::vector<std::string> off{"follow", path("in"), "--set", "objects.min_area=4"};
   std::vector<std::string> usual = off;
   usual.insert(usual.end(), {"-o", path("off")});
@@ -252,7 +253,7 @@ TEST_F(Follow, AMapKeepsWhatWasSeen) {
   const std::string first = run({"map", "show", path("room.db")}).out;
   EXPECT_EQ(first.find(": 0 landmarks"), std::string::npos) << first;
   EXPECT_NE(first.find("done      10    5.00  5.90"), std::string::npos) << first;
-  // The second run knows where it begins, and finds nothing new.
+  // The second run localises itself and finds no changes.
   std::vector<std::string> again = arguments;
   again.insert(again.end(), {"--start", "0,0,0", "-o", path("out")});
   ASSERT_EQ(run(again).code, 0);

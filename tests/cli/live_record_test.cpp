@@ -9,7 +9,7 @@
 
 #include "command.hpp"
 
-/// cairn live --record, and what plays such a recording again.
+/// cairn live --record, and replaying such a recording.
 namespace cairn::command {
 namespace {
 
@@ -20,7 +20,7 @@ class LiveRecord : public CommandTest {
   [[nodiscard]] static std::string sequence() {
     return (fs::path(CAIRN_SOURCE_DIR) / "sequences" / "rolling_ball").string();
   }
-  /// Of every frame of the sequence, or of `source`.
+  /// For every frame of the sequence, or of `source`.
   Outcome record(const std::vector<std::string>& more = {}, const std::string& source = sequence()) const {
     std::vector<std::string> words{"live", source,     "--every-frame", "--pace",
                                    "0",    "--record", path("run.mcap")};
@@ -143,7 +143,7 @@ TEST_F(LiveRecord, AFileThatMayNotGrowEndsTheRecordingAndNotTheRun) {
 }
 
 TEST_F(LiveRecord, CutOffItIsReadUpToItsLastChunk) {
-  ASSERT_EQ(record({"--record-what", "all"}).code, 0);  // so much that there are several chunks
+  ASSERT_EQ(record({"--record-what", "all"}).code, 0);  // enough data for several chunks
   fs::resize_file(at("run.mcap"), fs::file_size(at("run.mcap")) * 3 / 4);
   const Outcome cut = run({"follow", path("run.mcap"), "--json-lines"});
   EXPECT_EQ(cut.code, 3) << cut.err;

@@ -12,7 +12,7 @@
 #include "command.hpp"
 #include "support/dds_domain.hpp"
 
-/// cairn live --ros2, as another process hears it.
+/// cairn live --ros2, received by another process.
 namespace cairn::command {
 namespace {
 
@@ -35,7 +35,7 @@ class LiveRos2 : public CommandTest {
   }
 };
 
-/// What the command says of the objects that have a place, and what was heard, in the frame of `camera`.
+/// Objects with a position, from the command and as received, in the frame of `camera`.
 void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard,
                          const std::string& camera = "cairn_camera") {
   std::vector<Json> placed;
@@ -72,7 +72,7 @@ TEST_F(LiveRos2, AnotherProcessHearsWhatIsPrinted) {
     expect_same_objects(frame->second, *message);
     ++heard;
   }
-  EXPECT_GE(heard, 4) << outcome.err;  // the first ones before the two knew each other
+  EXPECT_GE(heard, 4) << outcome.err;  // the first ones may precede discovery
   const auto said = stats.take();
   ASSERT_TRUE(said);
   EXPECT_TRUE(Json::parse(said->data).contains("worked_ms"));
@@ -80,7 +80,7 @@ TEST_F(LiveRos2, AnotherProcessHearsWhatIsPrinted) {
   EXPECT_NE(outcome.err.find(prefix + "/objects " + std::to_string(heard)), std::string::npos) << outcome.err;
 }
 
-/// A camera that publishes a sample, ten pairs a second.
+/// A camera that publishes a sample at 10 Hz.
 class Camera {
  public:
   explicit Camera(const std::string& prefix)
@@ -191,7 +191,7 @@ int sockets_while(std::vector<std::string> arguments, const std::string& out) {
 }
 
 TEST_F(LiveRos2, OpensNoSocketUnlessItIsAsked) {
-  const int own = sockets_of(getpid());  // what a child may inherit
+  const int own = sockets_of(getpid());  // a child may inherit these
   EXPECT_LE(sockets_while({"live", sequence(), "--json-lines"}, path("without")), own);
   EXPECT_GT(sockets_while({"live", sequence(), "--json-lines", "--ros2"}, path("with")), own);
 }

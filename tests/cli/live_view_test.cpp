@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "command.hpp"
 
-/// cairn live --view: what it prints, and what it refuses. (tests/unit/view_server_test.cpp has the server.)
+/// cairn live --view: its output and refusals. (tests/unit/view_server_test.cpp tests the server.)
 namespace cairn::command {
 namespace {
 

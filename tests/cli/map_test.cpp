@@ -66,7 +66,7 @@ TEST_F(MapCommand, ShowsAndChecksAMap) {
     EXPECT_NE(shown.out.find(words), std::string::npos) << words << "\n" << shown.out;
   const Outcome checked = run({"map", "check", "room.db"});
   EXPECT_EQ(checked.code, 0);
-  EXPECT_EQ(checked.out, "room.db: sound, 5 landmarks, 1 run\n");
+  EXPECT_EQ(checked.out, "room.db: valid, 5 landmarks, 1 run\n");
 }
 
 TEST_F(MapCommand, FindsDamage) {
@@ -152,7 +152,7 @@ TEST_F(MapCommand, ComparesAMapWithAnEarlierCopyOfIt) {
   }
   const Outcome outcome = run({"map", "diff", "before.db", "room.db"});
   EXPECT_EQ(outcome.code, 0);
-  for (const char* words : {"moved", "1.00", "gone", "new", "not in the other"})
+  for (const char* words : {"moved", "1.00", "gone", "new", "not in OTHER"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
 }
 
@@ -162,7 +162,7 @@ TEST_F(MapCommand, ForgetsLandmarks) {
   refuses({"map", "forget", "room.db"}, {"--id", "--gone"});
   EXPECT_EQ(run({"map", "forget", "room.db", "--id", "2", "--id", "3"}).out,
             "room.db: 2 landmarks forgotten, 3 left\n");
-  EXPECT_EQ(run({"map", "check", "room.db"}).out, "room.db: sound, 3 landmarks, 1 run\n");
+  EXPECT_EQ(run({"map", "check", "room.db"}).out, "room.db: valid, 3 landmarks, 1 run\n");
 }
 
 TEST_F(MapCommand, RefusesWhatIsNoMap) {

@@ -9,8 +9,8 @@
 #include "support/recordings.hpp"
 #include "support/temporary_folder.hpp"
 
-/// Others' programs read our recordings: npm's @mcap/core the file, @foxglove/rosmsg2-serialization the
-/// messages, by the definitions that ROS publishes.
+/// Independent programs read our recordings: npm's @mcap/core the file, @foxglove/rosmsg2-serialization the
+/// messages, with the definitions published by ROS.
 namespace cairn {
 namespace {
 

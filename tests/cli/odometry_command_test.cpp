@@ -8,7 +8,7 @@
 namespace cairn::command {
 namespace {
 
-/// A camera that drives 3 cm ahead and turns by a degree from frame to frame.
+/// A camera that moves 3 cm forward and rotates by one degree per frame.
 class OdometryCommand : public CommandTest {
  protected:
   static constexpr int kFrames = 6;

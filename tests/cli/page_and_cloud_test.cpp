@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// --html, --ply and --ply-objects of the commands: where their files go, and what they refuse. What is in them:
-// unit/html_page_test.cpp, unit/point_cloud_test.cpp, cli/page_in_browser.py.
+// --html, --ply and --ply-objects of the commands: locations of the files, and refusals. For their content
+// see unit/html_page_test.cpp, unit/point_cloud_test.cpp, cli/page_in_browser.py.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -44,15 +44,15 @@ TEST_F(PageAndCloudTest, AFolderOfFramesHasOnePageAndACloudForEach) {
   EXPECT_FALSE(fs::exists(at("out/a/segment.html")));
 }
 
-/// The points of a .ply of cairn, each with its colour as the file has it; of a whole cloud only those of
-/// objects, by their id.
+/// The points of a .ply file of cairn, each with its stored colour; of a whole cloud only those of objects,
+/// by id.
 std::map<std::int32_t, std::vector<std::string>> points_by_object(const std::string& ply) {
   constexpr std::size_t kPoint = 15;  // bytes: three floats, three colours
   const std::size_t end = ply.find("end_header\n") + 11;
   const std::size_t vertex = ply.find("property int object") < end ? kPoint + 4 : kPoint;
   std::map<std::int32_t, std::vector<std::string>> points;
   for (std::size_t at = end; at + vertex <= ply.size(); at += vertex) {
-    std::int32_t object = -1;  // of a file without them
+    std::int32_t object = -1;  // for a file without ids
     if (vertex > kPoint) std::memcpy(&object, ply.data() + at + kPoint, sizeof object);
     if (object != 0) points[object].push_back(ply.substr(at, kPoint));
   }
@@ -153,7 +153,7 @@ TEST_F(PageAndCloudTest, EvaluateWritesAPageOfWhatThereIs) {
   pair_in("frame");
   ASSERT_EQ(
       run({"segment", path("frame"), "--set", "match.num_disparities=16", "-o", path("out/frame")}).code, 0);
-  // No picture beside the truth, and a result that has lost all but its disparity.
+  // No image next to the truth, and a result of which only the disparity is left.
   fs::create_directories(at("truth/frame"));
   write(at("truth/frame") / "disp_left.pfm", pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
   ASSERT_EQ(run({"evaluate", path("out"), path("truth"), "--html", path("new/page")}).code, 0);

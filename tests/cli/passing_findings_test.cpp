@@ -3,7 +3,7 @@
 #include "command.hpp"
 #include "support/samples.hpp"
 
-/// What `cairn segment` says on stderr of what it sees in passing.
+/// Findings that `cairn segment` prints on stderr.
 namespace cairn::command {
 namespace {
 

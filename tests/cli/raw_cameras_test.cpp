@@ -8,11 +8,11 @@
 
 #include "command.hpp"
 
-/// cairn calibrate and cairn rectify, on a checkerboard that is drawn.
+/// cairn calibrate and cairn rectify, with a rendered checkerboard.
 namespace cairn::command {
 namespace {
 
-constexpr int kPlaces = 12;  // of the board
+constexpr int kPlaces = 12;  // poses of the board
 static_assert(support::kBoardColumns == 9 && support::kBoardRows == 6 && support::kBoardSquare == 0.025);
 
 bool is_built_in() {
@@ -24,7 +24,7 @@ bool is_built_in() {
   return true;
 }
 
-/// Without ones or with a word why the test cannot be.
+/// Skips the test with a reason if it cannot run.
 class RawCameras : public CommandTest {
  protected:
   void SetUp() override {
@@ -58,7 +58,7 @@ TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
   EXPECT_LT(number_after(outcome.out, "rows, rectified     "), 0.5) << outcome.out;
   EXPECT_NE(outcome.out.find("12 of 12"), std::string::npos) << outcome.out;
 
-  // Raw, the pair is not fit for use; rectified, its rows are.
+  // The raw pair is reported as unusable; after rectification its rows are aligned.
   const fs::path left = boards / "left01.png";
   const fs::path raw_right = boards / "right01.png";
   outcome = run({"doctor", left, raw_right});
@@ -71,7 +71,7 @@ TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
   EXPECT_EQ(outcome.out.find("rows misaligned"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("not rectified"), std::string::npos) << outcome.out;
 
-  // With their own calibration the raw pictures are told to be raw, and those rectified with it are not.
+  // With its own calibration, the raw pair is recognised as raw, and the rectified one is not.
   for (const fs::path& from : {left, at("pair") / "left.png"}) {
     const fs::path other = from == left ? raw_right : at("pair") / "right.png";
     outcome = run({"segment", from, other, "--calib", path("calib.yaml")});
@@ -84,7 +84,7 @@ TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
         << outcome.out;
   }
 
-  // The calibration beside the pair says what that of the raw cameras says of it.
+  // The calibration next to the pair agrees with that of the raw cameras.
   const auto beside = io::load_calibration(at("pair") / "calib.txt");
   const auto raw = io::load_calibration(at("calib.yaml"));
   ASSERT_TRUE(beside.rig && raw.rig);
@@ -161,7 +161,7 @@ TEST_F(Rectify, WritesTheDisparitiesDownToTheNearestDistance) {
   };
   EXPECT_EQ(range({}), 48);                      // 5 baselines: a fifth of 200 px
   EXPECT_EQ(range({"--nearest", "1"}), 32);      // 200 px · 0.1 m / 1 m = 20
-  EXPECT_EQ(range({"--nearest", "0.05"}), 160);  // no more than fit the picture
+  EXPECT_EQ(range({"--nearest", "0.05"}), 160);  // no more than the image width
   EXPECT_EQ(run({"segment", path("out")}).code, 0);
   refuses(with("rectify", pair, {"--calib", path("raw.yaml"), "--nearest", "0", "-o", path("other")}),
           {"--nearest"});
@@ -226,7 +226,7 @@ TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {
 
 TEST(Calibration, FindsCamerasThatWereDrawn) {
   if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
-  // Corners of a board that stands in eight places, seen by two cameras without distortion, 0.2 m apart.
+  // Corners of a board in eight poses, seen by two cameras without distortion, 0.2 m apart.
   const io::Board board{7, 5, 0.04};
   constexpr double kFocal = 600;
   std::vector<io::BoardSighting> sightings;

@@ -4,7 +4,7 @@
 
 #include "command.hpp"
 
-/// cairn record: what it writes is read again as the same sequence.
+/// cairn record: its output is readable as the same sequence.
 namespace cairn::command {
 namespace {
 
@@ -57,7 +57,7 @@ TEST_F(Record, WritesTheVeryPixelsStampsAndCalibration) {
     EXPECT_EQ(calibration.image_size, (Size{48, 36}));
     EXPECT_EQ(calibration.ground, io::load_calibration(at("in/0/calib.txt")).ground);
   }
-  // What it wrote is a source.
+  // The output is a source.
   ASSERT_EQ(run({"record", path("out"), "-o", path("again")}).code, 0);
   for (const auto& entry : fs::recursive_directory_iterator(at("out"))) {
     if (entry.is_regular_file()) {

@@ -15,8 +15,8 @@ using Json = nlohmann::json;
 class Tune : public CommandTest {
  protected:
   static std::string samples() { return std::string(CAIRN_SOURCE_DIR) + "/samples"; }
-  /// `tune FOLDER … --budget 10m -o tuned.yaml --json found.json`: whatever the machine's speed, the
-  /// evaluations end it.
+  /// `tune FOLDER … --budget 10m -o tuned.yaml --json found.json`: the number of evaluations ends it,
+  /// independent of the machine's speed.
   [[nodiscard]] Outcome tune(const std::string& folder, const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{
         "tune", folder, "--budget", "10m", "-o", path("tuned.yaml"), "--json", path("found.json")};
@@ -35,7 +35,7 @@ TEST_F(Tune, WritesAConfigThatIsReadBackAndATableOfBeforeAndAfter) {
   const Outcome outcome = tune(samples(), {"--truth", "--options", "objects.min_confidence,superpixels.*",
                                            "--evaluations", "8", "--set", "objects.min_confidence=0.9"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");  // no bar where there is no terminal
+  EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
   for (const char* words :
        {"before", "after", "mean E", "found, IoU >= 0.5", "8 evaluations", "4 frames", "tuned.yaml"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
@@ -108,7 +108,7 @@ TEST_F(Tune, OfASequenceItMendsWhatMakesObjectsUnsteadyWithoutTruth) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("steadiness: 0"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("  objects.min_area: 4 -> "), std::string::npos) << outcome.out;
-  EXPECT_LT(tuned().objects.min_area, 2.9F);  // its smaller object has 2.9 %
+  EXPECT_LT(tuned().objects.min_area, 2.9F);  // the smaller object covers 2.9 %
 
   for (int i = 2; i < 10; ++i) fs::remove_all(at("in/" + std::to_string(i)));
   refuses({"tune", path("in"), "--sequence", "-o", path("new.yaml")}, {"has 2 frames"});
@@ -194,8 +194,9 @@ TEST_F(Tune, ContradictorySettingsAreLeft) {
 }
 
 TEST_F(Tune, CtrlCKeepsTheBestSoFar) {
-  pair_in("frames/a", {960, 720});  // so large that no machine is through within the second
-  // In the foreground timeout signals once; else its group as well, and the second signal ends the program.
+  pair_in("frames/a", {960, 720});  // too large for any machine to finish within a second
+  // With --foreground, timeout signals only the process; otherwise also its group, and a second signal would
+  // end the program.
   const std::string line = "timeout --foreground --preserve-status -s INT 1 '" CAIRN_COMMAND "' tune '" +
                            path("frames") + "' --options '*' --budget 1h -o '" + path("tuned.yaml") +
                            "' --json '" + path("found.json") + "' > '" + path("out") + "' 2> '" +

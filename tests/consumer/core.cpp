@@ -4,7 +4,7 @@
 #include <cstdio>
 
 /// Segments a pair of grey noise, so that every stage is linked and run; and catches the library's exception,
-/// which needs one type on both sides of a shared library.
+/// which requires the same type on both sides of a shared library.
 int main() {
   cairn::Image<cairn::Gray> left({64, 48});
   cairn::Image<cairn::Gray> right({64, 48});

@@ -12,7 +12,8 @@
 #include <cstdio>
 #include <filesystem>
 
-/// files SAMPLE RESULT: from pictures to results through cairn::io, every library behind it linked and run.
+/// files SAMPLE RESULT: from images to results through cairn::io, with every library behind it linked and
+/// used.
 int main(int, char** argv) {
   const std::filesystem::path folder = argv[1];
   const std::filesystem::path result = argv[2];

@@ -7,7 +7,8 @@
 #include <cstdio>
 #include <filesystem>
 
-/// sequences FOLDER MAP: follows a sequence and keeps its landmarks, every library behind it linked and run.
+/// sequences FOLDER MAP: follows a sequence and keeps its landmarks, with every library behind it linked and
+/// used.
 int main(int, char** argv) {
   const std::filesystem::path map = argv[2];
   std::filesystem::remove(map);

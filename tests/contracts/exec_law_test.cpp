@@ -17,14 +17,14 @@
 namespace cairn {
 namespace {
 
-/// How many pixels of two images differ in any bit. Sizes that differ count as one whole image.
+/// The number of pixels of two images that differ in any bit. Different sizes count as one whole image.
 template <class T>
 std::int64_t differing(const Image<T>& a, const Image<T>& b) {
   if (a.size() != b.size()) return std::max(a.size().area(), b.size().area());
   std::int64_t count = 0;
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) {
-      // By bits: a NaN equals itself, and 0 is not −0.
+      // Bitwise: a NaN equals itself, and 0 differs from −0.
       if constexpr (std::is_same_v<T, float>) {
         count += std::bit_cast<std::uint32_t>(a(x, y)) != std::bit_cast<std::uint32_t>(b(x, y)) ? 1 : 0;
       } else {
@@ -102,9 +102,9 @@ void expect_same(const Frame& a, const Frame& b) {
   expect_same_objects(a.objects, b.objects);
 }
 
-/// Segments a sample with every target of this machine and 1 to 16 threads, also more than there are
-/// processors and a count that no image height is a multiple of, and compares all that comes out with one
-/// scalar thread's.
+/// Segments a sample with every target of this machine and 1 to 16 threads, including more than there are
+/// processors and a number that divides no image height, and compares all results with those of one scalar
+/// thread.
 void expect_exec_changes_nothing(const std::string& name, const Config& preset) {
   const samples::Sample sample = samples::load(name);
   const Config config = sample.suited(preset);
@@ -141,7 +141,7 @@ TEST(ExecLaw, ATargetThatThisMachineLacksChangesNoBit) {
   }
 }
 
-/// Lets `users` threads begin at the same moment, each with its number.
+/// Starts `users` threads at the same moment, each with its number.
 void all_at_once(int users, const std::function<void(int)>& use) {
   std::latch begin(users);
   std::vector<std::jthread> threads;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Mistakes that the types make impossible. must_not_compile.sh compiles this file once as it stands, which
-// must work, and once per CASE, which must fail with the message that follows "expect:" (a regular expression
-// of grep -E).
+// Mistakes prevented by types. must_not_compile.sh compiles this file unchanged, which must succeed, and once
+// per CASE, which must fail with the message after "expect:" (a regular expression of grep -E).
 #include <cairn/cairn.hpp>
 
 namespace {

@@ -10,8 +10,8 @@
 namespace cairn {
 namespace {
 
-/// Heap allocations of the segmenter's pool after each of `frames` calls, each frame dead before the next
-/// one.
+/// Heap allocations of the segmenter's pool after each of `frames` calls, with each frame released before the
+/// next one.
 std::vector<std::int64_t> allocations_by_frame(const Segmenter& segmenter, const StereoPair& pair,
                                                int frames) {
   std::vector<std::int64_t> counts;

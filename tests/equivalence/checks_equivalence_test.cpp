@@ -24,7 +24,7 @@ Exec threads(int count) {
   return exec;
 }
 
-/// All widths about one, two and three vectors, and heights that several threads share unevenly.
+/// All widths around one, two and three vectors, and heights that threads share unevenly.
 std::vector<Size> sizes() {
   std::vector<Size> all{{1, 1}, {2, 1}, {1, 2}, {1, 70}, {70, 1}, {37, 131}, {130, 97}};
   for (int width = 3; width <= 67; width += 4) all.push_back({width, 2 + width % 7});
@@ -40,7 +40,7 @@ Image<float> random_floats(Size size, int values, float step, std::uint32_t seed
   return image;
 }
 
-/// Matches that no matcher would make: few values, so that there are ties; holes; offsets to other rows.
+/// Matches with few values, so that there are ties; with holes, and offsets to other rows.
 Matches random_matches(Size size, int band, std::uint32_t seed) {
   std::mt19937 random(seed);
   Matches m{Image<std::int16_t>(size),
@@ -70,7 +70,7 @@ Matches random_matches(Size size, int band, std::uint32_t seed) {
   return m;
 }
 
-/// Blocks of like disparities, some noise and holes.
+/// Blocks of similar disparities with some noise and holes.
 DisparityMap random_map(Size size, std::uint32_t seed) {
   const Image<int> blocks = random_image<int>({size.width / 5 + 1, size.height / 4 + 1}, 0, 6, seed);
   const Image<int> noise = random_image<int>(size, 0, 9, seed + 1);

@@ -12,7 +12,7 @@
 namespace cairn {
 namespace {
 
-// The twin counts in double and asks the library for e^x: the two differ by what float can round.
+// The twin computes in double and with the library's exp(), so the two differ by float rounding.
 constexpr double kRounding = 2e-6;
 
 struct Case {
@@ -20,7 +20,7 @@ struct Case {
   DisparityMap disparity;
 };
 
-/// Costs of all kinds, equal and missing ones among them, and steps of disparity with holes.
+/// Costs of all kinds, including equal and missing ones, and disparity steps with holes.
 Case random_case(Size size, std::uint32_t seed) {
   support::Noise noise(seed);
   Case c;

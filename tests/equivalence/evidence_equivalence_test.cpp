@@ -32,7 +32,7 @@ std::vector<Size> sizes() {
   return {{1, 1}, {1, 37}, {41, 1}, {2, 2}, {3, 3}, {5, 19}, {16, 33}, {67, 53}};
 }
 
-/// Blocks of random brightness, of which some are textured: edges, plain surfaces and texture.
+/// Blocks of random brightness, some textured: edges, uniform areas and texture.
 Image<Gray> random_picture(Size size, std::uint32_t seed) {
   const Image<int> blocks = random_image<int>({size.width / 9 + 1, size.height / 7 + 1}, 20, 200, seed);
   const Image<int> noise = random_image<int>(size, -20, 20, seed + 1);
@@ -57,7 +57,7 @@ Image<Rgb> random_colours(Size size, std::uint32_t seed) {
   return rgb;
 }
 
-/// Blocks of like disparity with outliers and holes. A negative `tenths` of holes: none.
+/// Blocks of similar disparity with outliers and holes. Negative `tenths`: no holes.
 DisparityMap random_map(Size size, std::uint32_t seed, int tenths_of_holes = 2) {
   const Image<int> blocks = random_image<int>({size.width / 8 + 1, size.height / 6 + 1}, 0, 6, seed);
   const Image<int> noise = random_image<int>(size, 0, 99, seed + 1);
@@ -112,7 +112,7 @@ TEST(FindEvidence, IsThatOfItsDefinitionOnAnyNumberOfThreads) {
       }
     }
   }
-  EXPECT_GT(found, 500);  // else there would be nothing to compare
+  EXPECT_GT(found, 500);  // otherwise nothing would be compared
 }
 
 TEST(EdgeStrength, IsThatOfItsDefinitionWithAndWithoutColour) {
@@ -166,7 +166,8 @@ Config by_hierarchy() {
   return config;
 }
 
-/// Runs the way from a picture and a map to objects on one and on three threads and looks at what it gives.
+/// Runs the stages from image and disparity map to objects on one and on three threads, and checks the
+/// result.
 void run_and_check(View<const Gray> grey, View<const Rgb> rgb, const DisparityMap& map,
                    const std::optional<StereoRig>& rig, const Config& config) {
   const auto run = [&](int count) {

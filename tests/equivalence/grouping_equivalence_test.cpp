@@ -30,8 +30,8 @@ std::vector<Size> sizes() {
   return {{1, 1}, {1, 23}, {27, 1}, {2, 2}, {3, 3}, {5, 19}, {16, 21}, {33, 25}};
 }
 
-/// A picture in blocks with some noise, disparities in other blocks with holes, and how a scene may be known.
-/// Few values make ties.
+/// An image of noisy blocks, disparities in other blocks with holes, and a scene model. Few distinct values
+/// make ties.
 struct Scene {
   Image<Gray> gray;
   Image<Rgb> colours;
@@ -66,7 +66,7 @@ struct Scene {
     if (seed % 3 != 1) background = {{{0.0F, 0.4F, -3}, {0.1F, 0, 2}}, true};
   }
 
-  /// Of fewer cells than pixels, or more.
+  /// With fewer cells than pixels, or more.
   static Image<ObjectHint> random_hints(Size size, std::uint32_t seed) {
     const Size cells{size.width / 2 + 3, size.height / 2 + 2};
     std::mt19937 random(seed);
@@ -151,9 +151,9 @@ TEST(CutSuperpixels, GivesTheSameOnAnyNumberOfThreads) {
   }
 }
 
-// ---- what is known of regions ----
+// ---- cues of regions ----
 
-/// Decides by one feature each, at values that it takes, by few different numbers.
+/// Trees that split on one feature each, at values that occur, with few distinct leaf values.
 struct Stumps {
   std::vector<FittedTrees::Node> nodes;
   std::vector<std::int16_t> roots;
@@ -200,7 +200,7 @@ std::vector<Members> members_of(const MergeTree& tree) {
 using Contacts =
     std::map<std::pair<std::int32_t, std::int32_t>, ContactCues>;  // of the first over the second
 
-/// What is known of two contacts with a third region, together.
+/// The combined cues of two contacts with a third region.
 void fuse_contacts(Contacts& contacts, std::int32_t part_a, std::int32_t part_b, std::int32_t whole) {
   contacts.erase(std::minmax(part_a, part_b));
   Contacts fused;
@@ -246,7 +246,7 @@ TEST(RegionCues, OfEveryNodeOfATreeAreThoseOfItsPixelsCountedAnew) {
         EXPECT_TRUE(regions[i] == reference::cues_of(members[i], superpixels, cues))
             << text(size) << ' ' << seed << ' ' << i;
         ++nodes;
-        if (i + 1 < slot(tree.superpixels)) continue;  // contacts: from when all superpixels are there
+        if (i + 1 < slot(tree.superpixels)) continue;  // contacts are complete only with the last superpixel
         for (const auto& [ends, contact] : contacts) {
           EXPECT_TRUE(contact == reference::contact_of(members[slot(ends.first)], members[slot(ends.second)],
                                                        superpixels, cues))
@@ -265,7 +265,7 @@ TEST(GatherCues, IsTheSameForEveryTarget) {
   for (const Size size : sizes()) {
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
       Scene scene(size, seed);
-      scene.ground.plane = GroundPlane{-100, 20, 1500};  // from below 0 to beyond the largest disparity
+      scene.ground.plane = GroundPlane{-100, 20, 1500};  // from below 0 to above the largest disparity
       scene.background = {{{-90, 300, -5}, {0.1F, 0, 2}}, false};
       for (int x = 0; x < size.width; ++x) scene.disparity_px(x, 0) = 0.37F - static_cast<float>(x);
       const Cues cues = scene.cues();
@@ -276,7 +276,7 @@ TEST(GatherCues, IsTheSameForEveryTarget) {
         EXPECT_TRUE(found.regions == expected.regions && found.contacts == expected.contacts)
             << text(size) << ' ' << seed << ' ' << name(target);
       }
-      // The slow twin: of whole superpixels.
+      // The slow twin, over whole superpixels.
       for (std::int32_t i = 0; i < superpixels.count; ++i)
         EXPECT_TRUE(expected.regions[slot(i)] == reference::cues_of({i}, superpixels, cues))
             << text(size) << ' ' << seed << ' ' << i;
@@ -314,7 +314,7 @@ TEST(GatherCues, ListsContactsAsTheRowsShowThemFirst) {
 void expect_like(const ObjectFeatures& found, const ObjectFeatures& expected) {
   static const std::vector<std::string_view> kNames = object_feature_names();
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    // Sums of fractions over the neighbours, which each of the two adds up in its own order.
+    // Sums of fractions over the neighbours, which both implementations add in their own order.
     EXPECT_NEAR(found.at(i), expected.at(i), 1e-4F * (1 + std::abs(expected.at(i)))) << kNames[i];
   }
 }
@@ -342,7 +342,7 @@ TEST(GrowMergeTree, IsThatOfItsDefinition) {
       const Scene scene(size, seed);
       const Cues cues = scene.cues();
       const Superpixels superpixels = scene.superpixels(seed % 2 == 0 ? 30 : 14);
-      // No stump: all are equally alike. One or two: many are.
+      // No tree nodes: all pairs are equally similar. One or two: many are.
       const Stumps stumps = random_stumps(superpixels, cues, static_cast<int>(seed * seed % 13), seed);
       SCOPED_TRACE(text(size) + ", seed " + std::to_string(seed));
       expect_equal(grow_merge_tree(superpixels, cues, stumps.trees(), {}),
@@ -352,7 +352,7 @@ TEST(GrowMergeTree, IsThatOfItsDefinition) {
 }
 
 TEST(GrowMergeTree, IsThatOfItsDefinitionBesideALargeBackground) {
-  // Much smaller regions fuse with the frame around them, whose other contacts wait for their turn.
+  // Much smaller regions merge with the surrounding frame, whose other contacts stay queued.
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const Size size{31, 27};
     const Scene scene(size, seed);
@@ -371,9 +371,9 @@ TEST(GrowMergeTree, IsThatOfItsDefinitionBesideALargeBackground) {
   }
 }
 
-// ---- the choice ----
+// ---- choosing objects ----
 
-/// A tree in which random nodes fuse, with random numbers for their first feature.
+/// A tree of random merges, with random values of the first feature.
 MergeTree random_tree(int superpixels, std::mt19937& random) {
   MergeTree tree;
   tree.superpixels = superpixels;

@@ -18,8 +18,8 @@ namespace {
 
 using namespace cairn;
 
-/// Two images out of the middle of larger ones, so that rows are not aligned and the stride is odd. Few grey
-/// levels in places, so that costs tie; black patches, so that windows have no energy.
+/// Two windows of larger images, so that rows are unaligned and the stride is odd. Few grey levels in places,
+/// so that costs tie; black patches, so that windows have no energy.
 struct Pictures {
   Size size;
   std::ptrdiff_t stride;
@@ -137,7 +137,7 @@ TEST_P(MatchEquivalence, HoldsForFewerMaps) {
       less.maps = maps;
       expect_equal_to_reference({41, 8}, less);
     }
-    // More candidates than are held at a time, to the left and to the right.
+    // More candidates than are processed at a time, to the left and to the right.
     for (const int first : {-110, 0}) {
       auto less = config(5, first, 100);
       less.maps = maps;
@@ -169,7 +169,7 @@ TEST_P(MatchEquivalence, HoldsForRowsOfSeveralBlocksAndSeveralTilesOfCandidates)
 }
 
 TEST_P(MatchEquivalence, HoldsForTheLargestSumsThatAWindowCanHave) {
-  // Black and white in equal parts, like and unlike, and all white against all black.
+  // Equal parts of black and white, similar and dissimilar, and all white against all black.
   const Size size{40, 36};
   Image<Gray> halves(size);
   Image<Gray> inverted(size);
@@ -189,8 +189,8 @@ TEST_P(MatchEquivalence, HoldsForTheLargestSumsThatAWindowCanHave) {
 }
 
 TEST_P(MatchEquivalence, HoldsWhereSeveralCandidatesMatchPerfectly) {
-  // A pattern that comes again and again, in the right image now as it is and now twice as bright: what zncc
-  // makes of such windows is 0 but for its roundings, to either side.
+  // A periodic pattern, in the right image alternately unchanged and twice as bright: zncc of such windows is
+  // 0 up to rounding, on either side.
   constexpr int kPeriod = 16;
   const Size size{170, 17};
   Image<Gray> pattern(size);
@@ -211,7 +211,7 @@ TEST_P(MatchEquivalence, HoldsWhereSeveralCandidatesMatchPerfectly) {
 }
 
 TEST_P(MatchEquivalence, HoldsForTheLargestSumsOfPrefilteredImages) {
-  // Slopes to the utmost everywhere, up where the other image goes down.
+  // Maximal slopes everywhere, upward where those of the other image go downward.
   const Size size{44, 30};
   Image<Gray> steps(size);
   Image<Gray> inverted(size);
@@ -221,7 +221,7 @@ TEST_P(MatchEquivalence, HoldsForTheLargestSumsOfPrefilteredImages) {
       inverted(x, y) = static_cast<Gray>(255 - steps(x, y));
     }
   }
-  // On either side of the sums that 13 and 16 bits hold.
+  // Just below and above sums that fit 13 and 16 bits.
   for (const auto& [window, cap] :
        {std::pair{7, 63}, std::pair{9, 50}, std::pair{9, 51}, std::pair{15, 18}, std::pair{15, 19},
         std::pair{21, 63}, std::pair{23, 61}, std::pair{23, 62}}) {

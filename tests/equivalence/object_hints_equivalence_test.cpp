@@ -17,8 +17,8 @@ namespace {
 using grids::random_image;
 using reference::HintNumbers;
 
-/// With as many outputs as vectors take in different ways. Few weights are large, so that outputs neither vanish
-/// nor all reach their limit.
+/// Numbers of outputs that exercise all vector paths. Few weights are large, so that outputs neither vanish
+/// nor all saturate.
 HintNumbers random_numbers(std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto from = [&random](int least, int most) {
@@ -54,7 +54,7 @@ HintNumbers random_numbers(std::uint32_t seed) {
       numbers.weights.push_back(static_cast<std::int8_t>(from(0, 9) == 0 ? from(-127, 127) : from(-20, 20)));
     for (int o = 0; o < l.outputs; ++o) {
       numbers.bias.push_back(from(-100000, 100000));
-      const float likely = 0.03F / std::sqrt(static_cast<float>(inputs));  // keeps the spread of the numbers
+      const float likely = 0.03F / std::sqrt(static_cast<float>(inputs));  // keeps the variance
       numbers.scale.push_back(static_cast<float>(from(50, 150)) * 0.01F * likely *
                               (l.least < 0 ? 0.2F : 1.0F));
     }
@@ -62,7 +62,7 @@ HintNumbers random_numbers(std::uint32_t seed) {
   return numbers;
 }
 
-/// With a frame of zeros.
+/// Padded with zeros.
 Image<std::int16_t> random_input(Size cells, std::uint32_t seed) {
   Image<std::int16_t> input =
       random_image<std::int16_t>({(cells.width + 2) * kHintChannels, cells.height + 2}, -256, 256, seed);

@@ -39,7 +39,7 @@ std::vector<Size> sizes() {
   return all;
 }
 
-/// A disparity image in 1/16 px with holes: blocks of like values and some noise.
+/// A disparity image in 1/16 px with holes: blocks of similar values and some noise.
 Image<std::int16_t> random_disparity16(Size size, std::uint32_t seed) {
   const Image<int> blocks = random_image<int>({size.width / 6 + 1, size.height / 5 + 1}, -4, 12, seed);
   const Image<int> noise = random_image<int>(size, 0, 9, seed + 1);
@@ -179,8 +179,8 @@ TEST(RegionsEquivalence, WatershedIsItsTwinOnWidePlateaus) {
 }
 
 TEST(RegionsEquivalence, WatershedFollowsAWayThatTurnsWhereABlockOfRowsEnds) {
-  // Rows are dealt with in blocks of 64. The way climbs column 1, falls in column 3 to row `turn` and climbs
-  // in column 5 past the row where it fell from.
+  // Rows are processed in blocks of 64. The path climbs in column 1, descends in column 3 to row `turn` and
+  // climbs in column 5 past the row where it descended from.
   for (int turn = 60; turn < 70; ++turn) {
     Image<std::uint16_t> image(Size{7, 80}, 60000, {});
     std::uint16_t height = 50000;
@@ -292,7 +292,7 @@ TEST(RegionsEquivalence, GraphSumsUpVeryLongRuns) {
 }
 
 TEST(RegionsEquivalence, GraphOfScatteredLabelsIsItsTwin) {
-  // Labels as no watershed makes them: not connected, not in raster order, some numbers without a pixel.
+  // Labels that no watershed produces: not connected, not in raster order, some ids without a pixel.
   const Image<RegionId> labels = random_image<RegionId>({33, 21}, 3, 17, 42);
   const Image<std::int16_t> values = random_disparity16({33, 21}, 43);
   const RegionGraph graph = build_graph(labels, 20, values, {}, {});
@@ -303,8 +303,8 @@ TEST(RegionsEquivalence, GraphOfScatteredLabelsIsItsTwin) {
                reference::apply_merges(labels, graph, merges, 1.0));
 }
 
-/// Regions in a grid, of very different sizes and spreads, and in a raster order that is not that of their
-/// numbers: large ones absorb small ones that came before them, so growing takes several passes.
+/// Regions in a grid, of very different sizes and variances, numbered in another order than raster order:
+/// large ones absorb small ones that came before them, so growing takes several passes.
 RegionGraph random_graph(Size grid, std::uint32_t seed) {
   const int count = grid.width * grid.height;
   std::mt19937 random(seed);
@@ -337,7 +337,7 @@ RegionGraph random_graph(Size grid, std::uint32_t seed) {
   return graph;
 }
 
-/// Graphs with noisy and smooth values, holes and a floor, under criteria from strict to loose.
+/// Graphs with noisy and smooth values, holes and a floor, with criteria from strict to loose.
 template <class Check>
 void for_each_graph(Check check) {
   const std::vector<GrowCriteria> criteria{{0, 0, 1, 0},      {10, 1, 4, 0},    {40, 0.5, 16, 30},

@@ -14,8 +14,8 @@ namespace {
 
 using namespace cairn;
 
-/// Two images out of the middle of larger ones, so that rows are not aligned and the stride is odd. Plain
-/// patches and few grey levels in places, so that costs tie and every penalty occurs.
+/// Two windows of larger images, so that rows are unaligned and the stride is odd. Uniform patches and few
+/// grey levels in places, so that costs tie and every penalty occurs.
 struct Pictures {
   Size size;
   std::ptrdiff_t stride;
@@ -101,7 +101,7 @@ TEST(SemiGlobalEquivalence, HoldsForEverySplitIntoThreads) {
 }
 
 TEST(SemiGlobalEquivalence, HoldsWhereThePicturesAreCutIntoChunksOfRows) {
-  // So wide and deep that a few rows at a time are followed upward and across.
+  // Wide and deep enough for blocks of only a few rows.
   expect_equal_to_reference({400, 7}, search(0, 200), {}, {1, 3});
 }
 

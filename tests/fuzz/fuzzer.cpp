@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// libFuzzer's door to every target: CAIRN_FUZZ_TARGET names the one. With CAIRN_FUZZ_SEEDS=FOLDER it only
-// writes the target's seeds there. ./dev fuzz does both.
+// libFuzzer's entry point for every target, selected by CAIRN_FUZZ_TARGET. With CAIRN_FUZZ_SEEDS=FOLDER it
+// only writes the target's seeds there. ./dev fuzz does both.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -43,7 +43,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this process alone, in memory where the system has such a place; gone with the process.
+/// A temporary folder of this process, in memory if possible.
 class Place {
  public:
   Place() {
@@ -74,14 +74,14 @@ fs::path written(const char* name, std::string_view bytes) {
   return file;
 }
 
-/// The text up to `end`, which is taken from it.
+/// Removes and returns the text up to `end`.
 std::string_view taken_until(char end, std::string_view& text) {
   const std::string_view part = text.substr(0, text.find(end));
   text.remove_prefix(std::min(part.size() + 1, text.size()));
   return part;
 }
 
-/// An Error says in one line what is wrong.
+/// Checks that an Error has a message of one line.
 template <class Work>
 bool is_taken(Work&& work) {
   try {
@@ -101,7 +101,7 @@ bool read_file_of(const char* name, std::string_view bytes) {
   return is_taken([&] { (void)read(file); });
 }
 
-// ---- pictures ----
+// ---- images ----
 
 constexpr int kSeedSide = 9;
 
@@ -127,7 +127,7 @@ std::vector<std::string> pictures() {
           encoded(1, 1, jpeg_of), encoded(3, 1, jpeg_of), "P2\n# grey\n3 2\n255\n0 10 20\n30 40 255\n",
           "P3\n2 1\n255\n1 2 3 4 5 6\n", std::string("P5\n2 2\n65535\n\0\1\2\3\4\5\6\7", 20),
           std::string("P6\n1 2\n255\n\1\2\3\4\5\6", 17),
-          // What is read and not written here.
+          // Formats that are read but not written.
           support::decoded(support::kPalettePng), support::decoded(support::kOneBitPng),
           support::decoded(support::kGreyAlphaPng), support::decoded(support::kColourAlpha16Png),
           support::decoded(support::kInterlacedPng), support::decoded(support::kProgressiveJpeg)};
@@ -152,7 +152,7 @@ std::vector<std::string> disparities() {
   return {encoded(1, 2, io::encode_png), encoded(1, 1, io::encode_png), pfm, npy};
 }
 
-/// Their form is told by the name.
+/// The format follows from the name.
 bool disparity(std::string_view bytes) {
   constexpr auto kRead = [](const fs::path& file) { return io::load_disparity(file); };
   bool taken = read_file_of<kRead>("disparity.pfm", bytes);
@@ -244,7 +244,7 @@ std::vector<std::string> run_length_texts() {
 
 // ---- folders ----
 
-/// A path that stays in its folder.
+/// A path inside its folder; nullopt otherwise.
 std::optional<fs::path> inner_path(std::string_view text) {
   constexpr std::string_view kKnown = "abcdefghijklmnopqrstuvwxyzDEGILNT0123456789_-./";
   const fs::path path = text;
@@ -257,13 +257,13 @@ std::optional<fs::path> inner_path(std::string_view text) {
   return path;
 }
 
-/// "PATH=CONTENT" in each line: the layouts of data sets, whose names are all that is looked at first.
+/// Lines of "PATH=CONTENT": data-set layouts, of which only names are examined first.
 bool dataset(std::string_view bytes) {
   const Place place;
   for (int files = 0; files < 24 && !bytes.empty(); ++files) {
     std::string_view line = taken_until('\n', bytes);
     const std::optional<fs::path> path = inner_path(taken_until('=', line));
-    // A file may lie where a folder is wanted.
+    // A file may be in the place of a folder.
     (void)is_taken([&] {
       if (!path) return;
       io::make_folder((place.path() / *path).parent_path());
@@ -388,7 +388,7 @@ std::vector<std::string> map_files() {
   return {bytes.str()};
 }
 
-// ---- what is live ----
+// ---- live inputs ----
 
 template <class M>
 bool message(std::span<const std::uint8_t> bytes) {
@@ -459,7 +459,10 @@ std::vector<std::string> recordings() {
   return all;
 }
 
-/// "METHOD TARGET\nHOST\nORIGIN\nCOOKIE": whoever has no token sees nothing.
+/// "METHOD TARGET
+/// HOST
+/// ORIGIN
+/// COOKIE": without the token, access must be refused.
 bool request(std::string_view bytes) {
   static const live::Access access([] {
     live::ViewOptions options;
@@ -486,7 +489,7 @@ std::vector<std::string> requests() {
           "GET /\n127.0.0.1:8765\nhttp://evil.example\n\n"};
 }
 
-/// What a viewer asks to be set.
+/// Requests of a viewer to set options.
 bool parameters(std::string_view bytes) {
   return is_taken([&] {
     const std::optional<nlohmann::json> list = io::parsed_json(std::string(bytes));
@@ -513,7 +516,7 @@ std::vector<std::string> parameter_lists() {
 
 // ---- the method ----
 
-/// Reads numbers from bytes; zeros when they are used up.
+/// Reads numbers from bytes; zeros at the end.
 class Numbers {
  public:
   explicit Numbers(std::string_view bytes) : bytes_(bytes) {}
@@ -529,7 +532,7 @@ class Numbers {
   std::string_view bytes_;
 };
 
-/// A value for an option: of a choice one of those that there are, else a number in or out of its range.
+/// A value for an option: one of the choices, or a number inside or outside its range.
 std::string value_for(const OptionInfo& option, unsigned a, unsigned b) {
   if (option.type == "bool") return a % 2 == 0 ? "true" : "false";
   if (option.type == "choice") {
@@ -548,7 +551,7 @@ std::string value_for(const OptionInfo& option, unsigned a, unsigned b) {
   return text.str();
 }
 
-/// Options as the bytes have them; what is refused stays as it was.
+/// Sets options from bytes; refused ones keep their value.
 FollowConfig config_of(Numbers& numbers) {
   FollowConfig config;
   if (numbers.next() % 2 == 1) config.segmentation = Config::paper();

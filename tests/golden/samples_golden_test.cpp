@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Did the result on the samples move? Each true object's IoU and position, and the disparity's density and
-// errors, against golden/samples.json. A change that moves them on purpose writes the file anew (./dev test
-// --update, which sets CAIRN_UPDATE_GOLDEN=1), and its diff is reviewed.
+// Detects changes of the results on the samples: each true object's IoU and position, and the disparity's
+// density and errors, against golden/samples.json. After an intended change, ./dev test --update (which sets
+// CAIRN_UPDATE_GOLDEN=1) regenerates the file; review its diff.
 #include <gtest/gtest.h>
 
 #include <cairn/cairn.hpp>
@@ -38,8 +38,7 @@ Image<TruthId> true_objects(const std::string& name) {
   return truth;
 }
 
-/// Three decimals are plenty for a review, and keep the last bits of other compilers' libraries out of the
-/// diff.
+/// Three decimals are enough for a review, and hide the rounding differences of compilers and libraries.
 double rounded(double value) {
   return std::round(value * 1000) / 1000;
 }
@@ -55,7 +54,7 @@ Json describe(const TrueObjectScore& score, const Objects& objects) {
   return out;
 }
 
-/// What is kept of one sample's result.
+/// The stored values of a sample's result.
 Json summary(const std::string& name, const Config& preset) {
   const samples::Sample sample = samples::load(name);
   const Frame frame = segment(sample.pair(), sample.calibration.rig, sample.suited(preset), {});
@@ -102,7 +101,7 @@ void expect_near(const Json& now, const Json& then) {
     SCOPED_TRACE("true object " + b.at("true_id").dump() + ", now " + a.dump() + ", stored " + b.dump());
     EXPECT_EQ(a.at("true_id"), b.at("true_id"));
     EXPECT_NEAR(a.at("iou").get<double>(), b.at("iou").get<double>(), kIouTolerance);
-    // Where an object was hardly found, what stands for it may be anything, anywhere.
+    // The position is meaningless for an object that was hardly found.
     if (b.at("iou").get<double>() < 0.5 || !b.contains("position_m")) continue;
     ASSERT_TRUE(a.contains("position_m"));
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -29,7 +29,7 @@ Image<Gray> mirrored(const Image<Gray>& image) {
   return out;
 }
 
-/// Dots of 40 … 103, so that gains and offsets do not saturate.
+/// Dots of 40 … 103, so gains and offsets do not saturate.
 synthetic::Scene dim_scene() {
   auto scene = synthetic::box_before_wall({72, 40}, 3, 11, 7);
   scene.left = mapped(scene.left, [](int grey) { return 40 + grey / 4; });
@@ -95,7 +95,7 @@ TEST(NssdProperty, AGainCommonToBothImagesChangesNothing) {
 }
 
 TEST_P(MatchProperty, TheMirroredAndSwappedPairHasTheRightImagesDisparities) {
-  // What the right image sees, mirrored, is what a left image sees.
+  // Mirrored, the right image's view is that of a left image.
   const auto scene = synthetic::box_before_wall({72, 40}, 3, 11, 5);
   const auto left = mirrored(scene.right);
   const auto right = mirrored(scene.left);
@@ -110,7 +110,7 @@ TEST_P(MatchProperty, TheMirroredAndSwappedPairHasTheRightImagesDisparities) {
 }
 
 TEST_P(MatchProperty, RecoversARandomDotStereogramExactly) {
-  // Where a whole window lies on one surface that both cameras see, its cost is that of a perfect match.
+  // If a whole window is on one surface visible to both cameras, its cost is that of a perfect match.
   const auto scene = synthetic::box_before_wall({96, 64}, 4, 12);
   const Matches matches = match_windows(scene.pair(), config(), {});
   int checked = 0;
@@ -125,7 +125,7 @@ TEST_P(MatchProperty, RecoversARandomDotStereogramExactly) {
       if (!one_surface) continue;
       ++checked;
       ASSERT_EQ(matches.best(x, y), scene.disparity_px(x, y)) << x << ", " << y;
-      // zsad's means are taken of windows that reach beyond this one, onto other surfaces.
+      // The means of zsad are over windows that extend beyond this one, onto other surfaces.
       if (GetParam() != Cost::zsad) {
         ASSERT_NEAR(matches.cost(x, y), 0.0F, 1e-6) << x << ", " << y;
       }
@@ -156,7 +156,7 @@ TEST_P(MatchProperty, NoOtherCandidateBeatsTheWinner) {
     for (int x = 0; x < 96; ++x) {
       const float least = matches.cost(x, y);
       ASSERT_GE(least, 0.0F);
-      ASSERT_GT(matches.cost_before(x, y), least);  // a tie would have gone to it
+      ASSERT_GT(matches.cost_before(x, y), least);  // a tie would have selected it
       ASSERT_GE(matches.cost_after(x, y), least);
       ASSERT_GE(matches.runner_up(x, y), least);
       ASSERT_GE(matches.mean_cost(x, y), least * (1 - 1e-6F));

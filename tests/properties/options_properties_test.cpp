@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// An option says while what it is read. That is true: what is not read changes nothing.
+// Each option has a condition under which it is read; if it does not hold, the option has no effect.
 #include <gtest/gtest.h>
 
 #include <cairn/pipeline/segment.hpp>
@@ -35,7 +35,7 @@ void expect_same(const Frame& now, const Frame& before) {
   EXPECT_TRUE(numbers(now.objects.labels) == numbers(before.objects.labels));
 }
 
-/// The presets, and what makes the other options inactive.
+/// The presets, and settings that make the other options inactive.
 std::vector<Config> starts() {
   std::vector<Config> all;
   for (const std::string& preset : preset_names()) {
@@ -59,7 +59,7 @@ TEST(OptionsThatAreNotRead, ChangeNothing) {
     for (const OptionInfo& option : options(start)) {
       if (option.active) continue;
       const std::vector<std::string> around = neighbours(tunables({option.name}).at(0), option.value, 1.6);
-      set(other, option.name, around.empty() ? "1" : around[0]);  // empty: of a whole number from 0 on
+      set(other, option.name, around.empty() ? "1" : around[0]);  // empty for unbounded integers
       changed += option.name + " ";
     }
     SCOPED_TRACE(changed);

@@ -24,7 +24,7 @@ using grids::random_image;
 
 constexpr Size kSize{97, 71};
 
-/// Slanted wall, three boards, noise and holes, the same for picture and disparity.
+/// Slanted wall, three boards, noise and holes, the same for image and disparity.
 struct World {
   Image<Gray> left;
   DisparityMap disparity;
@@ -52,7 +52,7 @@ World world(std::uint32_t seed) {
   return w;
 }
 
-/// How many 4-connected pieces each label has.
+/// The number of 4-connected components of each label.
 std::vector<int> pieces(const Image<RegionId>& labels, std::size_t count) {
   std::vector<int> result(count, 0);
   Image<std::uint8_t> seen(labels.size(), 0, {});
@@ -79,7 +79,7 @@ std::vector<int> pieces(const Image<RegionId>& labels, std::size_t count) {
   return result;
 }
 
-/// Every id from 0 up occurs, each in one piece, in raster order of the first pixels.
+/// Every id from 0 on occurs, in one component, in raster order of the first pixels.
 void expect_connected_partition(const Image<RegionId>& labels, std::size_t count) {
   EXPECT_EQ(pieces(labels, count), std::vector<int>(count, 1));
   int next = 0;
@@ -141,7 +141,7 @@ TEST(RegionsProperties, OnlyTheFloorMayBeInPieces) {
   EXPECT_EQ(floors, 1);
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
-      if (std::isnan(w.disparity.disparity_px(x, y))) continue;  // holes go with what is around them
+      if (std::isnan(w.disparity.disparity_px(x, y))) continue;  // holes join their surroundings
       ASSERT_EQ(s.regions[index(s.labels(x, y))].is_floor, speckled(x, y) != 0);
     }
   }

@@ -22,8 +22,7 @@ int right_row(const Matches& matches, int x, int y) {
   return matches.row_offset.empty() ? y : y + matches.row_offset(x, y);
 }
 
-/// Of all left pixels that point at (right_x, right_y): the disparity of the cheapest, the smallest of
-/// equally cheap.
+/// The disparity of the cheapest left pixel that matches (right_x, right_y); ties: the smallest.
 int vote(const Matches& matches, int right_x, int right_y) {
   float least = std::numeric_limits<float>::infinity();
   int winner = kNoMatch;
@@ -73,7 +72,7 @@ Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& con
       }
       if (count == 0) continue;
       any = true;
-      // In double the product is exact, and so is the comparison: the mean itself would be rounded.
+      // In double the product and the comparison are exact; the mean itself would be rounded.
       if (static_cast<double>(sum) < double{config.threshold} * static_cast<double>(count)) enough = false;
     }
     return any && enough ? Reject::none : Reject::no_texture;

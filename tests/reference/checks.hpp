@@ -11,8 +11,8 @@
 
 #include "pixel_checks.hpp"
 
-/// The slow twins of disparity/, beside those of pixel_checks.hpp: what the fast ones must give, bit for bit.
-/// One pixel at a time, and each from scratch.
+/// The slow twins of disparity/, except those of pixel_checks.hpp; the fast functions must give the same
+/// bits. Written one pixel at a time, each from scratch.
 namespace cairn::reference {
 
 Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config);

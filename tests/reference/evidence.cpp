@@ -31,7 +31,7 @@ int lightly_smoothed(View<const Gray> image, int x, int y) {
   return sum;
 }
 
-/// One value of the image, smoothed by g⊗g in 1/16: `value` gives each pixel's.
+/// One value of the image, smoothed by g⊗g in 1/16; `value` returns each pixel's.
 template <class Value>
 int smoothed16(int x, int y, float sigma, Value value) {
   const int reach = sigma > 0 ? std::min(static_cast<int>(std::ceil(3.0 * sigma)), 15) : 0;

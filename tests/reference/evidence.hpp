@@ -6,7 +6,7 @@
 #include <cairn/image/gradient.hpp>
 #include <cstdint>
 
-/// The slow twins of what a picture says by itself: each pixel by its definition alone.
+/// The slow twins of texture, noise and contrast: each pixel by its definition alone.
 namespace cairn::reference {
 
 float noise_sigma(View<const Gray> image);

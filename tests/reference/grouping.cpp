@@ -17,7 +17,7 @@
 namespace cairn::reference {
 namespace {
 
-/// Calls look(p, q) for each pixel and its neighbour at the right, then the one below.
+/// Calls look(p, q) for each pixel and its right neighbour, then the lower one.
 template <class Look>
 void for_each_pair(Size size, Look look) {
   for (int y = 0; y < size.height; ++y) {
@@ -56,7 +56,7 @@ struct Seam {
   double edges = 0;  // grey levels
 };
 
-/// In the order in which the rows show them first.
+/// In order of first occurrence in raster order.
 std::vector<Seam> seams_of(View<const RegionId> labels, View<const std::uint16_t> edges) {
   std::vector<Seam> seams;
   for_each_pair(labels.size(), [&](Point p, Point q) {
@@ -80,7 +80,7 @@ int area_of(View<const RegionId> labels, std::int32_t region) {
   return area;
 }
 
-/// The two that fuse next.
+/// The two superpixels to fuse next.
 std::optional<std::pair<std::int32_t, std::int32_t>> next_two(View<const RegionId> labels,
                                                               View<const std::uint16_t> edges) {
   std::optional<std::pair<std::int32_t, std::int32_t>> two;
@@ -110,7 +110,7 @@ std::optional<int> steps_of(float px) {
   return static_cast<int>(std::floor(double{px} * 64 + 0.5));
 }
 
-/// What is summed of one kind of disparities.
+/// Sums over one kind of disparity.
 struct Depth {
   PlaneMoments plane;
   Heights above_ground;
@@ -147,7 +147,7 @@ std::array<int, 3> colour_at(Point p, const Cues& cues) {
   return {(c.r + 2 * c.g + c.b) / 4, c.b - c.g, c.r - c.g};
 }
 
-/// The cell's hint that shows the pixel.
+/// The hint cell of a pixel.
 ObjectHint hint_at(Point p, const Cues& cues) {
   return cues.hints(p.x * cues.hints.width() / cues.gray.width(),
                     p.y * cues.hints.height() / cues.gray.height());
@@ -170,7 +170,7 @@ void count(HintSums& sums, Point p, const Cues& cues) {
   sums.size += votes * hint.size;
 }
 
-/// The farthest pixel, three away at most, up to which a straight way from p stays in its superpixel.
+/// The farthest pixel, at most three away, on a straight line from p inside its superpixel.
 Point up_to_three_away(Point p, Point to, View<const RegionId> labels) {
   Point farthest = p;
   for (const int i : {1, 2, 3}) {
@@ -183,7 +183,7 @@ Point up_to_three_away(Point p, Point to, View<const RegionId> labels) {
 
 // ---- the tree ----
 
-/// The superpixels of which `is_kind` says yes, as one region.
+/// One region of all superpixels with is_kind(superpixel).
 template <class Kind>
 RegionCues together(const Superpixels& superpixels, const Cues& cues, Kind is_kind) {
   Members members;
@@ -227,7 +227,7 @@ FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
           .background = {background.area, background.histogram}};
 }
 
-/// Regions, contacts between them, and nothing that would find one of them fast.
+/// Regions and their contacts, without any index for speed.
 class Growing {
  public:
   Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing)
@@ -274,7 +274,7 @@ class Growing {
     std::int32_t b;
     ContactCues cues;
     float score;
-    bool is_stale;  // one of the two has grown since it was judged
+    bool is_stale;  // one of the two has grown since
     [[nodiscard]] bool has(std::int32_t node) const { return a == node || b == node; }
   };
 
@@ -336,13 +336,13 @@ class Growing {
     const bool all_anew = small * 8 > large;
 
     std::vector<Contact> kept;
-    std::set<std::int32_t> anew;  // neighbours
+    std::set<std::int32_t> anew;  // neighbours to judge again
     for (const Contact& c : contacts_) {
       if (c.has(goes)) anew.insert(c.a == goes ? c.b : c.a);
     }
     for (const Contact& c : contacts_) {
-      // Of two with a neighbour of both remains the one that was seen first, seen from where its own region
-      // stood.
+      // Of two contacts with a common neighbour, the one seen first remains, in the orientation of its own
+      // region.
       const std::int32_t other = c.a == stays || c.a == goes ? c.b : c.a;
       const bool is_ours = c.has(stays) || c.has(goes);
       const auto twin = is_ours ? between(other, c.has(stays) ? goes : stays) : contacts_.end();
@@ -370,8 +370,8 @@ class Growing {
   const Cues& cues_;
   const FittedTrees& same_thing_;
   FrameCues frame_;
-  std::map<std::int32_t, Known> regions_;  // by their nodes
-  std::vector<Contact> contacts_;          // in the order in which the rows show them first
+  std::map<std::int32_t, Known> regions_;  // by node
+  std::vector<Contact> contacts_;          // in order of first occurrence in raster order
   MergeTree tree_;
 };
 
@@ -508,7 +508,7 @@ ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_obj
     while (at >= 0 && slot(at) != other) at = tree.nodes[slot(at)].whole;
     return at >= 0;
   };
-  // Each set of nodes that share nothing; of sets that gain the same the one of fewer and then later nodes.
+  // Each set of disjoint nodes; of sets with equal gain, the one with fewer and then later nodes.
   std::vector<std::size_t> best;
   auto best_rank = std::tuple(0.0, 0, 0);
   for (std::uint32_t set = 0; set < 1U << count; ++set) {

@@ -8,18 +8,18 @@
 #include <cairn/grouping/superpixels.hpp>
 #include <set>
 
-/// The slow twins of the way from superpixels to objects: whatever they need they count anew from the pixels,
-/// and look through all that there is. Only for small images.
+/// The slow twins from superpixels to objects: all quantities are counted again from the pixels, by
+/// exhaustive search. Only for small images.
 namespace cairn::reference {
 
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
                             float noise_sigma, int count);
 
-/// A region, by the superpixels that it consists of.
+/// A region as a set of superpixels.
 using Members = std::set<std::int32_t>;
 
 RegionCues cues_of(const Members& members, const Superpixels& superpixels, const Cues& cues);
-/// Of a over b; its `length` is 0 where the two do not touch. Its own a and b are 0.
+/// Cues of a over b; `length` is 0 if they do not touch. The cues' own a and b are 0.
 ContactCues contact_of(const Members& a, const Members& b, const Superpixels& superpixels, const Cues& cues);
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing);
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,

@@ -12,7 +12,7 @@
 namespace cairn::reference {
 namespace {
 
-/// What the windows are laid over: grey levels, or zsad's 1/16 levels less the local mean.
+/// The input of the windows: grey levels, or zsad's 1/16 levels minus the local mean.
 struct Pictures {
   Image<std::int16_t> left;
   Image<std::int16_t> right;
@@ -28,7 +28,7 @@ Image<std::int16_t> picture(View<const Gray> image, const MatchConfig& config) {
   return wide;
 }
 
-/// The cost of left pixel (x, y) against right pixel (x − d, y + row); kNoCost where that lies outside.
+/// The cost of left pixel (x, y) and right pixel (x − d, y + row); kNoCost if that is outside.
 float cost_of(const Pictures& in, const MatchConfig& config, int x, int y, int d, int row) {
   if (!in.right.view().contains(x - d, y + row)) return kNoCost;
   std::int64_t n = 0, l = 0, r = 0, ll = 0, rr = 0, lr = 0, ad = 0;
@@ -59,7 +59,7 @@ float cost_of(const Pictures& in, const MatchConfig& config, int x, int y, int d
   return kNoCost;
 }
 
-/// The least cost over the rows y, y − 1, y + 1, y − 2 …, and which row gave it.
+/// The least cost over the rows y, y − 1, y + 1, y − 2 …, and its row.
 std::pair<float, int> cost_in_band(const Pictures& in, const MatchConfig& config, int x, int y, int d) {
   std::pair best{cost_of(in, config, x, y, d, 0), 0};
   for (int k = 1; k <= config.row_band; ++k) {
@@ -103,7 +103,7 @@ void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Ma
       count > 0 ? pixel_math::sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
 }
 
-/// Seen from the right image: every left pixel and row that may have matched (x_right, y_right).
+/// Over the right image: every left pixel and row that may match (x_right, y_right).
 std::int16_t best_of_right(const Pictures& in, const MatchConfig& config, int x_right, int y_right) {
   std::int16_t best = kNoMatch;
   float least = kNoCost;

@@ -7,7 +7,7 @@
 
 namespace cairn::reference {
 
-/// The definitions of the matching stage, written out: every window summed anew for every candidate.
+/// The definitions of the matching stage: every window is summed from scratch for every candidate.
 Matches match(const StereoPair& pair, const MatchConfig& config);
 Image<Gray> filter_xsobel(View<const Gray> image, int cap);
 Image<std::int16_t> remove_mean(View<const Gray> image, int window_size);

@@ -8,7 +8,7 @@
 namespace cairn::reference {
 namespace {
 
-/// Numbers of channels at places; 0 outside.
+/// Channels at positions; 0 outside.
 struct Volume {
   Size size;
   int channels = 0;
@@ -39,7 +39,7 @@ class Reading {
  public:
   explicit Reading(const HintNumbers& numbers) : numbers_(numbers) {}
 
-  /// The next layer, on `in`.
+  /// Applies the next layer to `in`.
   Volume operator()(const Volume& in) {
     const HintLayer l = numbers_.layers.at(layer_++);
     const int reach = l.side / 2;
@@ -71,7 +71,7 @@ class Reading {
   std::size_t outputs_ = 0;
 };
 
-/// Each place of `small` four times, and `like` added.
+/// Upsamples `small` by two (nearest) and adds `like`.
 Volume doubled_and_added(const Volume& small, const Volume& like) {
   return filled(like.size, like.channels, [&](int x, int y, int c) {
     return std::min<std::int64_t>(small.at(x / 2, y / 2, c) + like.at(x, y, c), 8191);

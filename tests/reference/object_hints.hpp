@@ -10,7 +10,7 @@
 /// The slow twin of hint_objects(), from the definition of a convolution.
 namespace cairn::reference {
 
-/// What a HintNetwork is made of.
+/// The parameters of a HintNetwork.
 struct HintNumbers {
   std::vector<HintLayer> layers;
   std::vector<std::int8_t> weights;
@@ -19,7 +19,7 @@ struct HintNumbers {
   [[nodiscard]] HintNetwork network() const { return {layers, weights, bias, scale}; }
 };
 
-/// `input`: as that of hint_objects().
+/// `input`: as for hint_objects().
 Image<ObjectHint> hint_objects(View<const std::int16_t> input, const HintNumbers& numbers);
 
 }  // namespace cairn::reference

@@ -6,11 +6,11 @@
 #include <cairn/disparity/uniqueness.hpp>
 #include <vector>
 
-/// The slow twins of the checks that judge a pixel by its own costs, and the list that the equivalence test
-/// takes them from.
+/// The slow twins of the checks that judge a pixel by its own costs, and the list of them for the equivalence
+/// test.
 namespace cairn::reference {
 
-/// An image whose pixel (x, y) is judge(x, y).
+/// An image of judge(x, y).
 template <class Judge>
 Image<Reject> verdicts(Size size, Judge judge) {
   Image<Reject> image(size);
@@ -38,7 +38,7 @@ inline Image<Reject> reject_flat(const Matches& matches, const FlatnessConfig& c
   });
 }
 
-/// A check, its twin, and the options under which they must agree.
+/// A check, its twin, and the options to compare them with.
 template <class Config>
 struct PixelCheck {
   const char* name;

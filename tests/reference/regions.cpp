@@ -22,7 +22,7 @@ T clamped_at(View<const T> image, int x, int y) {
   return image(std::clamp(x, 0, image.width() - 1), std::clamp(y, 0, image.height() - 1));
 }
 
-/// weights[i] stands at +i and −i.
+/// weights[i] applies at +i and −i.
 std::vector<std::int64_t> gaussian(float sigma) {
   const int reach = sigma > 0 ? std::min(static_cast<int>(std::ceil(3.0 * sigma)), 15) : 0;
   const auto bell = [&](int i) { return i == 0 ? 1.0 : std::exp(-0.5 * i * i / (double{sigma} * sigma)); };
@@ -36,7 +36,7 @@ std::vector<std::int64_t> gaussian(float sigma) {
   return weights;
 }
 
-/// The weighted sum over the window and the weights that took part; `value` tells each pixel's value, or
+/// The weighted sum over the window and the sum of the weights used; `value` returns each pixel's value, or
 /// kHole16.
 struct Sum {
   std::int64_t value = 0;
@@ -74,7 +74,7 @@ Basins numbered(const Image<Key>& keys) {
   return basins;
 }
 
-/// The smallest pixel number that each pixel is connected to, `joined(p, q)` telling which neighbours are.
+/// The smallest index connected to each pixel; joined(p, q) defines which neighbours are connected.
 template <class Joined>
 Image<int> components(Size size, Joined joined) {
   Image<int> least(size);
@@ -98,9 +98,9 @@ Image<int> components(Size size, Joined joined) {
   return least;
 }
 
-/// A graph that grows, as sets.
+/// A growing region graph, as sets.
 struct Growing {
-  std::map<int, RegionGraph::Node> nodes;  // the living
+  std::map<int, RegionGraph::Node> nodes;  // surviving regions
   std::map<int, std::set<int>> neighbours;
   Merges merged_into;
 
@@ -174,7 +174,7 @@ std::int64_t pixels_in(float percent, Size image) {
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma) {
   const auto weights = gaussian(smoothing_sigma);
   const auto grey = [&](int x, int y) -> std::int64_t { return clamped_at(image, x, y); };
-  // A sum of weights 65536; 1/16 grey levels are left.
+  // The sum of weights is 65536; the result is in 1/16 grey levels.
   Image<int> smooth(image.size());
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) {
@@ -225,7 +225,7 @@ Image<std::uint16_t> gradient(View<const std::int16_t> disparity16, float smooth
       };
       const double gx = at(x + 1, y) - at(x - 1, y);
       const double gy = at(x, y + 1) - at(x, y - 1);
-      // The root is a float's by definition; beyond the cap its argument would not be exact.
+      // The root is a float by definition; above the cap its argument would not be exact.
       const double square = std::min(gx * gx + gy * gy, double{kSteepest16} * kSteepest16);
       const long root = std::lround(std::sqrt(static_cast<float>(square)));
       result(x, y) = smooth(x, y) == kHole16 ? kHoleGradient : static_cast<std::uint16_t>(root);
@@ -246,7 +246,7 @@ Image<std::uint16_t> levelled_below(double threshold, View<const std::uint16_t> 
 Basins watershed(View<const std::uint16_t> gradient) {
   constexpr int kFar = std::numeric_limits<int>::max();
   const Size size = gradient.size();
-  // Where each pixel flows to, itself while unknown, and its distance to its plateau's lower border.
+  // The pixel that each pixel flows to, itself if unknown, and the distance to its plateau's lower border.
   Image<Point> to(size);
   Image<int> distance(size);
   const auto search = [&](Point p, auto accepts) {

@@ -10,8 +10,8 @@
 #include <cairn/regions/segment_intensity.hpp>
 #include <cairn/regions/watershed.hpp>
 
-/// The slow twins of regions/ and objects/: what the fast ones must give, bit for bit. Written to be read,
-/// with sets and maps and whole-image searches; only for small images.
+/// The slow twins of regions/ and objects/; the fast functions must give the same bits. Written for clarity,
+/// with sets, maps and searches over the whole image; only for small images.
 namespace cairn::reference {
 
 Image<std::uint16_t> gradient(View<const Gray> image, float smoothing_sigma);

@@ -11,7 +11,7 @@
 namespace cairn::reference {
 namespace {
 
-/// The image's pixel, its border replicated.
+/// The image's pixel, with the border replicated.
 int at(View<const Gray> image, int x, int y) {
   return image(std::clamp(x, 0, image.width() - 1), std::clamp(y, 0, image.height() - 1));
 }
@@ -101,7 +101,7 @@ int large_penalty(const SemiGlobalConfig& penalties, int step) {
   return static_cast<int>(std::lround(54.0F * std::max({0.5F, falling, penalties.penalty_small})));
 }
 
-/// Adds the L of the paths that run by (dx, dy) to `sums`.
+/// Adds to `sums` the L of the paths in direction (dx, dy).
 void add_paths(Volume& costs, const Image<Gray>& smooth, const SemiGlobalConfig& penalties, int dx, int dy,
                Volume& sums) {
   const auto [width, height] = smooth.size();
@@ -138,7 +138,7 @@ Matches make_matches(Size size, MatchMaps maps) {
 
 void settle_pixel(Volume& sums, int x, int y, Matches& out) {
   const Size size = out.best.size();
-  // The cost of a left pixel for d; kNoCost where there is no such candidate.
+  // The cost of a left pixel for d; kNoCost without such a candidate.
   const auto cost_at = [&](int x_left, int d) {
     const bool exists = d >= sums.first() && d < sums.end() && x_left >= 0 && x_left < size.width &&
                         x_left - d >= 0 && x_left - d < size.width;

@@ -6,7 +6,7 @@
 
 namespace cairn::reference {
 
-/// The definitions of semi-global matching, written out over whole volumes of costs.
+/// The definitions of semi-global matching, over whole cost volumes.
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties);
 

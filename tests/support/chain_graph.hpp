@@ -11,12 +11,12 @@ namespace cairn::chain {
 struct Member {
   int mean = 0;
   int pixels = 1;
-  int spread = 0;  // half of the pixels lie this much above the mean, half as much below
+  int spread = 0;  // half of the pixels are this much above the mean, half below
   bool is_valid = true;
   bool is_floor = false;
 };
 
-/// Regions in a row from left to right, each touching the one before and the one after.
+/// A chain of regions, each touching the previous and the next one.
 inline RegionGraph graph(const std::vector<Member>& members) {
   RegionGraph result;
   int x = 0;

@@ -7,7 +7,7 @@
 
 namespace cairn {
 
-/// The data collection: where CAIRN_DATA says, else beside the project. It need not be there.
+/// The data collection: CAIRN_DATA, else next to the project. It may be missing.
 inline std::filesystem::path collection() {
   const char* const named = std::getenv("CAIRN_DATA");
   return named != nullptr ? std::filesystem::path(named)

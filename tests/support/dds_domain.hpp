@@ -11,7 +11,7 @@
 
 namespace cairn {
 
-/// From here on this process and its children meet nobody else: a domain of their own, on this computer.
+/// Isolates this process and its children: a DDS domain of their own, on this computer.
 inline void enter_own_domain() {
   ::unsetenv("CYCLONEDDS_URI");
   ::unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
@@ -19,12 +19,12 @@ inline void enter_own_domain() {
   ::setenv("ROS_DOMAIN_ID", std::to_string(1 + ::getpid() % 100).c_str(), 1);
 }
 
-/// A name that no test of another process has, should its domain be the same.
+/// A topic name unique to this process, in case the domain is shared.
 inline std::string own_topic(const std::string& name) {
   return "/t" + std::to_string(::getpid()) + "/" + name;
 }
 
-/// Asks until it is so, but not for ever.
+/// Polls until the condition holds, up to a limit.
 template <class Condition>
 bool comes_true(const Condition& condition, std::chrono::milliseconds within = std::chrono::seconds(15)) {
   const auto deadline = std::chrono::steady_clock::now() + within;

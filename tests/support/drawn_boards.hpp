@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// A checkerboard in front of a wall, above a floor, as two raw cameras with lenses see it: drawn, so that
-/// what is found can be compared with what is there.
+/// A checkerboard in front of a wall, above a floor, seen by two raw cameras with lens distortion: rendered,
+/// so that estimates can be compared with the truth.
 namespace cairn::support {
 
 struct Spot {
@@ -19,7 +19,7 @@ struct Spot {
   double y = 0;
   double z = 0;
 };
-/// A rigid motion: turned (row by row), then shifted.
+/// A rigid motion: rotation (row-major), then translation.
 struct Motion {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
   Spot translation_m;
@@ -41,7 +41,7 @@ inline Motion inverse(const Motion& motion) {
   back.translation_m = {-shift.x, -shift.y, -shift.z};
   return back;
 }
-/// About an axis by its length in rad (Rodrigues).
+/// Rotation about an axis by its length in rad (Rodrigues).
 inline Motion rotation_about(Spot axis) {
   const double angle = std::hypot(axis.x, axis.y, axis.z);
   const double x = axis.x / angle;
@@ -62,14 +62,14 @@ inline constexpr int kBoardColumns = 9;        // inner corners
 inline constexpr int kBoardRows = 6;
 inline constexpr double kBoardSquare = 0.025;  // m
 
-/// Of the right camera from the left one: a little up, tilted and rolled, as nobody mounts it on purpose.
+/// The right camera in the left one's frame: slightly raised, tilted and rolled, as by careless mounting.
 inline Motion right_from_left() {
   Motion pose = rotation_about({0.022, 0.004, 0.012});
   pose.translation_m = {-kRawBaseline, 0.001, 0.0015};
   return pose;
 }
 
-/// Where the board stands in the left camera's frame, from its middle.
+/// Poses of the board's centre in the left camera's frame.
 inline Motion board_in_left(int place) {
   Motion pose = rotation_about(
       {0.45 * std::sin(2.1 * place), 0.5 * std::cos(1.3 * place), 0.3 * std::sin(0.7 * place)});
@@ -80,7 +80,7 @@ inline Motion board_in_left(int place) {
 
 namespace drawing {
 
-/// Through a lens with k1 = −0.27, k2 = 0.09, p1 = 0.001, p2 = −0.0005.
+/// Projection through a lens with k1 = −0.27, k2 = 0.09, p1 = 0.001, p2 = −0.0005.
 inline std::array<double, 2> distorted(double x, double y) {
   constexpr double k1 = -0.27;
   constexpr double k2 = 0.09;
@@ -107,7 +107,7 @@ inline double hash(int x, int y) {
   return static_cast<double>((n ^ (n >> 16)) & 0xFFU) / 255;
 }
 
-/// Blotches of 2 cm.
+/// Noise with patches of 2 cm.
 inline double wall(double u, double v) {
   constexpr double kBlotch = 0.02;
   const double x = u / kBlotch;
@@ -120,8 +120,8 @@ inline double wall(double u, double v) {
                      b * ((1 - a) * hash(left, top + 1) + a * hash(left + 1, top + 1)));
 }
 
-/// What a ray of the left camera's frame meets: the board, its white margin, the floor, or the wall 1.6 m
-/// away.
+/// The surface hit by a ray of the left camera's frame: the board, its white margin, the floor, or the wall
+/// 1.6 m away.
 inline double grey_of(Spot from, Spot ray, const Motion& board) {
   const Motion to_board = inverse(board);
   const Spot start = to_board(from);
@@ -144,7 +144,7 @@ inline double grey_of(Spot from, Spot ray, const Motion& board) {
   return wall(from.x + far * ray.x, from.y + far * ray.y);
 }
 
-/// Rays of four samples for each pixel, in the camera's frame.
+/// Four rays per pixel, in the camera's frame.
 inline const std::vector<Spot>& rays() {
   static const std::vector<Spot> all = [] {
     std::vector<Spot> rays;
@@ -179,7 +179,7 @@ inline Image<Gray> seen_from(const Motion& left_from_camera, const Motion& board
 
 }  // namespace drawing
 
-/// The board in its place-th place, left and right.
+/// The pair with the board in pose `place`.
 inline std::pair<Image<Gray>, Image<Gray>> drawn_board(int place) {
   const Motion board = board_in_left(place);
   return {drawing::seen_from({}, board), drawing::seen_from(inverse(right_from_left()), board)};

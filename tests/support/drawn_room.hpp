@@ -22,7 +22,7 @@ struct Cylinder {
 };
 
 inline ColourHistogram random_look(std::mt19937& random) {
-  // A few bins of each part: most things have one colour or two.
+  // A few bins of each part: most objects have one or two colours.
   ColourHistogram look{};
   std::uniform_real_distribution<float> share(0.2F, 0.8F);
   const float light = share(random);
@@ -37,10 +37,10 @@ inline ColourHistogram random_look(std::mt19937& random) {
 struct DrawnRoom {
   static constexpr Size kSize{240, 180};
   static constexpr StereoRig kRig{156, 120, 90, 0.12F, 0};
-  static constexpr double kWall_m = 5;  // the room is a square of twice that
+  static constexpr double kWall_m = 5;  // half of the room's side
   std::vector<Cylinder> things;
 
-  /// `count` things, no two nearer than 1 m, none near where the camera drives (radius 1.5 m).
+  /// `count` objects, at least 1 m apart, away from the camera's path (radius 1.5 m).
   static DrawnRoom random(unsigned seed, int count) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(-4, 4);
@@ -65,7 +65,7 @@ struct DrawnRoom {
   }
 };
 
-/// At (x, y), 0.8 m up, looking along `yaw` and 12° down.
+/// At (x, y), 0.8 m high, looking along `yaw` and 12° down.
 inline Pose camera_at(double x, double y, double yaw) {
   constexpr double kPitch = 12 * std::numbers::pi / 180;
   const double c = std::cos(yaw);
@@ -91,7 +91,7 @@ inline DrawnView draw(const DrawnRoom& room, const Pose& map_from_camera, std::m
     int first;
     int last;
   };
-  std::vector<Span> spans;  // columns in which each may show
+  std::vector<Span> spans;  // column range of each object
   for (const Cylinder& c : room.things) {
     const Point3 p = inverse(map_from_camera)({c.x, c.y, 0});
     const double nearest = p.z - c.radius - c.height;
@@ -107,7 +107,7 @@ inline DrawnView draw(const DrawnRoom& room, const Pose& map_from_camera, std::m
       const Point3 d = map_from_camera.rotated(
           {static_cast<double>((static_cast<float>(x) - rig.cx_px) / rig.focal_px),
            static_cast<double>((static_cast<float>(y) - rig.cy_px) / rig.focal_px), 1});
-      double z = std::numeric_limits<double>::infinity();  // along d, whose depth is 1
+      double z = std::numeric_limits<double>::infinity();  // along d, which has a depth of 1
       int thing = 0;
       if (d.z < 0) z = -o.z / d.z;
       for (const auto& [from, along] : {std::pair{o.x, d.x}, {o.y, d.y}}) {
@@ -145,7 +145,7 @@ inline DrawnView draw(const DrawnRoom& room, const Pose& map_from_camera, std::m
   return view;
 }
 
-/// What a segmenter without a mistake would see of it.
+/// The output of a perfect segmenter.
 inline std::vector<TrueTracks::Seen> things_in(const DrawnView& view, const DrawnRoom& room,
                                                const Pose& map_from_camera) {
   const StereoRig& rig = DrawnRoom::kRig;

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <limits>
 
-// Takes the place of the C library's malloc() in the one program whose main file includes this, and so of
-// operator new and of what libpng, libjpeg, OpenCV, SQLite and zlib allocate.
+// Replaces malloc() in the one program whose main file includes this, and so operator new and the allocations
+// of libpng, libjpeg, OpenCV, SQLite and zlib.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -19,8 +19,7 @@ void __libc_free(void* memory);
 
 namespace cairn::support {
 
-/// Lets an allocation of this thread fail while it lives: the one with this number, from 0, or all from
-/// there.
+/// While it lives, fails one allocation of this thread by number, from 0, or all from there on.
 class FailingAllocations {
  public:
   enum class Those : std::uint8_t { one, all_after };
@@ -35,12 +34,12 @@ class FailingAllocations {
   FailingAllocations& operator=(const FailingAllocations&) = delete;
   ~FailingAllocations() { left_ = kNever; }
 
-  /// Ends it; returns whether an allocation failed.
+  /// Stops failing; returns whether an allocation has failed.
   static bool end() {
     left_ = kNever;
     return has_failed_;
   }
-  /// Allocations of this thread since it began that were not freed.
+  /// Number of allocations of this thread since construction that are not freed.
   static std::int64_t living() { return living_; }
 
   static bool next_fails() {
@@ -60,7 +59,7 @@ class FailingAllocations {
 
  private:
   static constexpr int kNever = std::numeric_limits<int>::max();
-  static inline thread_local int left_ = kNever;  // allocations until one fails
+  static inline thread_local int left_ = kNever;  // number of allocations until the failing one
   static inline thread_local bool goes_on_ = false;
   static inline thread_local bool has_failed_ = false;
   static inline thread_local std::int64_t living_ = 0;
@@ -69,7 +68,7 @@ class FailingAllocations {
 }  // namespace cairn::support
 
 extern "C" {
-// NOLINTBEGIN: the C library's names, and memory without an owner
+// NOLINTBEGIN: names of the C library, raw memory
 void* malloc(std::size_t size) {
   using cairn::support::FailingAllocations;
   return FailingAllocations::next_fails() ? nullptr : FailingAllocations::counted(__libc_malloc(size));

@@ -20,36 +20,36 @@
 
 namespace cairn::support {
 
-/// What happens next at a device, when somebody waits for it or fetches a frame.
+/// The next event of a device when it is polled or a frame is dequeued.
 struct DeviceEvent {
-  int error = 0;            // DQBUF fails with it; 0: a frame
-  bool is_silence = false;  // nothing happens for the time that is waited
+  int error = 0;            // errno of DQBUF; 0 = a frame
+  bool is_silence = false;  // no event until the timeout
   std::uint32_t sequence = 0;
   std::int64_t stamp_us = 0;
-  std::optional<std::string> bytes;  // other than the device's picture
+  std::optional<std::string> bytes;  // other than the device's image
   std::uint32_t flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
 };
 
-/// A camera as its driver shows it.
+/// A camera as presented by its driver.
 struct FakeDevice {
   std::uint32_t capabilities = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV};
   std::uint32_t width = 8, height = 4;
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> gives_size;  // whatever is asked for
-  bool shrinks = false;  // to half its width when it is opened once more
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> gives_size;  // whatever size is requested
+  bool shrinks = false;                                               // to half its width when reopened
   int opens = 0;
-  std::uint32_t stride = 0;              // 0: without padding
-  double gives_fps = 0;                  // 0: what is asked for
-  std::map<unsigned long, int> refuses;  // ioctls that fail, with errno
+  std::uint32_t stride = 0;              // 0 = without padding
+  double gives_fps = 0;                  // 0 = as requested
+  std::map<unsigned long, int> refuses;  // errno by ioctl
   std::uint32_t buffers = 4;
-  std::deque<int> open_errors;  // of the next attempts to open it
-  std::string picture;          // every frame's bytes, unless the event has others
+  std::deque<int> open_errors;  // errno of the next attempts to open it
+  std::string picture;          // the bytes of each frame without its own
   std::deque<DeviceEvent> events;
-  int pace_ms = 0;       // from event to event
-  bool repeats = false;  // after the last event, frames as the last one go on
+  int pace_ms = 0;       // time between events
+  bool repeats = false;  // repeats the last frame after the last event
 };
 
-/// Devices that replay what they are told to. Silence where there is nothing more.
+/// Devices that replay a list of events, then stay silent.
 class FakeV4l2 : public io::V4l2Ops {
  public:
   std::map<std::string, FakeDevice> devices;

@@ -11,7 +11,7 @@
 
 namespace cairn {
 
-/// Where two images differ in a bit first, in words; "" where they are the same.
+/// A description of the first difference in bits between two images; "" if they are equal.
 template <class T>
 std::string first_difference(const Image<T>& expected, const Image<T>& got) {
   using Bits = std::array<std::byte, sizeof(T)>;

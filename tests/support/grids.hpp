@@ -7,10 +7,10 @@
 #include <random>
 #include <vector>
 
-/// Images that one can read in a test's source and in its failure message.
+/// Images as text grids, readable in a test's source and in failure messages.
 namespace cairn::grids {
 
-/// An image from its rows; numbers are converted to the pixel type (ids too).
+/// An image from rows of numbers, converted to the pixel type (or ids).
 template <class T, class Number = int>
 Image<T> grid(std::initializer_list<std::initializer_list<Number>> rows) {
   const auto height = static_cast<int>(rows.size());
@@ -24,7 +24,7 @@ Image<T> grid(std::initializer_list<std::initializer_list<Number>> rows) {
   return image;
 }
 
-/// The numbers of an image, row by row: prints well and compares whole.
+/// The numbers of an image by rows, for printing and comparison.
 template <class T>
 std::vector<std::vector<std::int64_t>> numbers(View<const T> image) {
   std::vector<std::vector<std::int64_t>> rows;
@@ -39,7 +39,7 @@ std::vector<std::vector<std::int64_t>> numbers(const Image<T>& image) {
   return numbers(image.view());
 }
 
-/// Pixels drawn from `lowest` … `highest`. Few values make plateaus, many make none.
+/// Random pixels in `lowest` … `highest`. Few distinct values make plateaus, many make none.
 template <class T>
 Image<T> random_image(Size size, int lowest, int highest, std::uint32_t seed) {
   std::mt19937 random(seed);

@@ -8,7 +8,7 @@
 
 namespace cairn::support {
 
-/// Whether GStreamer has all these elements here; tests skip without.
+/// Whether all these GStreamer elements are installed; tests skip otherwise.
 inline bool has_elements(std::initializer_list<const char*> names) {
   gst_init(nullptr, nullptr);
   for (const char* name : names) {

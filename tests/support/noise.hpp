@@ -9,13 +9,13 @@
 
 namespace cairn::support {
 
-/// Gaussian noise that is the same with every standard library.
+/// Gaussian noise that is identical for every standard library.
 class Noise {
  public:
   explicit Noise(std::uint32_t seed) : random_(seed) {}
-  /// 0 … 1, without the ends.
+  /// In the open interval (0, 1).
   double uniform() { return (static_cast<double>(random_()) + 0.5) / 4294967296.0; }
-  double gaussian(double sigma) {  // Box and Muller's
+  double gaussian(double sigma) {  // Box-Muller
     const double radius = std::sqrt(-2 * std::log(uniform()));
     return sigma * radius * std::cos(6.283185307179586 * uniform());
   }
@@ -24,7 +24,7 @@ class Noise {
   std::mt19937 random_;
 };
 
-/// A picture from its brightness at each pixel, with noise, rounded and clipped.
+/// An image from a brightness function, with noise, rounded and clipped.
 template <class Brightness>
 Image<Gray> picture(Size size, double noise_sigma, std::uint32_t seed, Brightness brightness) {
   Noise noise(seed);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// Reads a page's data as its script does.
+/// Reads the data of a page as its script does.
 namespace cairn::support {
 
 inline std::string bytes_of_base64(const std::string& text) {
@@ -29,7 +29,7 @@ inline std::string bytes_of_base64(const std::string& text) {
   return bytes;
 }
 
-/// The numbers of a packed map of `count` pixels.
+/// Unpacks a map of `count` pixels.
 inline std::vector<std::uint32_t> unpacked(const nlohmann::json& map, std::size_t count) {
   const std::size_t bytes_each = map.at("bytes");
   const std::string deflated = bytes_of_base64(map.at("data"));
@@ -50,7 +50,7 @@ inline std::vector<std::uint32_t> unpacked(const nlohmann::json& map, std::size_
   return values;
 }
 
-/// The text between a block's tags.
+/// The content of a tagged block.
 inline std::string block(const std::string& page, const std::string& id) {
   const std::string open = "id=\"" + id + "\">";
   const std::size_t begin = page.find(open);

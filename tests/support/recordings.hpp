@@ -21,7 +21,7 @@ inline void write(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Dots that no two images share.
+/// Random dots, different in every image.
 inline Image<Gray> dots(Size size, unsigned seed) {
   std::mt19937 random(seed);
   Image<Gray> image(size);
@@ -30,7 +30,7 @@ inline Image<Gray> dots(Size size, unsigned seed) {
   return image;
 }
 
-/// A file of cameras' topics.
+/// An MCAP file with camera topics.
 class CameraFile {
  public:
   explicit CameraFile(const std::filesystem::path& path, const ros::McapOptions& options = {.sync = false})

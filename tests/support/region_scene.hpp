@@ -10,19 +10,19 @@
 
 #include "support/grids.hpp"
 
-/// A picture of regions that one can read in a test's source, with all that is known of its pixels.
+/// An image of regions drawn as text in a test's source, with all per-pixel inputs.
 namespace cairn::support {
 
 struct RegionScene {
   Superpixels superpixels;
   Image<Gray> gray;
-  Image<Rgb> rgb;  // empty at first
+  Image<Rgb> rgb;  // initially empty
   Image<float> disparity_px;
   Image<float> evidence_px;
   Ground ground;
   Background background;
 
-  /// Plain grey, without edges and without a disparity.
+  /// Uniform grey, without edges or disparities.
   explicit RegionScene(Image<RegionId> labels) {
     const Size size = labels.size();
     int last = 0;
@@ -37,11 +37,11 @@ struct RegionScene {
     evidence_px = disparity_px.clone();
   }
 
-  /// `shades[i]`: the grey of region i.
+  /// `shades[i]`: grey level of region i.
   void paint(const std::vector<int>& shades) {
     for_each_pixel([&](int x, int y, std::size_t region) { gray(x, y) = static_cast<Gray>(shades[region]); });
   }
-  /// Disparities everywhere, evidence in every third pixel: at(x, y, region).
+  /// Disparities everywhere, supported at every third pixel: at(x, y, region).
   template <class At>
   void place(At at) {
     for_each_pixel([&](int x, int y, std::size_t region) {

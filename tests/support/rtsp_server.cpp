@@ -7,9 +7,10 @@
 #include <csignal>
 #include <cstdio>
 
-/// rtsp_server PORT: a moving pair of 2 x 320x240 as H.264 at rtsp://127.0.0.1:PORT/pair; prints the port.
+/// rtsp_server PORT: serves a moving pair of 2 x 320x240 as H.264 at rtsp://127.0.0.1:PORT/pair; prints the
+/// port.
 int main(int count, char** arguments) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // it ends with the test
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with the test
   gst_init(&count, &arguments);
   GMainLoop* loop = g_main_loop_new(nullptr, FALSE);
   GstRTSPServer* server = gst_rtsp_server_new();

@@ -17,7 +17,7 @@ inline std::filesystem::path folder(const std::string& name) {
   return std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / name;
 }
 
-/// One of the pairs in samples/, with what its calibration says.
+/// A pair of samples/ with its calibration.
 struct Sample {
   io::PicturePair pictures;
   io::Calibration calibration;
@@ -25,8 +25,8 @@ struct Sample {
   [[nodiscard]] StereoPair pair() const& {
     return StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
   }
-  StereoPair pair() && = delete;  // borrows the pictures
-  /// `config` with the calibration's search range, as the command runs it.
+  StereoPair pair() && = delete;  // borrows the images
+  /// `config` with the search range of the calibration, as the command uses it.
   [[nodiscard]] Config suited(Config config = {}) const {
     config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
     return config;

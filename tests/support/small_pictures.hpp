@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-/// Tiny files of forms that the library reads but does not write, in base64. Unless said otherwise they show
-/// 5x3 pixels: grey 17·i, colour (17·i, 255 − 17·i, 40), 16 bits 4369·i, palette indices i mod 4, for the
-/// i-th pixel in raster order.
+/// Tiny files, in base64, of formats that the library reads but does not write. Unless stated otherwise they
+/// have 5x3 pixels: grey 17·i, colour (17·i, 255 − 17·i, 40), 16 bits 4369·i, palette indices i mod 4, for
+/// the i-th pixel in raster order.
 namespace cairn::support {
 
 // colours (0,0,0) (255,0,0) (0,255,0) (10,20,30), the first transparent
@@ -28,7 +28,7 @@ inline constexpr std::string_view kColourAlpha16Png =
 inline constexpr std::string_view kInterlacedPng =
     "iVBORw0KGgoAAAANSUhEUgAAAAUAAAADCAAAAAEJWqqyAAAAHklEQVR42mNgYHBhUGJYdeYdg6Axw+67DKFp5R0zAT2DBvoh"
     "OaqfAAAAAElFTkSuQmCC";
-// every checksum is right, but the compressed data hold one row only
+// every checksum is right, but the compressed data have only one row
 inline constexpr std::string_view kShortDataPng =
     "iVBORw0KGgoAAAANSUhEUgAAAAUAAAADCAAAAAB+XZokAAAAC0lEQVR42mNgAAMAAAcAASEi2xMAAAAASUVORK5CYII=";
 // claims 60000x60000
@@ -37,18 +37,18 @@ inline constexpr std::string_view kHugePng =
 // claims 16000x16000 in a few bytes
 inline constexpr std::string_view kBombPng =
     "iVBORw0KGgoAAAANSUhEUgAAPoAAAD6ACAAAAABkFYACAAAAC0lEQVR42mNggAEAAAoAAewkA7kAAAAASUVORK5CYII=";
-// a colour profile that libpng warns of
+// a colour profile that libpng warns about
 inline constexpr std::string_view kWarningPng =
     "iVBORw0KGgoAAAANSUhEUgAAAAUAAAADCAAAAAB+XZokAAAAEWlDQ1B4AAB4nMvLzytOBSIAD30DaiGEbyoAAAAaSURBVHja"
     "Y2AQVDJ2YQhNK++YybBq95m77wAo6Qb6z6tdKAAAAABJRU5ErkJggg==";
-// 9x7, everywhere 90
+// 9x7, all 90
 inline constexpr std::string_view kGreyJpeg =
     "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDAAMCAgMCAgMDAwMEAwMEBQgFBQQEBQoHBwYIDAoMDAsKCwsNDhIQDQ4RDgsLEBYQ"
     "ERMUFRUVDA8XGBYUGBIUFRT/wAALCAAHAAkBAREA/8QAHwAAAQUBAQEBAQEAAAAAAAAAAAECAwQFBgcICQoL/8QAtRAAAgED"
     "AwIEAwUFBAQAAAF9AQIDAAQRBRIhMUEGE1FhByJxFDKBkaEII0KxwRVS0fAkM2JyggkKFhcYGRolJicoKSo0NTY3ODk6Q0RF"
     "RkdISUpTVFVWV1hZWmNkZWZnaGlqc3R1dnd4eXqDhIWGh4iJipKTlJWWl5iZmqKjpKWmp6ipqrKztLW2t7i5usLDxMXGx8jJ"
     "ytLT1NXW19jZ2uHi4+Tl5ufo6erx8vP09fb3+Pn6/9oACAEBAAA/APGqK//Z";
-// 9x7, everywhere about (200, 100, 50)
+// 9x7, all about (200, 100, 50)
 inline constexpr std::string_view kProgressiveJpeg =
     "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDAAIBAQEBAQIBAQECAgICAgQDAgICAgUEBAMEBgUGBgYFBgYGBwkIBgcJBwYGCAsI"
     "CQoKCgoKBggLDAsKDAkKCgr/2wBDAQICAgICAgUDAwUKBwYHCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoK"

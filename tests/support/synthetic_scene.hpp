@@ -9,11 +9,10 @@
 #include <random>
 #include <vector>
 
-/// Random-dot stereograms: pairs whose disparity and occlusions are known exactly, because they were made
-/// from them.
+/// Random-dot stereograms: pairs rendered from known disparities and occlusions.
 namespace cairn::synthetic {
 
-/// An upright board parallel to the cameras: where it stands in the left image, and how near.
+/// An upright board parallel to the image plane: its place in the left image, and its disparity.
 struct Box {
   Rect rect;
   int disparity_px = 0;
@@ -22,16 +21,16 @@ struct Box {
 struct Layout {
   Size size{96, 64};
   int background_px = 4;     // disparity of the background
-  std::vector<Box> boxes{};  // later ones stand in front of earlier ones only where they are nearer
+  std::vector<Box> boxes{};  // ordered by disparity, not by index: nearer ones occlude
   std::uint32_t seed = 1;
 };
 
 struct Scene {
   Image<Gray> left;
   Image<Gray> right;
-  Image<float> disparity_px;     // of every left pixel, also of those hidden from the right camera
-  Image<std::uint8_t> hidden;    // 1: the right image does not show this left pixel
-  Image<std::uint16_t> objects;  // 1 + index of the box that the left pixel shows; 0 = background
+  Image<float> disparity_px;     // of every left pixel, including those hidden from the right camera
+  Image<std::uint8_t> hidden;    // 1 = not visible in the right image
+  Image<std::uint16_t> objects;  // 1 + index of the visible box; 0 = background
   [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right); }
 };
 
@@ -62,8 +61,8 @@ inline Scene make_scene(const Layout& layout) {
       }
     }
   }
-  // Each right pixel shows the nearest left pixel that projects onto it; the others are hidden. What no left
-  // pixel projects onto keeps dots of its own.
+  // Each right pixel shows the nearest left pixel that projects onto it; the other left pixels are hidden.
+  // Right pixels without any get dots of their own.
   std::vector<int> shown(static_cast<std::size_t>(size.width));
   for (int y = 0; y < size.height; ++y) {
     std::fill(shown.begin(), shown.end(), -1);
@@ -84,7 +83,7 @@ inline Scene make_scene(const Layout& layout) {
   return scene;
 }
 
-/// One box before a wall: the smallest scene with an occlusion.
+/// One box in front of a wall: the smallest scene with an occlusion.
 inline Scene box_before_wall(Size size = {96, 64}, int wall_px = 4, int box_px = 12, std::uint32_t seed = 1) {
   const Rect middle{size.width / 3, size.height / 4, size.width / 3, size.height / 2};
   return make_scene({.size = size, .background_px = wall_px, .boxes = {{middle, box_px}}, .seed = seed});

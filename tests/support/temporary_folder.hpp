@@ -15,7 +15,7 @@
 
 namespace cairn::support {
 
-/// A folder of the test's own, gone when the test is.
+/// A folder of the test, deleted with it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -32,12 +32,11 @@ class TemporaryFolder {
   }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Writes `bytes` into this folder under `name` (folders on the way are made) and returns where.
+  /// Writes `bytes` to `name` in this folder, creating subfolders, and returns the path.
   [[nodiscard]] std::filesystem::path with(const std::string& name, std::string_view bytes) const {
     std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
-    std::filesystem::remove(
-        file);  // some file systems flush a file that is written anew, and that takes long
+    std::filesystem::remove(file);  // some file systems flush a file that is overwritten, which is slow
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return file;
   }
@@ -51,7 +50,7 @@ inline std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The message of the Error that `work` throws; fails where it throws none or something else, or the message
+/// The message of the Error thrown by `work`; fails if it throws nothing or something else, or if the message
 /// has two lines.
 inline std::string refusal(const std::function<void()>& work) {
   try {
@@ -68,7 +67,7 @@ inline std::string refusal(const std::function<void()>& work) {
   return {};
 }
 
-/// Whether `text` has every one of `words`.
+/// Whether `text` contains each of `words`.
 inline testing::AssertionResult has(const std::string& text, std::initializer_list<std::string_view> words) {
   for (const std::string_view word : words) {
     if (text.find(word) == std::string::npos)
@@ -77,8 +76,8 @@ inline testing::AssertionResult has(const std::string& text, std::initializer_li
   return testing::AssertionSuccess();
 }
 
-/// Calls read() on every shortened and on many altered copies of `file`. Reading may succeed or throw Error,
-/// nothing else, and prints nothing. Returns how many of the shortened copies were read all the same.
+/// Calls read() on every truncated and on many modified copies of `file`. Reading may succeed or throw Error,
+/// nothing else, and must not print. Returns the number of truncated copies that were read.
 inline int survives_damage(const TemporaryFolder& folder, const std::string& name, const std::string& file,
                            const std::function<void(const std::filesystem::path&)>& read,
                            std::size_t step = 1) {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <tracking/pose.hpp>
 
-/// A scene of textured planes as a camera sees it from any place, with exact disparities.
+/// A scene of textured planes, rendered from any pose with exact disparities.
 namespace cairn::room {
 
 inline const StereoRig kRig{
@@ -23,7 +23,7 @@ struct Seen {
   }
 };
 
-/// 0 … 1, the same for the same two whole numbers.
+/// Hash of two integers, in 0 … 1.
 inline double hashed(std::int64_t x, std::int64_t y) {
   auto h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ULL +
            static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4FULL;
@@ -32,7 +32,7 @@ inline double hashed(std::int64_t x, std::int64_t y) {
   return static_cast<double>(h >> 40U) / static_cast<double>(1U << 24U);
 }
 
-/// Blotches of two sizes, smooth between them.
+/// Smooth noise of two scales.
 inline double texture(double u_m, double v_m) {
   double sum = 0;
   double weight = 0.6;
@@ -52,9 +52,9 @@ inline double texture(double u_m, double v_m) {
   return sum;
 }
 
-/// A room that reaches 6 m ahead of the map's origin (x right, y down, z forward), with walls at its sides, a
-/// floor, a ceiling and a panel 2.2 m ahead, which stands `panel_m` to the right of its place.
-/// `scale`: all lengths are this times as long.
+/// A room that extends 6 m from the map's origin (x right, y down, z forward), with side walls, a floor, a
+/// ceiling and a panel at 2.2 m, shifted `panel_m` to the right.
+/// `scale`: factor on all lengths.
 inline Seen look(const Pose& map_from_camera, double panel_m = 0, double scale = 1) {
   Seen seen{Image<Gray>(kSize), {Image<float>(kSize), Image<Reject>(kSize)}};
   seen.disparity.reject.fill(Reject::none);
@@ -63,7 +63,7 @@ inline Seen look(const Pose& map_from_camera, double panel_m = 0, double scale =
     for (int x = 0; x < kSize.width; ++x) {
       const Point3 ray = map_from_camera.rotated({(x - double{kRig.cx_px}) / double{kRig.focal_px},
                                                   (y - double{kRig.cy_px}) / double{kRig.focal_px}, 1});
-      double nearest = std::numeric_limits<double>::infinity();  // in depths, since the ray's own z is 1
+      double nearest = std::numeric_limits<double>::infinity();  // depth, as the z of the ray is 1
       double value = 0;
       const auto wall = [&](double offset_m, double along, double at, auto&& uv) {
         const double t = (offset_m * scale - at) / along;
@@ -85,7 +85,7 @@ inline Seen look(const Pose& map_from_camera, double panel_m = 0, double scale =
       wall(2.2, ray.z, from.z, [&](Point3 p) {
         const double u = p.x / scale - panel_m;
         if (std::abs(u) > 0.35 || std::abs(p.y / scale) > 0.3) return false;
-        constexpr double kFiner = 2.5;  // so that it has as many corners as what is behind it
+        constexpr double kFiner = 2.5;  // gives it as many corners as its background
         value = texture(kFiner * (u + 61), kFiner * p.y / scale);
         return true;
       });

@@ -9,10 +9,10 @@
 #include <random>
 #include <vector>
 
-/// Tracks as a tracker without a mistake would make them of masks that are known.
+/// Tracks as a perfect tracker would make them from known masks.
 namespace cairn::support {
 
-/// CIE L*a*b* of sRGB, D65, into the bins of a ColourHistogram.
+/// sRGB as CIE L*a*b* (D65), in the bins of a ColourHistogram.
 inline void count_colour(ColourHistogram& histogram, Rgb colour) {
   const auto linear = [](std::uint8_t v) {
     const double c = v / 255.0;
@@ -36,7 +36,7 @@ inline void normalise(ColourHistogram& histogram, double count) {
   for (float& bin : histogram) bin = static_cast<float>(static_cast<double>(bin) / std::max(1.0, count));
 }
 
-/// Follows things by their true ids: a track for as long as a thing is not out of sight for more than 10 s.
+/// Follows objects by their true ids; a track ends when the object is out of sight for more than 10 s.
 class TrueTracks {
  public:
   struct Seen {
@@ -53,7 +53,7 @@ class TrueTracks {
   std::vector<TrackId> cut;
   std::map<TrackId, int> thing_of;
 
-  /// `seen`: in any order; its index + 1 becomes the ObjectId.
+  /// `seen`: in any order; index + 1 becomes the ObjectId.
   void next(const std::vector<Seen>& seen, const Pose& map_from_camera, const StereoRig& rig, Stamp now) {
     constexpr double kHidden_s = 10;
     constexpr double kDisparitySigma = 0.35;
@@ -68,7 +68,7 @@ class TrueTracks {
       auto at = std::find_if(tracks.list.begin(), tracks.list.end(),
                              [&](const Track& t) { return thing_of.at(t.id) == s.thing; });
       const Point3 position = map_from_camera(s.in_camera_m);
-      constexpr double kOther_m = 0.6;  // no gate of a tracker reaches that far
+      constexpr double kOther_m = 0.6;  // beyond any tracker's gate
       if (at != tracks.list.end() && !s.is_moving && length(at->position_m - position) > kOther_m) {
         tracks.list.erase(at);
         at = tracks.list.end();
@@ -93,7 +93,7 @@ class TrueTracks {
         at->position_m = position;
         at->covariance_m2 = noise;
       } else {
-        // As a filter with the trace's gain would: enough to be as smooth as a real one.
+        // An exponential filter, as smooth as a real one.
         const double gain = trace(at->covariance_m2) / (trace(at->covariance_m2) + trace(noise));
         at->position_m = at->position_m + gain * (position - at->position_m);
         for (std::size_t k = 0; k < 9; ++k) {

@@ -12,10 +12,10 @@
 #include <type_traits>
 #include <vector>
 
-/// The hash of a message's type as REP 2016 defines it: SHA-256 of the type's description in canonical JSON.
+/// The hash of a message type by REP 2016: SHA-256 of the type's description in canonical JSON.
 namespace cairn::ros {
 
-/// Describes a message's members, and those of the messages that they hold.
+/// Describes the members of a message and of the messages that it contains.
 class TypeDescription {
  public:
   template <Message M>

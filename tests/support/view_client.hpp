@@ -21,12 +21,12 @@
 #include <string_view>
 #include <vector>
 
-/// A client of live views that is none of Boost's: HTTP and WebSocket by hand, over TCP or TLS.
+/// A client for live views without Boost: HTTP and WebSocket by hand, over TCP or TLS.
 namespace cairn::support {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A connection to 127.0.0.1. Reads wait for at most 10 s.
+/// A connection to 127.0.0.1 with a read timeout of 10 s.
 class Connection {
  public:
   explicit Connection(std::uint16_t port, bool tls = false, int receive_buffer = 0)
@@ -57,11 +57,11 @@ class Connection {
     while (!bytes.empty()) {
       const auto sent = tls_ ? SSL_write(tls_.get(), bytes.data(), static_cast<int>(bytes.size()))
                              : ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (sent <= 0) return;  // what the other side makes of it is what is asked
+      if (sent <= 0) return;  // the test checks the server's reaction
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
   }
-  /// Exactly so many; false where the other side ends before, or is silent.
+  /// Reads exactly that many bytes; false at the end of the connection, or on a timeout.
   bool read(void* to, std::size_t count) {
     auto* at = static_cast<char*>(to);
     while (count > 0) {
@@ -74,7 +74,7 @@ class Connection {
     }
     return true;
   }
-  /// Up to a blank line.
+  /// Reads up to a blank line.
   std::string read_head() {
     std::string head;
     for (char c = 0; !head.ends_with("\r\n\r\n") && read(&c, 1);) head += c;
@@ -106,7 +106,7 @@ struct Answer {
   int status = 0;
   std::string head;
   std::string body;
-  /// Of a header line, empty where there is none.
+  /// The value of a header; empty if it is missing.
   [[nodiscard]] std::string header(const std::string& name) const {
     const std::size_t at = head.find("\r\n" + name + ": ");
     if (at == std::string::npos) return {};
@@ -124,7 +124,7 @@ inline Answer answer_of(const std::string& text) {
   return answer;
 }
 
-/// "GET / HTTP/1.1" with these header lines.
+/// "GET / HTTP/1.1" with these headers.
 inline std::string request(const std::string& target, const std::string& lines,
                            const std::string& method = "GET") {
   return method + " " + target + " HTTP/1.1\r\n" + lines + "\r\n";
@@ -143,7 +143,7 @@ inline std::string upgrade(const std::string& target, const std::string& lines,
                              (subprotocol.empty() ? "" : "Sec-WebSocket-Protocol: " + subprotocol + "\r\n"));
 }
 
-/// The messages of a connection that was compressed as a whole (RFC 7692, section 7.2.2).
+/// Decompresses the messages of a connection with context takeover (RFC 7692, section 7.2.2).
 class Inflater {
  public:
   Inflater() {
@@ -173,7 +173,7 @@ class Inflater {
   z_stream stream_{};
 };
 
-/// A WebSocket, open.
+/// An open WebSocket.
 class WebSocket {
  public:
   using Json = nlohmann::json;
@@ -214,10 +214,10 @@ class WebSocket {
       for (int shift = is_long ? 56 : 8; shift >= 0; shift -= 8)
         frame += static_cast<char>(size >> shift & 255);
     }
-    connection_.send(frame + std::string(4, '\0') + payload);  // the mask 0
+    connection_.send(frame + std::string(4, '\0') + payload);  // a mask of 0
   }
 
-  /// A text, compressed.
+  /// Sends a compressed text.
   void send_deflated(const std::string& text) {
     z_stream stream{};
     if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, -MAX_WBITS, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) !=
@@ -234,7 +234,7 @@ class WebSocket {
     send_frame(0x41, out);
   }
 
-  /// Pings are left out. None where the connection ended.
+  /// Skips pings. nullopt if the connection has ended.
   std::optional<Message> read() {
     Message message;
     bool is_deflated = false;
@@ -270,9 +270,9 @@ class WebSocket {
       return message;
     }
   }
-  /// So far, of what messages hold as they were sent.
+  /// Total payload bytes as received, before decompression.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  /// The next text with this operation; messages of channels on the way are left out.
+  /// The next text with this operation; skips channel messages.
   Json read_op(const std::string& op) {
     while (const auto message = read()) {
       if (message->opcode != 1) continue;
@@ -283,7 +283,7 @@ class WebSocket {
     ADD_FAILURE() << "no " << op;
     return {};
   }
-  /// The next message of a channel; texts on the way are left out.
+  /// The next message on a channel; skips texts.
   std::optional<Data> read_data() {
     while (const auto message = read()) {
       if (message->opcode != 2 || message->payload.size() < 13) continue;
@@ -296,7 +296,7 @@ class WebSocket {
     }
     return std::nullopt;
   }
-  /// The code that the server closes with; 0 where it just ends.
+  /// The server's close code; 0 without one.
   int read_close() {
     while (const auto message = read()) {
       if (message->opcode == 8 && message->payload.size() >= 2)
@@ -305,7 +305,7 @@ class WebSocket {
     return 0;
   }
 
-  /// The number of a topic, as advertised.
+  /// The id of an advertised topic.
   int channel(const std::string& topic) {
     if (channels_.is_null()) read_op("advertise");
     for (const Json& one : channels_) {

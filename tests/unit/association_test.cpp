@@ -15,8 +15,8 @@ namespace {
 
 constexpr auto kForbidden = CostTable::kForbidden;
 
-/// The slow twin of assign(): all ways, in the order of the rule for ties, of which the first of the cheapest
-/// counts.
+/// The slow twin of assign(): tries all assignments in the order that decides ties, and keeps the first of
+/// the cheapest.
 class AllWays {
  public:
   explicit AllWays(const CostTable& table) : table_(table), way_(static_cast<std::size_t>(table.rows), -1) {
@@ -86,7 +86,7 @@ TEST(Assign, FindsTheBestOfAllWaysForSevenTracks) {
 }
 
 TEST(Assign, LeavesAloneWhatIsTooDear) {
-  EXPECT_EQ(assign({1, 1, {20}, 20}), std::vector{0});  // a tie goes to the pair
+  EXPECT_EQ(assign({1, 1, {20}, 20}), std::vector{0});  // a tie prefers the pair
   EXPECT_EQ(assign({1, 1, {21}, 20}), std::vector{-1});
 }
 
@@ -164,7 +164,7 @@ TEST(Associate, GivesEachTrackTheObjectAtItsPlace) {
 
 TEST(Associate, NoTrackGetsAnObjectBeyondTheGate) {
   const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
-  // The moving filter reaches 3.4 of its standard deviations of 11 cm after a tenth of a second.
+  // After a tenth of a second, the moving filter's gate reaches 3.4 of its standard deviations of 11 cm.
   EXPECT_TRUE(associated(tracks, {sighting_at(1, {0.5, 0, 2})}, no_overlaps(tracks, 1)).empty());
 }
 
@@ -209,13 +209,13 @@ TEST(Associate, PiecesOfOneThingAreItsTogether) {
   common(overlaps, 0, 1) = 38;
   common(overlaps, 0, 2) = 35;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}, {1, 2}}));
-  // What lies apart is no piece, nor is what only its edge lies inside …
+  // What is apart is no piece, nor is what only overlaps with its edge …
   sightings[1].box_px.x += 3;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
   sightings[1].box_px.x -= 3;
   common(overlaps, 0, 2) = 20;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
-  // … and what comes in pieces for long is several things.
+  // … and what comes in pieces for long is several objects.
   common(overlaps, 0, 2) = 35;
   tracks.list[0].in_parts = 5;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));

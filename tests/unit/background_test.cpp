@@ -35,7 +35,7 @@ GroundPlane wall_at(double turn, float distance_m) {
                   distance_m);
 }
 
-/// Evidence as a picture of the planes gives it: some pixels, a little noise; `more` changes a pixel's
+/// Textured disparities of the planes: a sample of the pixels, with a little noise; `more` changes a pixel's
 /// disparity.
 template <class More>
 Image<float> evidence_of(const Background& truth, double share, float noise_px, More more) {
@@ -143,7 +143,7 @@ TEST(Background, HasTheWallsThoughABoxBeforeThemShowsMoreThanTheyDo) {
 TEST(Background, MayHaveAWallWithADoorwayWhereMaxBehindAllowsIt) {
   const Background room{{kFloor, wall_at(0, 3)}};
   const auto doorway = [](int x, int y, float d) { return x >= 100 && x < 160 && y < 90 ? d - 6 : d; };
-  const Image<float> evidence = evidence_of(room, 0.3, 0.1F, doorway);  // 18 % of the wall's own
+  const Image<float> evidence = evidence_of(room, 0.3, 0.1F, doorway);  // 18 % are on the wall itself
   BackgroundConfig config;
   config.max_walls = 1;
   config.max_behind = 9;
@@ -163,7 +163,7 @@ TEST(Background, IsNotMisledByReflectionsBelowTheFloor) {
   EXPECT_LT(largest_difference(found, kRoom), 0.1F);
 }
 
-/// A room of floor, front wall, and on the left a wall square on that, of which only few pixels show.
+/// A room with floor, front wall, and on the left a perpendicular wall with few pixels.
 struct SideWall {
   Background room{{kFloor, wall_at(0.3, 3.2F), wall_at(0.3 - 1.5707963, 1.6F)}};
   Image<float> evidence;

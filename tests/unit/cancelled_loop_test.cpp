@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Built with oneTBB only: what happens inside a user's own oneTBB loops.
+// Built with oneTBB only: behaviour inside a user's own oneTBB loops.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/parallel_for.h>
 

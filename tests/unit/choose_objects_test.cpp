@@ -18,7 +18,7 @@ using Ids = std::vector<std::int32_t>;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// The first feature as it is where it is −2, −1, 0 … 5 (odds of about 0.12, 0.27, 0.5, 0.73, 0.88, 0.95 …).
+/// Passes the first feature through at −2, −1, 0 … 5 (odds of about 0.12, 0.27, 0.5, 0.73, 0.88, 0.95 …).
 class FirstFeature {
  public:
   FirstFeature() {
@@ -37,7 +37,7 @@ class FirstFeature {
   std::vector<std::int16_t> roots_;
 };
 
-/// Superpixels 0, 1, 2 of 10, 20 and 30 px; 3 = 0 and 1, 4 = all. `odds`: of each of the five.
+/// Superpixels 0, 1, 2 of 10, 20 and 30 px; 3 = 0 + 1, 4 = all. `odds`: of each of the five.
 MergeTree tree_of(const std::vector<float>& odds) {
   MergeTree tree;
   tree.superpixels = 3;

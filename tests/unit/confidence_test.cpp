@@ -17,7 +17,7 @@ constexpr Size kSize{40, 40};
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr ConfidenceModel kModel = confidence_model(MatchMethod::semi_global);
 
-/// A plane surface, matched equally well everywhere.
+/// A fronto-parallel surface, matched equally well everywhere.
 struct Scene {
   Matches matches;
   DisparityMap disparity;
@@ -44,7 +44,7 @@ TEST(Confidence, IsNoughtWhereThereIsNoDisparity) {
   Scene scene = surface();
   scene.disparity.disparity_px(3, 5) = kNaN;
   scene.disparity.reject(3, 5) = Reject::speckle;
-  scene.matches.cost(4, 5) = scene.matches.runner_up(4, 5) = kNoCost;  // nor a match
+  scene.matches.cost(4, 5) = scene.matches.runner_up(4, 5) = kNoCost;  // nor any match
   scene.disparity.disparity_px(4, 5) = kNaN;
   scene.disparity.reject(4, 5) = Reject::border;
   const Image<float> confidence = scene.confidence();
@@ -106,7 +106,7 @@ TEST(Confidence, IsEmptyWithoutRunnerUp) {
   EXPECT_TRUE(scene.confidence().empty());
 }
 
-/// Dots that both cameras see 6 px apart, and a part of the right image that shows something else.
+/// Dots 6 px apart in the two images, and a part of the right image with other content.
 struct Dots {
   Image<Gray> left = synthetic::random_dots({160, 120}, 1);
   Image<Gray> right = synthetic::random_dots({160, 120}, 2);

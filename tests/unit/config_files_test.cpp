@@ -118,7 +118,7 @@ TEST_F(ConfigFiles, AnOptionWithoutEffectIsRefusedWhateverTheOrder) {
   Config config;
   io::load_config(path, config, Config::preset, [](Config& c) { set(c, "match.method", "window"); });
   EXPECT_EQ(config.match.cost, Cost::sad) << "what comes on top gives it an effect";
-  // A whole file stays good where something on top takes the effect of some of its options.
+  // A complete file stays valid if an override disables some of its options.
   const fs::path whole = folder_.with("whole.yaml", io::config_yaml({}));
   EXPECT_NO_THROW(
       io::load_config(whole, config, Config::preset, [](Config& c) { set(c, "match.method", "window"); }));

@@ -137,7 +137,7 @@ TEST(ActiveOptions, EachOtherOneIsRefusedInALineThatSaysWhatToSetFirst) {
       if (option.active) continue;
       ++refused;
       EXPECT_EQ(message.find(option.name + " has no effect with "), 0U) << message;
-      // What it says to set is read itself, and was what it says.
+      // The option that it suggests setting is active itself, and had the value described.
       const std::string with = message.substr(message.find(" with ") + 6);
       const std::string asked = with.substr(0, with.find('='));
       EXPECT_EQ(with.substr(0, with.find(';')), asked + "=" + named(all, asked).value) << message;

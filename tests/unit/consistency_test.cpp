@@ -38,8 +38,8 @@ TEST(Consistency, OfTheTruthIsThatOfItsHoles) {
   EXPECT_EQ(found.pixels, kSize.area());
   EXPECT_EQ(found.matched, (kSize.width - kDisparity) * kSize.height);
   EXPECT_EQ(found.confirmed, found.matched);
-  // The pictures' grey levels differ a little in mean and deviation, by the columns that one of them has
-  // alone.
+  // The images' grey levels differ slightly in mean and deviation, because of the columns visible in one
+  // only.
   EXPECT_LT(found.photometric(), 0.5);
   EXPECT_NEAR(found.density(), 0.9, 1e-12);
   EXPECT_EQ(found.agreement(), 1);
@@ -117,7 +117,7 @@ TEST(Consistency, PrefersTheSceneOfAFittingSearchRange) {
     const auto found = estimate_disparity(scene.pair(), std::nullopt, config, exec);
     return consistency(scene.left, scene.right, found.disparity.disparity_px, best_right).loss();
   };
-  EXPECT_LT(loss(16), loss(8));  // the box lies at 12 px
+  EXPECT_LT(loss(16), loss(8));  // the box is at 12 px
 }
 
 TEST(Steadiness, CountsJumpsAndFlickerWhereThePictureStandsStill) {

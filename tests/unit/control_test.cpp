@@ -50,11 +50,11 @@ TEST(Arms, LeaveOutWhatHasNoEffectOrIsOutOfRange) {
 TEST(LeadOfAnArm, IsTheMeanOfPairedDifferencesOverThePresentsMean) {
   const Lead lead = lead_of(score({1.2F, 2.2F, 3.2F}, {1, 2, 3}));
   EXPECT_NEAR(lead.mean, 0.1, 1e-6);
-  EXPECT_NEAR(lead.low, 0.1, 1e-6);  // it always leads by the same
+  EXPECT_NEAR(lead.low, 0.1, 1e-6);  // a constant lead
   const Lead unsure = lead_of(score({2, 2, 2.6F}, {1, 2, 3}));
   EXPECT_NEAR(unsure.mean, 0.1, 1e-6);
   EXPECT_LT(unsure.low, 0);
-  EXPECT_EQ(lead_of(score({5}, {1})).mean, -1);  // one frame says nothing
+  EXPECT_EQ(lead_of(score({5}, {1})).mean, -1);  // one frame is no evidence
 }
 
 TEST(LeadOfAnArm, CountsWherePresentSettingsFindNothing) {
@@ -68,7 +68,7 @@ TEST(Halving, KeepsTheHalfThatLeadsMostAndNoneThatHardlyLeads) {
   const std::vector<ArmScore> left = halved(round, 10);
   ASSERT_EQ(left.size(), 3U);
   EXPECT_EQ(left[0].arm.value, "2");
-  EXPECT_EQ(left[1].arm.value, "1");  // a tie: the earlier one
+  EXPECT_EQ(left[1].arm.value, "1");  // a tie keeps the earlier one
   EXPECT_EQ(left[2].arm.value, "4");
   EXPECT_TRUE(halved({score({1.04F, 1.04F}, {1, 1})}, 10).empty());
   EXPECT_EQ(halved({score({1.06F, 1.06F}, {1, 1})}, 10).size(), 1U);
@@ -80,7 +80,7 @@ TEST(ABetterArm, LeadsByEnoughOnEnoughFramesForSure) {
   EXPECT_TRUE(is_better(score({1.2F, 1.1F, 1.2F, 1.1F}, {1, 1, 1, 1}), config));
   EXPECT_FALSE(is_better(score({1.2F, 1.1F, 1.2F}, {1, 1, 1}), config));             // too few
   EXPECT_FALSE(is_better(score({1.05F, 1.1F, 1.05F, 1.1F}, {1, 1, 1, 1}), config));  // too little
-  EXPECT_FALSE(is_better(score({3, 0.2F, 0.2F, 2}, {1, 1, 1, 1}), config));          // by chance
+  EXPECT_FALSE(is_better(score({3, 0.2F, 0.2F, 2}, {1, 1, 1, 1}), config));          // insignificant
 }
 
 struct Seen {
@@ -116,7 +116,7 @@ TEST(Controller, OffItDoesNothing) {
   EXPECT_TRUE(play(sample, too_large(sample, ControlMethod::off), 12).events.empty());
 }
 
-/// One of the scene's objects is found only when the least area is halved.
+/// One of the scene's objects is found only if the minimum area is halved.
 FollowConfig slightly_too_large(const samples::Sample& sample, ControlMethod method) {
   FollowConfig config = too_large(sample, method);
   FollowConfig usual = config;
@@ -135,7 +135,7 @@ FollowConfig slightly_too_large(const samples::Sample& sample, ControlMethod met
 }
 
 TEST(Controller, NamesTheOptionThatBringsObjectsBackAndTheSameOneAgain) {
-  // Not four_in_a_row: other superpixels bring more of its stool back, and are named first.
+  // Not four_in_a_row: there, other superpixels recover more of its stool, and come first.
   const samples::Sample sample = samples::load("glossy_floor");
   const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
   const Seen seen = play(sample, config, 30);

@@ -25,7 +25,7 @@ namespace {
 
 TEST(Rect, GapsAreCountedAlongEachAxis) {
   const Rect box{10, 20, 5, 6};
-  EXPECT_EQ(gap_between(box, {15, 28, 1, 1}), (Size{0, 2}));  // touches along x
+  EXPECT_EQ(gap_between(box, {15, 28, 1, 1}), (Size{0, 2}));  // they touch along x
   EXPECT_EQ(gap_between({3, 0, 4, 18}, box), (Size{3, 2}));
   EXPECT_EQ(gap_between(box, {12, 21, 40, 40}), (Size{0, 0}));
 }

@@ -172,7 +172,7 @@ TEST(Dataset, KittisFoldersHoldFramesWithTheirOwnCalibrationAndTruth) {
   }
   const fs::path training = folder.path() / "training";
   const auto frames = io::find_frames(training);
-  ASSERT_EQ(frames.size(), 2U);  // 000001_10 has no right picture
+  ASSERT_EQ(frames.size(), 2U);  // 000001_10 has no right image
   EXPECT_EQ(frames[0].name, "000000_10");
   EXPECT_EQ(frames[1].right, training / "image_3/000000_11.png");
   EXPECT_EQ(frames[1].calib, training / "calib_cam_to_cam/000000.txt");
@@ -191,7 +191,7 @@ TEST(Dataset, KittisFoldersHoldFramesWithTheirOwnCalibrationAndTruth) {
   EXPECT_EQ(io::find_truth(of_2012[0]).disparity, folder.path() / "2012/disp_occ/000000_10.png");
   const auto raw = io::find_frames(folder.path() / "day/drive");
   EXPECT_EQ(raw.at(0).calib, folder.path() / "day/calib_cam_to_cam.txt");
-  // The folder above several says which of them holds frames.
+  // For a folder above several frame folders, the message names those.
   EXPECT_TRUE(has(refusal([&] { (void)io::find_frames(folder.path()); }), {"2012", "give that folder"}));
 }
 

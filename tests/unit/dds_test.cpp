@@ -18,8 +18,8 @@
 #include "support/dds_domain.hpp"
 #include "support/type_hash.hpp"
 
-/// Topics of ROS 2: our bytes are Cyclone's, what is published is what was found, and pairs come as they were
-/// sent.
+/// ROS 2 topics: our serialisation equals Cyclone's, published messages equal the results, and pairs arrive
+/// as sent.
 namespace cairn::dds {
 namespace {
 
@@ -39,7 +39,7 @@ std::string message_of(const auto& call) {
   return "no error";
 }
 
-/// A picture with objects, as a robot's loop has it; `frame_id`: of its source.
+/// An image with objects, as in a robot's loop; `frame_id`: of its source.
 live::LiveFramePtr made_frame(const std::string& frame_id) {
   const std::filesystem::path folder = std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
   io::PicturePair pictures = io::load_pair(folder / "left.png", folder / "right.png");
@@ -96,7 +96,7 @@ TEST_F(Dds, TypeHashesAreThoseOfTheMessagesMembers) {
   expect_known_hash<ros::Detection3DArray>();
   expect_known_hash<ros::OccupancyGrid>();
   expect_known_hash<ros::TFMessage>();
-  // As ROS 2 publishes it with its interfaces.
+  // As published by ROS 2's interface packages.
   EXPECT_EQ(type_hash("std_msgs/msg/String"),
             "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
   EXPECT_EQ(type_hash("no/msg/Type"), "");
@@ -131,8 +131,8 @@ TEST_F(Dds, TheEnvironmentOfRosSaysWhichDomain) {
 
 // ---- bytes ----
 
-/// Sends a message to a reader that was made of IDL, writes what it understood with a writer of that kind,
-/// and compares what comes back.
+/// Sends a message to a reader generated from IDL, sends what it received back through a generated writer,
+/// and compares.
 template <class Theirs, ros::Message M>
 void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t& description) {
   const Participant ours;
@@ -169,7 +169,7 @@ void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t&
   std::optional<ros::Bytes> came;
   ASSERT_TRUE(comes_true([&] { return (came = reader.take()).has_value(); }));
   ros::Bytes sent = ros::encode(message);
-  // The header's last byte counts what fills up the last four bytes, in newer versions of the protocol.
+  // In newer versions of the protocol, the header's last byte is the number of padding bytes.
   (*came)[3] = 0;
   came->resize(std::max(came->size(), sent.size()));
   sent.resize(came->size());
@@ -236,7 +236,7 @@ TEST_F(Dds, WritersSayTheirTypesHash) {
   EXPECT_EQ(data, "typehash=" + std::string(type_hash(ros::Image::kType)) + ";");
 }
 
-// ---- what goes out ----
+// ---- publishing ----
 
 TEST_F(Dds, WhatIsFoundIsPublished) {
   const live::LiveFramePtr frame = live_frame();
@@ -255,7 +255,7 @@ TEST_F(Dds, WhatIsFoundIsPublished) {
   Reader<ros::OccupancyGrid> grid(participant, topic("grid"));
   Reader<ros::String> stats(participant, topic("stats"));
   Reader<ros::TFMessage> transforms(participant, "/tf", {true, 50});
-  // Those before all are connected may miss a reader.
+  // Messages sent before discovery may miss a reader.
   const auto come = [&](auto& reader) {
     auto message = reader.take();
     comes_true([&] {
@@ -366,15 +366,14 @@ TEST_F(Dds, AWriterDoesNotWaitForAReaderThatIsStuck) {
   const auto began = std::chrono::steady_clock::now();
   for (int i = 0; i < 1000; ++i) sink->offer(live_frame());
 #if defined(__SANITIZE_ADDRESS__)
-  constexpr auto kLimit =
-      5s;  // which takes several times as long; waiting 10 ms for each frame would exceed it
+  constexpr auto kLimit = 5s;  // waiting 10 ms for each frame would exceed it
 #else
   constexpr auto kLimit = 500ms;
 #endif
   EXPECT_LT(std::chrono::steady_clock::now() - began, kLimit);
 }
 
-// ---- what comes in ----
+// ---- subscribing ----
 
 ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step, ros::Bytes data) {
   ros::Image message;
@@ -457,7 +456,7 @@ TEST(RosPictures, RefusesWhatIsNoImage) {
             std::string::npos);
 }
 
-/// A camera that publishes the sample, 20 pairs a second.
+/// A camera that publishes the sample at 20 Hz.
 class Camera {
  public:
   explicit Camera(const std::string& prefix, bool with_infos = true, std::int64_t right_later_ns = 0)

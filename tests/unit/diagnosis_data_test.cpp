@@ -14,13 +14,13 @@
 #include <support/collection.hpp>
 #include <vector>
 
-/// The doctor has nothing to say of good pairs, real and rendered.
+/// The doctor finds no fault in good pairs, real and rendered.
 namespace cairn {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Every folder below with a left picture.
+/// Every folder below with a left image.
 std::vector<fs::path> pairs_below(const fs::path& folder) {
   std::vector<fs::path> pairs;
   if (!fs::exists(folder)) return pairs;
@@ -82,7 +82,7 @@ TEST_P(GoodSequences, AreFoundOutWhereTheyAreMadeNotToRunTogetherFromTheMiddleOn
   const auto frames = io::find_frames(collection() / GetParam());
   std::vector<io::PicturePair> pictures;
   for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
-  std::vector<StereoPair> pairs;  // the left camera loses a picture
+  std::vector<StereoPair> pairs;  // the left camera loses an image
   for (std::size_t i = 0; i + 1 < pictures.size(); ++i) {
     const std::size_t late = i < pictures.size() / 2 ? 0 : 1;
     pairs.push_back(StereoPair::from(pictures[i + late].left.gray, pictures[i].right.gray));

@@ -13,11 +13,11 @@
 #include "support/samples.hpp"
 #include "support/synthetic_scene.hpp"
 
-/// A good pair that is broken on purpose, one way at a time.
+/// A good pair, broken in one way at a time.
 namespace cairn {
 namespace {
 
-/// A picture from another: where each of its pixels comes from, and what becomes of the level there.
+/// Transforms an image: the source position of each pixel, and the mapping of its level.
 template <class Place, class Tone>
 Image<Gray> made_of(View<const Gray> image, Place place, Tone tone) {
   Image<Gray> result(image.size());
@@ -61,7 +61,7 @@ Image<Gray> noisy(View<const Gray> image, double sigma) {
                           [&](int x, int y) { return static_cast<double>(image(x, y)); });
 }
 
-/// The mean of 2 · radius + 1 pixels each way.
+/// A box filter over 2 · radius + 1 pixels in each direction.
 Image<Gray> blurred(View<const Gray> image, int radius) {
   Image<Gray> result(image.size());
   for (int y = 0; y < image.height(); ++y) {
@@ -93,14 +93,14 @@ class Diagnosis : public testing::Test {
   [[nodiscard]] static double value(const std::vector<Finding>& found) {
     return found.empty() ? 0.0 : found[0].value;
   }
-  /// The same picture changes happen to both cameras.
+  /// Applies the same change to both images.
   template <class Change>
   [[nodiscard]] std::vector<Finding> findings_of_both(Change change) const {
     const Image<Gray> l = change(left());
     const Image<Gray> r = change(right());
     return findings(l, r);
   }
-  /// Nothing but this was found.
+  /// Expects this finding and no other.
   void finds(const std::vector<Finding>& found, FindingKind kind, Severity severity) const {
     ASSERT_EQ(names(found), std::string(info(kind).name));
     EXPECT_EQ(static_cast<int>(found[0].severity), static_cast<int>(severity)) << found[0].says;
@@ -135,7 +135,7 @@ TEST_F(Diagnosis, SeesSwappedCameras) {
 
 TEST_F(Diagnosis, SeesThatOnePictureWasGivenTwice) {
   finds(findings(left(), left()), FindingKind::same_picture, Severity::broken);
-  // Through a lossy file the pixels differ, but nothing has moved.
+  // After lossy compression the pixels differ, but nothing has moved.
   const auto almost = noisy(left(), 2);
   const auto found = findings(left(), almost);
   finds(found, FindingKind::same_picture, Severity::broken);
@@ -151,7 +151,7 @@ TEST_F(Diagnosis, SaysOfCamerasInTheDarkThatTheyAreInTheDark) {
 TEST_F(Diagnosis, SeesSwappedCamerasWhereDoffsAllowsNegativeDisparities) {
   rig_->doffs_px = 40;
   finds(findings(right(), left()), FindingKind::swapped, Severity::broken);
-  range_ = {.min_disparity = -40, .num_disparities = 64};  // whoever looks for them expects them
+  range_ = {.min_disparity = -40, .num_disparities = 64};  // negative disparities are expected
   EXPECT_EQ(names(findings(right(), left())), "");
 }
 
@@ -200,7 +200,7 @@ TEST_F(Diagnosis, MeasuresARoll) {
 }
 
 TEST_F(Diagnosis, SeesThatAPairIsNotRectified) {
-  // Lenses that are not corrected, and a right one whose focal length is not the left one's.
+  // Lens distortion, and different focal lengths.
   const double middle_x = 0.5 * (right().width() - 1);
   const double middle_y = 0.5 * (right().height() - 1);
   const auto scaled = made_of(
@@ -317,7 +317,7 @@ TEST_F(Diagnosis, SeesWhichCameraIsBlurred) {
 
 TEST_F(Diagnosis, DoesNotBlameASharpCameraForTheOthersNoise) {
   const auto between = [](int x, int y) { return Place{x + 0.5, y + 0.5}; };
-  const auto soft_left = made_of(left(), between, same_tone);  // as most lenses are
+  const auto soft_left = made_of(left(), between, same_tone);  // as with most lenses
   const auto soft_right = made_of(right(), between, same_tone);
   int tempting = 0;
   for (const double sigma : {4.0, 8.0, 16.0}) {
@@ -394,7 +394,7 @@ TEST_F(Diagnosis, SuspectsABaselineInCentimetres) {
   auto found = findings(left(), right());
   finds(found, FindingKind::calibration, Severity::warning);
   EXPECT_NE(says(found).find("centimetres"), std::string::npos) << says(found);
-  rig_->baseline_m = 2;  // of a short one; then the distances tell
+  rig_->baseline_m = 2;  // implausible for a short one; the distances show it
   rig_->focal_px *= 2;
   found = findings(left(), right());
   finds(found, FindingKind::calibration, Severity::warning);
@@ -452,7 +452,7 @@ TEST(United, NamesTheOtherCameraOfOtherPairs) {
 
 // ---- sequences ----
 
-/// A textured board that jumps about before a textured wall, drawn for both cameras.
+/// A textured board that jumps in front of a textured wall, rendered for both cameras.
 class Sequence {
  public:
   explicit Sequence(int frames, bool moves = true) {
@@ -464,7 +464,7 @@ class Sequence {
       right_.push_back(drawn({x - 12, y}, 4));
     }
   }
-  /// The right pictures come `late` frames late.
+  /// The right images are `late` frames late.
   [[nodiscard]] std::vector<StereoPair> pairs(int late) const {
     std::vector<StereoPair> all;
     const int count = static_cast<int>(left_.size());
@@ -518,14 +518,14 @@ TEST(SynchronyOfASequence, IsANoteWhereNothingTells) {
     EXPECT_EQ(info(finding->kind).name, "synchrony not seen");
     EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::note));
   }
-  EXPECT_FALSE(diagnose(measure_synchrony(Sequence(7, false).pairs(0), {})));  // no sequence
+  EXPECT_FALSE(diagnose(measure_synchrony(Sequence(7, false).pairs(0), {})));  // too short for a sequence
 }
 
 TEST(SynchronyOfASequence, MayBeLostFromAFrameOn) {
   const Sequence sequence(34);
   for (const int late : {-2, -1, 1}) {
     for (const int from : {12, 20}) {
-      // The first part in step, then the images of the right camera `late` frames late.
+      // First in step, then the right images `late` frames late.
       std::vector<StereoPair> pairs = sequence.pairs(0);
       const std::vector<StereoPair> out_of_step = sequence.pairs(late);
       const auto shift = static_cast<std::size_t>(std::max(0, late));

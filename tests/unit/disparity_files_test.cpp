@@ -208,7 +208,7 @@ TEST_F(DisparityFiles, MiddleburysMapsHaveTheScaleOfTheirDataSet) {
   EXPECT_EQ(io::load_disparity(folder_.with("disp2.pgm", pgm))(1, 374), 2);
 }
 
-/// What numpy.save() writes.
+/// The output of numpy.save().
 std::string npy(const std::string& type, const std::string& shape, const std::string& pixels,
                 const std::string& fortran = "False") {
   std::string header =

@@ -19,7 +19,7 @@ using namespace cairn;
 constexpr Size kSize{240, 160};
 constexpr float kDisparity = 12;
 
-/// A pattern of waves in all directions, known between the pixels.
+/// A pattern of waves in all directions, defined at subpixel positions.
 class Waves {
  public:
   explicit Waves(std::uint32_t seed) {
@@ -51,8 +51,8 @@ struct Pair {
   [[nodiscard]] StereoPair get() const { return StereoPair::from(left, right); }
 };
 
-/// A wall whose right picture is `rows` + `rows_per_px`·(columns from the middle) lower, darker, and both
-/// noisy.
+/// A wall whose right image is lower by `rows` + `rows_per_px`·(columns from the centre), darker, and noisy
+/// like the left one.
 Pair wall(double rows, double rows_per_px = 0, Size size = kSize, double noise = 2) {
   const Waves waves(5);
   const double middle = 0.5 * (size.width - 1);
@@ -101,7 +101,7 @@ TEST(EpipolarOffset, NeedsTexture) {
   const Image<Gray> plain(kSize, Gray{90}, Pool{});
   EXPECT_EQ(find_epipolar_offset(StereoPair::from(plain, plain), {}, {.max_rows = 4}, {}).outcome,
             EpipolarOutcome::few_points);
-  // Upright stripes say nothing of rows.
+  // Vertical stripes carry no information on rows.
   const auto stripes =
       support::picture(kSize, 2, 1, [](int x, int) { return x / 4 % 2 == 0 ? 60.0 : 180.0; });
   const auto same = support::picture(kSize, 2, 2, [](int x, int) { return x / 4 % 2 == 0 ? 60.0 : 180.0; });
@@ -187,7 +187,7 @@ TEST(ShiftRows, MeetsARampHalfway) {
   for (int y = 2; y < 27; ++y) EXPECT_EQ(moved(1, y), 8 * y + 4);
 }
 
-/// The share of the pixels that have a disparity, and of those the share that is right to a pixel.
+/// The density, and the share of the disparities that are correct within a pixel.
 struct Quality {
   double density = 0;
   double right = 0;
@@ -217,7 +217,7 @@ TEST(EpipolarCorrection, GivesBackTheDisparitiesThatVibrationTook) {
     EXPECT_GT(corrected.density, still.density - 0.05) << rows;
     EXPECT_GT(corrected.right, still.right - 0.01) << rows;
   }
-  EXPECT_LT(quality(wall(2), -1).density, still.density - 0.2);  // what it took
+  EXPECT_LT(quality(wall(2), -1).density, still.density - 0.2);  // the loss without correction
 }
 
 TEST(EpipolarCorrection, LeavesAPairThatFitsBitForBit) {

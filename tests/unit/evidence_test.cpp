@@ -41,7 +41,7 @@ bool inside(Rect rect, int x, int y, int margin = 0) {
          y < rect.y + rect.height + margin;
 }
 
-/// Random dots within `rect`, plain elsewhere.
+/// Random dots within `rect`, uniform elsewhere.
 Image<Gray> textured_patch(Rect rect, double noise_sigma, std::uint32_t seed) {
   Noise dots(seed + 100);
   return picture(kSize, noise_sigma, seed,

@@ -25,9 +25,8 @@
 #include <support/failing_allocations.hpp>
 #include <support/temporary_folder.hpp>
 
-/// Memory that cannot be had, at every allocation in turn: it ends in bad_alloc (or in what a library throws
-/// for it), never in an Error, which blames the input; nothing leaks, nothing half written stays, and the
-/// next call works.
+/// Fails every allocation in turn: the result is bad_alloc (or what a library throws instead), never an
+/// Error, which would blame the input; nothing leaks, no partial file remains, and the next call works.
 namespace cairn {
 
 namespace fuzz {
@@ -45,7 +44,7 @@ using Those = FailingAllocations::Those;
 struct Attempt {
   enum Outcome { done, no_memory, blamed_the_input, ended } outcome = done;
   bool has_failed = false;  // an allocation
-  std::int64_t living = 0;  // allocations that outlive it
+  std::int64_t living = 0;  // allocations that were not freed
   std::string says;
 };
 
@@ -66,14 +65,14 @@ Attempt attempt(const std::function<bool()>& work, int number, Those those) {
     result.has_failed = FailingAllocations::end();
     result.outcome = Attempt::no_memory;
   }
-  result.living = FailingAllocations::living();  // without the exception itself
+  result.living = FailingAllocations::living();  // excluding the exception itself
   return result;
 }
 
-/// What the process that tries tells the one that waits.
+/// Shared between the trying process and the waiting one.
 struct Tally {
   int number = 0;  // of the next allocation to fail
-  int failed = 0;  // allocations that did
+  int failed = 0;  // allocations that failed
   int ended = 0;   // processes that ended inside a destructor
 };
 
@@ -92,24 +91,23 @@ constexpr int kEndedInDestructor = 86;
 }
 
 struct Trial {
-  std::function<bool()> work;                     // false: the input is bad
-  std::function<void(const Attempt&)> look = {};  // at what an attempt left behind
+  std::function<bool()> work;                     // false: bad input
+  std::function<void(const Attempt&)> look = {};  // checks the state after an attempt
   /// nlohmann's values are made in it: their destructor allocates and asserts, so that the program ends where
   /// memory does, and what their constructors hold leaks. Or libstdc++ lists a folder, which throws nothing.
   bool may_end = false;
   bool may_leak = false;  // OpenCV 4.6's filters do: an image of sepFilter2D() where memory ends in it
 };
 
-constexpr int kDense = 200;  // each allocation up to this one fails, then fewer and fewer
+constexpr int kDense = 200;  // up to this number every allocation fails, then only some
 
-/// In a process of its own: lets allocations fail from tally.number on, until `work` needs no more of them.
+/// In a process of its own: fails allocations from tally.number on, until `work` needs no more.
 [[noreturn]] void try_from(Tally& tally, const Trial& trial, Those those) {
   std::set_terminate(end_quietly);
   for (;;) {
     const int number = tally.number;
     tally.number += 1 + (number < kDense ? 0 : number / 32);
-    const Attempt first =
-        attempt(trial.work, number, those);  // what is made once for the process is made now
+    const Attempt first = attempt(trial.work, number, those);  // allocates what a process allocates once
     if (trial.look) trial.look(first);
     const Attempt again = attempt(trial.work, number, those);
     const std::string where = "allocation " + std::to_string(number) +
@@ -127,7 +125,7 @@ constexpr int kDense = 200;  // each allocation up to this one fails, then fewer
   ::_exit(1);
 }
 
-/// Fails each allocation of `trial.work` once, and once with all that follow it; returns how many failed.
+/// Fails each allocation of `trial.work` alone, and together with all later ones; returns how many failed.
 int fail_each(const Trial& trial) {
   EXPECT_TRUE(trial.work());
   if (trial.look) trial.look({});
@@ -160,7 +158,7 @@ int fail_each(const Trial& trial) {
   return failed;
 }
 
-// ---- what is read, and the method ----
+// ---- reading, and the method ----
 
 class ReadWithoutMemory : public testing::TestWithParam<fuzz::Target> {};
 
@@ -183,7 +181,7 @@ TEST_P(ReadWithoutMemory, EndsInBadAlloc) {
 INSTANTIATE_TEST_SUITE_P(Everything, ReadWithoutMemory, testing::ValuesIn(fuzz::targets()),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// ---- what is written ----
+// ---- writing ----
 
 constexpr Size kSize{64, 48};
 
@@ -233,7 +231,7 @@ const Made& made() {
   return kMade;
 }
 
-/// `write` makes the file or folder that it is given whole or not at all, and leaves nothing beside it.
+/// `write` must create the given file or folder completely or not at all, and leave nothing next to it.
 int fail_each_write(const char* name, const std::function<void(const fs::path&)>& write) {
   const support::TemporaryFolder folder;
   const fs::path path = folder.path() / name;
@@ -251,7 +249,7 @@ int fail_each_write(const char* name, const std::function<void(const fs::path&)>
                     },
                     [&](const Attempt& result) {
                       const std::set<std::string> now = found();
-                      // Without any memory no folder can be emptied: a hidden one may stay.
+                      // Without memory a folder cannot be emptied: a hidden one may remain.
                       std::set<std::string> seen = now;
                       std::erase_if(seen, [](const std::string& one) {
                         return one.find("/.cairn-") != std::string::npos;

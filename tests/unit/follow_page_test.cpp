@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// What is in the player's data blocks, read back as its script reads it. That the page plays is tested in a
-// browser: cli/follow_page_in_browser.py.
+// The content of the player's data blocks, parsed as by its script. Playback is tested in a browser:
+// cli/follow_page_in_browser.py.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -23,7 +23,8 @@ using support::bytes_of;
 
 constexpr Size kSize{41, 29};
 
-/// Tracks 7, 300 and 70000: the first seen in two pieces, the second out of view, the third one object.
+/// Tracks 7, 300 and 70000: the first is seen in two pieces, the second is out of view, the third is one
+/// object.
 struct Scene {
   Step step;
   Image<Gray> left{kSize, Gray{90}, {}};

@@ -36,7 +36,7 @@ TEST(Follower, AStandingCameraSeesStandingThingsWithSteadyIds) {
   const Step first = follower.next(sample.pair(), frame_stamp(1));
   ASSERT_GE(first.tracks.list.size(), 2U);
   EXPECT_EQ(first.index, 0);
-  EXPECT_GT(first.map_from_camera.translation_m.z, 0.1);  // over the floor
+  EXPECT_GT(first.map_from_camera.translation_m.z, 0.1);  // above the floor
   Step last;
   for (int k = 2; k <= 6; ++k) last = follower.next(sample.pair(), frame_stamp(k));
   EXPECT_EQ(last.index, 5);
@@ -48,7 +48,7 @@ TEST(Follower, AStandingCameraSeesStandingThingsWithSteadyIds) {
     EXPECT_EQ(track.state, TrackState::confirmed);
     EXPECT_FALSE(track.is_moving);
   }
-  // The picture of ids says the same as the list.
+  // The id image agrees with the list.
   for (int y = 0; y < last.ids.height(); ++y) {
     for (int x = 0; x < last.ids.width(); ++x) {
       const ObjectId object = last.frame.objects.labels(x, y);
@@ -119,7 +119,7 @@ TEST(Follower, RefusesStampsThatDoNotRise) {
   EXPECT_NE(refused(follower, sample.pair(), frame_stamp(2)).find("is not later"), std::string::npos);
   EXPECT_NE(refused(follower, sample.pair(), frame_stamp(1)).find("frame 1: its stamp 100000000 ns"),
             std::string::npos);
-  EXPECT_EQ(follower.next(sample.pair(), frame_stamp(3)).index, 1);  // and goes on
+  EXPECT_EQ(follower.next(sample.pair(), frame_stamp(3)).index, 1);  // and continues
 }
 
 TEST(Follower, RefusesAPictureOfAnotherSize) {

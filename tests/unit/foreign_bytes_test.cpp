@@ -11,13 +11,13 @@
 #include <random>
 #include <sstream>
 
-/// Whatever stands in a file ends in a result or in an Error of one line: the seeds of every fuzzer, what
-/// fuzzing found once, and changes of both that nobody chose.
+/// Any file content gives a result or a one-line Error: the seeds of every fuzzer, earlier findings of
+/// fuzzing, and random changes of both.
 namespace cairn::fuzz {
 
 namespace fs = std::filesystem;
 
-/// For the names of the tests.
+/// Names for the parameterised tests.
 static void PrintTo(const Target& target, std::ostream* out) {
   *out << target.name;
 }
@@ -46,7 +46,8 @@ TEST_P(ForeignBytes, SeedsAreTakenAndWhatWasFoundOnceIsHarmless) {
   for (const std::string& bytes : found_once(GetParam().name)) EXPECT_NO_THROW((void)GetParam().run(bytes));
 }
 
-/// One change: a byte flipped, set, cut out, doubled, or the end cut off; or a piece of another input.
+/// One mutation: a byte flipped, set, removed or doubled, the end cut off, or a piece of another input
+/// inserted.
 std::string changed(std::string bytes, const std::vector<std::string>& others, std::mt19937& random) {
   const auto below = [&](std::size_t end) { return std::size_t{random()} % std::max<std::size_t>(1, end); };
   if (bytes.empty()) return others[below(others.size())];
@@ -80,8 +81,8 @@ std::string changed(std::string bytes, const std::vector<std::string>& others, s
   return bytes;
 }
 
-/// Other inputs in every run, all targets together for about two minutes; CAIRN_FUZZ_SECONDS=60 makes it
-/// longer, and CAIRN_FUZZ_SEED, which is printed, finds a fault again.
+/// New inputs in every run, for about two minutes over all targets; CAIRN_FUZZ_SECONDS=60 extends it, and
+/// CAIRN_FUZZ_SEED, which is printed, reproduces a failure.
 TEST_P(ForeignBytes, AnyChangeOfThemEndsInAResultOrInOneLine) {
   std::vector<std::string> inputs = GetParam().seeds();
   for (std::string& bytes : found_once(GetParam().name)) inputs.push_back(std::move(bytes));

@@ -11,8 +11,7 @@
 namespace cairn::report {
 namespace {
 
-/// How far left and right picture differ where the disparity says that they show the same point, in grey
-/// levels.
+/// Grey-level difference of the two images at points that the disparity relates.
 double mean_difference(const DrawnPair& drawn, float shift_px) {
   double sum = 0;
   int count = 0;
@@ -41,7 +40,7 @@ TEST(DrawnPair, HidesTheWallOnOneSideOfABoxOnly) {
   for (int y = 0; y < 240; ++y) {
     for (int x = 41; x < 319; ++x) {
       if (drawn.hidden(x, y) == 0 || drawn.hidden(x + 1, y) != 0) continue;
-      ++hidden;  // the last of a run: what hides it stands beside it
+      ++hidden;  // the last of a run: next to its occluder
       left_of_a_step += drawn.disparity_px(x + 1, y) > drawn.disparity_px(x, y) ? 1 : 0;
     }
   }

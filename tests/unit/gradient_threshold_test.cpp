@@ -14,7 +14,7 @@ using grids::grid;
 using grids::numbers;
 using Rows = std::vector<std::vector<std::int64_t>>;
 
-/// Two plain surfaces with noise on them, and the edge between them.
+/// Two uniform areas with noise, and the edge between them.
 Image<std::uint16_t> noisy_halves() {
   return grid<std::uint16_t>({{0, 1, 0, 9, 1, 0, 1}, {1, 0, 1, 9, 0, 1, 0}, {0, 1, 0, 8, 1, 2, 1}});
 }

@@ -13,7 +13,7 @@
 #include <string>
 #include <support/collection.hpp>
 
-/// The floor of the rendered frames, by the whole first half of each preset, as it is.
+/// The floor of the rendered frames, from the first half of each preset, unchanged.
 namespace cairn {
 namespace {
 
@@ -21,7 +21,7 @@ std::filesystem::path rendered() {
   return collection() / "rendered" / "dev";
 }
 
-/// a, b, c: the numbers of the file's last line.
+/// a, b, c: the numbers in the file's last line.
 GroundPlane truth(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string last;
@@ -42,7 +42,7 @@ Ground found_in(const std::filesystem::path& frame, const std::string& preset) {
   return estimate_disparity(pair, calibration.rig, config, {}).ground;
 }
 
-/// The farthest that a plane is off in the lower half of the image, px.
+/// The largest error of a plane in the lower half of the image, px.
 float off_px(const GroundPlane& found, const GroundPlane& should, Size size) {
   float most = 0;
   for (const int y : {size.height / 2, size.height - 1}) {
@@ -58,7 +58,7 @@ float off_px(const GroundPlane& found, const GroundPlane& should, Size size) {
 struct Frames {
   const char* preset;
   const char* size;
-  float farthest_px;  // of the floors that are not right, where they are not refused
+  float farthest_px;  // of the wrong floors that are not refused
 };
 class GroundFrames : public testing::TestWithParam<Frames> {};
 
@@ -74,7 +74,7 @@ TEST_P(GroundFrames, AreWithinHalfAPixelButForTwo) {
     if (!ground.plane) continue;
     const Size size = io::load_picture(entry.path() / "left.png").gray.size();
     const float off = off_px(*ground.plane, truth(entry.path() / "ground.txt"), size);
-    // Two of the twelve floors have hardly a match of their own.
+    // Two of the twelve floors have hardly any matches of their own.
     const bool is_hard = entry.path().filename() == "dev_s04" || entry.path().filename() == "dev_s08";
     EXPECT_LE(off, is_hard ? GetParam().farthest_px : 0.5F) << entry.path();
     right += off <= 0.5F ? 1 : 0;

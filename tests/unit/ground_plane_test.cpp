@@ -28,25 +28,26 @@ using grids::numbers;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// A room as a matcher sees it, 320×240: floor, wall, upright boxes and what a glossy floor mirrors of them.
+/// A room as seen by a matcher, 320×240: floor, wall, upright boxes and their mirror images in a glossy
+/// floor.
 struct Room {
   Size size{320, 240};
   std::optional<GroundPlane> floor = GroundPlane{0.0F, 0.12F, -8.0F};
   float wall_px = 6.0F;
-  std::vector<Rect> boxes{};   // each stands with its lower edge on the floor
-  bool mirror = false;         // the floor shows the boxes upside down, as far below its surface
-  bool shown = true;           // the boxes themselves are seen
+  std::vector<Rect> boxes{};   // each with its lower edge on the floor
+  bool mirror = false;         // the floor shows the boxes mirrored at its surface
+  bool shown = true;           // the boxes themselves are visible
   float noise_px = 0.3F;       // standard deviation
   double density = 0.7;        // share of pixels with a match
   double floor_density = 1.0;  // of these, on the floor
-  double wrong = 0.05;         // share of matches that are anything from 0 to 32 px
+  double wrong = 0.05;         // share of matches with a random value from 0 to 32 px
   std::uint32_t seed = 1;
 };
 
 DisparityMap matches_of(const Room& room) {
   std::mt19937 random(room.seed);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  const auto normal = [&] {  // near enough
+  const auto normal = [&] {  // approximately
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += uniform();
     return static_cast<float>(sum);
@@ -123,8 +124,8 @@ TEST(GroundAutomatic, FindsAFloorThatMirrorsTheFurniture) {
   EXPECT_FINDS(room, 0.3F);
 }
 
-/// A plain glossy floor under a camera that looks straight ahead, so that images lie as far under the feet of
-/// the boxes as the boxes rise over them; `times` as large as others.
+/// A uniform glossy floor below a level camera, so that mirror images extend as far below the feet of the
+/// boxes as the boxes extend above; `times` the usual size.
 Room of_mirror_images(int times, std::uint32_t seed) {
   const float centre = (240.0F * static_cast<float>(times) - 1) / 2;
   return {.size = {320 * times, 240 * times},
@@ -155,7 +156,7 @@ TEST(GroundAutomatic, TakesWhatIsBelowAPlaneForNoMirrorImageOfSomethingUnseen) {
 }
 
 TEST(GroundAutomatic, FindsAFloorWithFewMatchesBesideALargeWall) {
-  // Most guesses go through the wall; were it tried again and again, none would be left for the floor.
+  // Most hypotheses are on the wall; if it were tried repeatedly, none would be left for the floor.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Room room{.wall_px = 5, .floor_density = 0.2, .wrong = 0.02, .seed = seed};
     EXPECT_FINDS(room, 0.5F);
@@ -163,7 +164,7 @@ TEST(GroundAutomatic, FindsAFloorWithFewMatchesBesideALargeWall) {
 }
 
 TEST(GroundAutomatic, FindsAFloorWithFewMatches) {
-  // A tenth of its pixels; the foot of the wall, seven times as dense, draws the fit.
+  // A tenth of its pixels; the foot of the wall, seven times as dense, biases the fit.
   const Room room{.boxes = kFurniture, .floor_density = 0.15, .wrong = 0.02};
   EXPECT_FINDS(room, 0.75F);
 }
@@ -214,7 +215,7 @@ TEST(GroundAutomatic, ASlantedBoardWithMoreBehindItThanOnItIsNoFloor) {
 
 TEST(GroundAutomatic, SupportAndResidualAreThoseOfTheMatches) {
   const Ground ground = found_in({.wall_px = -100, .noise_px = 0.3F, .wrong = 0.2});
-  // 80 % of all matches are the floor's; few of the wrong ones fall onto it.
+  // 80 % of all matches are on the floor; few of the wrong ones coincide with it.
   EXPECT_NEAR(ground.support, 0.8F, 0.05F);
   EXPECT_NEAR(ground.residual_px, 0.31F, 0.04F);
 }
@@ -239,7 +240,7 @@ TEST(GroundAutomatic, AWallIsNoFloor) {
 }
 
 TEST(GroundAutomatic, FurnitureBeforeAWallIsNoFloor) {
-  // Nearer things stand lower in the picture, so that a slanting plane can be laid across them.
+  // Nearer objects are lower in the image, so a slanted plane fits across them.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Room room{
         .floor = GroundPlane{0.0F, 0.12F, -8.0F}, .boxes = kFurniture, .floor_density = 0, .seed = seed};
@@ -339,7 +340,7 @@ TEST(GroundFromPose, NeedsAHeight) {
   EXPECT_FALSE(fit_ground(DisparityMap{}, rig, config, {}).plane);
 }
 
-/// A rendered frame's truth, where the data is there.
+/// The truth of a rendered frame, if the data is available.
 std::filesystem::path rendered(const std::string& frame) {
   return collection() / "rendered" / "dev" / frame;
 }
@@ -453,8 +454,8 @@ TEST(BelowGround, TheHorizonLiesWhereTheFloorIsAtInfinity) {
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0}, {32}, {32}, {0}, {0}}));
 }
 
-/// A table top that fills the lower part of the picture, and past its edge a floor, which is `rough` from
-/// pixel to pixel, down to the row `edge`.
+/// A table top in the lower part of the image, and beyond its edge a floor, which is `rough` from pixel to
+/// pixel, down to the row `edge`.
 DisparityMap table_before_a_floor(int edge, float rough_px) {
   const Size size{160, 120};
   DisparityMap map{Image<float>(size), Image<Reject>(size, Reject::none, {})};

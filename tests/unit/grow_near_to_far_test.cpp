@@ -29,9 +29,9 @@ TEST(GrowNearToFar, TriesTheCheapestArcFirst) {
 }
 
 TEST(GrowNearToFar, DoesNotTryARefusedNeighbourAgain) {
-  // 200 refuses 175, takes 170, and would now admit 175 (its mean would move by 9.7, half a deviation
-  // is 10.8). But it does not ask again; and 175, when its own turn comes, refuses (it would move by 6.8,
-  // half a deviation is 5).
+  // 200 refuses 175, absorbs 170, and would then admit 175 (its mean would move by 9.7, half a deviation is
+  // 10.8). But it does not try again; and 175, when visited itself, refuses (its mean would move by 6.8, half
+  // a deviation is 5).
   const RegionGraph given = graph(
       {{.mean = 175, .pixels = 20}, {.mean = 200, .pixels = 10, .spread = 20}, {.mean = 170, .pixels = 4}});
   const GrowCriteria criteria{.mean_difference_max = 40, .deviation_max = 0.5, .sigma_min = 10};
@@ -39,9 +39,8 @@ TEST(GrowNearToFar, DoesNotTryARefusedNeighbourAgain) {
 }
 
 TEST(GrowNearToFar, TriesTheEarlierOfTwoArcsThatAreEqual) {
-  // 60 is visited first and refuses 50, by which its mean would move by 8. Then 50 has 60 and 40 on both
-  // sides of it, 10 away either; with the one that it takes its mean moves off, and the other is beyond its
-  // reach.
+  // 60 is visited first and refuses 50, which would move its mean by 8. Then 50 has 60 and 40 as neighbours,
+  // both 10 away; absorbing one moves its mean away from the other.
   const GrowCriteria criteria{.mean_difference_max = 10, .deviation_max = 4, .sigma_min = 1};
   const chain::Member near{.mean = 60, .pixels = 4};
   const chain::Member visited{.mean = 50, .pixels = 16};
@@ -56,7 +55,7 @@ TEST(GrowNearToFar, GoesOnWithTheNeighboursOfWhatItAbsorbed) {
 }
 
 TEST(GrowNearToFar, MayAbsorbARegionThatWasVisitedBefore) {
-  // 60 cannot take 57 (its mean would move too far), but 57, large, takes 60 when its turn comes.
+  // 60 cannot absorb 57 (its mean would move too far), but 57, which is large, absorbs 60 when visited.
   const RegionGraph given = graph({{.mean = 60, .pixels = 4}, {.mean = 57, .pixels = 400}});
   const GrowCriteria criteria{.mean_difference_max = 5, .deviation_max = 1, .sigma_min = 1};
   EXPECT_EQ(grow_near_to_far(given, criteria, {}), (Merges{1, 1}));

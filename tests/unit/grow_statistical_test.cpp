@@ -57,14 +57,14 @@ TEST(GrowStatistical, ReachesNeighboursThatCameWithAFusion) {
 }
 
 TEST(GrowStatistical, ComparesWithTheMeanOfAllThatWasFused) {
-  // Each is near its neighbour, but the last is too far from the mean of those before.
+  // Each is similar to its neighbour, but the last is too far from the mean of the earlier ones.
   const RegionGraph given = graph({{.mean = 10}, {.mean = 14}, {.mean = 18}});
   EXPECT_EQ(grow_statistical(given, {.mean_difference_max = 4, .deviation_max = 100, .sigma_min = 1}, {}),
             (Merges{0, 0, 2}));
 }
 
 TEST(GrowStatistical, PassesAgainWhereALaterRegionCanAbsorbAnEarlierOne) {
-  // The small first region cannot move its mean that far; the large second one takes it in.
+  // The small first region cannot move its mean that far; the large second one absorbs it.
   const RegionGraph given = graph({{.mean = 10, .pixels = 2}, {.mean = 14, .pixels = 200}});
   EXPECT_EQ(grow_statistical(given, {.mean_difference_max = 5, .deviation_max = 1, .sigma_min = 1}, {}),
             (Merges{1, 1}));

@@ -88,7 +88,7 @@ TEST_F(Pipelines, GiveTheVeryGreyOfTheFilesThatTheyShow) {
 }
 
 TEST_F(Pipelines, AreTakenInTheFormThatTheyHave) {
-  // What is the same picture in every form, as far as grey goes: white, grey, black.
+  // The same image in every format, as far as grey is concerned: white, grey, black.
   for (const char* form : {"GRAY8", "NV12", "I420", "YV12", "NV21", "YUY2", "UYVY", "YVYU", "Y42B", "Y444",
                            "RGB",   "BGR",  "RGBx", "BGRx", "xRGB", "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"}) {
     const auto source = open_sequence(
@@ -102,7 +102,7 @@ TEST_F(Pipelines, AreTakenInTheFormThatTheyHave) {
     const int grey = pair->left.gray(16, 16);
     const bool is_rgb = std::string_view(form).find("RGB") != std::string_view::npos ||
                         std::string_view(form).find("BGR") != std::string_view::npos;
-    // Red: 77 of 256 parts, and 81 as luminance.
+    // Red: 77 of 256 parts, 81 in luminance.
     EXPECT_NEAR(grey, is_rgb ? 77 : 81, 1) << form;
     EXPECT_EQ(int{pair->right(16, 16)}, grey) << form;
     if (std::string_view(form) == "GRAY8") {
@@ -132,7 +132,7 @@ TEST_F(Pipelines, EndWithAWordAndHaveRisingStamps) {
   Stamp before;
   while (const auto pair = source->next()) {
     EXPECT_GT(pair->stamp, before);
-    // By the steady clock: the image is as old as it took to come here.
+    // On the monotonic clock: the image's age is its latency.
     const double age = std::chrono::duration<double>(pair->arrived->time_since_epoch()).count() -
                        static_cast<double>(pair->stamp.ns) * 1e-9;
     EXPECT_GT(age, -0.001);
@@ -163,7 +163,7 @@ TEST_F(Pipelines, FramesThatTheSourceNumbersAndAreMissingAreCounted) {
       soon());
   std::size_t count = 0;
   while (source->next()) ++count;
-  // The last ones may be missing without a later one that tells.
+  // Missing frames at the end may go unnoticed without a later one.
   EXPECT_LE(count + source->status().dropped, 40U);
   EXPECT_GE(count + source->status().dropped, 33U);
   EXPECT_GT(source->status().dropped, 5U);

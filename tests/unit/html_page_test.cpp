@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// What stands in the page's data blocks, read back as the page's script reads it. That the page works is
-// tested in a browser: cli/page_in_browser.py.
+// The content of the page's data blocks, parsed as by the page's script. Behaviour is tested in a browser:
+// cli/page_in_browser.py.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void expect_map(const Json& map, const Image<T>& image, const Expected& expected
   }
 }
 
-/// A map with a value of its own in most pixels.
+/// A map with distinct values in most pixels.
 template <class T, class Value>
 Image<T> filled(const Value& value) {
   Image<T> image(kSize);
@@ -194,7 +194,7 @@ TEST(HtmlPage, IsOnePageThatNeedsNothingElse) {
   EXPECT_TRUE(page.ends_with("</html>\n"));
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
   EXPECT_EQ(page.find("{{"), std::string::npos);
-  // The one address is the name of the language that drawings are in.
+  // The only URL is the SVG namespace.
   EXPECT_EQ(page.find("https:"), std::string::npos);
   EXPECT_EQ(page.find("http:"), page.find("http://www.w3.org/2000/svg"));
   EXPECT_EQ(page.find("http:"), page.rfind("http:"));

@@ -26,7 +26,7 @@ std::vector<int> pixels(const Image<T>& image) {
   return all;
 }
 
-/// For the i-th of the 15 pixels of a small picture.
+/// For pixel i of 15 of a small image.
 std::vector<int> fifteen(const std::function<int(int)>& value) {
   std::vector<int> all;
   all.reserve(15);
@@ -56,7 +56,7 @@ class ImageFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// ---- what is read ----
+// ---- reading ----
 
 TEST_F(ImageFiles, GreyIsTheWeightedSumOfTheHouse) {
   const io::Picture read = pnm(std::string("P6 2 1 255\n") + "\x0a\x14\x1e\xff\xff\xff");
@@ -119,7 +119,7 @@ TEST_F(ImageFiles, ADecodersWarningIsNotPrinted) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// ---- deep pictures ----
+// ---- deep images ----
 
 /// A PNG of 16 bits with these values in one row.
 fs::path deep(const TemporaryFolder& folder, const std::string& name, const std::vector<int>& values) {
@@ -177,7 +177,7 @@ TEST_F(ImageFiles, LabelsInColourAreRefused) {
   EXPECT_TRUE(has(refusal([&] { io::load_labels(path); }), {"colour", "one channel"}));
 }
 
-// ---- what is written ----
+// ---- writing ----
 
 TEST_F(ImageFiles, WhatIsWrittenIsReadBack) {
   const fs::path path = folder_.path() / "out.png";
@@ -220,7 +220,7 @@ TEST_F(ImageFiles, AnEmptyImageIsNotWritten) {
   EXPECT_FALSE(fs::exists(folder_.path() / "out.png"));
 }
 
-// ---- what is refused ----
+// ---- refusals ----
 
 TEST_F(ImageFiles, RefusesWhatIsNoPicture) {
   EXPECT_TRUE(

@@ -18,21 +18,21 @@ using support::TrueTracks;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// A run through a drawn room. Odometry begins at its own origin where the test says so.
+/// A run through a rendered room. Odometry starts at its own origin if the test requires.
 class Excursion {
  public:
   LandmarksState state;
   std::vector<LandmarkEvent> events;
-  std::map<LandmarkId, std::set<int>> things_of;  // all that were taken for it
+  std::map<LandmarkId, std::set<int>> things_of;  // all objects that were matched with it
   std::map<LandmarkRefusal, int> refusals;
   int recognised = 0;
   Pose odom_from_map;
-  double drift_rad = 0;  // of each step, about the vertical
+  double drift_rad = 0;  // per step, about the vertical
   bool holes = false;
-  bool dark = false;  // matching then invents far disparities, and there are no objects
+  bool dark = false;  // matching then gives random far disparities, and there are no objects
   MotionRefusal motion = MotionRefusal::none;
   bool suspect = false;
-  double unsure_m2 = 0;  // that odometry says of its pose on top of its drift
+  double unsure_m2 = 0;  // stated by odometry in addition to its drift
   double unsure_rad2 = 0;
   LandmarksConfig config;
 
@@ -40,8 +40,8 @@ class Excursion {
                      const std::optional<Pose>& start = std::nullopt)
       : state(begin_landmarks(std::move(map), run, start)) {}
 
-  /// Odometry breaks, and goes on from a guess: the camera turned by `turned_rad` and moved by `moved_m`, as
-  /// it thinks, since the frame before.
+  /// Odometry fails and continues from a guess: since the previous frame, the camera seems to be rotated by
+  /// `turned_rad` and moved by `moved_m`.
   void break_odometry(double turned_rad, Point3 moved_m) {
     const Point3 here = odom_.translation_m;
     odom_.rotation = (rotation_about({0, 0, turned_rad}) * odom_).rotation;
@@ -49,7 +49,7 @@ class Excursion {
     constexpr double kRad = 30 * kTurn / 360;
     unsure_m2 += 1;
     unsure_rad2 += kRad * kRad;
-    for (Track& track : tracks_.tracks.list) {  // as tied_to_key() has it
+    for (Track& track : tracks_.tracks.list) {  // as done by tied_to_key()
       for (const std::size_t k : {0U, 4U, 8U}) track.covariance_m2[k] += 1;
     }
     is_new_segment_ = true;
@@ -67,7 +67,7 @@ class Excursion {
       const Point3 there = odom_.translation_m;
       odom_.rotation = (turn * odom_).rotation;
       odom_.translation_m = here + turn.rotated(there - here);
-      // As odometry's grows: 7 cm and 1° in a lap, and what is unsure of the heading shifts the place.
+      // Growth as in odometry: 7 cm and 1° per lap; heading uncertainty adds position uncertainty.
       const double way_m = length(step.translation_m);
       const Point3 moved = odom_.translation_m - here;
       for (std::size_t c = 0; c < 4; ++c) {
@@ -136,7 +136,7 @@ class Excursion {
   static Pose on_lap(double angle) {
     return camera_at(1.5 * std::cos(angle), 1.5 * std::sin(angle), angle + 0.3);
   }
-  /// Once round the middle at 1.5 m, looking outwards; 22 s.
+  /// One lap around the centre at 1.5 m, looking outwards; 22 s.
   void lap(const DrawnRoom& room, double first_angle = 0) {
     for (int i = 0; i < kLap; ++i) frame(room, on_lap(first_angle + kTurn * i / kLap));
   }
@@ -210,7 +210,7 @@ TEST(Landmarks, AreReportedMovedFromWhereToWhere) {
     const DrawnRoom before = DrawnRoom::random(seed, 8);
     Excursion run;
     run.lap(before);
-    // The first thing that became a landmark goes to where there is room on the same circle.
+    // The object of the first landmark moves to a free place on the same circle.
     const int thing = *run.things_of.begin()->second.begin();
     DrawnRoom after = before;
     Cylinder& moved = after.things[static_cast<std::size_t>(thing) - 1];
@@ -271,7 +271,7 @@ TEST(Landmarks, AreNeverGoneForNotBeingLookedAtNorInHoles) {
   blind.holes = true;
   blind.lap(empty);
   EXPECT_TRUE(blind.of_kind(LandmarkEventKind::gone).empty());
-  // And with sight, all of them are.
+  // With sight, all are gone.
   Excursion sees;
   sees.lap(before);
   sees.lap(empty);
@@ -294,7 +294,7 @@ TEST(Landmarks, AreNeverGoneNorNewInFramesWhosePoseIsAGuess) {
     if (gone == 0) {
       EXPECT_EQ(run.state.map.floor, floor);
     }
-    // With the light come the landmarks as they were.
+    // When it is light again, the landmarks are as before.
     run.dark = false;
     run.motion = MotionRefusal::none;
     run.suspect = false;
@@ -308,7 +308,7 @@ TEST(Landmarks, AreNeverGoneNorNewInFramesWhosePoseIsAGuess) {
   EXPECT_EQ(after_darkness(MotionRefusal::few_points, false), 0U);
   EXPECT_EQ(after_darkness(MotionRefusal::disagrees_with_prior, false), 0U);
   EXPECT_EQ(after_darkness(MotionRefusal::none, true), 0U);
-  // Were they taken for seeing, all would be gone.
+  // Interpreted as observations, all would be gone.
   EXPECT_GE(after_darkness(MotionRefusal::none, false), before.things.size() - 1);
 }
 
@@ -356,7 +356,7 @@ TEST(Landmarks, HaveTheUncertaintyOfAPoseAlongTheMapsAxes) {
   EXPECT_NEAR(state.located.covariance[5], 0.04, 1e-12);
   EXPECT_NEAR(state.located.covariance[10], 0.0025, 1e-12);
   EXPECT_NEAR(state.located.covariance[15], 0.0009, 1e-12);
-  // A relocation's own uncertainty comes in; roll and pitch are odometry's.
+  // Includes the uncertainty of relocalisation; roll and pitch are odometry's.
   Located located = state.located;
   located.covariance[0] += 1;
   located.covariance[3] = located.covariance[12] = 0.002;
@@ -412,7 +412,7 @@ TEST(Landmarks, TellWhereASegmentOfOdometryLiesAndHoldItApartUntilThen) {
       ASSERT_TRUE(run.state.is_located) << "room " << seed;
       EXPECT_LT(run.pose_error_m(), 0.3) << "room " << seed;
       EXPECT_EQ(run.of_kind(LandmarkEventKind::relocated).size(), 1U);
-      // As sure as the landmarks make it, of 1 m and 30 degrees.
+      // The uncertainty given by the landmarks, from a prior of 1 m and 30 degrees.
       EXPECT_LT(std::sqrt(run.state.located.covariance[0]), 0.25);
       EXPECT_LT(std::sqrt(run.state.located.covariance[15]), 6 * kTurn / 360);
       run.lap(room, 1);
@@ -465,7 +465,7 @@ TEST(Landmarks, TooFewToTellAPlaceAreGivenUpByANewSegment) {
   EXPECT_GE(run.state.map.list.size(), 4U);
   EXPECT_TRUE(changes_of(run.events).empty());
 
-  // A map that was loaded is not of this run to give up.
+  // A loaded map does not belong to this run, so it is not discarded.
   Excursion second(run.state.map, 2, Pose{});
   second.state.map.list.resize(1);
   second.break_odometry(0, {});
@@ -481,7 +481,7 @@ TEST(Landmarks, AreAsUnsureAsThePathAfterAFewDarkFramesAndNoLonger) {
   for (int i = 0; i < 10; ++i) run.frame(room, Excursion::on_lap(0.01 * i));
   const double before = run.state.located.covariance[0];
   for (int i = 0; i < 10; ++i) {
-    run.unsure_m2 = i % 2 == 0 ? 0.05 : 0;  // the keyframe is lost and found
+    run.unsure_m2 = i % 2 == 0 ? 0.05 : 0;  // the keyframe is lost and found repeatedly
     run.motion = i % 2 == 0 ? MotionRefusal::few_points : MotionRefusal::none;
     run.frame(room, Excursion::on_lap(0.1 + 0.01 * i));
   }

@@ -13,7 +13,7 @@
 #include <support/collection.hpp>
 #include <support/true_tracks.hpp>
 
-/// Recognition by itself: true masks and disparities of a rendered tour, a path that drifts as odometry does.
+/// Recognition alone: true masks and disparities of a rendered tour, on a path with the drift of odometry.
 namespace cairn {
 namespace {
 
@@ -76,19 +76,19 @@ const std::vector<TourFrame>& frames() {
 }
 
 struct Outcome {
-  int recognised = 0;  // tracks of things that were landmarks before
+  int recognised = 0;  // tracks of objects that already were landmarks
   int wrong = 0;
   bool is_located = false;
   std::vector<LandmarkEvent> events;
   LandmarkMap map;
   std::map<LandmarkId, int> thing_of;
-  double error_m = 0;  // of the path's end, with the map
+  double error_m = 0;  // at the end of the path, with the map
   double error_without_m = 0;
   double ms_per_frame = 0;
 };
 
-/// `drift`: share of the way; and degrees over the whole tour. `odom_from_world`: of a run that does not know
-/// where it begins.
+/// `drift`: share of the distance, and degrees over the whole tour. `odom_from_world`: for a run with unknown
+/// start.
 Outcome drive(double drift, double turn_deg, LandmarkMap known, int first_frame,
               const std::optional<Pose>& odom_from_world, std::map<LandmarkId, int> thing_of) {
   Outcome outcome;
@@ -217,7 +217,7 @@ Outcome drive(double drift, double turn_deg, LandmarkMap known, int first_frame,
   return outcome;
 }
 
-/// The whole way: segmented, followed, with odometry of its own.
+/// The complete pipeline: segmentation, tracking and its own odometry.
 Outcome follow() {
   Outcome outcome;
   const LandmarksConfig config;
@@ -285,7 +285,7 @@ class TourTest : public testing::Test {
   }
 };
 
-/// What events.json says: thing 5 is carried from (0.95, 1.6) to (1.05, 2.6) while it is out of view.
+/// Content of events.json: object 5 is carried from (0.95, 1.6) to (1.05, 2.6) while out of view.
 void expect_the_one_change(const Outcome& o) {
   const auto changes = changes_of(o.events);
   ASSERT_EQ(changes.size(), 1U);
@@ -301,7 +301,7 @@ TEST_F(TourTest, ThingsSeenAgainFromElsewhereAreRecognisedAndTheOneThatWasCarrie
   for (const auto& [drift, turn] : {std::pair{0.0, 0.0}, {0.01, 1.0}, {-0.01, -1.0}}) {
     const Outcome o = drive(drift, turn, {}, 0, std::nullopt, {});
     EXPECT_EQ(o.map.list.size(), 7U);
-    EXPECT_GE(o.recognised, 5);  // four that stayed and the one that was carried
+    EXPECT_GE(o.recognised, 5);  // four static ones and the carried one
     EXPECT_EQ(o.wrong, 0);
     expect_the_one_change(o);
     if (drift != 0) with += o.error_m;

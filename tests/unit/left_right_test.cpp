@@ -14,8 +14,8 @@ using grids::numbers;
 constexpr int kNone = kNoMatch;
 constexpr int kRejected = static_cast<int>(Reject::left_right);
 
-/// A box of disparity 3 before a wall of 1, in one row: left pixels 3 … 5 show the box, which hides what left
-/// pixels 1 and 2 show from the right camera; their winners are wrong.
+/// A box of disparity 3 in front of a wall of 1, in one row: left pixels 3 … 5 show the box, which hides what
+/// left pixels 1 and 2 show from the right camera; their winners are wrong.
 Matches box_before_wall() {
   Matches matches;
   matches.best = grid<std::int16_t>({{kNone, 1, 1, 3, 3, 3, 1, 1}});

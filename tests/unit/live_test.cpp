@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr Size kSize{64, 48};
 
-/// A camera that gives `frames` pairs, one each `period`, whether they are taken or not; or a file.
+/// A camera that delivers `frames` pairs, one each `period`, whether they are read or not; or a file.
 class Camera : public io::Sequence {
  public:
   Camera(int frames, std::chrono::milliseconds period, bool is_live)
@@ -59,7 +59,7 @@ class Camera : public io::Sequence {
     return status;
   }
 
-  std::chrono::milliseconds delay{0};  // how old a pair is when it comes
+  std::chrono::milliseconds delay{0};  // age of a pair on arrival
 
  private:
   int frames_;
@@ -73,7 +73,7 @@ class Camera : public io::Sequence {
   std::string none_;
 };
 
-/// Keeps what it is offered, and does `then` with each.
+/// Stores the frames it is offered, and calls `then` for each.
 class Notebook : public Sink {
  public:
   void offer(const LiveFramePtr& frame) override {
@@ -175,7 +175,7 @@ TEST(Runner, PairsThatAreTooOldAreDroppedAndCounted) {
   EXPECT_GT(summary.drops.too_old, 0U);
 }
 
-/// A camera whose second pair comes after a gap.
+/// A camera with a gap before the second pair.
 struct Gapped : Camera {
   using Camera::Camera;
   std::optional<io::SequenceFrame> next() override {

@@ -87,7 +87,7 @@ TEST(ObjectPoints, AreThoseOfItsPixelsInRasterOrder) {
 
 TEST(Locate, FarMismatchesDoNotPullTheDistance) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
-  for (int x = 20; x < 24; ++x) {  // a tenth of them at 10 and more metres
+  for (int x = 20; x < 24; ++x) {  // a tenth of them at 10 m or more
     for (int y = 5; y < 8; ++y) scene.disparity.disparity_px(x, y) = 1.0F - 0.1F * static_cast<float>(y - 5);
   }
   const Object object = scene.located(kRig).list[0];
@@ -97,14 +97,14 @@ TEST(Locate, FarMismatchesDoNotPullTheDistance) {
 
 TEST(Locate, AFewWildMatchesOfOneSurfaceDoNotStretchTheExtent) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
-  scene.disparity.disparity_px(22, 7) = 4.5F;  // 2.22 m, and one surface with the rest
+  scene.disparity.disparity_px(22, 7) = 4.5F;  // 2.22 m, connected to the rest
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
   for (int i = 0; i < 6; ++i) scene.disparity.disparity_px(21 + i, 8) = 4.5F;
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, (10 / 4.5 - 2) * 10 / 9, 1e-4);
 }
 
 TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
-  // Of the mask's 100 pixels, 40 lie behind the rest by more than a pixel of disparity.
+  // Of the mask's 100 pixels, 40 are behind the rest by more than a pixel of disparity.
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   for (int y = 5; y < 15; ++y) {
     for (int x = 26; x < 30; ++x) scene.disparity.disparity_px(x, y) = 3.5F;
@@ -163,8 +163,8 @@ TEST(Locate, IsLessSureOfWhatIsScatteredOrHardlySeen) {
 
 // ---- the main part: a slow twin ----
 
-/// The largest set of pixels of the object that are reached from one of them by steps of at most 1 px of
-/// disparity; of equals the first in raster order.
+/// The largest set of the object's pixels connected by steps of at most 1 px of disparity; ties: first in
+/// raster order.
 std::set<std::pair<int, int>> largest_part(const Scene& scene, ObjectId id) {
   const auto [width, height] = scene.objects.labels.size();
   std::set<std::pair<int, int>> seen;
@@ -241,8 +241,8 @@ Ground level_floor(float height_m) {
           Refusal::none};
 }
 
-/// A camera 1 m above the floor that sees the two sides of a crate: its nearest edge stands at `corner` (x
-/// forward, y left), the sides go away from it at `yaw` and at right angles to that.
+/// A camera 1 m above the floor that sees two sides of a crate: its nearest edge is at `corner` (x forward, y
+/// left), from which one side extends at `yaw` and the other perpendicular to it.
 struct Crate {
   double yaw;
   double length_a;
@@ -332,7 +332,7 @@ TEST(Locate, ACratesBoxIsTheCrate) {
     const Object object = scene_of(crate, corner).located(kLarge, level_floor(1)).list[0];
     ASSERT_TRUE(object.box_on_floor);
     const FloorBox& box = *object.box_on_floor;
-    EXPECT_NEAR(box.size_m.x, 0.9, 0.095) << yaw;  // without its tails, and of means in windows
+    EXPECT_NEAR(box.size_m.x, 0.9, 0.095) << yaw;  // without the tails, and of means in windows
     EXPECT_NEAR(box.size_m.y, 0.5, 0.06) << yaw;
     EXPECT_NEAR(box.size_m.z, 0.6, 0.04) << yaw;
     EXPECT_NEAR(box.yaw_rad, yaw, 0.06) << yaw;
@@ -344,7 +344,7 @@ TEST(Locate, ACratesBoxIsTheCrate) {
   }
 }
 
-/// A wall of one object, as wide and as high as said, turned by `yaw` about its middle column, 2 m ahead.
+/// A wall as one object of given width and height, rotated by `yaw` about its centre column, 2 m ahead.
 Scene wall_of(int width, int height, double yaw) {
   Scene scene({320, 240}, {{{160 - width / 2, 120 - height / 2, width, height}, 30}});
   for (int y = 0; y < 240; ++y) {
@@ -407,11 +407,11 @@ TEST(Locate, ABoxIsKnownBestAcrossTheView) {
   const auto& [xx, xy, xz, yy, yz, zz] = object.box_on_floor->centre_covariance_m2;
   const double z = object.position_in_camera_m->z;
   const double sigma_z = z * z * object.disparity_sigma_px / 60;
-  EXPECT_GT(std::sqrt(xx), sigma_z);  // straight ahead is depth, and where the box ends
+  EXPECT_GT(std::sqrt(xx), sigma_z);  // the forward axis is depth, including the box's extent
   EXPECT_LT(std::sqrt(xx), sigma_z + 0.2 * 0.9);
   EXPECT_LT(yy, xx);
   EXPECT_LT(zz, xx);
-  EXPECT_GT(xx * yy - xy * xy, 0);  // a covariance
+  EXPECT_GT(xx * yy - xy * xy, 0);  // positive definite
   EXPECT_GT(yy * zz - yz * yz, 0);
   EXPECT_GT(xx * zz - xz * xz, 0);
 }

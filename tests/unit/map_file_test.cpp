@@ -48,7 +48,7 @@ Landmark landmark(std::int64_t id, Point3 at) {
   return l;
 }
 
-/// A run of `count` frames in which one landmark is seen and another is new at frame 5.
+/// A run of `count` frames in which one landmark is seen; another one is new at frame 5.
 struct Drive {
   Tracks tracks;
   LandmarkFrame frame;
@@ -89,7 +89,7 @@ struct Drive {
   }
 };
 
-/// What `work` ends with in a process of its own: 0, or 1 with the Error's message.
+/// The outcome of `work` in a process of its own: 0, or 1 with the Error's message.
 std::pair<int, std::string> in_a_child(const std::function<void()>& work) {
   std::array<int, 2> ends{};
   EXPECT_EQ(::pipe(ends.data()), 0);
@@ -204,7 +204,7 @@ TEST(MapFile, HasPosesAndEdgesWithUncertaintiesAlongTheirOwnAxesAndExactStamps) 
   EXPECT_NEAR(poses[1].covariance[0], 0.02, 1e-6);  // the map's x is odometry's y
   EXPECT_NEAR(poses[1].covariance[7], 0.08, 1e-6);
   EXPECT_NEAR(poses[1].covariance[14], 0.02, 1e-6);
-  // Forward, the camera's z, is the direction that is known least.
+  // The camera's forward axis, z, is the most uncertain.
   const std::string g2o = as_g2o(file);
   std::istringstream edge(g2o.substr(g2o.find("EDGE_SE3:QUAT")));
   std::string name;
@@ -215,7 +215,7 @@ TEST(MapFile, HasPosesAndEdgesWithUncertaintiesAlongTheirOwnAxesAndExactStamps) 
   EXPECT_NEAR(numbers[9 + 6], 100, 0.1);  // y
   EXPECT_NEAR(numbers[9 + 11], 25, 0.1);  // z
   EXPECT_NEAR(numbers[9 + 2], 0, 0.1);    // x with z
-  // Of rotation, g2o's error is the quaternion's vector part, half the angle: four times the information.
+  // g2o's rotation error is the vector part of the quaternion, half the angle: four times the information.
   for (const std::size_t entry : {15U, 18U, 20U}) EXPECT_NEAR(numbers[9 + entry], 400, 0.4);
 
   EXPECT_NE(as_tum(file, 0).find("\n1700000000.123456789 0.000000 "), std::string::npos) << as_tum(file, 0);
@@ -232,7 +232,7 @@ TEST(MapFile, HoldsNoMoreThanTwoHundredObservationsOfALandmarkAndRunSpreadEvenly
   const auto all = file.observations();
   EXPECT_LE(all.size(), 200U);
   EXPECT_GE(all.size(), 100U);
-  // As many of the first half as of the second, but for one.
+  // Equally many of both halves, up to one.
   const auto early = std::count_if(all.begin(), all.end(),
                                    [](const MapObservation& o) { return o.stamp.ns < 50'000'000'000; });
   EXPECT_NEAR(static_cast<double>(early), static_cast<double>(all.size()) / 2, 1.5);
@@ -244,7 +244,7 @@ TEST(MapFile, StaysSmallOverAHundredThousandFrames) {
   {
     MapFile file = MapFile::open(path, MapMode::update);
     Drive drive(file);
-    drive.frames(file, 100'000);  // each fifth a keyframe
+    drive.frames(file, 100'000);  // every fifth is a keyframe
     file.end_run(RunState::done, drive.step.state.map);
   }
   EXPECT_LE(fs::file_size(path), 20U << 20U);
@@ -293,7 +293,7 @@ TEST(MapFile, ThatIsBeingWrittenIsRefusedToASecondWriterButNotToReaders) {
   const fs::path path = folder.path() / "room.db";
   MapFile writer = MapFile::open(path, MapMode::update);
   Drive drive(writer);
-  drive.frames(writer, 31);  // one transaction, and one frame that is not committed
+  drive.frames(writer, 31);  // one transaction, and one uncommitted frame
   EXPECT_TRUE(has(refusal([&] { (void)MapFile::open(path, MapMode::update); }), {"room.db", "in use"}));
   const MapFile reader = MapFile::open(path, MapMode::read_only);
   ASSERT_EQ(reader.runs().size(), 1U);
@@ -394,7 +394,7 @@ TEST(MapFile, OfAnotherRigIsRefused) {
   wide.baseline_m = 0.2F;
   for (const MapMode mode : {MapMode::read_only, MapMode::update})
     EXPECT_TRUE(has(refusal([&] { (void)MapFile::open(path, mode, wide); }), {"another rig", "0.12", "0.2"}));
-  StereoRig twice = kRig;  // the same cameras at twice the resolution
+  StereoRig twice = kRig;  // the same cameras at double resolution
   twice.focal_px *= 2;
   (void)MapFile::open(path, MapMode::update, twice);
 }
@@ -433,7 +433,7 @@ TEST(MapFile, ForgetsALandmarkWithAllThatWasSaidOfIt) {
   file.replace(forget(file.load(), LandmarkId{2}));
   EXPECT_EQ(file.load().list.size(), 1U);
   EXPECT_TRUE(file.events().empty());
-  EXPECT_EQ(file.load().next, 3);  // an id is never used twice
+  EXPECT_EQ(file.load().next, 3);  // ids are never reused
   file.replace(forget(file.load(), LandmarkId{1}));
   EXPECT_TRUE(file.observations().empty());
   EXPECT_TRUE(file.check().empty());

@@ -23,7 +23,7 @@ Image<Gray> picture(std::initializer_list<std::initializer_list<int>> rows) {
 }
 
 TEST(Match, ComparesTheWindowWithTheOneDisparityPixelsToTheLeft) {
-  // The bright pixel stands at x = 3 on the left, at x = 1 on the right: disparity 2.
+  // The bright pixel is at x = 3 on the left, at x = 1 on the right: disparity 2.
   const auto left = picture({{0, 0, 0, 90, 0, 0}, {0, 0, 0, 90, 0, 0}, {0, 0, 0, 90, 0, 0}});
   const auto right = picture({{0, 90, 0, 0, 0, 0}, {0, 90, 0, 0, 0, 0}, {0, 90, 0, 0, 0, 0}});
   const Matches matches = match_windows(StereoPair::from(left, right),
@@ -34,7 +34,7 @@ TEST(Match, ComparesTheWindowWithTheOneDisparityPixelsToTheLeft) {
   // window.
   EXPECT_EQ(matches.cost_before(3, 1), 540.0F);
   EXPECT_EQ(matches.cost_after(3, 1), 540.0F);
-  EXPECT_EQ(matches.runner_up(3, 1), 270.0F);  // d = 0, the only one further than 1 away
+  EXPECT_EQ(matches.runner_up(3, 1), 270.0F);  // d = 0, the only one more than 1 away
   EXPECT_EQ(matches.mean_cost(3, 1), (270.0F + 540.0F + 0.0F + 540.0F) / 4);
   EXPECT_EQ(matches.best_right(1, 1), 2);
 }

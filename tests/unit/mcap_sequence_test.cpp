@@ -61,7 +61,7 @@ TEST_F(McapSequence, PairsImagesByTheirStamps) {
     const auto right_info = camera.topic<ros::CameraInfo>("/cam/right/camera_info");
     for (int i = 0; i < 10; ++i) {
       const Stamp stamp{1'000'000'000LL + i * 100'000'000LL};
-      // The right camera is half a millisecond late, and misses one; its messages come first.
+      // The right camera is half a millisecond late, and misses one image; its messages come first.
       if (i != 4)
         camera.add(right, {stamp.ns + 500'000},
                    message_of_dots({stamp.ns + 500'000}, 100U + static_cast<unsigned>(i)));
@@ -134,7 +134,7 @@ TEST_F(McapSequence, ReadsTheUsualEncodings) {
       camera.add(left, {stamp}, image);
       camera.add(right, {stamp}, image);
     };
-    add(1, "rgb8", 8, {10, 20, 30, 40, 50, 60, 0, 0});  // with a gap at the row's end
+    add(1, "rgb8", 8, {10, 20, 30, 40, 50, 60, 0, 0});  // with row padding
     add(2, "bgr8", 6, {30, 20, 10, 60, 50, 40});
     add(3, "bgra8", 8, {30, 20, 10, 255, 60, 50, 40, 255});
     add(4, "mono8", 2, {7, 9});
@@ -287,7 +287,7 @@ TEST_F(McapSequence, AFolderOfRos2BagIsItsRecording) {
     }
     return std::string("none");
   };
-  EXPECT_NE(refusal_of_folder(), "none");  // a folder of whatever else
+  EXPECT_NE(refusal_of_folder(), "none");  // an arbitrary other folder
   recordings::write(folder / "metadata.yaml", "rosbag2_bagfile_information:\n");
   EXPECT_EQ(open_sequence(folder.string(), {})->name(), "run.mcap");
   fs::copy_file(file(), folder / "run_1.mcap");

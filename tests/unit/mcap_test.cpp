@@ -22,8 +22,7 @@ class Mcap : public testing::Test {
  protected:
   [[nodiscard]] fs::path at(const std::string& name) const { return folder_.path() / name; }
 
-  /// Numbers 0 … count−1 as text, in turns on two topics, with so many bytes of padding that no chunk holds
-  /// many of them.
+  /// Numbers 0 … count−1 as text, alternating between two topics, padded so that a chunk holds few of them.
   [[nodiscard]] fs::path numbers(int count, McapOptions options) const {
     fs::path path = at("numbers.mcap");
     options.sync = false;
@@ -56,7 +55,7 @@ class Mcap : public testing::Test {
     for (int i = 0; i < count; ++i) numbers[static_cast<std::size_t>(i)] = i;
     return numbers;
   }
-  /// Where each chunk ends, and how many messages the file has up to there.
+  /// The end of each chunk, and the number of messages up to there.
   static std::vector<std::pair<std::size_t, int>> chunk_ends(const std::string& bytes) {
     std::vector<std::pair<std::size_t, int>> ends;
     std::size_t at = 8;
@@ -70,7 +69,7 @@ class Mcap : public testing::Test {
       if (op == mcap::Op::chunk) ends.emplace_back(at, messages);
       if (op == mcap::Op::message_index) messages += static_cast<int>((length - 6) / 16);
     }
-    // Counted behind each chunk: the next one's count is this one's.
+    // Counted after each chunk: the count at the next one is this one's.
     for (std::size_t i = 0; i < ends.size(); ++i)
       ends[i].second = i + 1 < ends.size() ? ends[i + 1].second : messages;
     return ends;
@@ -170,7 +169,7 @@ TEST_F(Mcap, ADamagedChunkIsCountedAndTheOthersAreRead) {
   EXPECT_NE(reader.first_damage().find("checksum"), std::string::npos) << reader.first_damage();
 }
 
-/// A file with one chunk, as others may write it.
+/// A file with one chunk, as other writers may write it.
 std::string foreign(const std::string& compression, std::uint64_t claimed, const Bytes& records) {
   mcap::Writer chunk;
   chunk.number(std::uint64_t{0});
@@ -194,7 +193,7 @@ TEST_F(Mcap, ClaimsBeyondReasonAreRefusedBeforeAnythingIsAllocated) {
   EXPECT_NE(reader.first_damage().find("claims 1152921504606846976 bytes"), std::string::npos);
 }
 
-/// Records that point to one place again and again would take memory without end.
+/// Records that refer to the same place repeatedly would take unlimited memory.
 TEST_F(Mcap, WhatIsNamedManyTimesIsReadOnce) {
   mcap::Writer file;
   file.raw(mcap::kMagic);

@@ -15,8 +15,7 @@ namespace {
 using grids::grid;
 using support::RegionScene;
 
-/// The less two regions' brightness differs the likelier they are one thing: 3 for less than 5 grey levels,
-/// 1 for less than 50, −1 for less than 100, −2 for more.
+/// Score by brightness difference: 3 below 5 grey levels, 1 below 50, −1 below 100, −2 above.
 class ByBrightness {
  public:
   ByBrightness() {
@@ -57,7 +56,7 @@ TEST(MergeTree, OfOneSuperpixelIsThatOne) {
 
 TEST(MergeTree, FusesWhatIsMostAlikeFirst) {
   RegionScene scene(grid<RegionId>({{0, 1, 2, 3}, {0, 1, 2, 3}}));
-  scene.paint({50, 200, 203, 40});  // only 1 and 2 are alike; what they make differs from both others
+  scene.paint({50, 200, 203, 40});  // only 1 and 2 are similar; merged, they differ from both others
   EXPECT_EQ(parts_of(grown(scene)), (Parts{{1, 2}, {0, 4}, {3, 5}}));
   scene.paint({50, 60, 203, 200});
   EXPECT_EQ(parts_of(grown(scene)), (Parts{{2, 3}, {0, 1}, {4, 5}}));
@@ -69,7 +68,7 @@ TEST(MergeTree, OfEquallyLikelyContactsThatWhichTheRowsShowFirstIsNext) {
 }
 
 TEST(MergeTree, JudgesAFusedRegionByAllOfIt) {
-  // At first 2 is as like 1 as it is like 3; to what 0 and 1 are together it is not.
+  // At first 2 is equally similar to 1 and 3, but not to the union of 0 and 1.
   RegionScene scene(grid<RegionId>({{0, 1, 2, 3}}));
   scene.paint({50, 54, 103, 152});
   const MergeTree tree = grown(scene);
@@ -90,7 +89,7 @@ TEST(MergeTree, KnowsHowItsNodesCameToBe) {
   EXPECT_EQ(tree.nodes[3].origin.larger_part, 0.75F);
   EXPECT_EQ(tree.nodes[4].origin.least_same_thing, -2);
   EXPECT_FLOAT_EQ(tree.nodes[4].origin.larger_part, 4.0F / 6);
-  // … and what they became a part of.
+  // … and their parent.
   EXPECT_EQ(tree.nodes[1].features[kObjectFeatures - 2], 0.25F);
   EXPECT_EQ(tree.nodes[1].features[kObjectFeatures - 1], 3);
   EXPECT_EQ(tree.nodes[4].features[kObjectFeatures - 2], kUnknown);

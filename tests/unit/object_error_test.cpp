@@ -19,7 +19,7 @@ void paint(Image<Id>& image, Rect box, Id id) {
   }
 }
 
-/// A picture of ours and one of the truth, both empty at first.
+/// An image of our ids and one of true ids, initially empty.
 struct Scene {
   Image<ObjectId> ours{kSize, ObjectId::none, {}};
   Image<TruthId> truth{kSize, TruthId::none, {}};
@@ -31,7 +31,7 @@ struct Scene {
   }
 };
 
-/// The paper's Equation (5), of areas in px.
+/// The paper's Equation (5), on areas in px.
 double segmentation_error(double truth, double ours, double both) {
   return (truth + ours - 2 * both) / both;
 }
@@ -72,7 +72,7 @@ TEST(ObjectErrors, AgreeWithEquationFiveOnCountedAreas) {
 TEST(ObjectErrors, ATrueObjectIsComparedWithOursOfGreatestIouNotOfGreatestOverlap) {
   Scene scene;
   scene.real(1, {10, 10, 20, 20});
-  scene.found(1, {10, 10, 20, 12});  // 240 of its 400 px and nothing else
+  scene.found(1, {10, 10, 20, 12});  // 240 of its 400 px and no others
   scene.found(2, {0, 22, 100, 58});  // 160 of its px and 5640 others
   EXPECT_EQ(scene.score().truth[0].found, ObjectId{1});
 }
@@ -102,7 +102,7 @@ TEST(ObjectErrors, CountDontCarePixelsInNoArea) {
   scene.real(1, {10, 10, 20, 20});
   scene.truth(10, 10) = TruthId::none;
   paint(scene.truth, {30, 10, 10, 20}, TruthId::dont_care);
-  scene.found(1, {10, 10, 30, 20});  // 200 of its px lie on don't-care
+  scene.found(1, {10, 10, 30, 20});  // 200 of its px are don't-care
   const ObjectErrors errors = scene.score();
   EXPECT_DOUBLE_EQ(errors.truth[0].iou, 399 / 400.0);
   EXPECT_EQ(errors.ours[0].pixel_count, 400);
@@ -112,9 +112,9 @@ TEST(ObjectErrors, CountDontCarePixelsInNoArea) {
 TEST(ObjectErrors, ObjectsMostlyOnDontCareAreNeitherRightNorWrong) {
   Scene scene;
   paint(scene.truth, {0, 0, 60, 80}, TruthId::dont_care);
-  scene.found(1, {40, 0, 30, 20});   // 400 px on don't-care, 200 beside
-  scene.found(2, {50, 30, 30, 20});  // 200 px on don't-care, 400 beside
-  scene.found(3, {0, 60, 20, 20});   // wholly on it
+  scene.found(1, {40, 0, 30, 20});   // 400 px on don't-care, 200 outside
+  scene.found(2, {50, 30, 30, 20});  // 200 px on don't-care, 400 outside
+  scene.found(3, {0, 60, 20, 20});   // entirely on don't-care
   const ObjectErrors errors = scene.score();
   ASSERT_EQ(errors.ours.size(), 3U);
   EXPECT_TRUE(errors.ours[0].mostly_dont_care);
@@ -130,8 +130,8 @@ TEST(ObjectErrors, APhantomHasTwoHundredPixelsAndLessThanAQuarterOfThemOnTrueObj
   scene.real(1, {0, 0, 20, 20});
   scene.real(2, {0, 20, 20, 20});
   scene.found(1, {15, 0, 20, 40});  // 200 of 800 px on true objects, half of them on each: exactly a quarter
-  scene.found(2, {50, 0, 10, 20});  // 200 px on nothing
-  scene.found(3, {70, 0, 10, 19});  // 190 px on nothing: too small to matter
+  scene.found(2, {50, 0, 10, 20});  // 200 px on no object
+  scene.found(3, {70, 0, 10, 19});  // 190 px on no object: too small to matter
   scene.found(4, {0, 35, 15, 60 - 35});  // 75 of 375 px: less than a quarter
   const ObjectErrors errors = scene.score();
   EXPECT_FALSE(errors.ours[0].phantom);
@@ -262,7 +262,7 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheTwoMiddleValues) {
   EXPECT_TRUE(std::isnan(median({})));
 }
 
-// The paper's own table, from which it draws no mean: it is 19.5, the median 11.6.
+// The paper's own table, which gives no mean: it is 19.5, the median 11.6.
 TEST(Median, OfThePapersTableIsAsReported) {
   const std::vector<double> errors{24.97, 5.04, 11.64, 7.36, 13.34, 7.92, 18.78, 74.74, 41.83, 4.11, 4.94};
   EXPECT_NEAR(median(errors), 11.6, 0.05);

@@ -90,7 +90,7 @@ TEST(HintObjects, TakeAnImageOfAnySize) {
   }
 }
 
-/// Two regions side by side, and hints that say what each shows.
+/// Two adjacent regions, and hints for each.
 struct HintedScene {
   RegionScene scene;
   Image<ObjectHint> hints{{80, 60}};
@@ -98,7 +98,7 @@ struct HintedScene {
   HintedScene() : scene(labels()) {
     for (int y = 0; y < 60; ++y) {
       for (int x = 0; x < 80; ++x) {
-        // Each cell votes for the middle of its half; the outline passes at the border.
+        // Each cell votes for the centre of its half; the outline follows the border.
         const int middle = x < 40 ? 20 : 60;
         hints(x, y) = {32, static_cast<std::int16_t>(x == 39 || x == 40 ? 48 : -48),
                        static_cast<std::int16_t>(8 * (middle - x)), static_cast<std::int16_t>(8 * (30 - y)),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// Odometry on sequences whose truth is known. Prints the rows of the table in docs/stages/odometry.md.
+// Odometry on sequences with known truth. Prints the rows of the table in docs/stages/odometry.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Asked {
   std::string folder;
   std::string truth;       // in the folder; empty: the folder itself
   bool by_wheels = false;  // odometry.csv
-  int black = 0;           // every n-th frame
+  int black = 0;           // every n-th frame is black
 };
 
 struct Measured {

@@ -18,7 +18,7 @@ using room::Seen;
 
 constexpr double kDegrees = std::numbers::pi / 180;
 
-/// Turned about the vertical and moved, in the camera's axes of the map (x right, y down, z forward).
+/// Rotated about the vertical and translated, in the axes of the camera (x right, y down, z forward).
 Pose at(double x_m, double z_m, double right_deg) {
   Pose pose = rotation_about({0, right_deg * kDegrees, 0});
   pose.translation_m = {x_m, 0, z_m};
@@ -193,7 +193,7 @@ TEST(Odometry, RefusesNoiseATornImageAndAStamp) {
 }
 
 TEST(Odometry, DoesNotBelieveATranslationThatOnlyFarPointsTell) {
-  constexpr double kHall = 12;  // the nearest wall is then more than 40 baselines away
+  constexpr double kHall = 12;  // the nearest wall is more than 40 baselines away
   const OdometryState state = step(begin_odometry({}), look({}, 0, kHall)).state;
   const OdometryStep moved = step(state, look(at(0, 0, 2), 0, kHall));
   EXPECT_EQ(moved.motion.refusal, MotionRefusal::degenerate);
@@ -339,7 +339,7 @@ TEST(Odometry, AJumpToAnotherPlaceBeginsANewSegmentOfUnsurePlace) {
   EXPECT_TRUE(after.motion.is_new_segment);
   EXPECT_GE(after.state.covariance[0], 1);
 
-  const Pose half = at(0, 0.01, 90);  // as the wheels have it
+  const Pose half = at(0, 0.01, 90);  // according to the wheels
   const OdometryStep driven = step(state, look(elsewhere), wheels(half));
   ASSERT_NE(driven.motion.refusal, MotionRefusal::none);
   const OdometryStep on = step(driven.state, look(elsewhere * at(0, 0.02, 0)));

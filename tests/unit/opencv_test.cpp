@@ -25,7 +25,7 @@ std::string error_of(Work work) {
   return "no error";
 }
 
-/// The same pixels in memory of OpenCV's own.
+/// The same pixels in memory allocated by OpenCV.
 template <class T>
 cv::Mat copy_of(const Image<T>& image) {
   return mat_of(image).clone();
@@ -106,14 +106,14 @@ TEST(OpenCv, SegmentsColourInOpenCvsOrderAsItDoesFiles) {
   const cv::Mat left = bgr_of(sample.pictures.left);
   const cv::Mat right = bgr_of(sample.pictures.right);
   auto made = stereo_pair(left, right);
-  const auto pair = std::move(made);  // keeps its pixels
+  const auto pair = std::move(made);  // keeps the pixels alive
   const Config config = sample.suited();
   const Frame expected = segment(sample.pair(), sample.calibration.rig, config, {});
   const Frame frame = segment(pair, sample.calibration.rig, config, {});
   EXPECT_TRUE(same_bits(frame.disparity.disparity_px, expected.disparity.disparity_px));
   EXPECT_TRUE(same_bits(frame.objects.labels, expected.objects.labels));
   EXPECT_EQ(pair.left_rgb()(3, 5), sample.pictures.left.rgb(3, 5));
-  EXPECT_FALSE((std::is_convertible_v<MatPair, const StereoPair&>));  // a temporary's pixels would be gone
+  EXPECT_FALSE((std::is_convertible_v<MatPair, const StereoPair&>));  // its pixels would be freed
   EXPECT_TRUE((std::is_convertible_v<const MatPair&, const StereoPair&>));
 }
 

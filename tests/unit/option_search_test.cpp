@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// How programs choose numbers on the fit set: fitting/option_search.hpp.
+// The search for parameters on the fit set: fitting/option_search.hpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<Knob> kTwo{{"a", {"1", "2", "3"}}, {"b", {"1", "2", "3"}}};
 
-/// What search_knobs() tried, as "23" for a=2, b=3, with + behind what it kept.
+/// The settings tried by search_knobs(), as "23" for a=2, b=3; + marks those kept.
 struct Tried {
   std::vector<std::string> settings;
   Values best;
@@ -42,7 +42,7 @@ TEST(SearchKnobs, KeepsTheFirstOfTies) {
 }
 
 TEST(SearchKnobs, EndsAfterItsRounds) {
-  // a is worth something only beside b = 3, which the first round finds last.
+  // a only matters with b = 3, which the first round finds last.
   const auto score = [](int a, int b) { return b == 3 ? 10 * a : b; };
   EXPECT_EQ(search({"1", "1"}, 1, score).best, (Values{"1", "3"}));
   EXPECT_EQ(search({"1", "1"}, 2, score).best, (Values{"3", "3"}));

@@ -58,9 +58,9 @@ TEST(ObjectPicture, BrightensADimSceneAndNoOther) {
     const Image<Gray> left(size, level, {});
     return draw_objects(left, {}, one_object(size, {100, 100, 200, 200}), {})(10, 10).g;
   };
-  EXPECT_EQ(background(220), 165);  // a quarter darker, as all that is no object
-  EXPECT_EQ(background(25), 150);   // eight times as bright before
-  EXPECT_EQ(background(5), 30);     // and no more than that
+  EXPECT_EQ(background(220), 165);  // a quarter darker, like everything outside objects
+  EXPECT_EQ(background(25), 150);   // previously brightened eightfold
+  EXPECT_EQ(background(5), 30);     // the maximum
   EXPECT_EQ(background(0), 0);
 }
 
@@ -185,7 +185,7 @@ TEST(DisparityPicture, ListsOnlyTheReasonsInForce) {
                                  [](const Reason& reason) { return reason.bit == Reject::flat; });
   EXPECT_TRUE(has_colour(flat->colour, Reject::flat | Reject::speckle));
   EXPECT_FALSE(has_colour(flat->colour, Reject::speckle));
-  map.reject(3, 3) = Reject::flat;  // of an older result, whatever is in force now
+  map.reject(3, 3) = Reject::flat;  // from an older result, whichever checks are in force now
   EXPECT_TRUE(has_colour(flat->colour, Reject::speckle));
 }
 

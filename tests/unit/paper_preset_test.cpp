@@ -9,7 +9,7 @@
 namespace cairn {
 namespace {
 
-/// The share of the pixels that have no texture for the preset `paper`, in a plain picture with noise.
+/// The share of pixels that the preset `paper` rejects as untextured, in a uniform image with noise.
 double share_without_texture(double noise_sigma, const Config& config) {
   const Size size{80, 60};
   const auto plain = [](int, int) { return 128.0; };
@@ -28,7 +28,7 @@ TEST(PaperPreset, RefusesAPlainPictureWithTheNoiseOfACamera) {
   Config config = Config::paper();
   config.match.num_disparities = 16;
   EXPECT_GT(share_without_texture(0.9, config), 0.9);
-  config.texture.threshold = 1;  // refuses no more than a picture without any noise
+  config.texture.threshold = 1;  // refuses only noise-free uniform areas
   EXPECT_LT(share_without_texture(0.9, config), 0.1);
 }
 

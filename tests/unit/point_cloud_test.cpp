@@ -42,7 +42,7 @@ struct Ply {
   std::vector<Vertex> vertices;
 };
 
-/// As any reader of PLY does: the header's words say what follows.
+/// Like any PLY reader: the header defines the layout.
 Ply read_ply(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};

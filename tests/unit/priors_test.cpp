@@ -73,7 +73,7 @@ TEST(PriorOfWheels, ACircleIsOneInHoweverManyRows) {
   EXPECT_NEAR(place.x, -radius, 1e-4);
   EXPECT_NEAR(place.z, radius, 1e-4);
   EXPECT_NEAR(angle_of(prior->now_from_before), 90 * kDegree, 1e-4);
-  // In parts, whose borders are no row's.
+  // In parts that do not end at rows.
   Pose whole;
   for (const double from : {0.0, 0.73, 1.21})
     whole = priors->between(at_s(from), at_s(from == 0      ? 0.73
@@ -90,7 +90,7 @@ TEST(PriorOfWheels, ACameraThatLooksDownMovesAlongTheFloor) {
   const double pitch = 12;
   const auto prior = priors->between(at_s(0), at_s(0.1), camera_from_level(pitch, 0));
   ASSERT_TRUE(prior);
-  // Ahead on the floor is ahead and up for a camera that looks down.
+  // Forward on the floor is forward and up for a camera that looks down.
   const Point3 way = inverse(prior->now_from_before).translation_m;
   EXPECT_NEAR(way.y, -std::sin(pitch * kDegree), 1e-12);
   EXPECT_NEAR(way.z, std::cos(pitch * kDegree), 1e-12);
@@ -155,7 +155,7 @@ TEST(PriorOfPoses, IsTheWayBetweenTwoMoments) {
 
 TEST(PriorOfPoses, OfARobotAreTurnedToTheCamera) {
   const TemporaryFolder folder;
-  // The robot drives along its x and turns to the left about its z.
+  // The robot moves along its x and turns left about its z.
   const std::string rows = "0.0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 " + std::to_string(std::sin(0.1)) + " " +
                            std::to_string(std::cos(0.1)) + "\n";
   for (const auto& [name, text] : {std::pair{std::string("odom_base_link.tum"), rows},
@@ -185,7 +185,7 @@ TEST(PriorOfPoses, RefusesMillimetres) {
   EXPECT_TRUE(has(refusal([&] { (void)load_odometry(poses); }), {"mm.tum", "400 m/s", "in mm"}));
 }
 
-/// Rates at 100 Hz: a rest of a second with a bias, then a turn about one axis.
+/// Rates at 100 Hz: one second at rest with a bias, then a rotation about one axis.
 std::string imu_rows(double bias, double rate_rad_s, const char* noise = "0") {
   std::string text = "#timestamp [ns],w_RS_S_x [rad s^-1]\n";
   for (int i = 0; i <= 200; ++i) {
@@ -204,7 +204,7 @@ TEST(PriorOfAGyroscope, IsARotationWithoutItsBias) {
   const auto rest = priors->between(at_s(1.2), at_s(1.9));
   ASSERT_TRUE(rest);
   EXPECT_NEAR(angle_of(rest->now_from_before), 0, 1e-9);
-  // Its y is the camera's y, which is down: a turn about it is one to the right.
+  // Its y is the camera's y, which is down: a positive rotation is to the right.
   const auto turn = priors->between(at_s(2.2), at_s(2.7));
   const Point3 ahead = turn->now_from_before({0, 0, 1});
   EXPECT_NEAR(ahead.x, -std::sin(0.25), 1e-6);
@@ -223,7 +223,7 @@ TEST(PriorOfAGyroscope, ThatIsNotAtRestHasAnUnknownBias) {
 
 TEST(PriorOfAGyroscope, IsTurnedToTheCamera) {
   const TemporaryFolder folder;
-  // The IMU's y is the camera's x: it nods.
+  // The IMU's y is the camera's x: pitch.
   const Pose camera_from_imu{{0, 1, 0, -1, 0, 0, 0, 0, 1}, {}};
   const auto priors = load_imu(folder.with("imu.csv", imu_rows(0, 0.5)), camera_from_imu);
   const Point3 turn = rotation_vector(priors->between(at_s(2.2), at_s(2.7))->now_from_before);
@@ -277,7 +277,7 @@ TEST(PriorsOfTheCollection, AgreeWithTheTruth) {
     std::snprintf(name.data(), name.size(), "%03d", frame);
     std::ifstream file(tour / name.data() / "pose.txt");
     std::string line;
-    std::getline(file, line);  // a remark
+    std::getline(file, line);  // a comment
     Pose pose;
     for (std::size_t row = 0; row < 3; ++row) {
       double t = 0;
@@ -297,8 +297,8 @@ TEST(PriorsOfTheCollection, AgreeWithTheTruth) {
     const Point3 t = error.translation_m;
     const Point3 r = rotation_vector(error);
     const std::array parts{t.x, t.y, t.z, r.x, r.y, r.z};
-    // The camera shakes by 1 mm and 0.07 degrees, wheels err by 3 %: three sigma of each axis hold nearly
-    // all.
+    // The camera shakes by 1 mm and 0.07 degrees, and wheels have errors of 3 %: nearly all are within three
+    // sigma of each axis.
     bool is_within = true;
     for (std::size_t axis = 0; axis < parts.size(); ++axis)
       is_within &= std::abs(parts[axis]) < 3 * sigma(*prior, axis);

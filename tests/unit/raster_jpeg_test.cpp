@@ -12,7 +12,7 @@
 namespace cairn::io {
 namespace {
 
-/// Noise, which JPEG hardly makes smaller.
+/// Noise, which JPEG hardly compresses.
 Image<Gray> noise(Size size) {
   std::mt19937 random(5);
   Image<Gray> image(size);

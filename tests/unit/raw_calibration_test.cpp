@@ -44,7 +44,7 @@ TEST(RawCalibration, IsReadAsItWasWritten) {
   EXPECT_EQ(read.rotation, raw.rotation);
   EXPECT_EQ(read.translation_m, raw.translation_m);
   EXPECT_EQ(read.right.projection, raw.right.projection);
-  // And as a rectified pair's by what reads those.
+  // Also accepted by the reader for rectified pairs.
   const io::Calibration rectified = io::load_calibration(folder.path() / "calib.yaml");
   ASSERT_TRUE(rectified.rig);
   EXPECT_FLOAT_EQ(rectified.rig->baseline_m, 0.083F);
@@ -95,7 +95,7 @@ TEST(RawCalibration, IsReadFromARosPairWhicheverIsNamed) {
   }
 }
 
-/// A camera that looks along the body's x, its x to the body's −y.
+/// A camera that looks along the body's x, with its x along the body's −y.
 std::string euroc(const std::string& y, const std::string& model = "radial-tangential") {
   return "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [0, 0, 1, 0.5, -1, 0, 0, " + y +
          ", 0, -1, 0, 0, 0, 0, 0, 1]\nrate_hz: 20\nresolution: [752, 480]\ncamera_model: pinhole\n"
@@ -177,7 +177,7 @@ TEST(Pairs, AreFoundByNamesInFoldersAndAsFrames) {
   EXPECT_EQ(io::find_pairs(folder.path() / "c").size(), 2U);
   EXPECT_NE(refusal([&] { (void)io::find_pairs(folder.path() / "d"); }).find("left01.png and right01.png"),
             std::string::npos);
-  // A calibration takes all that pair up, other work the one called left.
+  // Calibration uses all that pair up, other commands only the pair named left.
   EXPECT_EQ(io::find_pairs(folder.path() / "e").size(), 2U);
   EXPECT_EQ(io::find_frames(folder.path() / "e").size(), 1U);
   for (const char* same : {"a", "b", "c"})

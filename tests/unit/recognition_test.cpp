@@ -52,7 +52,7 @@ TEST(Recognition, IsVetoedByPlaceSizeAndHeightAndDecidedByColours) {
   high.height_over_floor_m = 0.5;
   EXPECT_FALSE(is_known(high));
   EXPECT_TRUE(recognise(map, {same}, here, {LandmarkId{1}}, config).pairs.empty());
-  // Where the pose is not sure, a thing farther off may be the same.
+  // With an uncertain pose, a more distant object may be the same.
   Located unsure = here;
   for (const std::size_t i : {0U, 5U, 10U}) unsure.covariance[i] = 0.04;
   EXPECT_EQ(recognise(map, {seen(7, {1.5, 0, 0.25}, 5)}, unsure, {}, config).pairs.size(), 1U);
@@ -142,9 +142,9 @@ TEST(Maps, ThatAreCopiesAreMergedWithoutCountingWhatTheyShareTwice) {
   copy.list[1].position_m.x += 1;
   copy.list[1].seen = 25;
   copy.list[1].name = "box";
-  copy.list[2].is_gone = true;  // looked for, and not seen
+  copy.list[2].is_gone = true;  // expected, and not seen
   copy.list[2].expected = 40;
-  // By the same id each has found a thing of its own since.
+  // Each copy has assigned this id to a new object since.
   room.list.push_back(known(room.next++, {6, -3, 0.25}, 30));
   copy.list.push_back(known(copy.next++, {-6, -3, 0.25}, 40));
   const auto check = [](const Merged& merged) {

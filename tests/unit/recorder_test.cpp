@@ -18,7 +18,7 @@ using support::TemporaryFolder;
 
 constexpr Size kSize{64, 48};
 
-/// A frame in which nothing was found.
+/// A frame without results.
 std::shared_ptr<LiveFrame> frame_of(int index, std::uint64_t revision = 0) {
   auto pair = std::make_shared<io::SequenceFrame>();
   pair->name = std::to_string(index);
@@ -64,7 +64,7 @@ TEST(Recorder, WritesWhatIsAskedForOfEachFrame) {
   RecorderOptions options;
   options.what = parse_record_what("all");
   Recorder recorder(some_run(), options);
-  recorder.offer(frame_of(0));  // before it begins: nothing
+  recorder.offer(frame_of(0));  // ignored before the start
   recorder.start(folder.path() / "a.mcap");
   for (int i = 1; i < 6; ++i) recorder.offer(frame_of(i));
   recorder.finish();
@@ -126,7 +126,7 @@ TEST(Recorder, NamesTheCamerasFrameAsTheSourceDoes) {
       ++headers;
     }
     EXPECT_EQ(headers, 11);  // 4 images, 2 of camera_info, 2 clouds, objects, disparity, tf
-    // What is played again names the camera as the source did, and not at all where that did not.
+    // On replay, the camera has the name given by the source, or none if it had none.
     const auto again = io::open_sequence((folder.path() / "a.mcap").string(), {});
     EXPECT_EQ(again->next()->frame_id, camera);
   }
@@ -136,7 +136,7 @@ TEST(Recorder, BeginsAndEndsWhileFramesCome) {
   const TemporaryFolder folder;
   Recorder recorder(some_run(), {});
   EXPECT_EQ(recorder.summary(), "");
-  recorder.stop();  // nothing
+  recorder.stop();  // no effect
   for (const char* name : {"a.mcap", "b.mcap"}) {
     recorder.start(folder.path() / name);
     EXPECT_THROW(recorder.start(folder.path() / "c.mcap"), Error);
@@ -146,7 +146,7 @@ TEST(Recorder, BeginsAndEndsWhileFramesCome) {
     recorder.offer(frame_of(3));
     EXPECT_EQ(counts_of(folder.path() / name)["/cairn/objects"], 2);
   }
-  EXPECT_THROW(recorder.start(folder.path() / "a.mcap"), Error);  // is there already
+  EXPECT_THROW(recorder.start(folder.path() / "a.mcap"), Error);  // already exists
   EXPECT_FALSE(fs::exists(folder.path() / "c.mcap"));
 }
 
@@ -178,7 +178,7 @@ TEST(Recorder, SkipsFramesRatherThanDelayTheRunAndSaysSo) {
   constexpr int kFrames = 300;
   const LiveFramePtr frame = frame_of(1);
   for (int i = 0; i < kFrames; ++i) recorder.offer(frame);
-  // One more, once there is room: it brings the count of those before.
+  // One more when there is room again; it carries the count of the skipped ones.
   const std::uint64_t skipped = recorder.status().skipped;
   while (recorder.status().frames + skipped < kFrames) std::this_thread::yield();
   recorder.offer(frame);

@@ -23,7 +23,7 @@ PlaneMoments of_pixel(std::int64_t x, std::int64_t y, std::int64_t d) {
   return {1, x, y, x * x, x * y, y * y, d, x * d, y * d, d * d};
 }
 
-/// Of d = 20 + a·x + b·y in a rectangle, from the image's centre.
+/// d = 20 + a·x + b·y in a rectangle, from the image's centre.
 PlaneMoments moments(Rect rect, double a, double b) {
   PlaneMoments m;
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
@@ -220,7 +220,7 @@ TEST(TellEnd, FillsInTheLastTwo) {
   EXPECT_EQ(std::count(features.begin(), features.end(), 0.0F), std::ptrdiff_t{kObjectFeatures} - 2);
 }
 
-/// Every pixel as two by two of them, disparities twice as large.
+/// The scene at double resolution, with doubled disparities.
 RegionScene doubled(const RegionScene& scene) {
   const Size size{2 * scene.gray.width(), 2 * scene.gray.height()};
   const auto twice = [&](const auto& image) {
@@ -243,7 +243,7 @@ RegionScene doubled(const RegionScene& scene) {
   return result;
 }
 
-/// Features in px grow with the disparities; the others stay, but for the steps in which pixels go.
+/// Features in px scale with the disparities; the others are unchanged, up to pixel quantisation.
 template <class Values>
 void expect_same_but_px(const Values& large, const Values& small,
                         const std::vector<std::string_view>& names) {
@@ -290,7 +290,7 @@ TEST(FittedTrees, AddUp) {
   EXPECT_EQ(FittedTrees{}(std::array{1.0F}), 0);
 }
 
-/// By the definition: from the root down, one tree after the other.
+/// By definition: from the root down, one tree after the other.
 float one_by_one(const FittedTrees& trees, std::span<const float> features) {
   float sum = trees.base;
   for (const std::int16_t root : trees.roots) {

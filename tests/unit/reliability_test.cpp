@@ -134,11 +134,11 @@ TEST(TemporalWitness, AnObjectThatNobodyExpectedHalvesIt) {
 TEST(TemporalWitness, WhatWasNotSeenBeforeIsNotExpected) {
   OneObject one;
   one.step.tracks.list[0].recent = 0b101;
-  EXPECT_NEAR(one.judged().witnesses.temporal.value(), 0, 1e-6);  // the object is one that nobody expected
+  EXPECT_NEAR(one.judged().witnesses.temporal.value(), 0, 1e-6);  // the object is unexpected
   one.step.tracks.list[0].object = ObjectId::none;
   one.step.frame.objects.list.clear();
   one.step.frame.objects.labels = Image<ObjectId>(kSize, ObjectId::none, {});
-  EXPECT_FALSE(one.judged().witnesses.temporal);  // nothing there, nothing expected
+  EXPECT_FALSE(one.judged().witnesses.temporal);  // nothing seen, nothing expected
 }
 
 TEST(OdometryWitness, IsTheInliersShareAndNothingWhereTheMotionWasRefused) {
@@ -165,7 +165,7 @@ TEST(FloorWitness, FallsWhereTheFloorIsGoneOrTilted) {
   one.step.frame.ground.plane.reset();
   const Reliability hidden = one.judged(first, nullptr, true);
   EXPECT_EQ(hidden.witnesses.floor.value(), 0);
-  EXPECT_EQ(one.judged(hidden, nullptr, true).witnesses.floor.value(), 0);  // it stays expected
+  EXPECT_EQ(one.judged(hidden, nullptr, true).witnesses.floor.value(), 0);  // it is still expected
 }
 
 TEST(ScanWitness, IsTheShareOfBeamsThatTheDisparitiesConfirm) {
@@ -176,7 +176,7 @@ TEST(ScanWitness, IsTheShareOfBeamsThatTheDisparitiesConfirm) {
   for (std::size_t i = 0; i < 21; i += 2) scan.ranges_m[i] = 0.5F;  // 20 px
   EXPECT_NEAR(one.judged({}, &scan).witnesses.scan.value(), 10.0 / 21, 1e-6);
   scan.ranges_m.resize(5);
-  EXPECT_FALSE(one.judged({}, &scan).witnesses.scan);  // too few to say anything
+  EXPECT_FALSE(one.judged({}, &scan).witnesses.scan);  // too few beams
 }
 
 TEST(Reliability, OneWitnessThatDeniesEverythingIsEnough) {

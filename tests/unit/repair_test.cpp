@@ -7,7 +7,7 @@
 namespace cairn {
 namespace {
 
-/// Four columns of 10 pixels in a row of 40: superpixels 0 … 3. Nodes 4 = 0 + 1, 5 = 2 + 3, 6 = all.
+/// A row of 40 pixels in four columns of 10: superpixels 0 … 3. Nodes 4 = 0 + 1, 5 = 2 + 3, 6 = all.
 struct Row {
   MergeTree tree;
   Superpixels superpixels;
@@ -34,7 +34,7 @@ struct Row {
     tree.nodes[slot(a)].whole = whole;
     tree.nodes[slot(b)].whole = whole;
   }
-  /// A track that is expected on the pixels from `begin` to before `end`.
+  /// A track predicted on the pixels begin … end − 1.
   void expect(std::int64_t id, float confidence, int begin, int end) {
     Track track;
     track.id = TrackId{id};
@@ -46,7 +46,7 @@ struct Row {
     return repaired_scores(tree, std::move(scores), superpixels, warped, tracks,
                            {RepairMethod::objects, weight});
   }
-  /// Which superpixels are of which object.
+  /// The superpixels of each object.
   std::vector<std::int32_t> objects(const std::vector<float>& scores) const {
     return choose_by_scores(tree, scores, {0.3F, 1}).object_of;
   }
@@ -96,7 +96,7 @@ TEST(Repair, ScoresAreTheFormula) {
 }
 
 TEST(Repair, WhatTheFrameDeniesForLongIsGivenUp) {
-  // The track's confidence follows the repaired score, as tracking blends it: it must die out.
+  // The track's confidence follows the repaired score as in tracking: it must decay.
   float confidence = 1;
   for (int frame = 0; frame < 60; ++frame) {
     Row row;

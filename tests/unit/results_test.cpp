@@ -34,7 +34,7 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
-/// A folder of the test's own, gone after it.
+/// A temporary folder.
 class ResultFolder : public testing::Test {
  protected:
   void SetUp() override {
@@ -54,7 +54,7 @@ class ResultFolder : public testing::Test {
   fs::path root_;
 };
 
-/// All but a strip of obstacle is floor.
+/// Everything but a strip of obstacle is floor.
 void add_space(Frame& frame) {
   frame.space = Image<Space>(kSize, Space::floor, {});
   for (int y = 10; y < 22; ++y) std::fill_n(frame.space.row(y) + 20, 15, Space::obstacle);

@@ -77,7 +77,7 @@ TEST(RunLengthMask, RefusesRunsThatDoNotFillTheSize) {
   EXPECT_THROW((void)decode_rle({{10, 10}, ""}), Error);
 }
 
-/// The definition: one run after another over all pixels, column by column.
+/// By definition: runs over all pixels, column by column.
 Counts counts_of_all_pixels(View<const ObjectId> labels, ObjectId id) {
   Counts counts{0};
   bool inside = false;

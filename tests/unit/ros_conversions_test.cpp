@@ -4,14 +4,14 @@
 
 #include <cairn_ros/conversions.hpp>
 
-/// What packaging/ros2/cairn_ros makes of messages, with plain structs for those of rclcpp: cairn's own,
+/// The conversions in packaging/ros2/cairn_ros, with plain structs instead of those of rclcpp: cairn's own,
 /// whose members have the same names.
 namespace cairn_ros {
 namespace {
 
 using namespace cairn::ros;
 
-/// Every member has a value of its own, and every list two entries.
+/// Every member has a distinct value, and every list two entries.
 class Filler {
  public:
   void operator()(std::string_view /*name*/, auto& value) { fill(value); }

@@ -20,7 +20,7 @@ struct Sample {
   Step step;
 };
 
-/// The objects of a picture, and of a sequence of this one picture their tracks.
+/// The objects of an image, and their tracks in a sequence of this one image.
 const Sample& sample() {
   static const Sample made = [] {
     const std::filesystem::path folder =
@@ -171,7 +171,7 @@ TEST(RosFromStep, TheFloorLiesBelowTheCamera) {
   EXPECT_EQ(floor.header.stamp.nanosec, 500'000'000U);
   const Quaternion& q = floor.transform.rotation;
   EXPECT_NEAR(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1, 1e-9);
-  // A point one metre ahead on the floor lies below and before the camera: its z axis taken through q.
+  // A point on the floor one metre ahead is below and in front of the camera: its z axis rotated by q.
   const FloorFrame frame = *floor_frame(s.step.frame.ground, s.calibration.rig);
   const cairn::Pose pose =
       pose_of({floor.transform.translation.x, floor.transform.translation.y, floor.transform.translation.z},

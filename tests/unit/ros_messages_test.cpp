@@ -98,7 +98,7 @@ TEST(RosMessages, BytesAreThoseCountedByHand) {
   EXPECT_EQ(encode(Header{{1, 2}, "cam"}), header);
   const Bytes text{0, 1, 0, 0, 1, 0, 0, 0, 0};
   EXPECT_EQ(encode(String{""}), text);
-  // Three pixels of which the count stands at the next multiple of four.
+  // Three pixels, after which the count is aligned to the next multiple of four.
   const Bytes image{0, 1, 0, 0, 1, 0, 0,   0,   2,   0,   0,   0, 2, 0, 0, 0, 'l', 0, 0, 0, 1, 0, 0, 0, 3, 0,
                     0, 0, 6, 0, 0, 0, 'm', 'o', 'n', 'o', '8', 0, 0, 0, 3, 0, 0,   0, 3, 0, 0, 0, 7, 8, 9};
   EXPECT_EQ(encode(Image{{{1, 2}, "l"}, 1, 3, "mono8", 0, 3, {7, 8, 9}}), image);

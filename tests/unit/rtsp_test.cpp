@@ -15,8 +15,7 @@
 #include <support/temporary_folder.hpp>
 #include <thread>
 
-/// A camera in the network: a server of RTSP on this computer, in a process of its own that is killed and
-/// begun again.
+/// A network camera: an RTSP server on this computer, in a process of its own that is killed and restarted.
 namespace cairn::io {
 namespace {
 
@@ -27,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 class Server {
  public:
-  /// Port 0: any that is free.
+  /// Port 0: any free one.
   explicit Server(int port) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) return;

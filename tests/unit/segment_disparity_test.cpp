@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A wall, and boards before it.
+/// A wall, and boards in front of it.
 struct Board {
   Rect rect;
   float disparity_px;  // NaN: a hole
@@ -32,7 +32,7 @@ TEST(SegmentDisparity, PartsBoardsFromTheWallWithMeansInPixels) {
   const Segmentation result =
       segment_disparity(scene({60, 40}, 4, {{{5, 5, 12, 20}, 20.5F}, {{30, 8, 15, 15}, 11}}), {}, {}, {});
   ASSERT_EQ(result.regions.size(), 3U);
-  EXPECT_NEAR(result.regions[0].mean, 4, 0.1);  // a board's corner may go either way
+  EXPECT_NEAR(result.regions[0].mean, 4, 0.1);  // a board's corner may belong to either region
   EXPECT_NEAR(result.regions[1].mean, 20.5, 0.1);
   EXPECT_EQ(result.regions[1].box, (Rect{5, 5, 12, 20}));
   EXPECT_NEAR(result.regions[2].mean, 11, 0.1);
@@ -56,7 +56,7 @@ TEST(SegmentDisparity, AMapOfHolesIsOneRegionWithoutValue) {
 }
 
 TEST(SegmentDisparity, FloorIsOneRegionAndCutsABoardThatLiesOnIt) {
-  // Floor at the disparity of the board that stands on it: nothing but the mask parts them.
+  // Floor at the disparity of the board on it: only the mask separates them.
   const DisparityMap map = scene({60, 40}, 4, {{{0, 20, 60, 20}, 10}, {{20, 12, 15, 14}, 10}});
   Image<std::uint8_t> floor(Size{60, 40}, std::uint8_t{0}, {});
   for (int y = 20; y < 40; ++y) std::fill_n(floor.row(y), 60, std::uint8_t{255});
@@ -94,7 +94,7 @@ TEST(SegmentDisparity, StepsBelowTheGradientThresholdMakeNoBasins) {
     return segment_disparity(map, {}, config, {}).regions.size();
   };
   EXPECT_EQ(basins(0), 8U);
-  EXPECT_EQ(basins(0.0625F), 8U);  // as steep is not below it
+  EXPECT_EQ(basins(0.0625F), 8U);  // the threshold itself is not below
   EXPECT_EQ(basins(0.07F), 2U);
 }
 

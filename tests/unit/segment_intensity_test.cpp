@@ -9,7 +9,7 @@
 namespace cairn {
 namespace {
 
-/// A plain picture with a brighter rectangle in it.
+/// A uniform image with a brighter rectangle.
 Image<Gray> picture(Size size, Rect bright, int noise) {
   Image<Gray> image = grids::random_image<Gray>(size, 100 - noise, 100 + noise, 5);
   for (int y = bright.y; y < bright.y + bright.height; ++y) {
@@ -25,7 +25,7 @@ TEST(SegmentIntensity, PartsARectangleFromItsGround) {
   const Segmentation result = segment_intensity(image, {.smoothing_sigma = 0}, {});
   ASSERT_EQ(result.regions.size(), 2U);
   EXPECT_EQ(result.regions[1].box, bright);
-  EXPECT_NEAR(result.regions[1].pixel_count, 300, 4);  // a corner may go either way
+  EXPECT_NEAR(result.regions[1].pixel_count, 300, 4);  // a corner may belong to either region
   EXPECT_NEAR(result.regions[1].mean, 160, 0.5);
   EXPECT_NEAR(result.regions[0].mean, 100, 0.5);
 }
@@ -38,7 +38,7 @@ TEST(SegmentIntensity, ManyBasinsOfNoiseGrowToFewRegions) {
 }
 
 TEST(SegmentIntensity, AGradientBelowItsThresholdMakesNoBasins) {
-  // Without growing, regions are basins: two of them, and a corner may make one of its own.
+  // Without growing, regions are basins: two, and possibly one for a corner.
   const Image<Gray> image = picture({60, 40}, {12, 8, 20, 15}, 2);
   const auto basins = [&](float threshold) {
     const IntensityConfig config{.smoothing_sigma = 0,

@@ -21,15 +21,15 @@ Matches matched(const StereoPair& pair, int count, const SemiGlobalConfig& penal
   return match_semi_global(pair, search(0, count), penalties, {});
 }
 
-/// Everything that a test may compare at once.
+/// All results for comparison.
 std::vector<std::vector<std::vector<std::int64_t>>> costs_and_winners(const Matches& m) {
   return {numbers(m.best), numbers(m.best_right), numbers(m.cost), numbers(m.mean_cost)};
 }
 
 TEST(SemiGlobal, AddsUpFourPathsAsOneCanByHand) {
-  // Two pixels without a difference; candidates 0 and 1. Of (0, d = 1) the partner lies outside: 12 bits. So
-  // C(0, 1) = (3·12 + 3·12 + 0 + 2) / 4 = 18, C(1, 1) = (3·12 + 2) / 4 = 9, C(·, 0) = 0; P1 = 54·0.6 = 32.
-  // S(1, 1) = 9 down + 9 up + 9 leftward + 9 + min(18, P1) rightward.
+  // Two identical pixels; candidates 0 and 1. The partner of (0, d = 1) is outside: 12 bits. So C(0, 1) =
+  // (3·12 + 3·12 + 0 + 2) / 4 = 18, C(1, 1) = (3·12 + 2) / 4 = 9, C(·, 0) = 0; P1 = 54·0.6 = 32. S(1, 1) = 9
+  // down + 9 up + 9 leftward + 9 + min(18, P1) rightward.
   const Image<Gray> plain({2, 1}, 77, Pool{});
   const Matches m = matched(StereoPair::from(plain, plain), 2, {.penalty_small = 0.6F});
   EXPECT_EQ(m.best(1, 0), 0);
@@ -39,10 +39,10 @@ TEST(SemiGlobal, AddsUpFourPathsAsOneCanByHand) {
   EXPECT_EQ(m.mean_cost(1, 0), 27.0F);
   EXPECT_EQ(m.runner_up(1, 0), kNoCost);
   EXPECT_EQ(m.best_right(0, 0), 0);
-  // The left pixel's second candidate lies outside the right image.
+  // The left pixel's second candidate is outside the right image.
   EXPECT_EQ(m.cost_after(0, 0), kNoCost);
   EXPECT_EQ(m.mean_cost(0, 0), 0.0F);
-  // P1 = 54·0.1 = 5: the step from 0 to 1 is the cheaper way rightward.
+  // P1 = 54·0.1 = 5: the step from 0 to 1 is cheaper rightward.
   const Matches cheap = matched(StereoPair::from(plain, plain), 2, {.penalty_small = 0.1F});
   EXPECT_EQ(cheap.cost_after(1, 0), 41.0F);
 }
@@ -63,7 +63,7 @@ TEST(SemiGlobal, RecoversBoardsBeforeAWall) {
   EXPECT_LT(wrong * 100, shown);  // the rims only
 }
 
-/// Dots around a plain patch, 5 px apart in the two images.
+/// Dots around a uniform patch, 5 px apart in the two images.
 struct PlainPatch {
   Image<Gray> left;
   Image<Gray> right;
@@ -84,7 +84,7 @@ TEST(SemiGlobal, AnswersFromTheSurroundingsWhereThereIsNoTexture) {
       match_windows(pair, {.cost = Cost::sad, .window_size = 5, .num_disparities = 16}, {});
   const int x = scene.patch.x + scene.patch.width / 2;
   const int y = scene.patch.y + scene.patch.height / 2;
-  EXPECT_EQ(windows.best(x, y), 0);  // all are alike; the smallest wins
+  EXPECT_EQ(windows.best(x, y), 0);  // all costs are equal; the smallest disparity wins
   for (int v = scene.patch.y; v < scene.patch.y + scene.patch.height; ++v) {
     for (int u = scene.patch.x; u < scene.patch.x + scene.patch.width; ++u) EXPECT_EQ(paths.best(u, v), 5);
   }
@@ -115,7 +115,7 @@ TEST(SemiGlobal, IsBlindToTheRightCamerasGainAndOffset) {
 }
 
 TEST(SemiGlobal, KeepsLargeStepsToWhereTheIntensityChanges) {
-  // The dearer a step, the fewer there are.
+  // The larger the penalty, the fewer steps.
   const auto scene = synthetic::make_scene({.size = {90, 40}, .boxes = {{{40, 10, 25, 20}, 12}}, .seed = 9});
   const auto steps = [&](const SemiGlobalConfig& penalties) {
     const Matches m = matched(scene.pair(), 20, penalties);
@@ -178,7 +178,7 @@ TEST(SemiGlobal, IsWhatMatchDoesByThatMethod) {
             costs_and_winners(matched(scene.pair(), 12, penalties)));
   EXPECT_NE(costs_and_winners(matched(scene.pair(), 12, penalties)),
             costs_and_winners(matched(scene.pair(), 12)));
-  // The window's options have no part in it.
+  // The options of window matching have no effect.
   config.cost = Cost::sad;
   config.window_size = 21;
   config.row_band = 2;

@@ -116,7 +116,7 @@ TEST(Stamps, PairWhatIsEachOthersNearest) {
   EXPECT_EQ(pairs.right_alone, (std::vector<std::size_t>{1, 3}));
 }
 
-/// Two streams of numbers that go on, and what became of them.
+/// Two endless streams of numbers, and the pairs made of them.
 class LivePairs {
  public:
   explicit LivePairs(double max_skew_ms) : pairing_(max_skew_ms, [this](std::size_t, auto&&) { ++alone; }) {}
@@ -136,7 +136,7 @@ TEST(StampPairing, PutsTogetherWhatIsOfOneMoment) {
   LivePairs pairs(5);
   EXPECT_FALSE(pairs.push(0, 0, 1));
   EXPECT_EQ(pairs.push(1, 0, 10), (std::pair{1, 10}));
-  // The nearest that is there.
+  // The nearest one available.
   EXPECT_FALSE(pairs.push(1, 30, 20));
   EXPECT_FALSE(pairs.push(1, 34, 21));
   EXPECT_EQ(pairs.push(0, 33, 2), (std::pair{2, 21}));
@@ -146,7 +146,7 @@ TEST(StampPairing, PutsTogetherWhatIsOfOneMoment) {
   EXPECT_FALSE(pairs.push(1, 70, 30));
   EXPECT_EQ(pairs.push(0, 66, 4), (std::pair{4, 30}));
   EXPECT_EQ(pairs.alone, 2);
-  // One side alone keeps a few only.
+  // One side alone buffers only a few.
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(pairs.push(0, 100 + 33 * i, i));
   EXPECT_EQ(pairs.alone, 8);
 }
@@ -185,7 +185,7 @@ TEST(FrameRanges, KnowTheirMembersTheirEndAndTheirCount) {
 
 TEST(SequenceOfFolders, DeliversItsFramesInOrderWithTheirCalibration) {
   const TemporaryFolder folder;
-  // 9 comes before 10, though not by bytes.
+  // 9 comes before 10, unlike in byte order.
   for (const int i : {9, 10, 8}) save_frame(folder, std::to_string(i), i);
   const auto sequence = open(folder);
   EXPECT_EQ(sequence->size(), 3U);
@@ -301,7 +301,7 @@ TEST(SequenceOfFolders, RefusesAnotherCalibrationInMidSequence) {
   EXPECT_TRUE(sequence->next());
   EXPECT_TRUE(sequence->next());
   EXPECT_TRUE(has(refusal([&] { (void)sequence->next(); }), {"002/calib.txt", "000/calib.txt", "one rig"}));
-  // One that is given counts for all.
+  // A calibration given explicitly applies to all frames.
   SourceOptions options;
   options.calib = (folder.path() / "002/calib.txt").string();
   EXPECT_EQ(all_of(*open(folder, options)).size(), 3U);
@@ -442,7 +442,7 @@ TEST(SequenceOfKitti, RawRecordingsArePairedByTheirStamps) {
   EXPECT_EQ(sequence->remarks().size(), 2U);
 }
 
-/// A camera of EuRoC's without distortion.
+/// An EuRoC camera without distortion.
 std::string sensor(double x_m) {
   return "%YAML:1.0\nsensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1, 0, 0, " +
          std::to_string(x_m) +

@@ -20,7 +20,7 @@ TEST(Sha256, IsThatOfTheStandardsExamples) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-// Lengths around the ends of a block and of the room that its padding needs.
+// Lengths around block boundaries, including the room for padding.
 TEST(Sha256, DoesNotDependOnHowTheBytesAreCut) {
   std::string text;
   for (int i = 0; i < 200; ++i) text += static_cast<char>(7 * i);

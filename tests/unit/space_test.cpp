@@ -17,7 +17,7 @@ constexpr StereoRig kRig{.focal_px = 100, .cx_px = 40, .cy_px = 20, .baseline_m 
 constexpr GroundPlane kFloor{0, 0.2F, -4};
 constexpr GroundPlane kWall{0, 0, 2};  // 10 m ahead, from row 30 up
 
-/// A room: floor and a wall, with all disparities right.
+/// A room: floor and a wall, with correct disparities.
 struct Room {
   DisparityMap disparity;
   Image<float> confidence;
@@ -142,7 +142,7 @@ TEST(LabelSpace, WithoutAFloorObstaclesStandBeforeTheWalls) {
 }
 
 TEST(LabelSpace, DoesNotDependOnThreads) {
-  Room room(Size{80, 300});  // more rows than a thread takes at once
+  Room room(Size{80, 300});  // more rows than one parallel range
   room.board({30, 35, 8, 220}, 80);
   const Image<Space> one = room.space();
   const Image<Space> three = room.space(3);
@@ -189,7 +189,7 @@ TEST(ScanObstacles, WhatIsAboveTheHeightOrBeyondTheRangeIsNotInTheWay) {
 }
 
 TEST(ScanObstacles, IsAsWideAsThePictureIsOnTheFloor) {
-  // Pitched by 30 degrees the lower corner sees farther to the side than the middle row.
+  // With a pitch of 30 degrees, the lower corner sees farther to the side than the middle row.
   GroundConfig config;
   config.source = GroundSource::pose;
   config.known.camera_height_m = 1.0F;
@@ -241,13 +241,13 @@ TEST(MapObstacles, KnowsFreeOccupiedAndUnknown) {
     return grid.cells.at(row * static_cast<std::size_t>(grid.width) + column);
   };
   EXPECT_EQ(at(2.05F, 0.05F), ObstacleGrid::kOccupied);
-  EXPECT_EQ(at(3.05F, 1.05F), ObstacleGrid::kFree);     // floor beside it
+  EXPECT_EQ(at(3.05F, 1.05F), ObstacleGrid::kFree);     // floor next to it
   EXPECT_EQ(at(4.05F, 0.05F), ObstacleGrid::kUnknown);  // hidden behind it
-  EXPECT_EQ(at(0.55F, 0.05F), ObstacleGrid::kUnknown);  // nearer than the picture shows
+  EXPECT_EQ(at(0.55F, 0.05F), ObstacleGrid::kUnknown);  // nearer than the image shows
   EXPECT_EQ(at(1.05F, 4.05F), ObstacleGrid::kUnknown);  // outside of the view
 }
 
-// ---- what is left out ----
+// ---- obstacles left out ----
 
 TEST(LeftOutOf, SaysWhyEachObstacleIsNoObject) {
   Room room;
@@ -258,7 +258,7 @@ TEST(LeftOutOf, SaysWhyEachObstacleIsNoObject) {
   const std::vector<float> likeliest(48, 0.125F);
   const auto left = room.left_out(likeliest, kRig);
   ASSERT_EQ(left.size(), 3U);
-  EXPECT_EQ(left[0].reason, LeftOutReason::too_small);  // nearest first
+  EXPECT_EQ(left[0].reason, LeftOutReason::too_small);  // sorted by distance
   EXPECT_EQ(left[0].box_px, (Rect{60, 40, 4, 3}));
   EXPECT_EQ(left[1].reason, LeftOutReason::low_confidence);
   EXPECT_EQ(left[1].box_px, (Rect{30, 32, 12, 14}));
@@ -282,7 +282,7 @@ TEST(LeftOutOf, SpecksAreNoRegions) {
 TEST(LeftOutOf, AnObjectBesideAnObstacleOfItsDisparityDividesThem) {
   Room room;
   room.board({30, 32, 12, 14}, 12);
-  for (int y = 32; y < 46; ++y) room.objects(36, y) = ObjectId{1};  // through the middle
+  for (int y = 32; y < 46; ++y) room.objects(36, y) = ObjectId{1};  // through the centre
   for (const int threads : {1, 3}) {
     const auto left = room.left_out({}, kRig, threads);
     ASSERT_EQ(left.size(), 3U);

@@ -56,7 +56,7 @@ TEST(Speckle, HolesDivideIslandsAndKeepTheirReason) {
 }
 
 TEST(Speckle, WindingIslandsAreCountedWhole) {
-  // A U, an S and their like join runs that were begun apart.
+  // U, S and similar shapes join runs that started separately.
   const auto map = grid<float, float>({{4, kNaN, 4, kNaN, 4},  //
                                        {4, kNaN, 4, kNaN, 4},  //
                                        {4, kNaN, 4, 4, 4},     //

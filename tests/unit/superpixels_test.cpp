@@ -17,7 +17,7 @@ using Rows = std::vector<std::vector<std::int64_t>>;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// A picture in stripes of four columns each.
+/// An image of stripes, four columns each.
 Image<Gray> stripes(const std::vector<int>& shades, int height = 3) {
   Image<Gray> gray({4 * static_cast<int>(shades.size()), height});
   for (int y = 0; y < height; ++y) {
@@ -85,7 +85,7 @@ TEST(Superpixels, WhatIsMostAlikeFusesFirst) {
 }
 
 TEST(Superpixels, OfEqualBordersTheFirstGoes) {
-  // All alike and of one size: the border that the first row shows first.
+  // All equally similar and of equal size: the border that comes first in raster order.
   EXPECT_EQ(first_row(cut(stripes({50, 90, 50, 90}), 3)),
             (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
 }

@@ -37,7 +37,7 @@ TEST(Texture, KeepsRandomDots) {
 }
 
 TEST(Texture, RejectsStripesSinceOneShiftAlongThemChangesNothing) {
-  // This is what sets the Moravec operator apart from mere contrast.
+  // This distinguishes the Moravec operator from plain contrast.
   EXPECT_EQ(count_rejected(picture({20, 20}, [](int x, int) { return x % 4 < 2 ? 0 : 200; }), {5, 4.0F}),
             400);
   EXPECT_EQ(count_rejected(picture({20, 20}, [](int, int y) { return y % 4 < 2 ? 0 : 200; }), {5, 4.0F}),

@@ -18,7 +18,7 @@ namespace {
 
 using Ids = std::vector<std::int64_t>;
 
-/// n frames with one true object each (id 1), found as `ours` says; 0 = not found.
+/// n frames with one true object each (id 1), found under the ids in `ours`; 0 = not found.
 std::vector<ScoredFrame> one_object(const Ids& ours, double similarity = 1) {
   std::vector<ScoredFrame> frames;
   for (const std::int64_t id : ours)
@@ -53,7 +53,7 @@ TEST(TrackError, AnotherIdHalfwayCostsHalfOfTheAssociation) {
 }
 
 TEST(TrackError, LostAndFoundUnderTheSameIdIsAFragmentAndNoSwitch) {
-  // Something is found in the frame in which the object is lost: TrackEval passes over frames without any.
+  // The frame without the object has another detection, since TrackEval skips frames without any.
   std::vector<ScoredFrame> frames = one_object({5, 5, 5, 5, 5});
   frames[2] = {{1}, {9}, {0.0}};
   const TrackErrors e = track_errors(frames);
@@ -62,7 +62,7 @@ TEST(TrackError, LostAndFoundUnderTheSameIdIsAFragmentAndNoSwitch) {
   EXPECT_EQ(e.missed, 1);
   EXPECT_EQ(e.wrong, 1);
   EXPECT_NEAR(e.mota, (4.0 - 1) / 5, 1e-12);
-  EXPECT_EQ(e.partly_tracked, 1);  // 80 % are not more than 80 %
+  EXPECT_EQ(e.partly_tracked, 1);  // 80 % is not more than 80 %
   EXPECT_NEAR(e.det_a, 4.0 / 6, 1e-12);
 }
 
@@ -96,13 +96,13 @@ TEST(TrackError, WithoutAnythingOnOneSideNothingIsRight) {
 }
 
 TEST(TrackError, AMatchIsKeptAgainstABetterFit) {
-  // In the second frame another one fits better, but the first still fits well enough.
+  // In the second frame another one fits better, but the first one still fits well enough.
   const std::vector<ScoredFrame> frames{{{1}, {5, 6}, {0.9, 0.0}}, {{1}, {5, 6}, {0.6, 0.8}}};
   EXPECT_EQ(clear_matches(frames), (std::vector<std::vector<int>>{{0}, {0}}));
   EXPECT_EQ(track_errors(frames).switches, 0);
 }
 
-/// The best sum over all ways to give rows to columns.
+/// The best sum over all assignments.
 double best_sum(const std::vector<std::vector<double>>& scores, std::size_t row, std::vector<char>& taken) {
   if (row == scores.size()) return 0;
   double best = best_sum(scores, row + 1, taken);
@@ -140,7 +140,7 @@ TEST(TrackError, TheAssignmentIsTheBestOfAll) {
 TEST(OracleIds, TheBestOnATrueObjectHasItsIdAndTheOthersTheirOwn) {
   const std::vector<ScoredFrame> frames =
       oracle_ids({{{7, 8}, {1, 2, 3}, {0.3, 0.6, 0.0, 0.1, 0.0, 0.0}}, {{7}, {1}, {0.9}}});
-  EXPECT_EQ(frames[0].ours, (Ids{-1, 7, -2}));  // the first lies on 7, too, but less
+  EXPECT_EQ(frames[0].ours, (Ids{-1, 7, -2}));  // the first one overlaps 7, too, but less
   EXPECT_EQ(frames[1].ours, (Ids{7}));
 }
 
@@ -149,7 +149,7 @@ TEST(OracleIds, NoSwitchIsLeft) {
   EXPECT_NEAR(track_errors(oracle_ids(one_object({5, 8, 9, 5}))).ass_a, 1, 1e-12);
 }
 
-/// A picture of 10×1 px.
+/// An image of 10×1 px.
 template <class T>
 Image<T> row(const std::vector<int>& values) {
   Image<T> image({static_cast<int>(values.size()), 1});
@@ -168,7 +168,7 @@ TEST(ScoredFrame, CountsPixelsOutsideDontCare) {
 
 TEST(ScoredFrame, LeavesOutWhatLiesMostlyWhereItIsNeitherRightNorWrong) {
   const auto ours = row<TrackId>({4, 4, 4, 5, 5, 6, 6, 6, 0, 0});
-  // 4: two of three on a small object; 5: half on don't-care; 6: on nothing that is labelled.
+  // 4: two thirds on a small object; 5: half on don't-care; 6: on unlabelled pixels.
   const auto truth = row<TruthId>({1, 1, 0, -1, 3, 0, 0, 3, 3, 3});
   EXPECT_EQ(scored_frame(ours, truth, {3, false}).ours, (Ids{5, 6}));
   EXPECT_EQ(scored_frame(ours, truth, {3, true}).ours, (Ids{5}));

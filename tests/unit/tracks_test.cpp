@@ -23,7 +23,7 @@ Stamp seconds(double s) {
   return {std::llround(s * 1e9)};
 }
 
-// ---- a path that is uncertain ----
+// ---- an uncertain path ----
 
 Track standing(Point3 at_m) {
   Track track;
@@ -61,7 +61,7 @@ TEST(Tracks, AreAsUnsureAgainstANewKeyframeAsItIsTied) {
 TEST(Tracks, HaveThePosesUncertaintyInTheMapOnly) {
   Covariance6 pose{};
   pose[7] = 0.09;
-  pose[21] = 0.01;  // about x: lifts what is ahead along y
+  pose[21] = 0.01;  // about x: raises points ahead along y
   const Covariance3 in_map_m2 = covariance_in_map(standing({0, 3, 0}), {}, pose);
   EXPECT_NEAR(in_map_m2[0], 0.01, 1e-12);
   EXPECT_NEAR(in_map_m2[4], 0.1, 1e-12);
@@ -116,9 +116,9 @@ TEST(InMap, TurnsTheCovarianceAndAddsThePoses) {
   const Covariance3 turned = in_map(wide_in_x, {0, 0, 2}, quarter, {});
   EXPECT_NEAR(turned[0], 1, 1e-12);
   EXPECT_NEAR(turned[4], 9, 1e-12);
-  // A camera that may be turned about y by 0.1 rad moves a point 2 m before it by 0.2 m in x.
+  // If the rotation about y is uncertain by 0.1 rad, a point 2 m ahead is uncertain by 0.2 m in x.
   Covariance6 pose{};
-  pose[0] = 0.5;       // its own place in x
+  pose[0] = 0.5;       // position in x
   pose[4 * 7] = 0.01;  // rotation about y
   const Covariance3 found = in_map(variances(0), {0, 0, 2}, {}, pose);
   EXPECT_NEAR(found[0], 0.5 + 0.04, 1e-12);
@@ -153,7 +153,7 @@ TEST(Likeness, IsOneOfTheSameAndNoughtOfOtherColours) {
   EXPECT_FLOAT_EQ(likeness(a, a), 1);
   EXPECT_FLOAT_EQ(likeness(a, b), 0);
   b[1] = 0;
-  b[0] = 1;  // as light, of another colour
+  b[0] = 1;  // equal lightness, another colour
   EXPECT_FLOAT_EQ(likeness(a, b), 0.5F);
 }
 
@@ -173,13 +173,13 @@ Sighting sighting_at(std::int32_t object, Point3 position_m, float confidence = 
   return seen;
 }
 
-/// A camera that stands, ten frames a second.
+/// A static camera at 10 Hz.
 struct Story {
   Tracks tracks;
   int frame = 0;
   TrackingConfig config;
 
-  /// What the masks say where a test does not care: each track is in view and hidden by nothing.
+  /// The default overlaps: each track is in view and unoccluded.
   [[nodiscard]] Overlaps plain(int objects) const {
     Overlaps overlaps;
     const std::size_t count = tracks.list.size();
@@ -311,7 +311,7 @@ TEST(Tracks, AverageWhereAStandingThingIs) {
   EXPECT_FALSE(story.only().is_moving);
   EXPECT_NEAR(story.only().position_m.x, 0, 0.01);
   EXPECT_EQ(story.only().velocity_m_s, Point3{});
-  // The mask's own error does not average out: half of its variance stays.
+  // The mask's own error does not average out: half of its variance remains.
   EXPECT_GT(story.only().covariance_m2[0], 2e-4);
   EXPECT_LT(story.only().covariance_m2[0], 4e-4);
 }
@@ -323,7 +323,7 @@ TEST(Tracks, ARollingThingIsFoundToMoveAndToStandAgain) {
     story.step({sighting_at(1, {0.04 * k, 0, 2})});
     if (story.only().is_moving && moving_at < 0) moving_at = k;
   }
-  EXPECT_GE(moving_at, 3);  // no two sightings decide
+  EXPECT_GE(moving_at, 3);  // no two sightings suffice
   EXPECT_LE(moving_at, 5);
   EXPECT_NEAR(story.only().velocity_m_s.x, 0.4, 0.04);
   int stands_at = -1;
@@ -352,7 +352,7 @@ TEST(Tracks, AMaskThatLeapsOnceDoesNotMove) {
   Story story;
   for (int k = 0; k < 10; ++k) story.step({sighting_at(1, {0, 0, 2})});
   for (int k = 0; k < 10; ++k) {
-    story.step({sighting_at(1, {0.06, 0, 2})});  // it holds a piece more from now on
+    story.step({sighting_at(1, {0.06, 0, 2})});  // from now on with an additional piece
     EXPECT_FALSE(story.only().is_moving) << k;
   }
 }
@@ -436,7 +436,7 @@ TEST(Tracks, AnObjectThatIsTwoOfThemFoundsNone) {
   overlaps.common = {90, 95};
   Sighting both = sighting_at(1, {0.15, 0, 2});
   both.look = {};
-  both.look[5] = both.look[60] = 1;  // like neither: it gets no id
+  both.look[5] = both.look[60] = 1;  // similar to neither: it gets no id
   both.pixel_count = 400;
   story.step({both}, overlaps);
   EXPECT_EQ(story.ids(), (std::vector<std::int64_t>{1, 2}));
@@ -461,7 +461,7 @@ TEST(Tracks, PiecesFoundNoTracksOfTheirOwnAtFirst) {
     EXPECT_EQ(story.only().parts.size(), 1U);
     EXPECT_NEAR(story.only().position_m.x, 0, 1e-6);
   }
-  in_pieces();  // by now it is rather two things
+  in_pieces();  // by now it is more likely two objects
   EXPECT_EQ(story.tracks.list.size(), 2U);
   EXPECT_TRUE(story.tracks.list[0].parts.empty());
 }
@@ -563,7 +563,7 @@ TEST(Sight, AnUnsureOrCutMaskTellsLessOfItsMiddle) {
   const Sighting cut = Picture({0, 10, 12, 8}, 1).sighted().at(0);
   EXPECT_TRUE(cut.is_cut);
   EXPECT_GT(cut.covariance_in_camera_m2[0], 10 * sure);
-  EXPECT_LT(cut.covariance_in_camera_m2[4], sure);  // left and right are cut, not above and below
+  EXPECT_LT(cut.covariance_in_camera_m2[4], sure);  // clipped at left and right, not at top and bottom
 }
 
 TEST(Sight, LeavesOutWhatIsLessSureThanAsked) {

@@ -20,7 +20,7 @@ Stamp frame(int k) {
   return {std::int64_t{100'000'000} * k};
 }
 
-/// Straight on along x, `step_m` a frame; the attitude stays.
+/// Straight along x, `step_m` per frame, with constant attitude.
 std::vector<TimedPose> straight(int count, double step_m) {
   std::vector<TimedPose> poses;
   for (int k = 0; k < count; ++k)
@@ -63,8 +63,7 @@ TEST(TrajectoryError, OfAPathThatIsTooLongByAHundredth) {
   EXPECT_NEAR(e.rpe_frame_m, 0.001, 1e-9);
   EXPECT_NEAR(e.t_rel, 0.01, 0.0012) << "a sub-path ends with the first pose beyond its length";
   EXPECT_NEAR(e.r_rel_rad_per_m, 0, 1e-12);
-  // Errors from -5 cm to 5 cm around the middle, evenly: their root mean square is √((n²-1)/12) steps of 1
-  // mm.
+  // Errors evenly distributed over −5 … 5 cm: their RMS is √((n²−1)/12) steps of 1 mm.
   EXPECT_NEAR(e.ate_rmse_m, 0.001 * std::sqrt((101.0 * 101.0 - 1) / 12), 1e-9);
   EXPECT_NEAR(e.ate_max_m, 0.05, 1e-9);
 }

@@ -12,7 +12,7 @@
 namespace cairn {
 namespace {
 
-/// Boards before a wall, their true disparities known; the start refuses more than it should.
+/// Boards in front of a wall, with known disparities; the start refuses more than necessary.
 class Tuned : public ::testing::Test {
  protected:
   [[nodiscard]] TuningFrame frame(const synthetic::Scene& scene, const std::string& name) const {
@@ -87,7 +87,7 @@ TEST_F(Tuned, WhatCannotBeTunedIsRefused) {
   EXPECT_THROW(tune(frames(), {.evaluations = -1}, Exec{}), Error);
   EXPECT_THROW(tune(frames(), {.holdout = 1}, Exec{}), Error);
   EXPECT_THROW(tune({frames()[0]}, {.holdout = 0.5}, Exec{}), Error);
-  EXPECT_THROW(tune(frames(), {.options = {"superpixels.*"}}, Exec{}), Error);  // no true objects judge it
+  EXPECT_THROW(tune(frames(), {.options = {"superpixels.*"}}, Exec{}), Error);  // no true objects to judge by
   config_.match.window_size = 8;
   EXPECT_THROW(tune(frames(), {}, Exec{}), Error);
 }

@@ -24,7 +24,7 @@ TEST(GainOfAChange, IsTheDifferenceOfTheMeansWithWhatOtherFramesMayGain) {
   EXPECT_NEAR(gain_of({{5, 10}}, {{4, 10}}).mean, 0.1, 1e-12);
   EXPECT_TRUE(std::isnan(gain_of({{5, 10}}, {{4, 10}}).low));
   EXPECT_TRUE(std::isnan(gain_of({{0, 0}}, {{0, 0}}).mean));
-  // Many frames: t comes near that of a Gaussian.
+  // With many frames, t approaches the Gaussian quantile.
   std::vector<Loss> many_before(31, Loss{5, 10});
   std::vector<Loss> many_after(31, Loss{4, 10});
   many_after[0].sum = 0;
@@ -50,7 +50,7 @@ bool has(const Strings& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
-// ---- what may be tuned ----
+// ---- tunable options ----
 
 TEST(Tunable, TakesItsLimitsFromTheFieldsOfItsStage) {
   const Tunable window = named("match.window_size");
@@ -85,7 +85,7 @@ TEST(Tunable, OnlyWhatTheConfigReadsIsVaried) {
 TEST(Tunable, WhatHasNoEffectIsVariedOnlyBesideWhatMayGiveItOne) {
   EXPECT_FALSE(has(names_of(tunables({"texture.*"}, Config::paper())), "match.cost"));
   const Strings all = names_of(tunables({"match.*"}, Config{}));
-  EXPECT_TRUE(has(all, "match.cost"));           // with match.method=window, which is among them
+  EXPECT_TRUE(has(all, "match.cost"));           // active with match.method=window, which is tunable
   EXPECT_TRUE(has(all, "match.prefilter_cap"));  // and with match.prefilter=xsobel
   for (const Strings& patterns : {Strings{"match.cost"}, Strings{"left_right.*", "intensity.*"}}) {
     try {
@@ -191,7 +191,7 @@ double log_square(double value, double best) {
   return std::pow(std::log(value / best), 2);
 }
 
-/// A bowl in the logarithm of two options, the same for two frames, and a choice.
+/// A quadratic bowl in the logarithms of two options, the same for two frames, and a choice.
 std::vector<Loss> bowl(const std::vector<Setting>& settings) {
   double loss = 1 + log_square(value_of(settings, "evidence.gradient_min"), 4) +
                 log_square(value_of(settings, "speckle.size"), 20);
@@ -337,7 +337,7 @@ TEST(MeanLoss, IsThatOfThingsNotOfFrames) {
   EXPECT_TRUE(std::isinf(mean_loss({{1, 0}})));
 }
 
-// ---- a frame's loss ----
+// ---- the loss of a frame ----
 
 TEST(FrameLoss, IsTheCappedErrorWithWrongObjectsAsFaults) {
   FrameObjects frame;

@@ -15,7 +15,7 @@
 #include <support/fake_v4l2.hpp>
 #include <support/temporary_folder.hpp>
 
-/// Cameras of V4L2, as a kernel shows them that is none: no such device was there to try.
+/// V4L2 cameras on a simulated kernel: no such device was available.
 namespace cairn::io {
 namespace {
 
@@ -58,7 +58,7 @@ DeviceEvent silence() {
   return event;
 }
 
-/// 8 x 4 of YUYV.
+/// 8 x 4 pixels of YUYV.
 FakeDevice yuyv_device() {
   FakeDevice device;
   device.picture = bytes_of_noise(8 * 4 * 2);
@@ -68,7 +68,7 @@ FakeDevice yuyv_device() {
 class V4l2 : public testing::Test {
  protected:
   ~V4l2() override {
-    // Whatever happened, nothing is left open.
+    // In any case no device remains open.
     EXPECT_EQ(fake_.open_now, 0);
     EXPECT_EQ(fake_.mapped_now, 0);
     EXPECT_EQ(fake_.streaming_now, 0);
@@ -358,7 +358,7 @@ class V4l2Sequence : public V4l2 {
   std::unique_ptr<Sequence> sequence(const SourceOptions& options = {}, CameraTimes times = quick()) {
     return sequence(std::string("v4l2:") + kDevice, options, times);
   }
-  /// Frames for ever, 2 ms apart.
+  /// Endless frames, 2 ms apart.
   FakeDevice& steady(const char* path = kDevice) {
     fake_.devices[path] = yuyv_device();
     fake_.devices[path].events = {frame(0, 1'000'000)};
@@ -402,7 +402,7 @@ TEST_F(V4l2Sequence, WhatIsNotTakenIsReplacedAndCounted) {
   std::this_thread::sleep_for(60ms);
   const auto pair = source->next();
   ASSERT_TRUE(pair);
-  // At once the newest: it is not as old as the pause was long.
+  // The newest at once: it is not as old as the pause.
   EXPECT_LT(Clock::now() - *pair->arrived, 40ms);
   EXPECT_GT(source->status().dropped, 3U);
   ASSERT_EQ(source->remarks().size(), 1U);
@@ -412,7 +412,7 @@ TEST_F(V4l2Sequence, WhatIsNotTakenIsReplacedAndCounted) {
 TEST_F(V4l2Sequence, ThatIsUnpluggedComesBackAfterAGap) {
   FakeDevice& device = steady();
   device.events = {frame(0, 1000), frame(1, 2000), error(ENODEV), frame(0, 900'000)};
-  device.open_errors = {0, ENOENT, ENOENT};  // at first it is there
+  device.open_errors = {0, ENOENT, ENOENT};  // present at first
   const auto source = sequence();
   std::optional<SequenceFrame> pair;
   for (int i = 0; i < 100 && !(pair && pair->after_gap); ++i) {
@@ -576,11 +576,11 @@ TEST_F(TwoDevices, ArePairedByStampsAndTheRestIsCounted) {
   FakeDevice& left = steady("/dev/video0");
   FakeDevice& right = steady("/dev/video2");
   right.picture = bytes_of_noise(8 * 4 * 2, 9);
-  // The right one is 1 ms late, misses the third frame, and has one too many.
+  // The right one is 1 ms late, misses the third frame, and has an extra one.
   left.events = {frame(0, 100'000), frame(1, 133'000), frame(2, 166'000), frame(3, 200'000)};
   right.events = {frame(0, 101'000), frame(1, 134'000), frame(2, 150'000), frame(3, 201'000)};
   left.repeats = right.repeats = false;
-  left.pace_ms = right.pace_ms = 60;  // so that every pair is taken
+  left.pace_ms = right.pace_ms = 60;  // so that no pair is skipped
   const auto source = sequence(kBoth, {}, {10s, 10s, 10s, 10s});
   EXPECT_EQ(source->name(), "video0,video2");
   std::vector<std::int64_t> stamps;
@@ -654,7 +654,7 @@ TEST(StampPairer, LeavesWhatIsTooFarApart) {
   // One side alone does not fill the memory.
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(pairer.push(0, image_at(100 + i)));
   EXPECT_EQ(pairer.unpaired(0), 93U);
-  // What waits behind is nearer.
+  // The next waiting image is nearer.
   const auto pair = pairer.push(1, image_at(197.4));
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->left.stamp.ns, 197'000'000);

@@ -18,7 +18,7 @@ using support::has;
 using support::refusal;
 using support::TemporaryFolder;
 
-/// Frames of noise, as FFV1 in Matroska: nothing is lost.
+/// Frames of noise, as lossless FFV1 in Matroska.
 class Video : public testing::Test {
  protected:
   void SetUp() override {

@@ -25,7 +25,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/view_client.hpp"
 
-/// The live view as its clients see it: over sockets.
+/// The live view from the side of its clients: over sockets.
 namespace cairn::live {
 namespace {
 
@@ -59,7 +59,7 @@ io::SequenceFrame pair_at(std::size_t index) {
   return pair;
 }
 
-/// The sample, found once; stamps and numbers of their own.
+/// The result for the sample, computed once; with distinct stamps and numbers.
 LiveFramePtr frame_at(int index) {
   static const std::shared_ptr<const io::SequenceFrame> pair =
       std::make_shared<io::SequenceFrame>(pair_at(0));
@@ -108,7 +108,7 @@ ViewOptions options_of_test() {
   return options;
 }
 
-/// A server with what is needed to talk to it.
+/// A server, and helpers to talk to it.
 struct Served {
   explicit Served(ViewOptions options = options_of_test(), ViewedRun run = run_of_test())
       : server(std::move(options), std::move(run)), port(server.port()) {}
@@ -148,7 +148,7 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-// ---- who may look ----
+// ---- access ----
 
 TEST(ViewServer, LetsInWhoHasTheToken) {
   const Served served;
@@ -195,7 +195,7 @@ TEST(ViewServer, RefusesForeignHostsMethodsAndPaths) {
   EXPECT_EQ(status(request(served.with_token(), "Host: 10.0.0.5\r\n")), 421);
   EXPECT_EQ(status(request(served.with_token(), "")), 421);
   EXPECT_EQ(status(upgrade(served.with_token(), "Host: evil.example\r\n")), 421);
-  // Through a tunnel the port is another one.
+  // Through a tunnel the port differs.
   EXPECT_EQ(status(request(served.with_token(), "Host: localhost:9000\r\n")), 303);
   EXPECT_EQ(status(request(served.with_token(), "Host: [::1]:9000\r\n")), 303);
   EXPECT_EQ(status(request("/", served.host() + cookie + "Content-Length: 0\r\n", "POST")), 405);
@@ -285,7 +285,7 @@ TEST(ViewServer, HasRoomForSoManyClients) {
     EXPECT_EQ(ask(served.port, upgrade(served.with_token(), served.host())).status, 503);
     EXPECT_EQ(ask(served.port, request(served.with_token("/left.mjpeg"), served.host())).status, 503);
   }
-  // Who leaves makes room.
+  // A client that leaves makes room.
   int status = 503;
   for (int i = 0; i < 100 && status == 503; ++i) {
     support::Connection connection(served.port);
@@ -312,7 +312,7 @@ TEST(ViewServer, TheRunMayEndWhileAClientIsLetIn) {
 
 // ---- TLS ----
 
-/// A certificate of its own, as PEM files.
+/// A self-signed certificate as PEM files.
 void write_certificate(const std::filesystem::path& cert, const std::filesystem::path& key) {
   EVP_PKEY* const pair = EVP_EC_gen("P-256");
   X509* const x509 = X509_new();
@@ -350,8 +350,8 @@ TEST(ViewServer, SpeaksTls) {
   EXPECT_TRUE(has(first.header("Set-Cookie"), "; Secure"));
   const Answer page = ask(served.port, request("/", served.host() + served.cookie()), true);
   EXPECT_TRUE(has(page.header("Content-Security-Policy"), "wss://127.0.0.1:"));
-  EXPECT_EQ(ask(served.port, request(served.with_token(), served.host())).status, 0);  // no word in the clear
-  // A page that came in the clear is another origin.
+  EXPECT_EQ(ask(served.port, request(served.with_token(), served.host())).status, 0);  // no plain-text answer
+  // A page loaded without TLS has another origin.
   EXPECT_EQ(ask(served.port,
                 upgrade(served.with_token(),
                         served.host() + "Origin: http://127.0.0.1:" + std::to_string(served.port) + "\r\n"),
@@ -366,10 +366,10 @@ TEST(ViewServer, SpeaksTls) {
   EXPECT_EQ(data->subscription, 3U);
   const auto labels = ros::decode<ros::Image>(data->payload);
   EXPECT_EQ(labels.encoding, "mono16");
-  // The address may be one that the network reaches.
+  // An address reachable from the network is allowed.
   options.address = "0.0.0.0";
   EXPECT_EQ(refusal_of([&] { const ViewServer open(options, run_of_test()); }), "no refusal");
-  // A certificate whose key is another's.
+  // A certificate with the key of another one.
   write_certificate(folder.path() / "other.pem", options.tls_key);
   EXPECT_TRUE(has(refusal_of([&] { const ViewServer wrong(options, run_of_test()); }), "--tls-key"));
 }
@@ -398,7 +398,7 @@ TEST(ViewServer, SpeaksEachSubprotocol) {
   }
   EXPECT_EQ(ask(served.port, upgrade(served.with_token(), served.host(), "")).status, 400);
   EXPECT_EQ(ask(served.port, upgrade(served.with_token(), served.host(), "chat")).status, 400);
-  // The first that we like, not the first that it offers.
+  // The first subprotocol that we support, not the first offered.
   EXPECT_EQ(
       served.connect("foxglove.websocket.v1, foxglove.sdk.v1").answer().header("Sec-WebSocket-Protocol"),
       "foxglove.sdk.v1");
@@ -447,7 +447,7 @@ TEST(ViewServer, UnderstandsWhatAClientCompressesButNotWithoutLimit) {
   const auto data = socket.read_data();
   ASSERT_TRUE(data);
   EXPECT_EQ(data->subscription, 5U);
-  socket.send_deflated(std::string(1'000'000, 'a'));  // about 4 kB on the way
+  socket.send_deflated(std::string(1'000'000, 'a'));  // about 4 kB compressed
   EXPECT_EQ(socket.read_close(), 1009);
 }
 
@@ -524,7 +524,7 @@ TEST(ViewServer, ShowsWhatIsInTheFrame) {
   const Point3 middle{at.at("x"), at.at("y"), at.at("z")};
   const Json& corners = stats.at("objects").at(0).at("corners_m");
   EXPECT_LT(length(middle - middle_of(corners)), 1e-3);
-  // The orientation takes the box's own axes to its edges.
+  // The orientation maps the box's own axes to its edges.
   const Json& turn = cube.at("pose").at("orientation");
   const Pose pose = pose_of(middle, {turn.at("x"), turn.at("y"), turn.at("z"), turn.at("w")});
   const Point3 along = point_of(corners.at(1)) - point_of(corners.at(0));
@@ -540,7 +540,7 @@ TEST(ViewServer, EncodesNothingThatNobodyWantsAndAllElseOnce) {
   EXPECT_EQ(served.server.encoded(), 0U);
   WebSocket a = served.connect();
   WebSocket b = served.connect("foxglove.websocket.v1");
-  a.subscribe("/cairn/left", 1);  // of the frame that is there
+  a.subscribe("/cairn/left", 1);  // to the current frame
   b.subscribe("/cairn/left", 9);
   ASSERT_TRUE(a.read_data());
   ASSERT_TRUE(b.read_data());
@@ -556,7 +556,7 @@ TEST(ViewServer, EncodesNothingThatNobodyWantsAndAllElseOnce) {
   a.send({{"op", "unsubscribe"}, {"subscriptionIds", {1}}});
   b.send({{"op", "unsubscribe"}, {"subscriptionIds", {9}}});
   b.send({{"op", "getParameters"}, {"parameterNames", {"live.none"}}, {"id", "x"}});
-  EXPECT_EQ(b.read_op("parameterValues").at("id"), "x");  // so that it has been heard
+  EXPECT_EQ(b.read_op("parameterValues").at("id"), "x");  // confirms that the request was processed
   a.send({{"op", "getParameters"}, {"parameterNames", {"live.none"}}, {"id", "y"}});
   a.read_op("parameterValues");
   served.server.offer(renumbered(20));
@@ -588,7 +588,7 @@ TEST(ViewServer, AClientThatDoesNotReadCostsTheOthersNothing) {
   const double with_sleeper = rate(1 + kFrames);
   const double more = heap() - before;
   EXPECT_LT(more, 1e6);
-  // Rates are a computer's affair; that not one frame was missed or late is ours.
+  // Rates depend on the computer; that no frame was missed or late does not.
   EXPECT_GT(with_sleeper, 1);
   const Json status =
       Json::parse(ask(served.port, request("/status.json", served.host() + served.cookie())).body);
@@ -686,7 +686,7 @@ TEST(ViewServer, TakesForeignTextForWhatItIs) {
   EXPECT_TRUE(has(socket.read_op("status").at("message"), "publishing is not supported"));
   socket.send_frame(1, std::string(kMostClientBytes + 1, ' '));
   EXPECT_EQ(socket.read_close(), 1009);
-  // Noise of any kind: the server is still there.
+  // Random bytes: the server survives.
   std::mt19937 random(7);
   for (int round = 0; round < 20; ++round) {
     std::string noise(random() % 300, ' ');
@@ -800,7 +800,7 @@ TEST(ViewServer, TellsAllOptionsAndChangesNoneUnlessTunable) {
     EXPECT_TRUE(page.at(0).contains(key)) << key;
 }
 
-/// Pairs one by one, when the test says so.
+/// A source that delivers pairs when the test requests them.
 class Fed : public io::Sequence {
  public:
   std::optional<io::SequenceFrame> next() override {
@@ -824,7 +824,7 @@ class Fed : public io::Sequence {
   void stop() override { is_stopped_ = true; }
   [[nodiscard]] io::SourceStatus status() const override {
     io::SourceStatus status;
-    status.is_live = true;  // at no pace
+    status.is_live = true;  // without pacing
     return status;
   }
   void feed() { ++allowed_; }
@@ -899,7 +899,7 @@ TEST(ViewServer, AnOptionThatAViewerSetsHoldsFromTheNextFrameOn) {
   const Answer yaml =
       ask(tuned.served->port, request("/config.yaml", tuned.served->host() + tuned.served->cookie()));
   EXPECT_TRUE(has(yaml.body, "  min_area: 5")) << yaml.body;
-  // Without a value it is as at the start.
+  // Without a value, the initial one is restored.
   socket.send({{"op", "setParameters"}, {"parameters", {{{"name", "objects.min_area"}}}}});
   socket.read_op("parameterValues");
   EXPECT_EQ(shown(), first);
@@ -919,12 +919,12 @@ TEST(ViewServer, RefusesValuesAndSaysWhatItExpects) {
   EXPECT_TRUE(has(refusal("match.num_disparities", 1e300), "expected a whole number"));
   EXPECT_TRUE(has(refusal("match.method", "magic"), "found 'magic', expected one of window|semi_global"));
   EXPECT_TRUE(has(refusal("subpixel.enabled", 1), "found 1, expected true or false"));
-  EXPECT_TRUE(has(refusal("match.num_disparites", 32), "match.num_disparities"));  // the nearest known one
+  EXPECT_TRUE(has(refusal("match.num_disparites", 32), "match.num_disparities"));  // the nearest
   EXPECT_TRUE(has(refusal("live.record", true), "not an option of this run"));
   EXPECT_TRUE(has(refusal("live.pause", 1), "found 1, expected true or false"));
-  // Fits no image of this size.
+  // Too large for images of this size.
   EXPECT_TRUE(has(refusal("match.min_disparity", 1000), "1000"));
-  // All or none.
+  // All changes or none.
   socket.send({{"op", "setParameters"},
                {"parameters",
                 {{{"name", "match.num_disparities"}, {"value", 16}},
@@ -942,7 +942,7 @@ TEST(ViewServer, TellsOthersOfChanges) {
       {{"op", "subscribeParameterUpdates"}, {"parameterNames", {"live.pause", "match.num_disparities"}}});
   watcher.send(get_message("live.pause"));
   EXPECT_EQ(watcher.read_op("parameterValues").at("parameters").at(0).at("value"), false);
-  a.send(set_message("objects.min_confidence", 0.5));  // not watched
+  a.send(set_message("objects.min_confidence", 0.5));  // not subscribed
   a.send(set_message("match.num_disparities", 16.0));
   Json update = watcher.read_op("parameterValues").at("parameters");
   EXPECT_EQ(update, Json::parse(R"([{"name":"match.num_disparities","value":16}])"));

@@ -57,7 +57,7 @@ int count(const Warped& warped, std::int64_t id) {
 TEST(Warp, ACameraThatStandsSeesWhatItSaw) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
-  scene.disparity.disparity_px(10, 5) = kNan;  // at a corner: nothing closes it
+  scene.disparity.disparity_px(10, 5) = kNan;  // at a corner: not enclosed
   const Warped now = warped(scene, {});
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
@@ -97,11 +97,11 @@ TEST(Warp, ThePlaceInTheMapDoesNotDependOnWhereTheCameraWas) {
 TEST(Warp, TheNearerOneHidesTheFarther) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);   // 2 m
-  scene.add({16, 5, 6, 4}, 10);  // 1 m: goes twice as far
+  scene.add({16, 5, 6, 4}, 10);  // 1 m: moves twice as far
   Pose pose;
   pose.translation_m = {0.06, 0, 0};
   const Warped now = warped(scene, pose);
-  EXPECT_EQ(now.ids(9, 5), TrackId{1});  // 10 … 15 went to 7 … 12, 16 … 21 to 10 … 15
+  EXPECT_EQ(now.ids(9, 5), TrackId{1});  // 10 … 15 moved to 7 … 12, 16 … 21 to 10 … 15
   EXPECT_EQ(now.ids(10, 5), TrackId{2});
   EXPECT_EQ(count(now, 1), 12);
   EXPECT_EQ(now.masks[0].area, 24);
@@ -123,7 +123,7 @@ TEST(Warp, AMovingTrackGoesByItsVelocity) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   scene.tracks.list[0].velocity_m_s = {0.4, 0, 0};
-  EXPECT_EQ(warped(scene, {}).ids(10, 5), TrackId{1});  // it has one, but stands
+  EXPECT_EQ(warped(scene, {}).ids(10, 5), TrackId{1});  // it has a velocity, but is labelled static
   scene.tracks.list[0].is_moving = true;
   const Warped now = warped(scene, {});  // 0.1 s later: 2 px
   EXPECT_EQ(now.ids(11, 5), TrackId::none);
@@ -171,7 +171,7 @@ TEST(Remember, AMaskStaysUntilItsTrackIsSeenAgain) {
   EXPECT_EQ(memory.masks[1].points.size(), 9U);
   EXPECT_EQ(memory.masks[1].seen, Stamp{0});
 
-  next.tracks.list[0].is_joined = true;  // shown with another: not its own mask
+  next.tracks.list[0].is_joined = true;  // seen together with another: not its own mask
   next.tracks.list.pop_back();           // dead
   memory = remember(std::move(memory), next.tracks, next.objects, next.disparity, {}, Stamp{8}, kRig);
   ASSERT_EQ(memory.masks.size(), 1U);
@@ -197,7 +197,7 @@ TEST(OverlapsOf, CountsWhatThePresentShowsWhereATrackIsExpected) {
   now.add({8, 5, 6, 4}, 5);   // common: columns 10 … 13
   now.add({14, 5, 2, 4}, 7);  // nearer, columns 14 and 15
   for (int y = 5; y < 9; ++y) now.disparity.disparity_px(16, y) = kNan;
-  // Columns 17 … 19 show what lies behind, at 1 px.
+  // Columns 17 … 19 show the background, at 1 px.
   const Overlaps found = overlaps_of(warp(memory, scene.tracks, {}, Stamp{1}, kRig, kSize, {}), scene.tracks,
                                      now.objects, now.disparity);
   ASSERT_EQ(found.tracks, std::vector{TrackId{1}});

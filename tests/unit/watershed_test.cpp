@@ -90,7 +90,7 @@ TEST(SplitFloor, WithoutFloorChangesNothing) {
   EXPECT_EQ(numbers(split_floor(two, floor, {}).labels), numbers(two.labels));
 }
 
-/// Of a row: what is floor once its holes are closed.
+/// For one row: the floor after filling its holes.
 std::vector<std::int64_t> closed(const Basins& basins, const Image<std::uint8_t>& floor,
                                  const Image<std::int16_t>& values) {
   return numbers(floor_with_holes(basins, floor, values, {})).front();

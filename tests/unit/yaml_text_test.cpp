@@ -17,12 +17,12 @@
 namespace cairn::io {
 namespace {
 
-/// Reads `text` as a calibration and as a configuration in a process that may take 2 s and little memory.
-/// Whether that ended by reading or by an Error.
+/// Reads `text` as a calibration and as a configuration in a process limited to 2 s and little memory.
+/// Returns whether that ended with a result or an Error.
 bool ends_well(const std::filesystem::path& path) {
   const pid_t child = ::fork();
   if (child == 0) {
-    // What the process has already, and 256 MB more.
+    // The memory in use, plus 256 MB.
     rlimit memory{};
     long pages = 0;
     if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {

@@ -29,9 +29,8 @@ using Image = sensor_msgs::msg::Image;
 using PointCloud = sensor_msgs::msg::PointCloud2;
 using Transforms = tf2_msgs::msg::TFMessage;
 
-/// Finds and follows objects in the pairs of left/image_rect and right/image_rect. Every option of `cairn
-/// follow` is a parameter of the same name, as text ("match.num_disparities"); they are read once, at the
-/// beginning.
+/// Finds and tracks objects in the pairs of left/image_rect and right/image_rect. Every option of `cairn
+/// follow` is a parameter of the same name, as text ("match.num_disparities"), read once at the start.
 class SegmentNode : public rclcpp::Node {
  public:
   explicit SegmentNode(const rclcpp::NodeOptions& options)

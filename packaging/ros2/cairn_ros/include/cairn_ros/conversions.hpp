@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <string>
 
-/// Between the messages of rclcpp and cairn's own, which have the same members. Templates on rclcpp's types,
-/// so that this header needs no part of ROS.
+/// Conversion between the messages of rclcpp and cairn's own, which have the same members. Templates on
+/// rclcpp's types, so this header needs no part of ROS.
 namespace cairn_ros {
 
 // ---- from cairn's messages ----
@@ -109,7 +109,7 @@ void copy(const cairn::ros::TransformStamped& from, auto& to) {
   copy(from.transform.rotation, to.transform.rotation);
 }
 
-/// The message of rclcpp's type that says the same.
+/// The equivalent message of rclcpp's type.
 template <class Theirs>
 Theirs as(const auto& from) {
   Theirs to;
@@ -119,7 +119,7 @@ Theirs as(const auto& from) {
 
 // ---- to cairn ----
 
-/// What of a CameraInfo says how a rectified camera sees.
+/// The part of CameraInfo that describes a rectified camera.
 cairn::ros::CameraInfo camera_info_from(const auto& from) {
   cairn::ros::CameraInfo to;
   to.height = from.height;
@@ -132,7 +132,7 @@ cairn::Stamp stamp_from(const auto& header) {
   return cairn::ros::stamp_of({header.stamp.sec, header.stamp.nanosec});
 }
 
-/// Grey, and colours where there are any.
+/// Grey, and colour if available.
 struct Picture {
   cairn::Image<cairn::Gray> gray;
   cairn::Image<cairn::Rgb> rgb;
