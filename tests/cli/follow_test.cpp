@@ -252,7 +252,7 @@ TEST_F(Follow, AMapKeepsWhatWasSeen) {
   ASSERT_EQ(run(arguments).code, 0);
   const std::string first = run({"map", "show", path("room.db")}).out;
   EXPECT_EQ(first.find(": 0 landmarks"), std::string::npos) << first;
-  EXPECT_NE(first.find("done      10    5.00  5.90"), std::string::npos) << first;
+  EXPECT_NE(first.find("done      10     5.00   5.90"), std::string::npos) << first;
   // The second run localises itself and finds no changes.
   std::vector<std::string> again = arguments;
   again.insert(again.end(), {"--start", "0,0,0", "-o", path("out")});
