@@ -50,15 +50,15 @@ struct FindingInfo {
   std::string_view remedy;
 };
 inline constexpr std::array kFindings{
-    FindingInfo{FindingKind::sizes, "sizes", "area of the right image over that of the left", "",
+    FindingInfo{FindingKind::sizes, "image sizes differ", "area of the right image over that of the left", "",
                 "Set both cameras to the same resolution and binning, and rectify both to one size."},
     FindingInfo{
-        FindingKind::impossible_calibration, "impossible calibration", "the impossible number",
+        FindingKind::impossible_calibration, "invalid calibration", "the impossible number",
         "as in the file",
         "Correct the file: focal length and baseline are positive; a negative baseline means that left "
         "and right are exchanged."},
     FindingInfo{
-        FindingKind::calibration, "calibration contradicts the picture", "the implausible number",
+        FindingKind::calibration, "implausible calibration", "the implausible number",
         "see the message",
         "Give the calibration that was made for these images, at their size, with lengths in metres and "
         "pixels."},
@@ -67,14 +67,14 @@ inline constexpr std::array kFindings{
                 "Rectify the images with it (cairn rectify), and use the calib.txt that is written next to "
                 "them."},
     FindingInfo{
-        FindingKind::few_points, "too little to see", "textured points found in both images", "points",
+        FindingKind::few_points, "too little texture", "textured points found in both images", "points",
         "Point the cameras at a textured scene in good light, and run the doctor again: this pair does "
         "not suffice to judge rows, order and range."},
-    FindingInfo{FindingKind::nothing_in_common, "pictures do not match",
+    FindingInfo{FindingKind::nothing_in_common, "images do not match",
                 "points consistent with one geometry", "%",
                 "Check that both images show the same scene at the same moment, neither upside down nor "
                 "mirrored; then, that the pair was rectified (cairn rectify)."},
-    FindingInfo{FindingKind::same_picture, "the two pictures are the same", "points with a disparity of 0",
+    FindingInfo{FindingKind::same_picture, "identical images", "points with a disparity of 0",
                 "%",
                 "Give the image of each camera: check whether both names lead to one file, and whether both "
                 "drivers open one camera."},
@@ -86,7 +86,7 @@ inline constexpr std::array kFindings{
         FindingKind::synchrony, "not synchronised", "lag of the right camera in frames", "frames",
         "Trigger both cameras by one signal, and pair images by their time stamps, not by their order "
         "of arrival."},
-    FindingInfo{FindingKind::unknown_synchrony, "synchrony not seen",
+    FindingInfo{FindingKind::unknown_synchrony, "synchronisation undetermined",
                 "correlation of the changes in both images without lag", "%",
                 "Nothing to fix: to have it checked, give a sequence with fast, uneven motion (wave a hand "
                 "before both cameras)."},
@@ -113,10 +113,10 @@ inline constexpr std::array kFindings{
         FindingKind::exposure, "clipped exposure", "pixels at the first or last grey level", "%",
         "Shorten (white) or lengthen (black) the exposure, or lower the gain: clipped areas cannot be "
         "matched."},
-    FindingInfo{FindingKind::dark, "little contrast", "grey levels between the 1st and the 99th percentile",
+    FindingInfo{FindingKind::dark, "low contrast", "grey levels between the 1st and the 99th percentile",
                 "grey levels",
                 "Lengthen the exposure or add light; noise and rounding are as strong as texture here."},
-    FindingInfo{FindingKind::brightness, "cameras see unequal brightness",
+    FindingInfo{FindingKind::brightness, "unequal brightness",
                 "median difference of the right image", "grey levels",
                 "Lock exposure, gain and white balance of both cameras to the same values."},
     FindingInfo{FindingKind::blur, "blurred", "width of an edge", "px",

@@ -101,7 +101,7 @@ def test_a_still_sequence_tells_nothing():
 
 def test_one_picture_given_twice_is_told(sample):
     measured = cairn.measure_pair(sample.left, sample.left)
-    assert measured.identical and [f.kind for f in cairn.diagnose(measured)] == ["the two pictures are the same"]
+    assert measured.identical and [f.kind for f in cairn.diagnose(measured)] == ["identical images"]
     assert cairn.measure_pair(sample.left[:20, :20], sample.left[:20, :20]).gain is None  # not measured
 
 
@@ -124,7 +124,7 @@ def test_the_smallest_pictures_are_measured():
     dot = np.zeros((1, 1), np.uint8)
     measured = cairn.measure_pair(dot, dot)
     assert np.isnan(measured.disparity_px(0.5)) and len(measured.disparities_px) == 0 and "size=(1, 1)" in repr(measured)
-    assert cairn.diagnose(measured)[0].kind == "too little to see"
+    assert cairn.diagnose(measured)[0].kind == "too little texture"
 
 
 def test_what_cannot_be_judged_is_refused_by_name(sample, measures):

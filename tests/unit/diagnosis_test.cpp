@@ -145,7 +145,7 @@ TEST_F(Diagnosis, SeesThatOnePictureWasGivenTwice) {
 TEST_F(Diagnosis, SaysOfCamerasInTheDarkThatTheyAreInTheDark) {
   const auto black = toned(left(), 0, 0);
   const auto found = findings(black, black);
-  EXPECT_EQ(names(found), "too little to see, clipped exposure, little contrast");
+  EXPECT_EQ(names(found), "too little texture, clipped exposure, low contrast");
 }
 
 TEST_F(Diagnosis, SeesSwappedCamerasWhereDoffsAllowsNegativeDisparities) {
@@ -374,7 +374,7 @@ TEST_F(Diagnosis, SeesClippedExposure) {
 TEST_F(Diagnosis, SeesTooLittleContrast) {
   const auto dim = [](View<const Gray> image) { return toned(image, 0.15, 3); };
   const auto found = findings_of_both(dim);
-  EXPECT_NE(names(found).find("little contrast"), std::string::npos) << names(found);
+  EXPECT_NE(names(found).find("low contrast"), std::string::npos) << names(found);
 }
 
 TEST_F(Diagnosis, SeesACalibrationInTheWrongUnits) {
@@ -385,7 +385,7 @@ TEST_F(Diagnosis, SeesACalibrationInTheWrongUnits) {
   finds(findings(left(), right()), FindingKind::calibration, Severity::broken);
   rig_ = good;
   rig_->focal_px = 4;  // millimetres
-  EXPECT_EQ(names(findings(left(), right())).find("calibration contradicts"), 0U);
+  EXPECT_EQ(names(findings(left(), right())).find("implausible calibration"), 0U);
 }
 
 TEST_F(Diagnosis, SuspectsABaselineInCentimetres) {
@@ -515,7 +515,7 @@ TEST(SynchronyOfASequence, IsANoteWhereNothingTells) {
     EXPECT_FALSE(measured.tells());
     const auto finding = diagnose(measured);
     ASSERT_TRUE(finding);
-    EXPECT_EQ(info(finding->kind).name, "synchrony not seen");
+    EXPECT_EQ(info(finding->kind).name, "synchronisation undetermined");
     EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::note));
   }
   EXPECT_FALSE(diagnose(measure_synchrony(Sequence(7, false).pairs(0), {})));  // too short for a sequence
