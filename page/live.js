@@ -172,8 +172,8 @@
     return {bytes, step, count: Math.min(width * height, step ? Math.floor(bytes.length / step) : 0), place, colour: fields.get('rgb') ?? null};
   }
 
-  // Messages of one frame have one stamp. A few frames are kept, since a slow client skips messages of each channel by
-  // itself; what is shown together is of one stamp.
+  // Messages of one frame have one stamp. A few frames are kept, since `left` is decoded later than the rest
+  // arrives; what is shown together is of one stamp.
   const kKept = 6;
   const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity'};
   const frames = new Map();  // stamp → {stamp, at, and by topic what came}
@@ -236,7 +236,7 @@
   function putInPanel(panel, frame) {
     const pair = panel === 'picture' ? ['left', 'labels'] : ['disparity', 'reject'];
     const isWhole = pair.every((name) => frame[name]);
-    // On a slow link the two may never meet; then it is better to see one of them than none.
+    // Labels may not come, if they were subscribed to later; then it is better to see the image alone than none.
     const isLate = panel === 'picture' && frame.left && performance.now() - (drawnAt.picture ?? link.since) > 400;
     if (!isWhole && !isLate) return;
     if (frame.stamp < latest[panel]) return;  // its picture was decoded late
@@ -251,7 +251,7 @@
   const shown = {};  // what is on the screen: {picture: frame, disparity: frame}
   const kReading = 200;  // ms
   let readAt = 0;
-  const kTogether = 40;  // ms that a frame's parts wait for the others; on a slow link some never come
+  const kTogether = 40;  // ms that a frame's parts wait for the others; some never come, as images that this browser is too slow to decode
   let asked = 0, drawsSoon = 0;
   function drawNow() {
     clearTimeout(drawsSoon);
@@ -261,7 +261,7 @@
       if (due.picture) paintPicture(due.picture);
       if (due.disparity) paintDisparity(due.disparity);
       due.picture = due.disparity = null;
-      scene.paintWithOthers();
+      if (inView.get('scene') !== false) scene.paintWithOthers();
       if (performance.now() - readAt >= kReading) slowly();
     });
   }

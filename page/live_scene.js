@@ -61,6 +61,7 @@ function makeScene(stage, look, onPick) {
   const draw = () => { asked ||= requestAnimationFrame(() => { asked = 0; paint(); }); };
   /** Within a frame of the page; where the last picture is too new, with one of the next. */
   function paintWithOthers() {
+    if (asked) return;  // a picture of its own comes at once
     if (grip || performance.now() - paintedAt >= pause) paint();
     else waits ||= setTimeout(draw, pause + 100);
   }

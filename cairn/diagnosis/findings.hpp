@@ -53,13 +53,11 @@ inline constexpr std::array kFindings{
     FindingInfo{FindingKind::sizes, "image sizes differ", "area of the right image over that of the left", "",
                 "Set both cameras to the same resolution and binning, and rectify both to one size."},
     FindingInfo{
-        FindingKind::impossible_calibration, "invalid calibration", "the impossible number",
-        "as in the file",
+        FindingKind::impossible_calibration, "invalid calibration", "the impossible number", "as in the file",
         "Correct the file: focal length and baseline are positive; a negative baseline means that left "
         "and right are exchanged."},
     FindingInfo{
-        FindingKind::calibration, "implausible calibration", "the implausible number",
-        "see the message",
+        FindingKind::calibration, "implausible calibration", "the implausible number", "see the message",
         "Give the calibration that was made for these images, at their size, with lengths in metres and "
         "pixels."},
     FindingInfo{FindingKind::raw_calibration, "calibration of raw cameras", "row misalignment of the images",
@@ -70,12 +68,11 @@ inline constexpr std::array kFindings{
         FindingKind::few_points, "too little texture", "textured points found in both images", "points",
         "Point the cameras at a textured scene in good light, and run the doctor again: this pair does "
         "not suffice to judge rows, order and range."},
-    FindingInfo{FindingKind::nothing_in_common, "images do not match",
-                "points consistent with one geometry", "%",
+    FindingInfo{FindingKind::nothing_in_common, "images do not match", "points consistent with one geometry",
+                "%",
                 "Check that both images show the same scene at the same moment, neither upside down nor "
                 "mirrored; then, that the pair was rectified (cairn rectify)."},
-    FindingInfo{FindingKind::same_picture, "identical images", "points with a disparity of 0",
-                "%",
+    FindingInfo{FindingKind::same_picture, "identical images", "points with a disparity of 0", "%",
                 "Give the image of each camera: check whether both names lead to one file, and whether both "
                 "drivers open one camera."},
     FindingInfo{FindingKind::swapped, "cameras swapped", "points with a negative disparity", "%",
@@ -116,9 +113,8 @@ inline constexpr std::array kFindings{
     FindingInfo{FindingKind::dark, "low contrast", "grey levels between the 1st and the 99th percentile",
                 "grey levels",
                 "Lengthen the exposure or add light; noise and rounding are as strong as texture here."},
-    FindingInfo{FindingKind::brightness, "unequal brightness",
-                "median difference of the right image", "grey levels",
-                "Lock exposure, gain and white balance of both cameras to the same values."},
+    FindingInfo{FindingKind::brightness, "unequal brightness", "median difference of the right image",
+                "grey levels", "Lock exposure, gain and white balance of both cameras to the same values."},
     FindingInfo{FindingKind::blur, "blurred", "width of an edge", "px",
                 "Focus the camera, clean its lens, or shorten the exposure if it moves."},
     FindingInfo{FindingKind::no_floor, "no floor", "pixels with a disparity", "%",

@@ -52,12 +52,10 @@ struct Stretch {
   int last;
 };
 
-/// The pixels of an object that have a disparity, and the disparities of its largest surface.
+/// The pixels of each object: its main part, and the valid disparities of the whole mask.
 struct Part {
-  std::vector<Stretch> stretches;
+  std::vector<Stretch> main;
   std::vector<float> disparities_px;
-  Interval within_px{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  [[nodiscard]] bool is_main(float d) const { return within_px.low <= d && d <= within_px.high; }
 };
 
 std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_px, const Exec& exec) {
@@ -70,18 +68,32 @@ std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_p
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       const std::size_t i = object_at(begin, y);
       if (largest[i] < 0 || islands.pixels(island) > islands.pixels(largest[i])) largest[i] = island;
-      parts[i].stretches.push_back({y, begin, end});
       std::vector<float>& all = parts[i].disparities_px;
       all.insert(all.end(), disparity_px.row(y) + begin, disparity_px.row(y) + end);
     });
   }
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::vector<Interval> within_px(parts.size(), Interval{kInfinity, -kInfinity});
   for (int y = 0; y < disparity_px.height(); ++y) {
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       const std::size_t i = object_at(begin, y);
       if (island != largest[i]) return;
       const auto [low, high] = std::minmax_element(disparity_px.row(y) + begin, disparity_px.row(y) + end);
-      Interval& within = parts[i].within_px;
+      Interval& within = within_px[i];
       within = {std::min(within.low, *low), std::max(within.high, *high)};
+    });
+  }
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    const float* const d = disparity_px.row(y);
+    islands.for_each_run(y, [&](std::int32_t, int begin, int end) {
+      const std::size_t i = object_at(begin, y);
+      const auto is_main = [&](int x) { return within_px[i].low <= d[x] && d[x] <= within_px[i].high; };
+      for (int x = begin; x < end;) {
+        const int first = x++;
+        if (!is_main(first)) continue;
+        while (x < end && is_main(x)) ++x;
+        parts[i].main.push_back({y, first, x});
+      }
     });
   }
   return parts;
@@ -133,24 +145,20 @@ class Surface {
   Surface(const Part& part, View<const float> disparity_px) {
     left_ = disparity_px.width();
     int right = 0;
-    for (const Stretch& run : part.stretches) {
+    for (const Stretch& run : part.main) {
       left_ = std::min(left_, run.first);
       right = std::max(right, run.last);
     }
-    top_ = part.stretches.front().y;
+    top_ = part.main.front().y;
     width_ = right - left_;
-    height_ = part.stretches.back().y + 1 - top_;
+    height_ = part.main.back().y + 1 - top_;
     pitch_ = slot(width_) + 2 * kReach;
     values_.resize((slot(height_) + 2 * kReach) * pitch_);
     is_main_.resize(values_.size());
-    for (const auto& [y, first, last] : part.stretches) {
-      const float* const d = disparity_px.row(y);
-      for (int x = first; x < last; ++x) {
-        if (!part.is_main(d[x])) continue;
-        const std::size_t i = at(x - left_, y - top_);
-        values_[i] = d[x];
-        is_main_[i] = 1;
-      }
+    for (const auto& [y, first, last] : part.main) {
+      const std::size_t i = at(first - left_, y - top_);
+      std::copy(disparity_px.row(y) + first, disparity_px.row(y) + last, &values_[i]);
+      std::fill_n(&is_main_[i], last - first, 1.0F);
     }
   }
 
@@ -343,16 +351,13 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   std::int64_t sum_x = 0;
   std::int64_t sum_y = 0;
   std::int64_t count = 0;
-  for (const auto& [y, first, last] : part.stretches) {
-    const float* const d = disparity_px.row(y);
-    for (int x = first; x < last; ++x) {
-      if (!part.is_main(d[x])) continue;
-      ++count;
-      sum_x += x;
-      sum_y += y;
-    }
+  for (const auto& [y, first, last] : part.main) {
+    const std::int64_t run = last - first;
+    count += run;
+    sum_x += run * (first + last - 1);
+    sum_y += run * y;
   }
-  const double x = static_cast<double>(sum_x) / static_cast<double>(count);
+  const double x = static_cast<double>(sum_x) / (2.0 * static_cast<double>(count));
   const double y = static_cast<double>(sum_y) / static_cast<double>(count);
   object.position_in_camera_m =
       rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), object.disparity_px);
@@ -373,9 +378,14 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   Surface surface(part, disparity_px);
   Points points = surface.points(rig, exec);
   if (points.size() == 0) return;
+  Points smooth;
   if (floor) {
     surface.smooth();  // the noise of single pixels would widen the box
-    object.box_on_floor = box_on(*floor, surface.points(rig, exec), exec);
+    smooth = surface.points(rig, exec);
+  }
+  // At infinity, means may have no point where single pixels have one.
+  if (smooth.size() > 0) {
+    object.box_on_floor = box_on(*floor, smooth, exec);
     const double z = object.position_in_camera_m->z;
     std::array<float, 6>& known = object.box_on_floor->centre_covariance_m2;
     known =
@@ -407,7 +417,7 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
       object.depth_interval_m.reset();
       object.extent_in_camera_m.reset();
       object.box_on_floor.reset();
-      if (parts[i].stretches.empty()) continue;
+      if (parts[i].main.empty()) continue;
       object.disparity_sigma_px = sigma_px(parts[i].disparities_px, object.valid_share, exec);
       if (rig) place(object, parts[i], disparity.disparity_px, floor, *rig, exec);
     }

@@ -229,7 +229,7 @@ class ViewServer::Hub {
     {
       const std::lock_guard lock(mutex_);
       wanted_ = all;
-      is_new_ = is_new_ || (newest_number_ > had && all != 0);
+      is_new_ = is_new_ || newest_number_ > had;  // if nobody can take it now, it waits
     }
     wake_.notify_one();
   }

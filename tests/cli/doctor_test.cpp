@@ -72,7 +72,7 @@ TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
   const auto other = pair_in("other", {64, 48});
   const Outcome outcome = run({"doctor", pair[0], other[1]});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("broken   sizes: the left image is 96x72, the right one 64x48"),
+  EXPECT_NE(outcome.out.find("broken   image sizes differ: the left image is 96x72, the right one 64x48"),
             std::string::npos)
       << outcome.out;
   EXPECT_EQ(outcome.out.find("measured"), std::string::npos) << outcome.out;
@@ -83,7 +83,8 @@ TEST_F(Doctor, SeesPairsOfDifferentSizesInAFolder) {
   pair_in("rig/b", {128, 96});
   const Outcome outcome = run({"doctor", path("rig")});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_NE(outcome.out.find("note     sizes: a is 96x72, b is 128x96"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("note     image sizes differ: a is 96x72, b is 128x96"), std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(Doctor, SeesANegativeBaselineAndACalibrationOfAnotherSize) {
@@ -115,8 +116,7 @@ TEST_F(Doctor, SeesTheSamePictureTwice) {
   const std::string picture = (samples::folder("overlap") / "left.png").string();
   const Outcome outcome = run({"doctor", picture, picture});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("broken   identical images: all pixels"), std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.out.find("broken   identical images: all pixels"), std::string::npos) << outcome.out;
 }
 
 TEST_F(Doctor, CannotTellTheOrderFromAFewPointsThatAgreeByChance) {

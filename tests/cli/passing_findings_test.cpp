@@ -52,8 +52,7 @@ TEST_F(Passing, SaysWhyThereIsNoFloorUnlessNobodyAskedForOne) {
 TEST_F(Passing, SaysThatACalibrationIsOfAnotherSizeWhereTheFileDoesNot) {
   write(at("large.txt"), "fx=300\nfy=300\ncx=640\ncy=480\nbaseline=0.1\nndisp=32\n");
   const Outcome outcome = run({"segment", samples::folder("overlap").string(), "--calib", path("large.txt")});
-  EXPECT_EQ(outcome.err.find("cairn: broken: implausible calibration: the principal point (640"),
-            0U)
+  EXPECT_EQ(outcome.err.find("cairn: broken: implausible calibration: the principal point (640"), 0U)
       << outcome.err;
 }
 

@@ -119,8 +119,11 @@ TEST(Locate, KeepsWhatAHoleCutsOffAtTheSameDepth) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   for (int y = 5; y < 15; ++y) scene.disparity.disparity_px(26, y) = kNan;
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->x, 9 * 0.02 * 10 / 9, 1e-5);
-  scene.disparity.disparity_px(29, 9) = 5.01F;  // not on the largest surface, and nearer than all of it
-  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
+  // Not on the largest surface, and nearer than all of it.
+  for (int y = 5; y < 15; ++y) scene.disparity.disparity_px(29, y) = 5.01F;
+  const Object object = scene.located(kRig).list[0];
+  EXPECT_NEAR(object.extent_in_camera_m->x, 8 * 0.02 * 10 / 9, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
 }
 
 TEST(Locate, AnObjectFartherThanAFloatHoldsHasNoPosition) {
@@ -288,7 +291,7 @@ Scene scene_of(const Crate& crate, std::pair<double, double> corner) {
 
 /// From the 1st to the 99th percentile of how far up the main part's points are, each with the mean disparity of a
 /// window.
-float height_of_box(const Scene& scene, ObjectId id) {
+Interval heights_of_box(const Scene& scene, ObjectId id) {
   const std::set<std::pair<int, int>> part = main_part(scene, id);
   std::vector<float> up_m;
   for (const auto& [x, y] : part) {
@@ -305,7 +308,7 @@ float height_of_box(const Scene& scene, ObjectId id) {
   }
   std::sort(up_m.begin(), up_m.end());
   const auto at = [&](std::size_t percent) { return up_m[(percent * (up_m.size() - 1) + 50) / 100]; };
-  return at(99) - at(1);
+  return {at(1), at(99)};
 }
 
 TEST(Locate, TheBoxIsThatOfTheMeansInWindows) {
@@ -321,7 +324,9 @@ TEST(Locate, TheBoxIsThatOfTheMeansInWindows) {
     }
     const Object object = scene.located(kLarge, level_floor(1)).list[0];
     ASSERT_TRUE(object.box_on_floor);
-    EXPECT_NEAR(object.box_on_floor->size_m.z, height_of_box(scene, object.id), 1e-5);
+    const auto [low, high] = heights_of_box(scene, object.id);
+    EXPECT_NEAR(object.box_on_floor->size_m.z, high - low, 1e-5);
+    EXPECT_NEAR(object.box_on_floor->centre_in_floor_m.z, 1 + (low + high) / 2, 1e-5);
   }
 }
 
@@ -388,6 +393,20 @@ TEST(Locate, DisparitiesNearInfinityEndNoProgramAndHaveNoPlace) {
     EXPECT_TRUE(std::isfinite(object.box_on_floor->centre_in_floor_m.x));
     EXPECT_TRUE(std::isfinite(object.extent_in_camera_m->z));
   }
+}
+
+TEST(Locate, AnObjectWhoseMeansAreBeyondInfinityHasNoBox) {
+  StereoRig rig = kLarge;
+  rig.doffs_px = -10;
+  Scene scene({320, 240}, {{{100, 60, 30, 30}, 10.1F}});
+  for (int y = 60; y < 90; ++y) {
+    for (int x = 100; x < 130; ++x) {
+      if ((x + y) % 3 == 0) scene.disparity.disparity_px(x, y) = 9.2F;
+    }
+  }
+  const Object object = scene.located(rig, level_floor(1)).list[0];
+  EXPECT_TRUE(object.extent_in_camera_m);
+  EXPECT_FALSE(object.box_on_floor);
 }
 
 TEST(Locate, SaysNothingOfAnEarlierFrame) {
