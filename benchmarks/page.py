@@ -107,7 +107,7 @@ This page reports the time of each stage, its growth with the image size, and a 
 
 ## Stages
 
-Wall-clock times on the pair that `cairn bench` generates: the median over the frames after a first warm-up frame, for each size with its number of disparities. The generated room has fewer and larger regions than many photographs, on which the grouping stages take longer; the time of matching depends only on the size.
+Wall-clock times on the pair that `cairn bench` generates: the median over the frames after a first warm-up frame, for each size with its number of disparities. The generated room has fewer and larger regions than many photographs, on which the grouping stages take longer; the time of matching depends only on the size. With several threads, some stages run at the same time as others and show only the time waited for them (`cut_superpixels`, `estimate_confidence`, `segment_intensity`).
 
 {"".join(tables)}## Growth
 

@@ -255,7 +255,7 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.pictures.left.rgb.view();
   Observed stage(exec);
   Given given{left, rgb, frame.pictures.right.gray, {}};
-  SuperpixelScene cut = cut_scene(given, frame.rig, config, exec, stage);
+  SuperpixelScene cut = cut_scene(given, frame.rig, config, nullptr, exec, stage);
   const Superpixels& superpixels = cut.superpixels;
   if (files.inputs.is_open()) {
     record_input(files.inputs, job, hint_input(superpixels.edges, cut.cues(given), exec), frame);

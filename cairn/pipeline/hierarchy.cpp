@@ -18,7 +18,7 @@ ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
 }
 
 SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
-                          const Exec& exec, Observed& stage) {
+                          const HintNetwork* network, const Exec& exec, Observed& stage) {
   SuperpixelScene cut;
 
   // Disparities with their reasons for rejection, and the textured ones among them.
@@ -39,14 +39,15 @@ SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, con
     return cut_superpixels(edges.clone(beside.pool), cut.seen_px, scene.noise_sigma, config.superpixels,
                            beside);
   });
-  cut.hints = stage("hint_objects", hint_objects(edges, cut.cues(given), exec));
+  if (network)
+    cut.hints = stage("hint_objects", hint_objects(hint_input(edges, cut.cues(given), exec), *network, exec));
   cut.superpixels = stage("cut_superpixels", superpixels.get());
   return cut;
 }
 
 GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                       const Exec& exec, Observed& stage) {
-  GrownScene grown{cut_scene(given, rig, config, exec, stage), {}, {}};
+  GrownScene grown{cut_scene(given, rig, config, &hint_network(), exec, stage), {}, {}};
   const SuperpixelScene& cut = grown.cut;
   Later<Image<float>> confidence(exec, [&](const Exec& beside) {
     return estimate_confidence(cut.scene.matches, cut.scene.found.disparity,

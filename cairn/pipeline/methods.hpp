@@ -19,15 +19,16 @@ struct SuperpixelScene {
   Image<float> seen_px;  // floor_under_reflections()
   Background background;
   Superpixels superpixels;
-  Image<ObjectHint> hints;  // by the network of the library
+  Image<ObjectHint> hints;
   [[nodiscard]] Cues cues(const Given& given) const {
     return {given.left,         given.left_rgb, seen_px,           scene.evidence_px,
             scene.found.ground, background,     scene.noise_sigma, hints};
   }
 };
-/// The first half of segment_by_hierarchy(), and the input of fitting.
+/// The first half of segment_by_hierarchy(), and the input of fitting, which has hints of its own: without a
+/// `network` there are none.
 SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
-                          const Exec& exec, Observed& stage);
+                          const HintNetwork* network, const Exec& exec, Observed& stage);
 
 /// Every candidate region, and what they were grown from.
 struct GrownScene {

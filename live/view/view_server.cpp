@@ -54,7 +54,6 @@ constexpr std::size_t kCompressedFrame = 1 << 16;  // bytes, of a compressed mes
 constexpr int kSendBuffer = 1 << 17;               // bytes; a larger buffer would only add delay
 constexpr std::uint32_t kMostHeader = 8 * 1024;
 constexpr std::uint64_t kMostBody = 1024;
-constexpr std::uint64_t kAllFrames = ~std::uint64_t{0};
 constexpr int kMostVisitors = 32;  // connections other than viewers
 
 using Response = http::response<http::string_body>;
@@ -377,7 +376,9 @@ class ViewServer::Hub {
       }
       const std::uint64_t revision = frame->revision;
       frame.reset();
-      asio::post(io_, [this, messages = std::move(messages), revision] { deliver(messages, revision); });
+      asio::post(io_, [this, messages = std::move(messages), number, revision] {
+        deliver(messages, number, revision);
+      });
       lock.lock();
     }
   }
@@ -394,13 +395,13 @@ class ViewServer::Hub {
     }
   }
 
-  void deliver(const std::vector<ViewMessagePtr>& messages, std::uint64_t revision) {
+  void deliver(const std::vector<ViewMessagePtr>& messages, std::uint64_t number, std::uint64_t revision) {
     // Viewers are not destroyed meanwhile: only completion handlers do that.
     for (Viewer* viewer : std::set<Viewer*>(viewers_)) {
       viewer->offer(messages);
       viewer->pump();
     }
-    note_demand(kAllFrames);
+    note_demand(number);
     if (std::exchange(revision_, revision) != revision) tell_changes();
     {
       const std::lock_guard lock(mutex_);
