@@ -118,10 +118,11 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
   const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, exec);
   cues.hints = hints;
-  const MergeTree tree = grow_merge_tree(superpixels, cues, kSameThing, exec);
+  const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing_trees(), exec);
 
   // Choose the regions that are objects, and measure them; then estimate the confidence of each disparity.
-  const ChosenObjects chosen = choose_objects(tree, kWholeObject, limits_of(config.objects, pair.size()));
+  const ChosenObjects chosen =
+      choose_objects(tree, whole_object_trees(), limits_of(config.objects, pair.size()));
   const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
   Objects objects =
       measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, exec);

@@ -312,8 +312,9 @@ int run(std::span<char*> arguments) {
   std::string same_thing;
   std::string whole_object;
   for (int job = 0; jobs >> folder >> colour >> hints >> same_thing >> whole_object; ++job) {
-    work(job, folder, colour == "grey", networks.at(hints, hint_network()), trees.at(same_thing, kSameThing),
-         trees.at(whole_object, kWholeObject), min_score, files);
+    work(job, folder, colour == "grey", networks.at(hints, hint_network()),
+         trees.at(same_thing, same_thing_trees()), trees.at(whole_object, whole_object_trees()), min_score,
+         files);
   }
   return 0;
 }

@@ -143,7 +143,7 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   const Warped warped = warp(remembered_, tracks_, pose, stamp, rig, pair.size(), exec_);
   if (has_tree) {
     const ChoiceLimits limits = limits_of(config.objects, pair.size());
-    std::vector<float> scores = score_nodes(grown.tree, kWholeObject, limits);
+    std::vector<float> scores = score_nodes(grown.tree, whole_object_trees(), limits, exec_);
     if (!step.is_lost)
       scores = repaired_scores(grown.tree, std::move(scores), grown.cut.superpixels, warped, tracks_,
                                config_.repair);

@@ -17,17 +17,22 @@ float likelihood(float odds_logarithm) {
 }  // namespace
 
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
-                             const ChoiceLimits& limits) {
-  return choose_by_scores(tree, score_nodes(tree, whole_object, limits), limits);
+                             const ChoiceLimits& limits, const Exec& exec) {
+  return choose_by_scores(tree, score_nodes(tree, whole_object, limits, exec), limits);
 }
 
 std::vector<float> score_nodes(const MergeTree& tree, const FittedTrees& whole_object,
-                               const ChoiceLimits& limits) {
-  std::vector<float> scores(tree.nodes.size());
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const MergeNode& node = tree.nodes[i];
-    if (node.area >= limits.min_area) scores[i] = likelihood(whole_object(node.features));
+                               const ChoiceLimits& limits, const Exec& exec) {
+  std::vector<std::size_t> scored;
+  std::vector<std::span<const float>> features;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].area < limits.min_area) continue;
+    scored.push_back(i);
+    features.emplace_back(tree.nodes[i].features);
   }
+  const std::vector<float> log_odds = whole_object(features, exec);
+  std::vector<float> scores(tree.nodes.size());
+  for (std::size_t i = 0; i < scored.size(); ++i) scores[scored[i]] = likelihood(log_odds[i]);
   return scores;
 }
 

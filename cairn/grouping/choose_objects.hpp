@@ -26,12 +26,12 @@ struct ChosenObjects {
 /// among its parts. Exact, in one pass from the superpixels up. Objects are numbered from the last node down.
 /// (docs/stages/grouping.md, beyond the paper)
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
-                             const ChoiceLimits& limits);
+                             const ChoiceLimits& limits, const Exec& exec = {});
 
 /// The first step of choose_objects(), for callers with more knowledge of the regions: the probability of
 /// each node to be a whole object, 0 … 1; 0 below min_area.
 std::vector<float> score_nodes(const MergeTree& tree, const FittedTrees& whole_object,
-                               const ChoiceLimits& limits);
+                               const ChoiceLimits& limits, const Exec& exec = {});
 /// The second step: the choice by these scores.
 ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores, const ChoiceLimits& limits);
 

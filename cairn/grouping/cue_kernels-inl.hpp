@@ -51,7 +51,35 @@ inline void add_steps(const std::uint16_t* edges, const float* up, const float* 
   out[end] = sum(end, std::max(end - 1, 0), end);
 }
 
-inline constexpr CueKernels kCueKernels{nearest_plane, in_steps, add_steps};
+inline void sum_trees(const FittedTrees::Split* splits, const float* leaves, std::size_t depth,
+                      std::size_t count, const float* features, float* CAIRN_RESTRICT sums) {
+  using Lanes = float[kTreeLanes];
+  const std::size_t size = std::size_t{1} << depth;
+  // From the leaves up, each split takes the value of the side that a sample goes to: no sample waits for the
+  // split before, and all splits of a tree together take less time than one path of each sample.
+  Lanes values[std::size_t{1} << kDeepestTree];
+  for (std::size_t tree = 0; tree < count; ++tree, splits += size, leaves += size) {
+    for (std::size_t place = size - 1; place >= size / 2; --place) {
+      const float* const feature = features + slot(splits[place].feature) * kTreeLanes;
+      const float value = splits[place].value;
+      const float below = leaves[2 * place - size];
+      const float above = leaves[2 * place + 1 - size];
+      for (std::size_t i = 0; i < kTreeLanes; ++i) values[place][i] = feature[i] < value ? below : above;
+    }
+    for (std::size_t place = size / 2 - 1; place > 0; --place) {
+      const float* const feature = features + slot(splits[place].feature) * kTreeLanes;
+      const float value = splits[place].value;
+      for (std::size_t i = 0; i < kTreeLanes; ++i) {
+        const float below = values[2 * place][i];
+        const float above = values[2 * place + 1][i];
+        values[place][i] = feature[i] < value ? below : above;
+      }
+    }
+    for (std::size_t i = 0; i < kTreeLanes; ++i) sums[i] += values[1][i];
+  }
+}
+
+inline constexpr CueKernels kCueKernels{nearest_plane, in_steps, add_steps, sum_trees};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
+#include <cairn/grouping/fitted_trees.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
 #include <limits>
@@ -12,6 +13,8 @@
 /// library.
 namespace cairn::kernels {
 
+inline constexpr std::size_t kTreeLanes = 16;   // samples
+inline constexpr std::size_t kDeepestTree = 6;  // splits on a path
 inline constexpr std::int32_t kNoDisparity = std::numeric_limits<std::int32_t>::min();
 
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
@@ -25,6 +28,10 @@ struct CueKernels {
   /// `largest` px; 0 where the sum is below `least`. Beside holes there is no step.
   void (*add_steps)(const std::uint16_t* edges, const float* up, const float* here, const float* down,
                     int width, float weight, float largest, int least, std::uint16_t* out);
+  /// Adds to each of kTreeLanes sums the leaves that its sample reaches in `count` complete trees, stored as in
+  /// FittedTrees. `features`: kTreeLanes values of each. Precondition: 1 ≤ depth ≤ kDeepestTree.
+  void (*sum_trees)(const FittedTrees::Split* splits, const float* leaves, std::size_t depth,
+                    std::size_t count, const float* features, float* sums);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.

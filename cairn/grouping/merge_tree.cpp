@@ -4,6 +4,7 @@
 #include <cairn/grouping/merge_tree.hpp>
 #include <numeric>
 #include <queue>
+#include <span>
 #include <utility>
 
 namespace cairn {
@@ -39,7 +40,7 @@ class Growing {
       nodes_[r] = static_cast<std::int32_t>(r);
       fit(r);
     }
-    for (std::size_t i = 0; i < graph_.contacts.size(); ++i) queue(static_cast<std::int32_t>(i));
+    queue_all(exec);
     for (std::size_t r = 0; r < graph_.regions.size(); ++r) describe(r, {kOneSuperpixel, kOneSuperpixel, 1});
   }
 
@@ -87,16 +88,31 @@ class Growing {
 
   void fit(std::size_t region) { fits_[region] = fit_region(graph_.regions[region], frame_); }
 
-  void judge(std::int32_t contact) {
+  [[nodiscard]] MergeFeatures features_of(std::int32_t contact) const {
     const ContactCues& c = graph_.contacts[slot(contact)];
     const MergeFeatures features = merge_features(side(c.a), side(c.b), c, frame_);
-    judged_[slot(contact)].score = same_thing_(features);
     if (told_) told_(nodes_[slot(c.a)], nodes_[slot(c.b)], features);
+    return features;
   }
-  void queue(std::int32_t contact) {
-    judge(contact);
-    const Judged& judged = judged_[slot(contact)];
-    queue_.push({judged.score, first_[slot(contact)], contact, judged.version, fusions_at(contact)});
+  [[nodiscard]] Entry judged(std::int32_t contact, float score) {
+    Judged& judged = judged_[slot(contact)];
+    judged.score = score;
+    return {score, first_[slot(contact)], contact, judged.version, fusions_at(contact)};
+  }
+  void queue(std::int32_t contact) { queue_.push(judged(contact, same_thing_(features_of(contact)))); }
+  void queue_all(const Exec& exec) {
+    constexpr std::size_t kAtOnce = 64;  // features that stay in the cache
+    std::vector<Entry> all;
+    std::vector<MergeFeatures> features(kAtOnce);
+    for (std::size_t first = 0; first < graph_.contacts.size(); first += kAtOnce) {
+      features.clear();
+      for (std::size_t i = first; i < std::min(first + kAtOnce, graph_.contacts.size()); ++i)
+        features.push_back(features_of(static_cast<std::int32_t>(i)));
+      const std::vector<std::span<const float>> samples(features.begin(), features.end());
+      for (const float score : same_thing_(samples, exec))
+        all.push_back(judged(static_cast<std::int32_t>(all.size()), score));
+    }
+    queue_ = std::priority_queue<Entry>({}, std::move(all));
   }
 
   void describe(std::size_t region, const Origin& origin) {

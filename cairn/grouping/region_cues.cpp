@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/grouping/contacts.hpp>
 #include <cairn/grouping/cue_kernels.hpp>
 #include <cairn/grouping/object_hints.hpp>
 #include <cairn/grouping/region_cues.hpp>
@@ -23,6 +24,11 @@ constexpr auto kBins = [] {
   return bins;
 }();
 
+/// A disparity, 0 for a hole.
+std::int32_t known(std::int32_t steps) {
+  return steps == kNoDisparity ? 0 : steps;
+}
+
 /// The smallest gradient that counts as an edge, in 1/4 grey level.
 float weakest_edge(float noise_sigma) {
   return 4.0F * (1.5F + 0.8F * noise_sigma);
@@ -31,13 +37,17 @@ float weakest_edge(float noise_sigma) {
 /// The sums over a run of pixels in one row, kept in registers.
 struct RunMoments {
   std::int64_t n = 0, x = 0, xx = 0, d = 0, xd = 0, dd = 0;
-  void add(std::int64_t at_x, std::int64_t disparity) {
-    ++n;
-    x += at_x;
-    xx += at_x * at_x;
-    d += disparity;
-    xd += at_x * disparity;
-    dd += disparity * disparity;
+  /// Without a branch, because which pixels have a disparity cannot be predicted.
+  void add(std::int64_t at_x, std::int32_t disparity) {
+    const bool is_known = disparity != kNoDisparity;
+    const std::int64_t known_x = is_known ? at_x : 0;
+    const std::int64_t known_d = known(disparity);
+    n += is_known ? 1 : 0;
+    x += known_x;
+    xx += known_x * at_x;
+    d += known_d;
+    xd += known_d * at_x;
+    dd += known_d * known_d;
   }
   /// As the sums of pixels in row y.
   [[nodiscard]] PlaneMoments in_row(std::int64_t y) const {
@@ -64,6 +74,7 @@ class Gathering {
         behind_(cues, width_, exec),
         contacts_of_(slot(superpixels.count)) {
     result_.regions.resize(slot(superpixels.count));
+    result_.contacts.reserve(3 * result_.regions.size());  // a planar graph has no more
     if (cues.hints.empty()) return;
     for (int x = 0; x < width_; ++x) cell_column_.push_back(x * cues.hints.width() / width_);
     for (int y = 0; y < height_; ++y) cell_row_.push_back(y * cues.hints.height() / height_);
@@ -85,14 +96,7 @@ class Gathering {
 
   /// … and when those of all rows are there, their contacts.
   void add_contacts(int first_row, int last_row) {
-    for (int y = first_row; y < last_row; ++y) {
-      const RegionId* const row = labels_.row(y);
-      const RegionId* const below = y + 1 < height_ ? labels_.row(y + 1) : row;
-      for (int x = 0; x < width_; ++x) {
-        if (x + 1 < width_ && row[x + 1] != row[x]) meet(x, y, 1, 0);
-        if (below[x] != row[x]) meet(x, y, 0, 1);
-      }
-    }
+    for_each_contact(labels_, first_row, last_row, [&](int x, int y, int dx, int dy) { meet(x, y, dx, dy); });
   }
 
   /// Adds what was gathered over the rows that follow.
@@ -188,8 +192,8 @@ class Gathering {
     RunMoments matched;
     RunMoments textured;
     for (int x = first; x < last; ++x) {
-      if (d[x] != kNoDisparity) matched.add(x - width_ / 2, d[x]);
-      if (textured_[slot(x)] != kNoDisparity) textured.add(x - width_ / 2, textured_[slot(x)]);
+      matched.add(x - width_ / 2, d[x]);
+      textured.add(x - width_ / 2, textured_[slot(x)]);
     }
     region.matched.add(matched.in_row(y - height_ / 2));
     region.textured.add(textured.in_row(y - height_ / 2));
@@ -206,9 +210,12 @@ class Gathering {
     Heights of_textured;
     for (int x = first; x < last; ++x) {
       const std::int32_t base = behind[slot(x)];
-      if (base == kNoDisparity) continue;
-      if (d[x] != kNoDisparity) of_all.add(d[x] - base);
-      if (textured_[slot(x)] != kNoDisparity) of_textured.add(textured_[slot(x)] - base);
+      const bool is_there = base != kNoDisparity;
+      const auto add = [&](Heights& heights, std::int32_t disparity) {
+        heights.add(known(disparity) - known(base), is_there && disparity != kNoDisparity);
+      };
+      add(of_all, d[x]);
+      add(of_textured, textured_[slot(x)]);
     }
     all.add(of_all);
     textured.add(of_textured);

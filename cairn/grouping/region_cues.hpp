@@ -58,13 +58,14 @@ struct PlaneMoments {
 struct Heights {
   std::int64_t n = 0, sum = 0, squares = 0;
   std::int64_t behind = 0, on = 0;  // farther behind than 1 px; within 1 px
-  void add(int height) {
-    const std::int64_t h = std::clamp(height, -8 * kDisparitySteps, 24 * kDisparitySteps);
-    ++n;
+  /// Without a branch, because which pixels have a disparity cannot be predicted.
+  void add(int height, bool is_known) {
+    const std::int64_t h = is_known ? std::clamp(height, -8 * kDisparitySteps, 24 * kDisparitySteps) : 0;
+    n += is_known ? 1 : 0;
     sum += h;
     squares += h * h;
     behind += h < -kDisparitySteps ? 1 : 0;
-    on += std::abs(h) <= kDisparitySteps ? 1 : 0;
+    on += static_cast<int>(is_known) & static_cast<int>(std::abs(h) <= kDisparitySteps);
   }
   void add(const Heights& other);
   friend bool operator==(const Heights&, const Heights&) = default;

@@ -85,12 +85,12 @@ struct Neighbour {
   RegionSide side;
   const ContactCues& contact;
   bool turned;       // a of the contact is the neighbour
-  float same_thing;  // kSameThing of the two
+  float same_thing;  // same_thing_trees() of the two
 };
 
 /// The merge history of a region; of a superpixel: {20, 20, 1}.
 struct Origin {
-  float same_thing = 0;        // kSameThing of its two parts when merged
+  float same_thing = 0;        // same_thing_trees() of its two parts when merged
   float least_same_thing = 0;  // the minimum over all merges in it
   float larger_part = 1;       // share of its area
 };
@@ -99,7 +99,7 @@ struct Origin {
 /// merged: see tell_end().
 ObjectFeatures object_features(const RegionSide& region, std::span<const Neighbour> neighbours,
                                const Origin& origin, const FrameCues& frame);
-/// Sets these two: the share of the region in its parent, and kSameThing of that merge.
+/// Sets these two: the share of the region in its parent, and same_thing_trees() of that merge.
 void tell_end(ObjectFeatures& features, float share, float same_thing);
 
 /// The names of the features, in order.

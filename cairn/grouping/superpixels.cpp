@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <bit>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/pool_memory.hpp>
+#include <cairn/grouping/contacts.hpp>
 #include <cairn/grouping/cue_kernels.hpp>
 #include <cairn/grouping/segmentation_of.hpp>
 #include <cairn/grouping/superpixels.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cmath>
+#include <memory_resource>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -44,49 +48,106 @@ Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const floa
 /// Merges basins pairwise.
 class Fusing {
  public:
-  Fusing(const Basins& basins, View<const std::uint16_t> edges) : left_(basins.count) {
-    const auto count = slot(basins.count);
-    areas_.assign(count, 0);
-    for (int y = 0; y < basins.labels.height(); ++y) {
-      for (int x = 0; x < basins.labels.width(); ++x) ++areas_[index(basins.labels(x, y))];
-    }
-    parents_.resize(count);
+  Fusing(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
+      : memory_(exec.pool),
+        links_(&memory_),
+        left_(basins.count),
+        areas_(slot(basins.count)),
+        parents_(slot(basins.count)),
+        links_of_(slot(basins.count), -1),
+        common_(slot(basins.count), -1) {
     std::iota(parents_.begin(), parents_.end(), 0);
-    common_.assign(count, -1);
-    links_of_.resize(count);
-    const Size size = basins.labels.size();
-    for (int y = 0; y < size.height; ++y) {
-      const RegionId* const row = basins.labels.row(y);
-      const RegionId* const below = y + 1 < size.height ? basins.labels.row(y + 1) : row;
-      for (int x = 0; x < size.width; ++x) {
-        if (x + 1 < size.width && row[x + 1] != row[x]) meet(row[x], row[x + 1], edges, {x, y}, {x + 1, y});
-        if (below[x] != row[x]) meet(row[x], below[x], edges, {x, y}, {x, y + 1});
-      }
-    }
-    std::vector<Entry> all;
+    const int width = basins.labels.width();
+    for (int y = 0; y < basins.labels.height(); ++y) areas_[index(basins.labels(width - 1, y))] += width;
+    for_each_contact(basins.labels, 0, basins.labels.height(), [&](int x, int y, int dx, int dy) {
+      const std::int32_t here = number(basins.labels(x, y));
+      const std::int32_t there = number(basins.labels(x + dx, y + dy));
+      areas_[slot(here)] += dx * (x + 1);  // the run of `there` starts where that of `here` ends
+      areas_[slot(there)] -= dx * (x + 1);
+      Link& link = link_between(here, there);
+      ++link.length;
+      link.edge_sum += std::max(edges(x, y), edges(x + dx, y + dy));
+    });
+    std::pmr::vector<Entry> all(&memory_);
     all.reserve(2 * links_.size());
-    for (std::int32_t i = 0; slot(i) < links_.size(); ++i) all.push_back(entry(i, key_of(i)));
-    queue_ = std::priority_queue<Entry>({}, std::move(all));
+    for (std::int32_t i = 0; slot(i) < links_.size(); ++i)
+      all.push_back(links_[slot(i)].queued = entry_of(i));
+    queue_ = Queue({}, std::move(all));
   }
 
   void until(int count) {
     while (left_ > count && !queue_.empty()) {
       const Entry next = queue_.top();
       queue_.pop();
-      const Link& link = links_[slot(next.link)];
-      // Stale: queued again with another key, or gone.
-      if (link.queued_key != next.key || link.queued_first != next.first) continue;
+      const Link& link = links_[slot(next.link())];
+      if (link.queued != next) continue;  // stale: queued again with another key, or gone
       // Keys only grow as regions grow, so no entry is queued too late.
-      const double key = key_of(next.link);
-      if (key == next.key && link.first == next.first) {
-        fuse(next.link);
+      const Entry now = entry_of(next.link());
+      if (now == next) {
+        fuse(next.link());
       } else {
-        queue(next.link, key);
+        queue(now);
       }
     }
   }
 
-  /// The basin that `basin` has been merged into.
+  /// The number of each basin's superpixel, in the order of their first basins; `count`: of superpixels.
+  std::vector<RegionId> numbers(std::int32_t& count) {
+    std::vector<RegionId> numbers(parents_.size(), RegionId{-1});
+    count = 0;
+    for (std::size_t basin = 0; basin < numbers.size(); ++basin) {
+      RegionId& of_root = numbers[slot(root(static_cast<std::int32_t>(basin)))];
+      // The root may come later than the first of its basins.
+      if (number(of_root) < 0) of_root = RegionId{count++};
+      numbers[basin] = of_root;
+    }
+    return numbers;
+  }
+
+ private:
+  /// In the order of merging: by key, then by first occurrence. Integers are compared, without branches, because
+  /// the processor cannot predict which of two entries is later.
+  class Entry {
+   public:
+    Entry() = default;
+    Entry(double key, std::int32_t first, std::int32_t link)
+        : key_(std::bit_cast<std::uint64_t>(key)),  // ordered as the keys are, which are not negative
+          rest_((static_cast<std::uint64_t>(first) << 32U) | static_cast<std::uint32_t>(link)) {}
+    [[nodiscard]] std::int32_t link() const { return static_cast<std::int32_t>(rest_ & UINT32_MAX); }
+    friend bool operator==(const Entry&, const Entry&) = default;
+    bool operator<(const Entry& other) const {  // the greatest is at the top of the queue
+      return ((key_ > other.key_) | ((key_ == other.key_) & (rest_ > other.rest_))) != 0;
+    }
+
+   private:
+    std::uint64_t key_ = 0;
+    std::uint64_t rest_ = 0;
+  };
+  struct Link {
+    std::int32_t a = 0;
+    std::int32_t b = 0;
+    // The next link in the list of a, and of b; −1 = none.
+    std::int32_t next_of_a = -1;
+    std::int32_t next_of_b = -1;
+    std::int32_t first = 0;  // rank in raster order of first occurrence
+    std::int32_t length = 0;
+    std::int64_t edge_sum = 0;
+    Entry queued{};  // its valid entry in the queue; Entry() = the link no longer exists
+    [[nodiscard]] bool is_gone() const { return queued == Entry(); }
+    [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
+    [[nodiscard]] std::int32_t& next(std::int32_t end) { return a == end ? next_of_a : next_of_b; }
+  };
+
+  Link& link_between(std::int32_t a, std::int32_t b) {
+    for (std::int32_t i = links_of_[slot(a)]; i >= 0; i = links_[slot(i)].next(a)) {
+      if (links_[slot(i)].other(a) == b) return links_[slot(i)];
+    }
+    const auto made = static_cast<std::int32_t>(links_.size());
+    links_.push_back(
+        {a, b, std::exchange(links_of_[slot(a)], made), std::exchange(links_of_[slot(b)], made), made});
+    return links_.back();
+  }
+
   std::int32_t root(std::int32_t basin) {
     while (parents_[slot(basin)] != basin) {
       parents_[slot(basin)] = parents_[slot(parents_[slot(basin)])];
@@ -95,78 +156,39 @@ class Fusing {
     return basin;
   }
 
- private:
-  struct Link {
-    std::int32_t a = 0;
-    std::int32_t b = 0;
-    std::int32_t first = 0;  // rank in raster order of first occurrence
-    std::int64_t length = 0;
-    std::int64_t edge_sum = 0;
-    std::int32_t queued_first = 0;  // −1: the link no longer exists
-    double queued_key = 0;
-    [[nodiscard]] bool is_gone() const { return queued_first < 0; }
-    [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
-  };
-  struct Entry {
-    double key;
-    std::int32_t first;
-    std::int32_t link;
-    bool operator<(const Entry& other) const {  // the greatest is at the top of the queue
-      return is_after(key, first, other.key, other.first);
-    }
-  };
-
-  /// Without branches, because the processor cannot predict which of two entries is later.
-  static bool is_after(double key, std::int32_t first, double other_key, std::int32_t other_first) {
-    return ((key > other_key) | ((key == other_key) & (first > other_first))) != 0;
-  }
-
-  void meet(RegionId a, RegionId b, View<const std::uint16_t> edges, Point p, Point q) {
-    Link& link = link_between(number(a), number(b));
-    ++link.length;
-    link.edge_sum += std::max(edges(p.x, p.y), edges(q.x, q.y));
-  }
-  Link& link_between(std::int32_t a, std::int32_t b) {
-    // From the end: the link met last is the likeliest to be met again.
-    const std::vector<std::int32_t>& known = links_of_[slot(a)];
-    const auto met = std::find_if(known.rbegin(), known.rend(),
-                                  [&](std::int32_t i) { return links_[slot(i)].other(a) == b; });
-    if (met != known.rend()) return links_[slot(*met)];
-    const auto next = static_cast<std::int32_t>(links_.size());
-    links_of_[slot(a)].push_back(next);
-    links_of_[slot(b)].push_back(next);
-    links_.push_back({a, b, next});
-    return links_.back();
-  }
-
-  [[nodiscard]] double key_of(std::int32_t i) const {
+  [[nodiscard]] Entry entry_of(std::int32_t i) const {
     const Link& link = links_[slot(i)];
     const auto area = static_cast<double>(std::min(areas_[slot(link.a)], areas_[slot(link.b)]));
     const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
-    return (edge + kEvenWithoutEdge) * std::sqrt(area);
+    return {(edge + kEvenWithoutEdge) * std::sqrt(area), link.first, i};
   }
-  /// Notes that link i is queued.
-  Entry entry(std::int32_t i, double key) {
-    Link& link = links_[slot(i)];
-    link.queued_key = key;
-    link.queued_first = link.first;
-    return {key, link.first, i};
+  void queue(const Entry& entry) {
+    links_[slot(entry.link())].queued = entry;
+    queue_.push(entry);
   }
-  void queue(std::int32_t i, double key) { queue_.push(entry(i, key)); }
 
   void fuse(std::int32_t across) {
     std::int32_t kept = links_[slot(across)].a;
     std::int32_t lost = links_[slot(across)].b;
-    if (links_of_[slot(kept)].size() < links_of_[slot(lost)].size()) std::swap(kept, lost);
-    links_[slot(across)].queued_first = -1;
+    if (areas_[slot(kept)] < areas_[slot(lost)]) std::swap(kept, lost);  // the smaller one has fewer links
+    links_[slot(across)].queued = {};
     parents_[slot(lost)] = kept;
     areas_[slot(kept)] += areas_[slot(lost)];
     --left_;
-    std::vector<std::int32_t>& links = links_of_[slot(kept)];
-    std::erase_if(links, [&](std::int32_t i) { return links_[slot(i)].is_gone(); });
-    for (const std::int32_t i : links) common_[slot(links_[slot(i)].other(kept))] = i;
-    for (const std::int32_t i : links_of_[slot(lost)]) {
+    std::int32_t* end = &links_of_[slot(kept)];
+    while (*end >= 0) {
+      Link& link = links_[slot(*end)];
+      if (link.is_gone()) {
+        *end = link.next(kept);
+      } else {
+        common_[slot(link.other(kept))] = *end;
+        end = &link.next(kept);
+      }
+    }
+    for (std::int32_t next = links_of_[slot(lost)]; next >= 0;) {
+      const std::int32_t i = next;
       Link& link = links_[slot(i)];
+      next = link.next(lost);
       if (link.is_gone()) continue;
       const std::int32_t known = common_[slot(link.other(lost))];
       if (known >= 0) {
@@ -174,27 +196,30 @@ class Fusing {
         both.first = std::min(both.first, link.first);
         both.length += link.length;
         both.edge_sum += link.edge_sum;
-        link.queued_first = -1;
+        link.queued = {};
         // An entry that is too early is queued again when its turn comes; only one that is too late must be
         // replaced.
-        const double key = key_of(known);
-        if (is_after(both.queued_key, both.queued_first, key, both.first)) queue(known, key);
+        const Entry now = entry_of(known);
+        if (both.queued < now) queue(now);
       } else {
         (link.a == lost ? link.a : link.b) = kept;
-        links.push_back(i);
+        link.next(kept) = std::exchange(links_of_[slot(kept)], i);
       }
     }
-    links_of_[slot(lost)] = {};
-    for (const std::int32_t i : links) common_[slot(links_[slot(i)].other(kept))] = -1;
+    for (std::int32_t i = links_of_[slot(kept)]; i >= 0; i = links_[slot(i)].next(kept))
+      common_[slot(links_[slot(i)].other(kept))] = -1;
   }
 
+  using Queue = std::priority_queue<Entry, std::pmr::vector<Entry>>;
+
+  PoolMemory memory_;
+  std::pmr::vector<Link> links_;
   int left_;
   std::vector<std::int64_t> areas_;
   std::vector<std::int32_t> parents_;
-  std::vector<Link> links_;
-  std::vector<std::vector<std::int32_t>> links_of_;
-  std::vector<std::int32_t> common_;  // during a merge: the link with the basin that is kept; −1 = none
-  std::priority_queue<Entry> queue_;
+  std::vector<std::int32_t> links_of_;  // the first of each basin's list; some of its links may be gone
+  std::vector<std::int32_t> common_;    // during a merge: the link with the basin that is kept; −1 = none
+  Queue queue_{{}, std::pmr::vector<Entry>(&memory_)};
 };
 
 }  // namespace
@@ -207,17 +232,13 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> dispar
                             const SuperpixelsConfig& config, const Exec& exec) {
   const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, noise_sigma, exec);
   Basins basins = watershed(with_depth, exec);
-  Fusing fusing(basins, with_depth);
+  Fusing fusing(basins, with_depth, exec);
   fusing.until(config.count);
-  std::vector<std::int32_t> numbers(slot(basins.count), -1);
   std::int32_t count = 0;
+  const std::vector<RegionId> numbers = fusing.numbers(count);
   for (int y = 0; y < edges.height(); ++y) {
     RegionId* const row = basins.labels.row(y);
-    for (int x = 0; x < edges.width(); ++x) {
-      std::int32_t& number_of = numbers[slot(fusing.root(number(row[x])))];
-      if (number_of < 0) number_of = count++;
-      row[x] = RegionId{number_of};
-    }
+    for (int x = 0; x < edges.width(); ++x) row[x] = numbers[index(row[x])];
   }
   return {std::move(basins.labels), count, std::move(edges)};
 }

@@ -55,7 +55,8 @@ GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const C
   });
 
   // The tree of merged regions.
-  grown.tree = stage("grow_merge_tree", grow_merge_tree(cut.superpixels, cut.cues(given), kSameThing, exec));
+  grown.tree =
+      stage("grow_merge_tree", grow_merge_tree(cut.superpixels, cut.cues(given), same_thing_trees(), exec));
   grown.confidence = stage("estimate_confidence", confidence.get());
   return grown;
 }
@@ -95,9 +96,9 @@ Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, con
                            const Exec& exec) {
   Observed stage(exec);
   GrownScene grown = grow_scene(given, rig, config, exec, stage);
-  const ChosenObjects chosen =
-      stage("choose_objects",
-            choose_objects(grown.tree, kWholeObject, limits_of(config.objects, given.left.size())));
+  const ChosenObjects chosen = stage(
+      "choose_objects",
+      choose_objects(grown.tree, whole_object_trees(), limits_of(config.objects, given.left.size()), exec));
   return frame_of(std::move(grown), chosen, given, rig, config, exec, stage);
 }
 

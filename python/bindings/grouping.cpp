@@ -105,7 +105,7 @@ void bind_grouping(py::module_& m) {
         Cues cues = cues_of(left, disparity, evidence_px, ground, background, noise);
         const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, call.exec);
         cues.hints = hints;
-        return grow_merge_tree(superpixels, cues, kSameThing, call.exec);
+        return grow_merge_tree(superpixels, cues, same_thing_trees(), call.exec);
       },
       "superpixels"_a, "left"_a, "disparity"_a, "evidence_px"_a, "ground"_a, "background"_a, "noise_sigma"_a);
   stage(
@@ -114,7 +114,7 @@ void bind_grouping(py::module_& m) {
       "options "
       "only min_area and min_confidence count.",
       [](const Call& call, const MergeTree& tree) {
-        return choose_objects(tree, kWholeObject, limits_of(call.config.objects, size_of(tree)));
+        return choose_objects(tree, whole_object_trees(), limits_of(call.config.objects, size_of(tree)));
       },
       "tree"_a);
   stage(

@@ -291,20 +291,21 @@ TEST(FittedTrees, AddUp) {
 }
 
 /// By definition: from the root down, one tree after the other.
-float one_by_one(const FittedTrees& trees, std::span<const float> features) {
-  float sum = trees.base;
-  for (const std::int16_t root : trees.roots) {
+float one_by_one(float base, const std::vector<std::int16_t>& roots,
+                 const std::vector<FittedTrees::Node>& nodes, std::span<const float> features) {
+  float sum = base;
+  for (const std::int16_t root : roots) {
     std::size_t at = slot(root);
-    while (trees.nodes[at].feature >= 0) {
-      const FittedTrees::Node& node = trees.nodes[at];
+    while (nodes[at].feature >= 0) {
+      const FittedTrees::Node& node = nodes[at];
       at = slot(node.below) + (features[slot(node.feature)] < node.value ? 0 : 1);
     }
-    sum += trees.nodes[at].value;
+    sum += nodes[at].value;
   }
   return sum;
 }
 
-TEST(FittedTrees, AreWalkedTogetherAsTheyAreOneByOne) {
+TEST(FittedTrees, SumUpAsTheyDoOneByOne) {
   std::mt19937 random(7);
   const auto value = [&] { return static_cast<float>(static_cast<int>(random() % 2000) - 1000) / 300; };
   std::set<float> sums;
@@ -324,11 +325,17 @@ TEST(FittedTrees, AreWalkedTogetherAsTheyAreOneByOne) {
       }
     }
     const FittedTrees trees{0.25F, roots, nodes};
-    for (int sample = 0; sample < 50; ++sample) {
-      const std::array features{value(), value(), value()};
-      EXPECT_EQ(trees(features), one_by_one(trees, features)) << count;
-      sums.insert(trees(features));
+    std::vector<std::array<float, 3>> samples(50);
+    std::vector<float> expected;
+    for (std::array<float, 3>& features : samples) {
+      features = {value(), value(), value()};
+      expected.push_back(one_by_one(0.25F, roots, nodes, features));
+      EXPECT_EQ(trees(features), expected.back()) << count;
     }
+    sums.insert(expected.begin(), expected.end());
+    const std::vector<std::span<const float>> all(samples.begin(), samples.end());
+    for (const Target target : supported_targets())
+      EXPECT_EQ(trees(all, Exec::with_threads(1, target)), expected) << count << ' ' << name(target);
   }
   EXPECT_GT(sums.size(), 100U);
 }
