@@ -28,6 +28,13 @@ inline void convolve(const std::int16_t* const* rows, const Convolution& by, int
   }
 }
 
+inline void convolve_two(const std::int16_t* const* rows, const Convolution& by, int width,
+                         std::int16_t* const* out) {
+  for (int y = 0; y < 2; ++y) {
+    if (out[y] != nullptr) convolve(rows + y, by, width, out[y]);
+  }
+}
+
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -38,6 +45,18 @@ using Products = hn::Repartition<std::int16_t, Sums>;
 using Narrow = hn::Rebind<std::int16_t, Sums>;
 
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Sums()));
+
+/// The outputs from sums of products.
+HWY_INLINE void put(hn::Vec<Sums> sum, const Convolution& by, int output, std::int16_t* out) {
+  const auto least = hn::Set(Scales(), static_cast<float>(by.least));
+  const auto greatest = hn::Set(Scales(), static_cast<float>(kGreatestActivation));
+  const auto biased = hn::Add(sum, hn::LoadU(Sums(), by.bias + output));
+  const auto value = hn::Mul(hn::ConvertTo(Scales(), biased), hn::LoadU(Scales(), by.scale + output));
+  // Rounds to nearest: the sum has no bits left for fractions. NearestInt() would also look for overflows.
+  const auto shift = hn::Set(Scales(), 12582912.0F);  // 1.5 · 2²³
+  const auto shifted = hn::BitCast(Sums(), hn::Add(hn::Clamp(value, least, greatest), shift));
+  hn::StoreU(hn::DemoteTo(Narrow(), hn::Sub(shifted, hn::BitCast(Sums(), shift))), Narrow(), out + output);
+}
 
 /// The outputs of kPixels pixels, in kVectors vectors each.
 template <int kVectors, int kPixels>
@@ -51,7 +70,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 12
     for (int v = 0; v < kVectors; ++v) {
-      sums[p][v] = hn::LoadU(d, by.bias + v * kLanes);
+      sums[p][v] = hn::Zero(d);
       others[p][v] = hn::Zero(d);
     }
   }
@@ -77,17 +96,11 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
       }
     }
   }
-  const auto least = hn::Set(Scales(), static_cast<float>(by.least));
-  const auto greatest = hn::Set(Scales(), static_cast<float>(kGreatestActivation));
 #pragma GCC unroll 12
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 12
-    for (int v = 0; v < kVectors; ++v) {
-      const auto sum = hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]);
-      const auto value = hn::Mul(hn::ConvertTo(Scales(), sum), hn::LoadU(Scales(), by.scale + v * kLanes));
-      const auto rounded = hn::NearestInt(hn::Clamp(value, least, greatest));
-      hn::StoreU(hn::DemoteTo(Narrow(), rounded), Narrow(), out + (p * kVectors + v) * kLanes);
-    }
+    for (int v = 0; v < kVectors; ++v)
+      put(hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]), by, v * kLanes, out + p * by.outputs);
   }
 }
 
@@ -118,9 +131,135 @@ inline void convolve(const std::int16_t* const* rows, const Convolution& by, int
   }
 }
 
+// ---- 3 × 3 windows, one for each pixel
+//
+// Winograd's minimal filtering (Lavin and Gray 2016, "Fast algorithms for convolutional neural networks"): a tile
+// of 2 × 2 outputs depends on 4 × 4 inputs. Both inputs and weights are transformed into 4 × 4 numbers, whose 16
+// products give the four sums; the sums themselves need 36. The transformed weights of HintNetwork are four times
+// those of the paper, hence integers, and the sums are divided by four without a remainder: the same bits.
+// A transformed input is a sum of four inputs, at most 4 · 8191, and just fits into 16 bits. Intermediate sums
+// may wrap around; the final ones, four times those of the window, stay below 2³¹.
+
+using Activation = hn::CappedTag<std::int16_t, 8>;
+
+constexpr int kTiles = 5;     // side by side, at a time: as many sums as registers hold, with
+constexpr int kTogether = 2;  // vectors of outputs
+constexpr int kPlaces = 16;   // in a transformed tile
+
+/// Transforms four numbers in a row.
+template <class V>
+HWY_INLINE void transform(V a, V b, V c, V d, V* to) {
+  to[0] = hn::Sub(a, c);
+  to[1] = hn::Add(b, c);
+  to[2] = hn::Sub(c, b);
+  to[3] = hn::Sub(b, d);
+}
+
+/// The two sums over three numbers in a row, from the products of what was transformed.
+template <class V>
+HWY_INLINE void sums_from(V a, V b, V c, V d, V* sums) {
+  sums[0] = hn::Add(hn::Add(a, b), c);
+  sums[1] = hn::Sub(hn::Sub(b, c), d);
+}
+
+/// Transforms the inputs of a tile.
+HWY_INLINE void transform_tile(const std::int16_t* const* rows, const std::ptrdiff_t* columns, int inputs,
+                               std::int16_t* HWY_RESTRICT to) {
+  const Activation d;
+  for (int i = 0; i < inputs; i += static_cast<int>(hn::MaxLanes(d))) {
+    hn::Vec<Activation> across[4][4];
+    hn::Vec<Activation> down[4];
+    for (int r = 0; r < 4; ++r) {
+      const auto at = [&](int column) HWY_ATTR { return hn::LoadU(d, rows[r] + columns[column] + i); };
+      transform(at(0), at(1), at(2), at(3), across[r]);
+    }
+    for (int c = 0; c < 4; ++c) {
+      transform(across[0][c], across[1][c], across[2][c], across[3][c], down);
+      for (int r = 0; r < 4; ++r) hn::StoreU(down[r], d, to + (4 * r + c) * kTiles * kMostOutputs + i);
+    }
+  }
+}
+
+/// Some outputs of kTiles tiles from column x on, as far as they are inside the image.
+template <int kCount>
+HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const Convolution& by, int output,
+                                 int x, int width, std::int16_t* const* out) {
+  const Sums d;
+  const Products pairs;
+  HWY_ALIGN std::int32_t products[kPlaces][kTiles][kCount * kLanes];
+  const std::int16_t* HWY_RESTRICT weights = by.transformed_weights + 2 * output;
+  for (auto& of_place : products) {
+    hn::Vec<Sums> sums[kTiles][kCount];
+    hn::Vec<Sums> others[kTiles][kCount];
+#pragma GCC unroll 12
+    for (int t = 0; t < kTiles; ++t) {
+#pragma GCC unroll 12
+      for (int v = 0; v < kCount; ++v) sums[t][v] = others[t][v] = hn::Zero(d);
+    }
+    for (int i = 0; i < by.inputs; i += 2, weights += 2 * by.outputs) {
+      hn::Vec<Products> w[kCount];
+#pragma GCC unroll 12
+      for (int v = 0; v < kCount; ++v) w[v] = hn::LoadU(pairs, weights + 2 * v * kLanes);
+#pragma GCC unroll 12
+      for (int t = 0; t < kTiles; ++t) {
+        std::int32_t both = 0;
+        std::memcpy(&both, tiles + t * kMostOutputs + i, sizeof both);
+        const auto two = hn::BitCast(pairs, hn::Set(d, both));
+#pragma GCC unroll 12
+        for (int v = 0; v < kCount; ++v)
+          sums[t][v] = hn::ReorderWidenMulAccumulate(d, two, w[v], sums[t][v], others[t][v]);
+      }
+    }
+    tiles += kTiles * kMostOutputs;
+#pragma GCC unroll 12
+    for (int t = 0; t < kTiles; ++t) {
+#pragma GCC unroll 12
+      for (int v = 0; v < kCount; ++v)
+        hn::Store(hn::RearrangeToOddPlusEven(sums[t][v], others[t][v]), d, of_place[t] + v * kLanes);
+    }
+  }
+  for (int t = 0; t < kTiles; ++t, x += 2) {
+    for (int v = 0; v < kCount; ++v) {
+      const auto at = [&](int place) HWY_ATTR { return hn::Load(d, products[place][t] + v * kLanes); };
+      hn::Vec<Sums> down[4][2];
+#pragma GCC unroll 4
+      for (int c = 0; c < 4; ++c) sums_from(at(c), at(4 + c), at(8 + c), at(12 + c), down[c]);
+#pragma GCC unroll 2
+      for (int r = 0; r < 2; ++r) {
+        hn::Vec<Sums> sums[2];
+        sums_from(down[0][r], down[1][r], down[2][r], down[3][r], sums);
+        if (out[r] == nullptr) continue;
+#pragma GCC unroll 2
+        for (int c = 0; c < 2; ++c) {
+          if (x + c < width)
+            put(hn::ShiftRight<2>(sums[c]), by, output + v * kLanes,
+                out[r] + std::ptrdiff_t{x + c} * by.outputs);
+        }
+      }
+    }
+  }
+}
+
+inline void convolve_two(const std::int16_t* const* rows, const Convolution& by, int width,
+                         std::int16_t* const* out) {
+  HWY_ALIGN std::int16_t tiles[kPlaces * kTiles * kMostOutputs];
+  for (int x = 0; x < width; x += 2 * kTiles) {
+    for (int t = 0; t < kTiles; ++t) {
+      // Where the width is odd, the last column has no neighbour, and no output depends on it.
+      std::ptrdiff_t columns[4];
+      for (int c = 0; c < 4; ++c) columns[c] = std::ptrdiff_t{std::min(x + 2 * t + c, width + 1)} * by.inputs;
+      transform_tile(rows, columns, by.inputs, tiles + t * kMostOutputs);
+    }
+    int output = 0;
+    for (; output + kTogether * kLanes <= by.outputs; output += kTogether * kLanes)
+      outputs_of_tiles<kTogether>(tiles, by, output, x, width, out);
+    for (; output < by.outputs; output += kLanes) outputs_of_tiles<1>(tiles, by, output, x, width, out);
+  }
+}
+
 #endif
 
-inline constexpr ConvolutionKernels kConvolutionKernels{convolve};
+inline constexpr ConvolutionKernels kConvolutionKernels{convolve, convolve_two};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -5,7 +5,7 @@
 #include <cairn/core/exec.hpp>
 #include <cstdint>
 
-/// The kernel of hint_objects(), per row; one set per instruction set. Private to the library.
+/// The kernels of hint_objects(), per row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
 /// A convolution of integers. `inputs` is even, `outputs` a multiple of 8 up to kMostOutputs.
@@ -18,6 +18,9 @@ struct Convolution {
   const std::int16_t* weights = nullptr;  // [window row][column][pair of inputs][output][2]
   const std::int32_t* bias = nullptr;     // [output]
   const float* scale = nullptr;           // [output]
+  // For convolve_two(): [row][column of a transformed tile][pair of inputs][output][2]; nullptr if side or stride
+  // do not permit it.
+  const std::int16_t* transformed_weights = nullptr;
 };
 
 /// The largest number of outputs.
@@ -32,6 +35,10 @@ struct ConvolutionKernels {
   /// column of the first output on. Output o of pixel x, at out[x · outputs + o], is
   /// (bias[o] + Σ weights · inputs) · scale[o], rounded, from `least` to kGreatestActivation.
   void (*convolve)(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out);
+  /// The same for two neighbouring rows of outputs, with fewer multiplications. `rows`: the four rows of inputs.
+  /// `out[1]` may be nullptr. Preconditions: side 3, stride 1, `inputs` a multiple of 8 up to kMostOutputs.
+  void (*convolve_two)(const std::int16_t* const* rows, const Convolution& by, int width,
+                       std::int16_t* const* out);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.

@@ -187,6 +187,20 @@ Activations convolved(const Activations& in, const kernels::Convolution& by, con
   const Size size{(in.size.width + by.stride - 1) / by.stride, (in.size.height + by.stride - 1) / by.stride};
   Activations out = framed_activations(size, by.outputs, exec.pool);
   const kernels::ConvolutionKernels& run = kernels::convolution_kernels(exec);
+  if (by.transformed_weights != nullptr) {
+    parallel_for(exec, (size.height + 1) / 2, kGrain / 2, [&](int first, int last) {
+      for (int y = 2 * first; y < 2 * last; y += 2) {
+        // Of an odd number of rows, the last has no partner.
+        const bool both = y + 1 < size.height;
+        std::array<const std::int16_t*, 4> rows{};
+        for (int r = 0; r < 4; ++r)
+          rows.at(static_cast<std::size_t>(r)) = in.row(std::min(y + r - 1, size.height)) - in.channels;
+        const std::array outs{out.row(y), both ? out.row(y + 1) : nullptr};
+        run.convolve_two(rows.data(), by, size.width, outs.data());
+      }
+    });
+    return out;
+  }
   const int reach = by.side / 2;
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
@@ -239,6 +253,43 @@ enum Layer : std::size_t {
   kTell
 };
 
+constexpr int kPlaces = 16;  // in a transformed tile
+
+/// Whether convolve_two() computes the layer.
+bool is_transformed(const HintLayer& l) {
+  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0;
+}
+
+std::size_t count_of_transformed(std::span<const HintLayer> layers) {
+  std::size_t count = 0;
+  for (const HintLayer& l : layers) count += is_transformed(l) ? slot(kPlaces * l.inputs * l.outputs) : 0;
+  return count;
+}
+
+/// The weights of a layer, times four, transformed as convolve_two() expects.
+void transform_weights(const HintLayer& l, std::span<const std::int8_t> weights, std::int16_t* to) {
+  const auto transformed = [](int a, int b, int c) { return std::array{2 * a, a + b + c, a - b + c, 2 * c}; };
+  for (int i = 0; i < l.inputs; ++i) {
+    for (int o = 0; o < l.outputs; ++o) {
+      std::array<std::array<int, 4>, 3> across{};
+      for (int r = 0; r < 3; ++r) {
+        const auto at = [&](int c) {
+          return int{weights[slot(((r * 3 + c) * l.inputs + i) * l.outputs + o)]};
+        };
+        across.at(slot(r)) = transformed(at(0), at(1), at(2));
+      }
+      for (int c = 0; c < 4; ++c) {
+        const std::array down =
+            transformed(across[0].at(slot(c)), across[1].at(slot(c)), across[2].at(slot(c)));
+        for (int r = 0; r < 4; ++r) {
+          to[slot((((r * 4 + c) * l.inputs + i) / 2 * l.outputs + o) * 2 + i % 2)] =
+              static_cast<std::int16_t>(down.at(slot(r)));
+        }
+      }
+    }
+  }
+}
+
 std::int16_t limited(int value, int least, int most) {
   return static_cast<std::int16_t>(std::clamp(value, least, most));
 }
@@ -271,20 +322,29 @@ Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues
 
 HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
                          std::span<const std::int32_t> bias, std::span<const float> scale)
-    : weights_(weights.size()), bias_(bias.begin(), bias.end()), scale_(scale.begin(), scale.end()) {
+    : weights_(weights.size(), Pool()),
+      transformed_weights_(count_of_transformed(layers), Pool()),
+      bias_(bias.begin(), bias.end()),
+      scale_(scale.begin(), scale.end()) {
   std::size_t weight = 0;
   std::size_t output = 0;
+  std::size_t transformed = 0;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const HintLayer& l = layers[i];
     for (int k = 0; k < l.side * l.side * l.inputs; ++k) {
       for (int o = 0; o < l.outputs; ++o) {
         // NOLINTNEXTLINE(bugprone-signed-char-misuse): a number, not a character
         const auto number = static_cast<std::int16_t>(weights[weight + slot(k * l.outputs + o)]);
-        weights_[weight + slot((k / 2 * l.outputs + o) * 2 + k % 2)] = number;
+        weights_.data()[weight + slot((k / 2 * l.outputs + o) * 2 + k % 2)] = number;
       }
     }
-    layers_[i] = {l.inputs, l.outputs,         l.side,         l.stride,
-                  l.least,  &weights_[weight], &bias_[output], &scale_[output]};
+    layers_[i] = {l.inputs,       l.outputs,      l.side, l.stride, l.least, weights_.data() + weight,
+                  &bias_[output], &scale_[output]};
+    if (is_transformed(l)) {
+      layers_[i].transformed_weights = transformed_weights_.data() + transformed;
+      transform_weights(l, weights.subspan(weight), transformed_weights_.data() + transformed);
+      transformed += slot(kPlaces * l.inputs * l.outputs);
+    }
     weight += l.weights();
     output += slot(l.outputs);
   }

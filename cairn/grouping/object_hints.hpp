@@ -6,6 +6,7 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
+#include <cairn/core/scratch.hpp>
 #include <cairn/grouping/convolution_kernels.hpp>
 #include <cairn/grouping/region_cues.hpp>
 #include <cstdint>
@@ -60,7 +61,8 @@ class HintNetwork {
   [[nodiscard]] const kernels::Convolution& layer(std::size_t i) const { return layers_.at(i); }
 
  private:
-  std::vector<std::int16_t> weights_;  // pairs of inputs side by side
+  Scratch<std::int16_t> weights_;  // pairs of inputs side by side
+  Scratch<std::int16_t> transformed_weights_;
   std::vector<std::int32_t> bias_;
   std::vector<float> scale_;
   std::array<kernels::Convolution, kHintLayers> layers_{};

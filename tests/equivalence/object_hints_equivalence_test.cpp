@@ -19,12 +19,12 @@ using reference::HintNumbers;
 
 /// Numbers of outputs that exercise all vector paths. Few weights are large, so that outputs neither vanish
 /// nor all saturate.
-HintNumbers random_numbers(std::uint32_t seed) {
+HintNumbers random_numbers(std::uint32_t seed, int least_channels = 8) {
   std::mt19937 random(seed);
   const auto from = [&random](int least, int most) {
     return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
   };
-  const auto channels = [&] { return 8 * from(1, 6); };
+  const auto channels = [&] { return 8 * from(least_channels / 8, 6); };
   const int half = channels();
   const int quarter = channels();
   const int eighth = channels();
@@ -121,6 +121,17 @@ TEST(HintObjects, OfGreatestNumbersDoNotOverflow) {
   for (std::int8_t& weight : numbers.weights) weight = weight < 0 ? -127 : 127;
   for (float& scale : numbers.scale) scale = 1;
   const Image<std::int16_t> input = random_input({24, 16}, 5);
+  const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
+  for (const Target target : supported_targets())
+    expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
+}
+
+TEST(HintObjects, OfGreatestSumsDoNotOverflow) {
+  HintNumbers numbers = random_numbers(6, 48);
+  std::fill(numbers.weights.begin(), numbers.weights.end(), std::int8_t{127});
+  std::fill(numbers.scale.begin(), numbers.scale.end(), 1.0F);
+  std::fill(numbers.scale.end() - 24, numbers.scale.end(), 1e-6F);  // estimates that are not all limited
+  const Image<std::int16_t> input = random_input({32, 32}, 6);
   const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
   for (const Target target : supported_targets())
     expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
