@@ -23,22 +23,17 @@ class Islands {
   Islands(Size size, Rows rows, const Exec& exec)
       : size_(size),
         rows_(rows),
-        row_begin_(count_runs(exec)),
-        runs_(slot(row_begin_.back())),
+        row_begin_(slot(size.height) + 1),
+        runs_(find_runs(exec)),
         sets_(runs_.size()),
         island_(runs_.size()) {
-    std::vector<char> starts_block(slot(size.height), 0);
-    parallel_for(exec, size.height, kGrain, [&](int first, int last) {
-      starts_block[slot(first)] = 1;
-      for (int y = first; y < last; ++y) {
-        find_runs(y);
-        if (y > first) join_with_row_above(y);
+    parallel_for(exec, blocks(), 1, [&](int first, int last) {
+      for (int block = first; block < last; ++block) {
+        for (int y = begin_of(block) + 1; y < begin_of(block + 1); ++y) join_with_row_above(y);
       }
     });
     // Each block is joined internally; the seams between blocks remain.
-    for (int y = 1; y < size.height; ++y) {
-      if (starts_block[slot(y)] != 0) join_with_row_above(y);
-    }
+    for (int block = 1; block < blocks(); ++block) join_with_row_above(begin_of(block));
     measure();
   }
 
@@ -52,7 +47,10 @@ class Islands {
   }
 
  private:
-  static constexpr int kGrain = 64;  // rows
+  // Blocks of rows are searched at the same time.
+  static constexpr int kBlock = 64;  // rows
+  [[nodiscard]] int blocks() const { return (size_.height + kBlock - 1) / kBlock; }
+  [[nodiscard]] int begin_of(int block) const { return std::min(kBlock * block, size_.height); }
 
   /// A run of connected pixels in one row, [begin, end).
   struct Run {
@@ -61,36 +59,41 @@ class Islands {
   };
 
   [[nodiscard]] int row_begin(int y) const { return row_begin_[slot(y)]; }
-  [[nodiscard]] Run& run(int i) { return runs_[slot(i)]; }
   [[nodiscard]] const Run& run(int i) const { return runs_[slot(i)]; }
 
-  /// Number of runs above each row, and in all.
-  [[nodiscard]] std::vector<int> count_runs(const Exec& exec) const {
-    std::vector<int> begin(slot(size_.height) + 1);
-    parallel_for(exec, size_.height, kGrain, [&](int first, int last) {
-      for (int y = first; y < last; ++y) {
-        const auto row = rows_(y);
-        int count = row.is_pixel(0) ? 1 : 0;
-        for (int x = 1; x < size_.width; ++x)
-          count += static_cast<int>(row.is_pixel(x)) & static_cast<int>(!row.follows(x));
-        begin[slot(y) + 1] = count;
+  /// The runs of all rows; also finds where those of each row begin.
+  std::vector<Run> find_runs(const Exec& exec) {
+    std::vector<std::vector<Run>> found(slot(blocks()));
+    parallel_for(exec, blocks(), 1, [&](int first, int last) {
+      for (int block = first; block < last; ++block) {
+        std::vector<Run>& runs = found[slot(block)];
+        for (int y = begin_of(block); y < begin_of(block + 1); ++y) {
+          find_runs(y, runs);
+          row_begin_[slot(y) + 1] = static_cast<int>(runs.size());
+        }
       }
     });
-    for (std::size_t y = 1; y < begin.size(); ++y) begin[y] += begin[y - 1];
-    return begin;
+    std::vector<Run> all;
+    for (int block = 0; block < blocks(); ++block) {
+      const std::vector<Run>& runs = found[slot(block)];
+      for (int y = begin_of(block); y < begin_of(block + 1); ++y)
+        row_begin_[slot(y) + 1] += static_cast<int>(all.size());
+      all.insert(all.end(), runs.begin(), runs.end());
+    }
+    return all;
   }
 
-  void find_runs(int y) {
+  void find_runs(int y, std::vector<Run>& runs) const {
     const auto row = rows_(y);
-    int i = row_begin(y);
-    for (int x = 0; x < size_.width;) {
+    const int width = size_.width;
+    for (int x = 0; x < width;) {
       if (!row.is_pixel(x)) {
         ++x;
         continue;
       }
       const int begin = x++;
-      while (x < size_.width && row.follows(x)) ++x;
-      run(i++) = {begin, x};
+      while (x < width && row.follows(x)) ++x;
+      runs.push_back({begin, x});
     }
   }
 

@@ -71,11 +71,28 @@ Segmentation groups_of(const Superpixels& superpixels, const ChosenObjects& chos
                        const DisparityMap& disparity, const Exec& exec) {
   Image<RegionId> labels(superpixels.labels.size(), exec.pool);
   for (int y = 0; y < labels.height(); ++y) {
-    for (int x = 0; x < labels.width(); ++x)
-      labels(x, y) = RegionId{chosen.object_of[index(superpixels.labels(x, y))]};
+    const RegionId* const superpixel = superpixels.labels.row(y);
+    std::transform(superpixel, superpixel + labels.width(), labels.row(y),
+                   [&](RegionId i) { return RegionId{chosen.object_of[index(i)]}; });
   }
-  Segmentation groups = segmentation_of(std::move(labels), chosen.scores.size(),
-                                        [&](int x, int y) { return double{disparity.disparity_px(x, y)}; });
+  Segmentation groups =
+      segmentation_of(std::move(labels), chosen.scores.size(), exec, [&](const Run& run, Region& region) {
+        const float* const disparity_px = disparity.disparity_px.row(run.y);
+        int count = region.valid_count;
+        double sum = region.mean;
+        double squares = region.variance;
+        for (int x = run.first; x < run.last; ++x) {
+          const bool is_known = disparity_px[x] == disparity_px[x];
+          const double d =
+              is_known ? double{disparity_px[x]} : 0;  // adding 0 changes no sum, and needs no branch
+          count += is_known ? 1 : 0;
+          sum += d;
+          squares += d * d;
+        }
+        region.valid_count = count;
+        region.mean = sum;
+        region.variance = squares;
+      });
   groups.regions.front().is_background = true;
   return groups;
 }

@@ -4,37 +4,25 @@
 
 #include <algorithm>
 #include <cairn/regions/region_graph.hpp>
+#include <cairn/regions/runs.hpp>
 #include <utility>
 #include <vector>
 
 namespace cairn {
 
-/// Labels as a segmentation of `count` regions. value(x, y): the input of the statistics; NaN does not count.
-template <class Value>
-Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, Value value) {
+/// Labels as a segmentation of `count` regions. add_values(run, region): adds the input of the statistics, the
+/// values of the pixels of a run, to the region: their number to valid_count, their sum to mean, and the sum of
+/// their squares to variance. Called in raster order.
+template <class AddValues>
+Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, const Exec& exec,
+                             AddValues add_values) {
   Segmentation result{std::move(labels), std::vector<Region>(count)};
-  for (int y = 0; y < result.labels.height(); ++y) {
-    const RegionId* const row = result.labels.row(y);
-    for (int first = 0; first < result.labels.width();) {
-      int last = first + 1;
-      while (last < result.labels.width() && row[last] == row[first]) ++last;
-      Region& region = result.regions[index(row[first])];
-      region.pixel_count += last - first;
-      region.box = united(region.box, {first, y, last - first, 1});
-      double sum = region.mean;
-      double squares = region.variance;
-      for (int x = first; x < last; ++x) {
-        const double v = value(x, y);
-        if (!(v == v)) continue;
-        ++region.valid_count;
-        sum += v;
-        squares += v * v;
-      }
-      region.mean = sum;
-      region.variance = squares;
-      first = last;
-    }
-  }
+  for_each_run(result.labels, exec, [&](const Run& run) {
+    Region& region = result.regions[index(run.label)];
+    region.pixel_count += run.length();
+    region.box = united(region.box, run.box());
+    add_values(run, region);
+  });
   for (Region& region : result.regions) {
     if (region.valid_count == 0) continue;
     region.mean /= region.valid_count;

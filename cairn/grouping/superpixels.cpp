@@ -9,8 +9,10 @@
 #include <cairn/grouping/segmentation_of.hpp>
 #include <cairn/grouping/superpixels.hpp>
 #include <cairn/image/gradient.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cmath>
+#include <cstdint>
 #include <memory_resource>
 #include <numeric>
 #include <queue>
@@ -249,8 +251,20 @@ Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<con
 }
 
 Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {
-  return segmentation_of(superpixels.labels.clone(exec.pool), slot(superpixels.count),
-                         [&](int x, int y) { return static_cast<double>(left(x, y)); });
+  constexpr int kMostSummed = 1 << 15;  // pixels: fewer than those at which the kernel's sums overflow
+  std::vector<std::uint64_t> up_to(slot(left.width()) + 1);
+  return segmentation_of(
+      superpixels.labels.clone(exec.pool), slot(superpixels.count), exec,
+      [&](const Run& run, Region& region) {
+        if (run.first == 0)
+          kernels::label_kernels(exec).sum_grey(left.row(run.y), left.width(), up_to.data());
+        region.valid_count += run.length();
+        for (int x = run.first; x < run.last; x += kMostSummed) {
+          const std::uint64_t sums = up_to[slot(std::min(x + kMostSummed, run.last))] - up_to[slot(x)];
+          region.mean += static_cast<double>(sums >> 40U);
+          region.variance += static_cast<double>(sums & ((std::uint64_t{1} << 40U) - 1));
+        }
+      });
 }
 
 }  // namespace cairn

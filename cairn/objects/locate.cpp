@@ -8,6 +8,7 @@
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/point_kernels.hpp>
 #include <cairn/objects/ranks.hpp>
+#include <cairn/regions/label_kernels.hpp>
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>
 #include <cstdint>
@@ -50,37 +51,43 @@ struct Stretch {
   int y;
   int first;
   int last;
+  [[nodiscard]] int length() const { return last - first; }
 };
 
 /// The pixels of each object: its main part, and the valid disparities of the whole mask.
 struct Part {
   std::vector<Stretch> main;
   std::vector<float> disparities_px;
+  std::size_t main_pixels = 0;
 };
 
 std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_px, const Exec& exec) {
   const auto rows = [&](int y) { return SurfaceRow{objects.labels.row(y), disparity_px.row(y)}; };
   const Islands islands(disparity_px.size(), rows, exec);
   std::vector<std::int32_t> largest(objects.list.size(), -1);
-  std::vector<Part> parts(objects.list.size());
+  std::vector<std::size_t> pixels(objects.list.size());
   const auto object_at = [&](int x, int y) { return slot(number(objects.labels(x, y)) - 1); };
   for (int y = 0; y < disparity_px.height(); ++y) {
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       const std::size_t i = object_at(begin, y);
       if (largest[i] < 0 || islands.pixels(island) > islands.pixels(largest[i])) largest[i] = island;
-      std::vector<float>& all = parts[i].disparities_px;
-      all.insert(all.end(), disparity_px.row(y) + begin, disparity_px.row(y) + end);
+      pixels[i] += slot(end - begin);
     });
   }
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  std::vector<Interval> within_px(parts.size(), Interval{kInfinity, -kInfinity});
+  std::vector<Interval> within_px(pixels.size(), Interval{kInfinity, -kInfinity});
+  std::vector<Part> parts(pixels.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].disparities_px.reserve(pixels[i]);
+  const kernels::LabelKernels& run = kernels::label_kernels(exec);
   for (int y = 0; y < disparity_px.height(); ++y) {
     islands.for_each_run(y, [&](std::int32_t island, int begin, int end) {
       const std::size_t i = object_at(begin, y);
+      const float* const d = disparity_px.row(y) + begin;
+      parts[i].disparities_px.insert(parts[i].disparities_px.end(), d, d + (end - begin));
       if (island != largest[i]) return;
-      const auto [low, high] = std::minmax_element(disparity_px.row(y) + begin, disparity_px.row(y) + end);
+      const auto [low, high] = run.find_range(d, slot(end - begin));
       Interval& within = within_px[i];
-      within = {std::min(within.low, *low), std::max(within.high, *high)};
+      within = {std::min(within.low, low), std::max(within.high, high)};
     });
   }
   for (int y = 0; y < disparity_px.height(); ++y) {
@@ -93,6 +100,7 @@ std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_p
         if (!is_main(first)) continue;
         while (x < end && is_main(x)) ++x;
         parts[i].main.push_back({y, first, x});
+        parts[i].main_pixels += slot(x - first);
       }
     });
   }
@@ -122,27 +130,66 @@ float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& e
   return static_cast<float>(std::floor(std::exp(logarithm) * 1024 + 0.5) / 1024);
 }
 
-/// Points of a surface, one list per axis.
-struct Points {
-  std::array<std::vector<float>, 3> axis;
-  [[nodiscard]] std::size_t size() const { return axis[0].size(); }
-  void push_back(Vec3 p) {
-    axis[0].push_back(p.x);
-    axis[1].push_back(p.y);
-    axis[2].push_back(p.z);
-  }
-};
-
 /// Farther points are ignored: their coordinates would overflow when rotated.
+constexpr float kFarthest = 1e6F;  // m
 bool is_near(Vec3 p) {
-  constexpr float kFarthest = 1e6F;  // m
   return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
-/// The disparities of an object's main part, in the smallest rectangle around them.
-class Surface {
+/// Points of a surface, one list per axis.
+class Points {
  public:
-  Surface(const Part& part, View<const float> disparity_px) {
+  explicit Points(std::size_t size) : size_(size) {
+    for (auto& list : axis_) list.resize(size);
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::span<float> axis(std::size_t i) { return {axis_.at(i).data(), size_}; }
+  [[nodiscard]] std::span<const float> axis(std::size_t i) const { return {axis_.at(i).data(), size_}; }
+  /// From the i-th on.
+  [[nodiscard]] kernels::PointLists from(std::size_t i) {
+    return {axis_[0].data() + i, axis_[1].data() + i, axis_[2].data() + i};
+  }
+  /// Of `count` points from the i-th on, moves those that are near to the front.
+  void keep_near(std::size_t i, int count) {
+    std::size_t kept = i;
+    for (const std::size_t end = i + slot(count); i < end; ++i) {
+      const Vec3 p{axis_[0][i], axis_[1][i], axis_[2][i]};
+      if (!is_near(p)) continue;
+      axis_[0][kept] = p.x;
+      axis_[1][kept] = p.y;
+      axis_[2][kept] = p.z;
+      ++kept;
+    }
+  }
+  void shrink_to(std::size_t size) { size_ = size; }
+
+ private:
+  std::size_t size_;
+  std::array<std::vector<float>, 3> axis_;
+};
+
+/// The near points of an object's main part, in raster order. `disparities_px(stretch)`: those of its pixels.
+template <class Disparities>
+Points points_of(const Part& part, Disparities disparities_px, const StereoRig& rig, const Exec& exec) {
+  const kernels::PointKernels& run = kernels::point_kernels(exec);
+  Points points(part.main_pixels);
+  std::size_t count = 0;
+  for (const Stretch& stretch : part.main) {
+    const int length = stretch.length();
+    const int near = run.points_in_camera(rig, {stretch.first, stretch.y}, length, disparities_px(stretch),
+                                          kFarthest, points.from(count));
+    if (near < length) points.keep_near(count, length);
+    count += slot(near);
+  }
+  points.shrink_to(count);
+  return points;
+}
+
+/// The disparities of an object's main part, each the mean over those in the window of 5 x 5 px around it.
+class SmoothSurface {
+ public:
+  SmoothSurface(const Part& part, View<const float> disparity_px) {
     left_ = disparity_px.width();
     int right = 0;
     for (const Stretch& run : part.main) {
@@ -150,68 +197,42 @@ class Surface {
       right = std::max(right, run.last);
     }
     top_ = part.main.front().y;
-    width_ = right - left_;
-    height_ = part.main.back().y + 1 - top_;
-    pitch_ = slot(width_) + 2 * kReach;
-    values_.resize((slot(height_) + 2 * kReach) * pitch_);
-    is_main_.resize(values_.size());
-    for (const auto& [y, first, last] : part.main) {
-      const std::size_t i = at(first - left_, y - top_);
-      std::copy(disparity_px.row(y) + first, disparity_px.row(y) + last, &values_[i]);
-      std::fill_n(&is_main_[i], last - first, 1.0F);
+    const int height = part.main.back().y + 1 - top_;
+    pitch_ = slot(right - left_) + 2 * kReach;
+    values_.resize((slot(height) + 2 * kReach) * pitch_);
+    std::vector<float> counts(values_.size());  // 1 or 0
+    for (const Stretch& run : part.main) {
+      const float* const d = disparity_px.row(run.y);
+      std::copy(d + run.first, d + run.last, values_.begin() + at(run));
+      std::fill_n(counts.begin() + at(run), run.length(), 1.0F);
     }
-  }
-
-  /// Makes each disparity the mean over those in the window of 5 x 5 px around it.
-  void smooth() {
-    std::vector<float> counts = is_main_;
-    for (const std::size_t step : {std::size_t{1}, pitch_}) {
-      values_ = sums_of_five(values_, step);
-      counts = sums_of_five(counts, step);
+    std::vector<float> sums(values_.size());
+    for (std::vector<float>* const all : {&values_, &counts}) {
+      sum_five(*all, 1, sums);
+      sum_five(sums, pitch_, *all);
     }
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i] /= std::max(counts[i], 1.0F);
   }
 
-  [[nodiscard]] Points points(const StereoRig& rig, const Exec& exec) const {
-    const kernels::PointKernels& run = kernels::point_kernels(exec);
-    std::vector<float> d(slot(left_ + width_));
-    std::array<std::vector<float>, 3> row;
-    for (auto& axis : row) axis.resize(d.size());
-    Points points;
-    for (int y = 0; y < height_; ++y) {
-      const std::size_t first = at(0, y);
-      std::copy_n(&values_[first], width_, &d[slot(left_)]);
-      run.points_in_camera(rig, top_ + y, left_, left_ + width_, d.data(), row[0].data(), row[1].data(),
-                           row[2].data());
-      for (std::size_t x = 0; x < slot(width_); ++x) {
-        const std::size_t i = slot(left_) + x;
-        const Vec3 point{row[0][i], row[1][i], row[2][i]};
-        if (is_main_[first + x] > 0 && is_near(point)) points.push_back(point);
-      }
-    }
-    return points;
-  }
+  [[nodiscard]] const float* disparities_px(const Stretch& run) const { return values_.data() + at(run); }
 
  private:
   static constexpr std::size_t kReach = 2;  // px
 
-  [[nodiscard]] std::size_t at(int x, int y) const { return (slot(y) + kReach) * pitch_ + slot(x) + kReach; }
+  [[nodiscard]] std::ptrdiff_t at(const Stretch& run) const {
+    return static_cast<std::ptrdiff_t>((slot(run.y - top_) + kReach) * pitch_ + slot(run.first - left_) +
+                                       kReach);
+  }
   /// Of values `step` apart. The frame around the surface need not be right.
-  static std::vector<float> sums_of_five(const std::vector<float>& v, std::size_t step) {
-    std::vector<float> sums(v.size());
+  static void sum_five(const std::vector<float>& v, std::size_t step, std::vector<float>& sums) {
     for (std::size_t i = 2 * step; i + 2 * step < v.size(); ++i)
       sums[i] = v[i - 2 * step] + v[i - step] + v[i] + v[i + step] + v[i + 2 * step];
-    return sums;
   }
 
   int left_ = 0;
   int top_ = 0;
-  int width_ = 0;
-  int height_ = 0;
   std::size_t pitch_ = 0;
-  // With a frame of zeros, which saves the questions at the ends of a row.
-  std::vector<float> values_;
-  std::vector<float> is_main_;  // 1 or 0
+  std::vector<float> values_;  // with a frame, which saves the questions at the ends of a row
 };
 
 // ---- boxes on the floor ----
@@ -223,26 +244,22 @@ using Plan = std::array<std::vector<float>, 2>;
 /// of the image.
 Plan plan_of(const Points& points, std::size_t count) {
   constexpr std::uint64_t kStride = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
-  Plan plan;
+  Plan plan{std::vector<float>(count), std::vector<float>(count)};
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = count < points.size() ? k * kStride % points.size() : k;
-    plan[0].push_back(points.axis[0][i]);
-    plan[1].push_back(points.axis[1][i]);
+    plan[0][k] = points.axis(0)[i];
+    plan[1][k] = points.axis(1)[i];
   }
   return plan;
 }
 
-/// The coordinates along axes turned by the yaw.
-void turn(std::span<const float> xs, std::span<const float> ys, float yaw_rad, Plan& turned) {
-  const float c = std::cos(yaw_rad);
-  const float s = std::sin(yaw_rad);
-  for (auto& axis : turned) axis.resize(xs.size());
-  for (std::size_t i = 0; i < xs.size(); ++i) {
-    const float x = xs[i];
-    const float y = ys[i];
-    turned[0][i] = c * x + s * y;
-    turned[1][i] = c * y - s * x;
-  }
+/// The intervals that hold the points along axes turned by a yaw, but for the tails.
+std::array<Interval, 2> sides_of(std::span<const float> xs, std::span<const float> ys, float cosine,
+                                 float sine, Plan& room, const Exec& exec) {
+  for (auto& axis : room) axis.resize(xs.size());
+  kernels::point_kernels(exec).turn(xs.data(), ys.data(), static_cast<int>(xs.size()), cosine, sine,
+                                    room[0].data(), room[1].data());
+  return {without_tails(room[0], kTailOfBox, exec), without_tails(room[1], kTailOfBox, exec)};
 }
 
 float length(Interval i) {
@@ -250,10 +267,6 @@ float length(Interval i) {
 }
 float middle(Interval i) {
   return (i.low + i.high) / 2;
-}
-/// The distance of a value from the nearer end.
-float from_end(Interval i, float value) {
-  return std::min(std::abs(value - i.low), std::abs(i.high - value));
 }
 float radians(int degrees) {
   return static_cast<float>(degrees) * std::numbers::pi_v<float> / 180;
@@ -267,32 +280,37 @@ int closest_yaw(const Points& points, const Exec& exec) {
   constexpr int kCoarse = 6;            // degrees
   const Plan plan = plan_of(points, std::min(points.size(), kEnough));
   Plan room;
-  Plan ranked;
-  const auto distance = [&](int degrees) {
-    turn(plan[0], plan[1], radians(degrees), room);
-    ranked = room;
-    const Interval u = without_tails(ranked[0], kTailOfBox, exec);
-    const Interval v = without_tails(ranked[1], kTailOfBox, exec);
-    double sum = 0;
-    for (std::size_t i = 0; i < room[0].size(); ++i)
-      sum += double{std::min(from_end(u, room[0][i]), from_end(v, room[1][i]))};
-    return sum;
-  };
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
-  const auto try_one = [&](int degrees) {
-    const double found = distance(degrees);
-    if (found < least) {
-      least = found;
-      best = degrees;
+  const auto try_all = [&](std::span<const int> all_degrees) {
+    kernels::TurnedRectangles turned;
+    for (std::size_t k = 0; k < all_degrees.size(); ++k) {
+      turned.cosine[k] = std::cos(radians(all_degrees[k]));
+      turned.sine[k] = std::sin(radians(all_degrees[k]));
+      const auto sides = sides_of(plan[0], plan[1], turned.cosine[k], turned.sine[k], room, exec);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        turned.low[axis][k] = sides[axis].low;
+        turned.high[axis][k] = sides[axis].high;
+      }
+    }
+    kernels::TurnedRectangles::Each<double> sums;
+    kernels::point_kernels(exec).sum_distances(plan[0].data(), plan[1].data(),
+                                               static_cast<int>(plan[0].size()), turned, sums);
+    for (std::size_t k = 0; k < all_degrees.size(); ++k) {
+      if (!(sums[k] < least)) continue;
+      least = sums[k];
+      best = all_degrees[k];
     }
   };
-  for (int degrees = 0; degrees < 90; degrees += kCoarse) try_one(degrees);
-  const int about = best;
+  std::array<int, 90 / kCoarse> coarse;
+  for (std::size_t k = 0; k < coarse.size(); ++k) coarse[k] = static_cast<int>(k) * kCoarse;
+  try_all(coarse);
+  std::array<int, 2 * (kCoarse - 1)> fine;
   for (int off = 1; off < kCoarse; ++off) {
-    try_one((about + off) % 90);
-    try_one((about + 90 - off) % 90);
+    fine[slot(2 * off - 2)] = (best + off) % 90;
+    fine[slot(2 * off - 1)] = (best + 90 - off) % 90;
   }
+  try_all(fine);
   return best;
 }
 
@@ -323,19 +341,17 @@ std::array<float, 6> covariance(const FloorBox& box, Vec3 position_in_camera_m, 
           entry(ray.z, ray.z, across + end(box.size_m.z))};
 }
 
-FloorBox box_on(const FloorFrame& floor, const Points& in_camera, const Exec& exec) {
-  Points points;
-  for (std::size_t i = 0; i < in_camera.size(); ++i)
-    points.push_back(floor.to_floor({in_camera.axis[0][i], in_camera.axis[1][i], in_camera.axis[2][i]}));
+FloorBox box_on(const FloorFrame& floor, Points in_camera, const Exec& exec) {
+  Points points(in_camera.size());
+  kernels::point_kernels(exec).points_in_floor(floor, in_camera.from(0), static_cast<int>(points.size()),
+                                               points.from(0));
   int degrees = closest_yaw(points, exec);
   const float yaw = radians(degrees);
-  Plan room;
-  turn(points.axis[0], points.axis[1], yaw, room);
-  const Interval u = without_tails(room[0], kTailOfBox, exec);
-  const Interval v = without_tails(room[1], kTailOfBox, exec);
-  const Interval up = without_tails(points.axis[2], kTailOfBox, exec);
   const float c = std::cos(yaw);
   const float s = std::sin(yaw);
+  Plan room;
+  const auto [u, v] = sides_of(points.axis(0), points.axis(1), c, s, room, exec);
+  const Interval up = without_tails(points.axis(2), kTailOfBox, exec);
   FloorBox box;
   box.centre_in_floor_m = {c * middle(u) - s * middle(v), s * middle(u) + c * middle(v), middle(up)};
   box.size_m = {std::max(length(u), length(v)), std::min(length(u), length(v)), length(up)};
@@ -375,17 +391,18 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
                                  ? static_cast<float>(focal_baseline / (before_infinity - either_side))
                                  : std::numeric_limits<float>::infinity()};
 
-  Surface surface(part, disparity_px);
-  Points points = surface.points(rig, exec);
+  Points points = points_of(
+      part, [&](const Stretch& run) { return disparity_px.row(run.y) + run.first; }, rig, exec);
   if (points.size() == 0) return;
-  Points smooth;
+  Points smooth(0);
   if (floor) {
-    surface.smooth();  // the noise of single pixels would widen the box
-    smooth = surface.points(rig, exec);
+    const SmoothSurface surface(part, disparity_px);  // the noise of single pixels would widen the box
+    smooth = points_of(
+        part, [&](const Stretch& run) { return surface.disparities_px(run); }, rig, exec);
   }
   // At infinity, means may have no point where single pixels have one.
   if (smooth.size() > 0) {
-    object.box_on_floor = box_on(*floor, smooth, exec);
+    object.box_on_floor = box_on(*floor, std::move(smooth), exec);
     const double z = object.position_in_camera_m->z;
     std::array<float, 6>& known = object.box_on_floor->centre_covariance_m2;
     known =
@@ -396,7 +413,7 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   }
   // Compensates for the tails that were cut off, assuming evenly spread points.
   const auto span = [&](std::size_t axis) {
-    return length(without_tails(points.axis.at(axis), kTailOfExtent, exec)) * 100 /
+    return length(without_tails(points.axis(axis), kTailOfExtent, exec)) * 100 /
            float{100 - 2 * kTailOfExtent};
   };
   object.extent_in_camera_m = Vec3{span(0), span(1), span(2)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/objects/point_kernels.hpp>
+#include <cmath>
 #include <limits>
 
 #define CAIRN_KERNELS "cairn/objects/point_kernels-inl.hpp"

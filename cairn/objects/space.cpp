@@ -4,6 +4,8 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/disparity/islands.hpp>
 #include <cairn/objects/space.hpp>
+#include <cairn/objects/space_kernels.hpp>
+#include <cairn/regions/runs.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,59 +13,42 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 64;  // rows
-constexpr float kRatherRight = 0.5F;
+constexpr int kGrain = 64;              // rows
 constexpr std::int64_t kKnownPart = 5;  // a fifth of a superpixel
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// The disparities of floor and walls behind the pixels of a row, px.
+kernels::Backdrop backdrop_of(const SpaceCues& cues, const std::optional<StereoRig>& rig) {
+  const auto& planes = cues.background.planes;
+  return {cues.ground.plane,
+          {planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end()},
+          rig ? rig->doffs_px : 0.0F};
+}
+
+/// The disparities of floor and walls behind the pixels of a row.
 class BackgroundRow {
  public:
-  BackgroundRow(const SpaceCues& cues, const std::optional<StereoRig>& rig)
-      : floor_(cues.ground.plane), infinity_(rig ? rig->doffs_px : 0.0F), width_(cues.objects.width()) {
-    const auto& planes = cues.background.planes;
-    walls_.assign(planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end());
-    for (std::vector<float>* row : {&floor_px_, &wall_px_, &barrier_px_}) row->resize(slot(width_));
-  }
-  [[nodiscard]] bool has_any() const { return floor_.has_value() || !walls_.empty(); }
+  BackgroundRow(const kernels::Backdrop& backdrop, int width, const Exec& exec)
+      : run_(kernels::space_kernels(exec)),
+        backdrop_(backdrop),
+        free_floor_(slot(width)),
+        wall_(slot(width)),
+        barrier_(slot(width)) {}
 
+  /// See kernels::BackdropRow for the disparities.
   void look_at(int y) {
-    std::fill(floor_px_.begin(), floor_px_.end(), kNan);
-    std::fill(wall_px_.begin(), wall_px_.end(), -std::numeric_limits<float>::infinity());
-    for (const GroundPlane& wall : walls_) {
-      for (int x = 0; x < width_; ++x) {
-        const float d = wall.disparity_px(static_cast<float>(x), static_cast<float>(y));
-        wall_px_[slot(x)] = std::max(wall_px_[slot(x)], d);
-      }
-    }
-    for (int x = 0; x < width_ && floor_; ++x) {
-      const float d = floor_->disparity_px(static_cast<float>(x), static_cast<float>(y));
-      floor_px_[slot(x)] = d + infinity_ > 0 ? d : kNan;
-    }
-    for (int x = 0; x < width_; ++x) {
-      const float floor = floor_px_[slot(x)];
-      const float beyond = floor_ ? -infinity_ : std::max(wall_px_[slot(x)], -infinity_);
-      barrier_px_[slot(x)] = std::isnan(floor) ? beyond : floor;
-    }
+    run_.look_behind(backdrop_, y, static_cast<int>(wall_.size()),
+                     {free_floor_.data(), wall_.data(), barrier_.data()});
   }
-
-  /// NaN above the horizon, without a floor, and where a wall hides the floor.
-  [[nodiscard]] float free_floor_px(int x) const {
-    return floor_px_[slot(x)] >= wall_px_[slot(x)] ? floor_px_[slot(x)] : kNan;
-  }
-  /// −∞ where there is none.
-  [[nodiscard]] float wall_px(int x) const { return wall_px_[slot(x)]; }
-  /// The surface that an obstacle must be in front of: the floor or, without one, the walls.
-  [[nodiscard]] float barrier_px(int x) const { return barrier_px_[slot(x)]; }
+  [[nodiscard]] const float* free_floor_px() const { return free_floor_.data(); }
+  [[nodiscard]] const float* wall_px() const { return wall_.data(); }
+  [[nodiscard]] const float* barrier_px() const { return barrier_.data(); }
 
  private:
-  std::optional<GroundPlane> floor_;
-  std::vector<GroundPlane> walls_;
-  float infinity_;
-  int width_;
-  std::vector<float> floor_px_;
-  std::vector<float> wall_px_;
-  std::vector<float> barrier_px_;
+  const kernels::SpaceKernels& run_;
+  const kernels::Backdrop& backdrop_;
+  std::vector<float> free_floor_;
+  std::vector<float> wall_;
+  std::vector<float> barrier_;
 };
 
 struct Tally {
@@ -76,31 +61,29 @@ struct Tally {
 };
 
 /// For each superpixel whether it is floor; none where there are no superpixels.
-std::vector<bool> floor_pieces(const SpaceCues& cues, View<const float> seen_px, BackgroundRow behind,
-                               float margin) {
+std::vector<std::uint8_t> floor_pieces(const SpaceCues& cues, View<const float> seen_px,
+                                       const kernels::Backdrop& backdrop, float margin, const Exec& exec) {
   if (cues.superpixels.empty()) return {};
+  const int width = seen_px.width();
+  BackgroundRow behind(backdrop, width, exec);
+  std::vector<std::uint64_t> up_to(slot(width) + 1);
   std::vector<Tally> pieces;
-  for (int y = 0; y < seen_px.height(); ++y) {
-    behind.look_at(y);
-    const RegionId* const superpixel = cues.superpixels.row(y);
-    const float* const seen = seen_px.row(y);
-    for (int first = 0, x = 0; first < seen_px.width(); first = x) {
-      int known = 0;
-      int on_floor = 0;
-      for (; x < seen_px.width() && superpixel[x] == superpixel[first]; ++x) {
-        known += std::isnan(seen[x]) ? 0 : 1;
-        on_floor += std::abs(seen[x] - behind.free_floor_px(x)) <= margin ? 1 : 0;
-      }
-      const std::size_t i = index(superpixel[first]);
-      if (i >= pieces.size()) pieces.resize(i + 1);
-      Tally& piece = pieces[i];
-      piece.pixels += x - first;
-      piece.known += known;
-      piece.on_floor += on_floor;
+  for_each_run(cues.superpixels, exec, [&](const Run& run) {
+    if (run.first == 0) {
+      behind.look_at(run.y);
+      kernels::space_kernels(exec).sum_floor(seen_px.row(run.y), behind.free_floor_px(), margin, width,
+                                             up_to.data());
     }
-  }
-  std::vector<bool> floor(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) floor[i] = pieces[i].is_floor();
+    const std::size_t i = index(run.label);
+    if (i >= pieces.size()) pieces.resize(i + 1);
+    const std::uint64_t sums = up_to[slot(run.last)] - up_to[slot(run.first)];
+    Tally& piece = pieces[i];
+    piece.pixels += run.length();
+    piece.known += static_cast<std::int64_t>(sums >> 32U);
+    piece.on_floor += static_cast<std::int64_t>(sums & 0xFFFFFFFFU);
+  });
+  std::vector<std::uint8_t> floor(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) floor[i] = pieces[i].is_floor() ? 1 : 0;
   return floor;
 }
 
@@ -156,40 +139,29 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
                          const GroundConfig& config, const Exec& exec) {
   const View<const float> disparity_px = cues.disparity.disparity_px;
   const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
-  const BackgroundRow planes(cues, rig);
-  const std::vector<bool> pieces = floor_pieces(cues, seen_px, planes, config.margin);
+  const kernels::Backdrop backdrop = backdrop_of(cues, rig);
+  const std::vector<std::uint8_t> pieces = floor_pieces(cues, seen_px, backdrop, config.margin, exec);
   Image<Space> space(disparity_px.size(), exec.pool);
-  const bool has_any = planes.has_any();
+  const int width = space.width();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
-    BackgroundRow behind = planes;
+    BackgroundRow behind(backdrop, width, exec);
+    std::vector<std::uint8_t> in_floor(slot(width));
+    const std::vector<float> all_trusted(cues.confidence.empty() ? slot(width) : 0, 1.0F);
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
-      const ObjectId* const object = cues.objects.row(y);
-      const float* const disparity = disparity_px.row(y);
       const float* const seen = seen_px.row(y);
-      const float* const confidence = cues.confidence.empty() ? nullptr : cues.confidence.row(y);
-      const RegionId* const piece = pieces.empty() ? nullptr : cues.superpixels.row(y);
-      const auto is_floor = [&](int x) {
-        const float floor = behind.free_floor_px(x);
-        if (piece == nullptr) return std::abs(seen[x] - floor) <= config.margin;
-        // A hole in a piece of floor is floor; a pixel with a disparity off the floor is not.
-        return pieces[index(piece[x])] &&
-               std::abs((std::isnan(seen[x]) ? floor : seen[x]) - floor) <= config.margin;
-      };
-      const auto is_obstacle = [&](int x) {
-        return disparity[x] - behind.barrier_px(x) > config.margin &&
-               (confidence == nullptr || confidence[x] >= kRatherRight);
-      };
-      Space* const out = space.row(y);
-      for (int x = 0; x < space.width(); ++x) {
-        if (object[x] != ObjectId::none) {
-          out[x] = Space::obstacle;
-        } else if (!has_any) {
-          out[x] = Space::unknown;
-        } else {
-          out[x] = is_floor(x) ? Space::floor : is_obstacle(x) ? Space::obstacle : Space::unknown;
-        }
+      if (pieces.empty()) {  // a pixel that is known is a piece; the kernel sees whether it is on the floor
+        std::transform(seen, seen + width, in_floor.begin(), [](float d) { return d == d ? 1 : 0; });
+      } else {
+        const RegionId* const piece = cues.superpixels.row(y);
+        std::transform(piece, piece + width, in_floor.begin(),
+                       [is_floor = pieces.data()](RegionId i) { return is_floor[index(i)]; });
       }
+      kernels::space_kernels(exec).label(
+          {cues.objects.row(y), disparity_px.row(y), seen,
+           cues.confidence.empty() ? all_trusted.data() : cues.confidence.row(y), in_floor.data(),
+           behind.free_floor_px(), behind.barrier_px()},
+          config.margin, width, space.row(y));
     }
   });
   return space;
@@ -282,7 +254,8 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
                                  const LeftOutLimits& limits, const Exec& exec) {
   constexpr double kLeastShare = 0.0005;
   const View<const float> d = cues.disparity.disparity_px;
-  BackgroundRow behind(cues, rig);
+  const kernels::Backdrop backdrop = backdrop_of(cues, rig);
+  BackgroundRow behind(backdrop, space.width(), exec);
   const auto rows = [&](int y) { return RestRow{space.row(y), cues.objects.row(y), d.row(y)}; };
   const Islands islands(space.size(), rows, exec);
   std::vector<IslandStatistics> found(islands.count());
@@ -296,7 +269,7 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
       of.x += run * (begin + end - 1) / 2;
       of.y += run * y;
       for (int x = begin; x < end; ++x) {
-        of.on_wall += std::abs(d(x, y) - behind.wall_px(x)) <= limits.wall_tolerance_px ? 1 : 0;
+        of.on_wall += std::abs(d(x, y) - behind.wall_px()[x]) <= limits.wall_tolerance_px ? 1 : 0;
         of.disparity_px += double{d(x, y)};
         if (!likeliest.empty())
           of.likeliest = std::max(of.likeliest, likeliest[index(cues.superpixels(x, y))]);

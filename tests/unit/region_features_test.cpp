@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/core/target.hpp>
 #include <cairn/grouping/fitted_trees.hpp>
 #include <cairn/grouping/merge_tree.hpp>
 #include <cmath>
+#include <random>
 #include <set>
+#include <span>
 #include <string>
 
 #include "support/region_scene.hpp"

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/core/exec.hpp>
+#include <cairn/objects/space.hpp>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+/// The kernels of label_space() and left_out_of(), per pixel of a row; one set per instruction set. Private to
+/// the library.
+namespace cairn::kernels {
+
+/// What is known to be behind objects.
+struct Backdrop {
+  std::optional<GroundPlane> floor;
+  std::vector<GroundPlane> walls;
+  float infinity_px = 0;  // disparities above −infinity_px are before infinity
+};
+
+/// The disparities of a backdrop behind the pixels of a row, px.
+struct BackdropRow {
+  float* free_floor;  // NaN above the horizon, without a floor, and where a wall hides the floor
+  float* wall;        // of the nearest wall, −∞ without walls
+  float*
+      barrier;  // what an obstacle must be in front of: the floor or, without one, the walls; without any, NaN
+};
+
+/// The rows of label_space().
+struct SpaceRow {
+  const ObjectId* object;
+  const float* disparity;
+  const float* seen;
+  const float* confidence;
+  const std::uint8_t* in_floor;  // whether the pixel's superpixel is floor
+  const float* free_floor;
+  const float* barrier;
+};
+
+/// Plain loops that compilers vectorise, as in PointKernels.
+struct SpaceKernels {
+  /// For the pixels of row y.
+  void (*look_behind)(const Backdrop& backdrop, int y, int width, const BackdropRow& out);
+  /// Prefix sums of a row: up_to[x] = pixels with a disparity · 2³² + pixels on the floor, of the first x.
+  void (*sum_floor)(const float* seen_px, const float* free_floor_px, float margin, int width,
+                    std::uint64_t* up_to);
+  /// As label_space() defines it.
+  void (*label)(const SpaceRow& row, float margin, int width, Space* out);
+};
+
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
+const SpaceKernels* space_kernels(Target target);
+/// The functions for the active target of `exec`.
+const SpaceKernels& space_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "reference/space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cairn/core/target.hpp>
+#include <limits>
+
+#include "support/grids.hpp"
+#include "support/noise.hpp"
+
+namespace cairn {
+namespace {
+
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+constexpr StereoRig kRig{.focal_px = 100, .cx_px = 40, .cy_px = 20, .baseline_m = 0.2F, .doffs_px = 1.5F};
+constexpr GroundPlane kFloor{0.01F, 0.2F, -3};
+constexpr GroundPlane kLeftWall{-0.1F, 0.01F, 4};
+constexpr GroundPlane kRightWall{0.08F, 0, 1};
+
+/// A scene on which nothing is sure: disparities on and off the planes, holes, pieces in part on the floor.
+struct Scene {
+  DisparityMap disparity;
+  Image<float> seen;
+  Image<float> confidence;
+  Image<RegionId> superpixels;
+  Image<ObjectId> objects;
+
+  Scene(Size size, std::uint32_t seed)
+      : disparity{Image<float>(size), Image<Reject>(size, Reject::none, {})},
+        seen(size),
+        confidence(size),
+        superpixels(size),
+        objects(size) {
+    support::Noise noise(seed);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        const float floor = kFloor.disparity_px(static_cast<float>(x), static_cast<float>(y));
+        const int piece = y / 6 * 20 + x / 7;
+        const double off = piece % 3 == 0 ? 0.1 : 0.5;  // share of the pixels off the floor
+        const auto step = static_cast<float>(8 * noise.uniform() - 2);
+        disparity.disparity_px(x, y) = noise.uniform() < 0.3   ? kHole
+                                       : noise.uniform() < off ? floor + step
+                                                               : floor;
+        seen(x, y) = noise.uniform() < 0.1 ? floor : disparity.disparity_px(x, y);
+        confidence(x, y) = static_cast<float>(noise.uniform());
+        superpixels(x, y) = RegionId{piece};
+        objects(x, y) = ObjectId{noise.uniform() < 0.1 ? 1 : 0};
+      }
+    }
+  }
+};
+
+void expect_equal_to_reference(const SpaceCues& cues, const std::optional<StereoRig>& rig) {
+  const GroundConfig config;
+  const Image<Space> expected = reference::label_space(cues, rig, config);
+  for (const Target target : supported_targets()) {
+    EXPECT_EQ(grids::numbers(label_space(cues, rig, config, Exec::with_threads(1, target))),
+              grids::numbers(expected))
+        << text(expected.size());
+  }
+}
+
+TEST(SpaceEquivalence, HoldsForEverySize) {
+  for (const Size size : {Size{1, 1}, {1, 40}, {31, 7}, {64, 30}, {67, 70}, {130, 40}}) {
+    const Scene scene(size, static_cast<std::uint32_t>(size.width));
+    const Ground ground{kFloor, 1, 0, Refusal::none};
+    const Background background{{kFloor, kLeftWall, kRightWall}, true};
+    expect_equal_to_reference(
+        {scene.disparity, scene.seen, scene.confidence, ground, background, scene.superpixels, scene.objects},
+        kRig);
+  }
+}
+
+TEST(SpaceEquivalence, HoldsForWhateverIsKnown) {
+  const Scene scene({67, 45}, 3);
+  const Image<float> no_confidence;
+  const Image<RegionId> no_superpixels;
+  for (const Ground& ground : {Ground{kFloor, 1, 0, Refusal::none}, Ground{}}) {
+    for (const bool walls : {false, true}) {
+      Background background{{}, ground.plane.has_value()};
+      if (ground.plane) background.planes.push_back(kFloor);
+      if (walls) background.planes.insert(background.planes.end(), {kLeftWall, kRightWall});
+      for (const Image<float>* const confidence : {&scene.confidence, &no_confidence}) {
+        for (const Image<RegionId>* const superpixels : {&scene.superpixels, &no_superpixels}) {
+          const SpaceCues cues{scene.disparity, {},           *confidence,  ground,
+                               background,      *superpixels, scene.objects};
+          expect_equal_to_reference(cues, kRig);
+          expect_equal_to_reference(cues, std::nullopt);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cairn

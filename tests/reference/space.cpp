@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "reference/space.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace cairn::reference {
+namespace {
+
+struct Behind {
+  std::optional<float> floor;       // not above the horizon
+  std::optional<float> wall;        // the nearest
+  std::optional<float> free_floor;  // not behind a wall
+  std::optional<float> barrier;     // what an obstacle is in front of
+};
+
+Behind behind(const SpaceCues& cues, const std::optional<StereoRig>& rig, int x, int y) {
+  const auto at = [&](const GroundPlane& plane) {
+    return plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
+  };
+  const float infinity = rig ? rig->doffs_px : 0;
+  Behind found;
+  if (cues.ground.plane && at(*cues.ground.plane) + infinity > 0) found.floor = at(*cues.ground.plane);
+  const auto& planes = cues.background.planes;
+  for (std::size_t i = cues.background.has_floor ? 1 : 0; i < planes.size(); ++i)
+    found.wall = found.wall ? std::max(*found.wall, at(planes[i])) : at(planes[i]);
+  if (found.floor && (!found.wall || *found.floor >= *found.wall)) found.free_floor = found.floor;
+  if (cues.ground.plane) {
+    found.barrier = found.floor ? *found.floor : -infinity;
+  } else if (found.wall) {
+    found.barrier = std::max(*found.wall, -infinity);
+  }
+  return found;
+}
+
+struct Piece {
+  int pixels = 0;
+  int known = 0;
+  int on_floor = 0;
+  [[nodiscard]] bool is_floor() const {
+    return on_floor > 0 && 5 * known >= pixels && 5 * on_floor >= 3 * known;
+  }
+};
+
+}  // namespace
+
+Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
+                         const GroundConfig& config) {
+  const View<const float> disparity_px = cues.disparity.disparity_px;
+  const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
+  const auto is_on_floor = [&](int x, int y) {
+    const auto floor = behind(cues, rig, x, y).free_floor;
+    return floor && std::abs(seen_px(x, y) - *floor) <= config.margin;
+  };
+  std::map<RegionId, Piece> pieces;
+  for (int y = 0; y < seen_px.height() && !cues.superpixels.empty(); ++y) {
+    for (int x = 0; x < seen_px.width(); ++x) {
+      Piece& piece = pieces[cues.superpixels(x, y)];
+      ++piece.pixels;
+      piece.known += std::isnan(seen_px(x, y)) ? 0 : 1;
+      piece.on_floor += is_on_floor(x, y) ? 1 : 0;
+    }
+  }
+  const auto is_floor = [&](int x, int y) {
+    if (cues.superpixels.empty()) return is_on_floor(x, y);
+    if (!pieces[cues.superpixels(x, y)].is_floor() || !behind(cues, rig, x, y).free_floor) return false;
+    return std::isnan(seen_px(x, y)) || is_on_floor(x, y);
+  };
+  const auto is_obstacle = [&](int x, int y) {
+    const auto barrier = behind(cues, rig, x, y).barrier;
+    return barrier && disparity_px(x, y) - *barrier > config.margin &&
+           (cues.confidence.empty() || cues.confidence(x, y) >= 0.5F);
+  };
+  Image<Space> space(disparity_px.size());
+  for (int y = 0; y < space.height(); ++y) {
+    for (int x = 0; x < space.width(); ++x) {
+      Space& is = space(x, y);
+      is = is_floor(x, y) ? Space::floor : is_obstacle(x, y) ? Space::obstacle : Space::unknown;
+      if (cues.objects(x, y) != ObjectId::none) is = Space::obstacle;
+    }
+  }
+  return space;
+}
+
+}  // namespace cairn::reference
