@@ -149,7 +149,11 @@ class Gathering {
     std::int64_t texture = 0;
     for (int i = first; i < last; ++i) texture += edges_(i, y);
     region.texture += texture;
-    add_colour(region, y, first, last);
+    if (cues_.rgb.empty()) {
+      add_colour(region, cues_.gray.row(y), first, last);
+    } else {
+      add_colour(region, cues_.rgb.row(y), first, last);
+    }
     if (!cues_.hints.empty()) add_hints(region, y, first, last);
     add_depth(region, y, first, last);
   }
@@ -169,16 +173,18 @@ class Gathering {
     return cues_.hints(cell_column_[slot(x)], cell_row_[slot(y)]).outline;
   }
 
-  void add_colour(RegionCues& region, int y, int first, int last) const {
+  template <class Pixel>
+  static void add_colour(RegionCues& region, const Pixel* row, int first, int last) {
     std::array<std::int64_t, 3> sums{};
     std::array<std::int64_t, 3> squares{};
     for (int x = first; x < last; ++x) {
-      const std::array<int, 3> colour = colour_at(cues_, x, y);
+      const std::array<int, 3> colour = colour_of(row[x]);
+      const std::array<std::size_t, 3> bins{slot(colour[0] / 16), kBins[slot(colour[1] + 255)],
+                                            kBins[slot(colour[2] + 255)]};
       for (std::size_t i = 0; i < 3; ++i) {
         sums[i] += colour[i];
         squares[i] += colour[i] * colour[i];
-        const int bin = i == 0 ? colour[i] / 16 : kBins[slot(colour[i] + 255)];
-        ++region.histogram[i * kColourBins + slot(bin)];
+        ++region.histogram[i * kColourBins + bins[i]];
       }
     }
     for (std::size_t i = 0; i < 3; ++i) {

@@ -75,11 +75,16 @@ struct Heights {
 /// from −96; values outside go to the first or last bin.
 inline constexpr std::size_t kColourBins = 16;
 
-/// Brightness, (red + 2 green + blue)/4 rounded down, blue − green, red − green; without colour: grey, 0, 0.
-inline std::array<int, 3> colour_at(const Cues& cues, int x, int y) {
-  if (cues.rgb.empty()) return {cues.gray(x, y), 0, 0};
-  const Rgb p = cues.rgb(x, y);
+/// Brightness, (red + 2 green + blue)/4 rounded down, blue − green, red − green.
+inline std::array<int, 3> colour_of(const Rgb& p) {
   return {(p.r + 2 * p.g + p.b) / 4, p.b - p.g, p.r - p.g};
+}
+/// Without colour: grey, 0, 0.
+inline std::array<int, 3> colour_of(Gray gray) {
+  return {gray, 0, 0};
+}
+inline std::array<int, 3> colour_at(const Cues& cues, int x, int y) {
+  return cues.rgb.empty() ? colour_of(cues.gray(x, y)) : colour_of(cues.rgb(x, y));
 }
 
 /// Pixels per bin: of brightness, blue − green, red − green.
