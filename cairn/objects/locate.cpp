@@ -107,7 +107,7 @@ std::vector<Part> parts_of(const Objects& objects, View<const float> disparity_p
   return parts;
 }
 
-std::size_t rank_of(std::size_t percent, std::size_t count) {
+constexpr std::size_t rank_of(std::size_t percent, std::size_t count) {
   return (percent * (count - 1) + 50) / 100;
 }
 
@@ -278,8 +278,9 @@ float radians(int degrees) {
 int closest_yaw(const Points& points, const Exec& exec) {
   constexpr std::size_t kEnough = 512;  // points for finding the yaw
   constexpr int kCoarse = 6;            // degrees
+  static_assert(rank_of(kTailOfBox, kEnough) < kernels::TurnedRectangles::kMostTail);
   const Plan plan = plan_of(points, std::min(points.size(), kEnough));
-  Plan room;
+  const kernels::PointKernels& run = kernels::point_kernels(exec);
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   const auto try_all = [&](std::span<const int> all_degrees) {
@@ -287,15 +288,11 @@ int closest_yaw(const Points& points, const Exec& exec) {
     for (std::size_t k = 0; k < all_degrees.size(); ++k) {
       turned.cosine[k] = std::cos(radians(all_degrees[k]));
       turned.sine[k] = std::sin(radians(all_degrees[k]));
-      const auto sides = sides_of(plan[0], plan[1], turned.cosine[k], turned.sine[k], room, exec);
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        turned.low[axis][k] = sides[axis].low;
-        turned.high[axis][k] = sides[axis].high;
-      }
     }
+    const auto count = static_cast<int>(plan[0].size());
+    run.find_sides(plan[0].data(), plan[1].data(), count, rank_of(kTailOfBox, plan[0].size()), turned);
     kernels::TurnedRectangles::Each<double> sums;
-    kernels::point_kernels(exec).sum_distances(plan[0].data(), plan[1].data(),
-                                               static_cast<int>(plan[0].size()), turned, sums);
+    run.sum_distances(plan[0].data(), plan[1].data(), count, turned, sums);
     for (std::size_t k = 0; k < all_degrees.size(); ++k) {
       if (!(sums[k] < least)) continue;
       least = sums[k];

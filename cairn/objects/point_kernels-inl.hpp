@@ -54,6 +54,40 @@ inline void turn(const float* xs, const float* ys, int count, float cosine, floa
   }
 }
 
+inline void find_sides(const float* xs, const float* ys, int count, std::size_t tail,
+                       TurnedRectangles& rectangles) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  using Values = TurnedRectangles::Each<float>;
+  const Values cosine = rectangles.cosine;
+  const Values sine = rectangles.sine;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    std::array<Values, TurnedRectangles::kMostTail> lowest;  // in order
+    std::array<Values, TurnedRectangles::kMostTail> highest;
+    for (Values& values : lowest) values.fill(kInfinity);
+    for (Values& values : highest) values.fill(-kInfinity);
+    for (int i = 0; i < count; ++i) {
+      const float along = axis == 0 ? xs[i] : ys[i];
+      const float across = axis == 0 ? ys[i] : -xs[i];
+      for (std::size_t k = 0; k < TurnedRectangles::kCount; ++k) {
+        // What is beyond a value takes its place and moves it on: without branches, vectors do so for all yaws.
+        const float turned = cosine[k] * along + sine[k] * across;
+        float low = turned;
+        float high = turned;
+        for (std::size_t j = 0; j < TurnedRectangles::kMostTail; ++j) {
+          const float lower = lowest[j][k];
+          lowest[j][k] = low < lower ? low : lower;
+          low = low > lower ? low : lower;
+          const float higher = highest[j][k];
+          highest[j][k] = high > higher ? high : higher;
+          high = high < higher ? high : higher;
+        }
+      }
+    }
+    rectangles.low[axis] = lowest[tail];
+    rectangles.high[axis] = highest[tail];
+  }
+}
+
 inline void sum_distances(const float* xs, const float* ys, int count, const TurnedRectangles& rectangles,
                           TurnedRectangles::Each<double>& sums) {
   const TurnedRectangles r = rectangles;
@@ -76,7 +110,8 @@ inline void sum_distances(const float* xs, const float* ys, int count, const Tur
   sums = all;
 }
 
-inline constexpr PointKernels kPointKernels{points_in_camera, points_in_floor, turn, sum_distances};
+inline constexpr PointKernels kPointKernels{points_in_camera, points_in_floor, turn, find_sides,
+                                            sum_distances};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -22,6 +22,7 @@ struct PointLists {
 /// of its additions.
 struct TurnedRectangles {
   static constexpr std::size_t kCount = 16;
+  static constexpr std::size_t kMostTail = 6;
   template <class T>
   using Each = std::array<T, kCount>;
   Each<float> cosine{};  // of the yaw
@@ -43,6 +44,10 @@ struct PointKernels {
   /// The coordinates along axes turned by a yaw.
   void (*turn)(const float* xs, const float* ys, int count, float cosine, float sine, float* turned_xs,
                float* turned_ys);
+  /// Moves the sides of each rectangle to the values at rank `tail` < kMostTail from either end of the points' turned
+  /// coordinates, rank 0 = the last one. There are more points than that.
+  void (*find_sides)(const float* xs, const float* ys, int count, std::size_t tail,
+                     TurnedRectangles& rectangles);
   /// For each rectangle, the sum of the distances of the points from the nearest side, in the order of the points.
   void (*sum_distances)(const float* xs, const float* ys, int count, const TurnedRectangles& rectangles,
                         TurnedRectangles::Each<double>& sums);

@@ -117,9 +117,7 @@ struct RestRow {
   [[nodiscard]] bool is_pixel(int x) const {
     return space[x] == Space::obstacle && object[x] == ObjectId::none && d[x] == d[x];
   }
-  [[nodiscard]] bool follows(int x) const {
-    return is_pixel(x) && is_pixel(x - 1) && std::abs(d[x] - d[x - 1]) <= 1;
-  }
+  [[nodiscard]] bool follows(int x) const { return is_pixel(x) && std::abs(d[x] - d[x - 1]) <= 1; }
   [[nodiscard]] bool joins(const RestRow& above, int x) const { return std::abs(d[x] - above.d[x]) <= 1; }
 };
 

@@ -7,6 +7,41 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+#if HWY_TARGET == HWY_AVX2
+/// For each mask of eight lanes: the set ones, then the others, four bits each.
+constexpr std::array<std::uint32_t, 256> kSetLanesFirst = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t mask = 0; mask < table.size(); ++mask) {
+    std::uint32_t shift = 0;
+    for (const std::uint32_t wanted : {1U, 0U}) {
+      for (std::uint32_t lane = 0; lane < 8; ++lane) {
+        if ((mask >> lane & 1U) != wanted) continue;
+        table[mask] |= lane << shift;
+        shift += 4;
+      }
+    }
+  }
+  return table;
+}();
+
+/// hn::Compress(), whose table is a local constant in Highway 1.0: GCC copies all of it to the stack for each vector.
+template <class V, class M>
+HWY_INLINE V compress(V v, M mask) {
+  const hn::DFromV<V> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  std::uint8_t bits[8];  // what StoreMaskBits() may write
+  hn::StoreMaskBits(d, mask, bits);
+  const auto shifts = hn::ShiftLeft<2>(hn::Iota(du, 0));
+  const auto lanes = hn::And(hn::Shr(hn::Set(du, kSetLanesFirst[bits[0]]), shifts), hn::Set(du, 7));
+  return hn::TableLookupLanes(v, hn::IndicesFromVec(d, lanes));
+}
+#else
+template <class V, class M>
+HWY_INLINE V compress(V v, M mask) {
+  return hn::Compress(v, mask);
+}
+#endif
+
 using Heights = hn::ScalableTag<std::uint16_t>;
 using Labels = hn::ScalableTag<std::int32_t>;
 
@@ -71,7 +106,7 @@ int find_runs(const RegionId* label, const RegionId* other, int width, std::int3
   for (; x + step < width; x += step) {
     const auto changes = hn::Or(hn::Ne(hn::LoadU(d, p + x), hn::LoadU(d, p + x + 1)),
                                 hn::Ne(hn::LoadU(d, q + x), hn::LoadU(d, q + x + 1)));
-    hn::StoreU(hn::Compress(next, changes), d, ends + runs);
+    hn::StoreU(compress(next, changes), d, ends + runs);
     runs += static_cast<int>(hn::CountTrue(d, changes));
     next = hn::Add(next, steps);
   }
@@ -81,8 +116,8 @@ int find_runs(const RegionId* label, const RegionId* other, int width, std::int3
 /// Appends the pairs of `found`; returns the new number of pairs.
 template <class D, class M>
 HWY_INLINE int put_pairs(D d, hn::Vec<D> p, hn::Vec<D> q, M found, LabelPairs pairs, int count) {
-  hn::StoreU(hn::Compress(hn::Min(p, q), found), d, pairs.a + count);
-  hn::StoreU(hn::Compress(hn::Max(p, q), found), d, pairs.b + count);
+  hn::StoreU(compress(hn::Min(p, q), found), d, pairs.a + count);
+  hn::StoreU(compress(hn::Max(p, q), found), d, pairs.b + count);
   return count + static_cast<int>(hn::CountTrue(d, found));
 }
 
@@ -100,7 +135,7 @@ int differing(const RegionId* row, const RegionId* other, int width, std::int32_
     const auto label = hn::LoadU(d, p + x);
     const auto beside = hn::LoadU(d, q + x);
     const auto differ = hn::Ne(label, beside);
-    hn::StoreU(hn::Compress(here, differ), d, pixels + count);
+    hn::StoreU(compress(here, differ), d, pixels + count);
     count = put_pairs(d, label, beside, differ, pairs, count);
     here = hn::Add(here, steps);
   }
@@ -256,7 +291,7 @@ int keep_known(const float* row, const float* by, int first, int last, float* HW
   if (last < step) return plain_labels::keep_known(row, by, first, last, kept);
   int count = 0;
   const auto keep = [&](auto values, auto mask) {
-    hn::StoreU(hn::Compress(values, mask), d, kept + count);
+    hn::StoreU(compress(values, mask), d, kept + count);
     count += static_cast<int>(hn::CountTrue(d, mask));
   };
   int x = first;
@@ -305,7 +340,8 @@ std::size_t keep_bucket(const float* HWY_RESTRICT values, std::size_t count, con
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
     const auto v = hn::LoadU(d, values + i);
     const auto counts = hn::RebindMask(d, hn::Eq(bucket(d, v, buckets), the_wanted));
-    hn::StoreU(hn::Compress(v, counts), d, kept + found);
+    if (hn::AllFalse(d, counts)) continue;  // nearly always: a bucket is one of hundreds
+    hn::StoreU(compress(v, counts), d, kept + found);
     found += hn::CountTrue(d, counts);
   }
   return found + plain_labels::keep_bucket(values + i, count - i, buckets, wanted, kept + found);
@@ -330,7 +366,7 @@ std::size_t find_marked(const std::uint8_t* HWY_RESTRICT marks, std::size_t coun
   std::size_t i = 0;
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
     const auto marked = hn::Ne(hn::PromoteTo(d, hn::LoadU(d8, marks + i)), hn::Zero(d));
-    hn::StoreU(hn::Compress(here, marked), d, found + count_found);
+    hn::StoreU(compress(here, marked), d, found + count_found);
     count_found += hn::CountTrue(d, marked);
     here = hn::Add(here, hn::Set(d, static_cast<std::uint32_t>(hn::Lanes(d))));
   }

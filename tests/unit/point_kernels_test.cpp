@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/target.hpp>
@@ -85,6 +86,34 @@ TEST(PointKernels, SeePointsFromTheFloorAsItsFrameDoes) {
       expect_same(out.x[slot(i)], expected.x, i);
       expect_same(out.y[slot(i)], expected.y, i);
       expect_same(out.z[slot(i)], expected.z, i);
+    }
+  }
+}
+
+TEST(PointKernels, FindTheSidesWithoutTheTails) {
+  const std::vector<float> xs = drawn(7, 3);
+  const std::vector<float> ys = drawn(8, 2);
+  for (const kernels::PointKernels* const run : all_kernels()) {
+    for (const int count : {6, 40, kCount}) {
+      for (std::size_t tail = 0; tail < kernels::TurnedRectangles::kMostTail; ++tail) {
+        kernels::TurnedRectangles rectangles;
+        for (std::size_t k = 0; k < kernels::TurnedRectangles::kCount; ++k) {
+          rectangles.cosine[k] = std::cos(0.1F * static_cast<float>(k));
+          rectangles.sine[k] = std::sin(0.1F * static_cast<float>(k));
+        }
+        run->find_sides(xs.data(), ys.data(), count, tail, rectangles);
+        for (std::size_t k = 0; k < kernels::TurnedRectangles::kCount; ++k) {
+          std::array<std::vector<float>, 2> turned;
+          for (auto& axis : turned) axis.resize(slot(count));
+          run->turn(xs.data(), ys.data(), count, rectangles.cosine[k], rectangles.sine[k], turned[0].data(),
+                    turned[1].data());
+          for (std::size_t axis = 0; axis < 2; ++axis) {
+            std::sort(turned.at(axis).begin(), turned.at(axis).end());
+            EXPECT_EQ(rectangles.low.at(axis)[k], turned.at(axis)[tail]) << k;
+            EXPECT_EQ(rectangles.high.at(axis)[k], turned.at(axis)[slot(count) - 1 - tail]) << k;
+          }
+        }
+      }
     }
   }
 }
