@@ -35,26 +35,18 @@ constexpr float kBothBackground =
 constexpr float kLeastPurity = 0.1F;
 
 /// Fitted trees in a file: base, numbers of roots and nodes; the roots; one node per line.
-struct LoadedTrees {
-  std::vector<std::int16_t> roots;
-  std::vector<FittedTrees::Node> nodes;
-  FittedTrees trees;
-};
-
 std::shared_ptr<const FittedTrees> load_trees(const std::string& path) {
-  const auto loaded = std::make_shared<LoadedTrees>();
   std::ifstream in(path);
-  std::size_t roots = 0;
-  std::size_t nodes = 0;
-  in >> loaded->trees.base >> roots >> nodes;
-  loaded->roots.resize(roots);
-  loaded->nodes.resize(nodes);
-  for (std::int16_t& root : loaded->roots) in >> root;
-  for (FittedTrees::Node& node : loaded->nodes) in >> node.feature >> node.below >> node.value;
+  float base = 0;
+  std::size_t root_count = 0;
+  std::size_t node_count = 0;
+  in >> base >> root_count >> node_count;
+  std::vector<std::int16_t> roots(root_count);
+  std::vector<FittedTrees::Node> nodes(node_count);
+  for (std::int16_t& root : roots) in >> root;
+  for (FittedTrees::Node& node : nodes) in >> node.feature >> node.below >> node.value;
   if (!in) throw Error(path + ": no file of fitted trees");
-  loaded->trees.roots = loaded->roots;
-  loaded->trees.nodes = loaded->nodes;
-  return {loaded, &loaded->trees};
+  return std::make_shared<FittedTrees>(base, roots, nodes);
 }
 
 /// Models by file name, each read once; `-` is the library's.
