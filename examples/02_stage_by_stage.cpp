@@ -122,7 +122,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
 
   // Choose the regions that are objects, and measure them; then estimate the confidence of each disparity.
   const ChosenObjects chosen =
-      choose_objects(tree, whole_object_trees(), limits_of(config.objects, pair.size()));
+      choose_objects(tree, whole_object_trees(), limits_of(config.objects, pair.size()), exec);
   const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
   Objects objects =
       measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, exec);

@@ -114,7 +114,8 @@ void bind_grouping(py::module_& m) {
       "options "
       "only min_area and min_confidence count.",
       [](const Call& call, const MergeTree& tree) {
-        return choose_objects(tree, whole_object_trees(), limits_of(call.config.objects, size_of(tree)));
+        return choose_objects(tree, whole_object_trees(), limits_of(call.config.objects, size_of(tree)),
+                              call.exec);
       },
       "tree"_a);
   stage(
