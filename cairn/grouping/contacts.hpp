@@ -13,7 +13,7 @@ namespace cairn {
 template <class Found>
 void for_each_contact(View<const RegionId> labels, int first, int last, Found found) {
   const int width = labels.width();
-  std::vector<int> columns(slot(width) + 1);
+  std::vector<int> columns(slot(width));
   for (int y = first; y < last; ++y) {
     const RegionId* const row = labels.row(y);
     const RegionId* const below = y + 1 < labels.height() ? labels.row(y + 1) : row;

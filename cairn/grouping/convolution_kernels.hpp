@@ -18,8 +18,8 @@ struct Convolution {
   const std::int16_t* weights = nullptr;  // [window row][column][pair of inputs][output][2]
   const std::int32_t* bias = nullptr;     // [output]
   const float* scale = nullptr;           // [output]
-  // For convolve_two(): [row][column of a transformed tile][pair of inputs][output][2]; nullptr if side or stride
-  // do not permit it.
+  // For convolve_two(): [row][column of a transformed tile][pair of inputs][output][2]; nullptr if its
+  // preconditions do not hold.
   const std::int16_t* transformed_weights = nullptr;
 };
 

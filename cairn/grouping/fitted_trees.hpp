@@ -28,7 +28,7 @@ class FittedTrees {
 
   /// The log-odds. Precondition: `features` has each feature that a node names.
   [[nodiscard]] float operator()(std::span<const float> features) const;
-  /// The same for many samples, several times as quick.
+  /// The same for many samples, all of the same size, several times as quick.
   [[nodiscard]] std::vector<float> operator()(std::span<const std::span<const float>> samples,
                                               const Exec& exec) const;
 

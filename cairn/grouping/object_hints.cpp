@@ -257,7 +257,7 @@ constexpr int kPlaces = 16;  // in a transformed tile
 
 /// Whether convolve_two() computes the layer.
 bool is_transformed(const HintLayer& l) {
-  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0;
+  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0 && l.inputs <= kernels::kMostOutputs;
 }
 
 std::size_t count_of_transformed(std::span<const HintLayer> layers) {

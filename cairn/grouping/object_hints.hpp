@@ -50,7 +50,7 @@ inline constexpr std::size_t kHintLayers = 17;
 class HintNetwork {
  public:
   /// `weights`: of every layer [row][column][input][output]; `bias` and `scale`: of every layer [output].
-  /// They are copied. Precondition: as many as `layers` ask for.
+  /// They are copied. Precondition: as many as `layers` ask for; only the last layer has a negative `least`.
   HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
               std::span<const std::int32_t> bias, std::span<const float> scale);
   HintNetwork(HintNetwork&&) = default;

@@ -74,7 +74,6 @@ class Gathering {
         behind_(cues, width_, exec),
         contacts_of_(slot(superpixels.count)) {
     result_.regions.resize(slot(superpixels.count));
-    result_.contacts.reserve(3 * result_.regions.size());  // a planar graph has no more
     if (cues.hints.empty()) return;
     for (int x = 0; x < width_; ++x) cell_column_.push_back(x * cues.hints.width() / width_);
     for (int y = 0; y < height_; ++y) cell_row_.push_back(y * cues.hints.height() / height_);

@@ -59,6 +59,7 @@ class Fusing {
         links_of_(slot(basins.count), -1),
         common_(slot(basins.count), -1) {
     std::iota(parents_.begin(), parents_.end(), 0);
+    links_.reserve(3 * slot(basins.count));  // a planar graph has no more
     const int width = basins.labels.width();
     for (int y = 0; y < basins.labels.height(); ++y) areas_[index(basins.labels(width - 1, y))] += width;
     for_each_contact(basins.labels, 0, basins.labels.height(), [&](int x, int y, int dx, int dy) {
@@ -172,7 +173,8 @@ class Fusing {
   void fuse(std::int32_t across) {
     std::int32_t kept = links_[slot(across)].a;
     std::int32_t lost = links_[slot(across)].b;
-    if (areas_[slot(kept)] < areas_[slot(lost)]) std::swap(kept, lost);  // the smaller one has fewer links
+    if (areas_[slot(kept)] < areas_[slot(lost)])
+      std::swap(kept, lost);  // the smaller one usually has fewer links
     links_[slot(across)].queued = {};
     parents_[slot(lost)] = kept;
     areas_[slot(kept)] += areas_[slot(lost)];

@@ -289,8 +289,11 @@ int closest_yaw(const Points& points, const Exec& exec) {
       turned.cosine[k] = std::cos(radians(all_degrees[k]));
       turned.sine[k] = std::sin(radians(all_degrees[k]));
     }
-    const auto count = static_cast<int>(plan[0].size());
-    run.find_sides(plan[0].data(), plan[1].data(), count, rank_of(kTailOfBox, plan[0].size()), turned);
+    // The ranks of without_tails(), which are not symmetric for every number of points.
+    const std::size_t n = plan[0].size();
+    const auto count = static_cast<int>(n);
+    run.find_sides(plan[0].data(), plan[1].data(), count, rank_of(kTailOfBox, n),
+                   n - 1 - rank_of(100 - kTailOfBox, n), turned);
     kernels::TurnedRectangles::Each<double> sums;
     run.sum_distances(plan[0].data(), plan[1].data(), count, turned, sums);
     for (std::size_t k = 0; k < all_degrees.size(); ++k) {

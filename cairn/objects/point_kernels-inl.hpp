@@ -54,8 +54,8 @@ inline void turn(const float* xs, const float* ys, int count, float cosine, floa
   }
 }
 
-inline void find_sides(const float* xs, const float* ys, int count, std::size_t tail,
-                       TurnedRectangles& rectangles) {
+inline void find_sides(const float* xs, const float* ys, int count, std::size_t low_tail,
+                       std::size_t high_tail, TurnedRectangles& rectangles) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   using Values = TurnedRectangles::Each<float>;
   const Values cosine = rectangles.cosine;
@@ -83,8 +83,8 @@ inline void find_sides(const float* xs, const float* ys, int count, std::size_t 
         }
       }
     }
-    rectangles.low[axis] = lowest[tail];
-    rectangles.high[axis] = highest[tail];
+    rectangles.low[axis] = lowest[low_tail];
+    rectangles.high[axis] = highest[high_tail];
   }
 }
 

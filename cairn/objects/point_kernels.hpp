@@ -44,9 +44,10 @@ struct PointKernels {
   /// The coordinates along axes turned by a yaw.
   void (*turn)(const float* xs, const float* ys, int count, float cosine, float sine, float* turned_xs,
                float* turned_ys);
-  /// Moves the sides of each rectangle to the values at rank `tail` < kMostTail from either end of the points' turned
-  /// coordinates, rank 0 = the last one. There are more points than that.
-  void (*find_sides)(const float* xs, const float* ys, int count, std::size_t tail,
+  /// Moves the low sides of each rectangle to the value at rank `low_tail` of the points' turned coordinates, and the
+  /// high ones to that at rank `high_tail` from the top; rank 0 = the last one. Both < kMostTail, and there are more
+  /// points than that.
+  void (*find_sides)(const float* xs, const float* ys, int count, std::size_t low_tail, std::size_t high_tail,
                      TurnedRectangles& rectangles);
   /// For each rectangle, the sum of the distances of the points from the nearest side, in the order of the points.
   void (*sum_distances)(const float* xs, const float* ys, int count, const TurnedRectangles& rectangles,

@@ -27,6 +27,7 @@ constexpr std::array<std::uint32_t, 256> kSetLanesFirst = [] {
 /// hn::Compress(), whose table is a local constant in Highway 1.0: GCC copies all of it to the stack for each vector.
 template <class V, class M>
 HWY_INLINE V compress(V v, M mask) {
+  static_assert(sizeof(hn::TFromV<V>) == 4);
   const hn::DFromV<V> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   std::uint8_t bits[8];  // what StoreMaskBits() may write
@@ -340,7 +341,7 @@ std::size_t keep_bucket(const float* HWY_RESTRICT values, std::size_t count, con
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
     const auto v = hn::LoadU(d, values + i);
     const auto counts = hn::RebindMask(d, hn::Eq(bucket(d, v, buckets), the_wanted));
-    if (hn::AllFalse(d, counts)) continue;  // nearly always: a bucket is one of hundreds
+    if (hn::AllFalse(d, counts)) continue;  // often: there are many buckets
     hn::StoreU(compress(v, counts), d, kept + found);
     found += hn::CountTrue(d, counts);
   }

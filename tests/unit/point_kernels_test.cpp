@@ -101,7 +101,8 @@ TEST(PointKernels, FindTheSidesWithoutTheTails) {
           rectangles.cosine[k] = std::cos(0.1F * static_cast<float>(k));
           rectangles.sine[k] = std::sin(0.1F * static_cast<float>(k));
         }
-        run->find_sides(xs.data(), ys.data(), count, tail, rectangles);
+        const std::size_t high_tail = kernels::TurnedRectangles::kMostTail - 1 - tail;
+        run->find_sides(xs.data(), ys.data(), count, tail, high_tail, rectangles);
         for (std::size_t k = 0; k < kernels::TurnedRectangles::kCount; ++k) {
           std::array<std::vector<float>, 2> turned;
           for (auto& axis : turned) axis.resize(slot(count));
@@ -110,7 +111,7 @@ TEST(PointKernels, FindTheSidesWithoutTheTails) {
           for (std::size_t axis = 0; axis < 2; ++axis) {
             std::sort(turned.at(axis).begin(), turned.at(axis).end());
             EXPECT_EQ(rectangles.low.at(axis)[k], turned.at(axis)[tail]) << k;
-            EXPECT_EQ(rectangles.high.at(axis)[k], turned.at(axis)[slot(count) - 1 - tail]) << k;
+            EXPECT_EQ(rectangles.high.at(axis)[k], turned.at(axis)[slot(count) - 1 - high_tail]) << k;
           }
         }
       }

@@ -308,6 +308,31 @@ float one_by_one(float base, const std::vector<std::int16_t>& roots,
   return sum;
 }
 
+TEST(FittedTrees, MayBeDeepAndOneSided) {
+  for (const int depth : {1, 5, 6, 7, 9}) {
+    // From each split, one side ends: the first ones at leaf 0, 1, 2 …
+    std::vector<FittedTrees::Node> nodes;
+    for (int i = 0; i < depth; ++i) {
+      nodes.push_back({0, static_cast<std::int16_t>(2 * i + 1), static_cast<float>(i)});
+      nodes.push_back({-1, 0, static_cast<float>(i)});
+    }
+    nodes.push_back({-1, 0, static_cast<float>(depth)});
+    const std::vector<std::int16_t> roots{0};
+    const FittedTrees trees{0, roots, nodes};
+    std::vector<std::array<float, 1>> samples;
+    std::vector<float> expected;
+    for (int i = 0; i <= 40; ++i) {
+      samples.push_back({i == 40 ? kUnknown : 0.25F * static_cast<float>(i) - 0.5F});
+      expected.push_back(one_by_one(0, roots, nodes, samples.back()));
+      EXPECT_EQ(trees(samples.back()), expected.back()) << depth;
+    }
+    EXPECT_EQ(std::set<float>(expected.begin(), expected.end()).size(), slot(depth) + 1);
+    const std::vector<std::span<const float>> all(samples.begin(), samples.end());
+    for (const Target target : supported_targets())
+      EXPECT_EQ(trees(all, Exec::with_threads(1, target)), expected) << depth << ' ' << name(target);
+  }
+}
+
 TEST(FittedTrees, SumUpAsTheyDoOneByOne) {
   std::mt19937 random(7);
   const auto value = [&] { return static_cast<float>(static_cast<int>(random() % 2000) - 1000) / 300; };
