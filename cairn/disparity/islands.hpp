@@ -15,8 +15,8 @@ namespace cairn {
 
 /// The 4-connected components of an image. `rows(y)` describes row y: row.is_pixel(x) whether x belongs to
 /// any island; row.follows(x) whether x, too, is such a pixel and connected to x − 1, which is one;
-/// row.joins(above, x) whether x is connected to the pixel above, both being such pixels. Islands are numbered by their first pixels in
-/// raster order. Private to the library.
+/// row.joins(above, x) whether x is connected to the pixel above, both being such pixels. Islands are numbered by
+/// their first pixels in raster order. Private to the library.
 template <class Rows>
 class Islands {
  public:

@@ -144,7 +144,6 @@ using Activation = hn::CappedTag<std::int16_t, 8>;
 
 constexpr int kTiles = 5;     // side by side, at a time: as many sums as registers hold, with
 constexpr int kTogether = 2;  // vectors of outputs
-constexpr int kPlaces = 16;   // in a transformed tile
 
 /// Transforms four numbers in a row.
 template <class V>

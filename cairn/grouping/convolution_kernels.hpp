@@ -26,6 +26,9 @@ struct Convolution {
 /// The largest number of outputs.
 inline constexpr int kMostOutputs = 48;
 
+/// The number of places in a transformed tile of convolve_two().
+inline constexpr int kPlaces = 16;
+
 /// The limit of an output: no sum of products can then exceed 32 bits.
 inline constexpr int kGreatestActivation = 8191;
 

@@ -103,7 +103,8 @@ class Growing {
   void queue_all(const Exec& exec) {
     constexpr std::size_t kAtOnce = 64;  // features that stay in the cache
     std::vector<Entry> all;
-    std::vector<MergeFeatures> features(kAtOnce);
+    std::vector<MergeFeatures> features;
+    features.reserve(kAtOnce);
     for (std::size_t first = 0; first < graph_.contacts.size(); first += kAtOnce) {
       features.clear();
       for (std::size_t i = first; i < std::min(first + kAtOnce, graph_.contacts.size()); ++i)

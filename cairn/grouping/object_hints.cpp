@@ -253,8 +253,6 @@ enum Layer : std::size_t {
   kTell
 };
 
-constexpr int kPlaces = 16;  // in a transformed tile
-
 /// Whether convolve_two() computes the layer.
 bool is_transformed(const HintLayer& l) {
   return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0 && l.inputs <= kernels::kMostOutputs;
@@ -262,7 +260,8 @@ bool is_transformed(const HintLayer& l) {
 
 std::size_t count_of_transformed(std::span<const HintLayer> layers) {
   std::size_t count = 0;
-  for (const HintLayer& l : layers) count += is_transformed(l) ? slot(kPlaces * l.inputs * l.outputs) : 0;
+  for (const HintLayer& l : layers)
+    count += is_transformed(l) ? slot(kernels::kPlaces * l.inputs * l.outputs) : 0;
   return count;
 }
 
@@ -343,7 +342,7 @@ HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std:
     if (is_transformed(l)) {
       layers_[i].transformed_weights = transformed_weights_.data() + transformed;
       transform_weights(l, weights.subspan(weight), transformed_weights_.data() + transformed);
-      transformed += slot(kPlaces * l.inputs * l.outputs);
+      transformed += slot(kernels::kPlaces * l.inputs * l.outputs);
     }
     weight += l.weights();
     output += slot(l.outputs);
