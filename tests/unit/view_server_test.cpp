@@ -128,6 +128,12 @@ struct Served {
   std::uint16_t port;
 };
 
+/// Returns when the server has processed all that the client sent.
+void await_processed(WebSocket& client) {
+  client.send({{"op", "getParameters"}, {"parameterNames", {"live.none"}}, {"id", "x"}});
+  EXPECT_EQ(client.read_op("parameterValues").at("id"), "x");
+}
+
 Point3 point_of(const Json& numbers) {
   return {numbers.at(0), numbers.at(1), numbers.at(2)};
 }
@@ -555,10 +561,8 @@ TEST(ViewServer, EncodesNothingThatNobodyWantsAndAllElseOnce) {
   EXPECT_EQ(served.server.encoded(), 11U);
   a.send({{"op", "unsubscribe"}, {"subscriptionIds", {1}}});
   b.send({{"op", "unsubscribe"}, {"subscriptionIds", {9}}});
-  b.send({{"op", "getParameters"}, {"parameterNames", {"live.none"}}, {"id", "x"}});
-  EXPECT_EQ(b.read_op("parameterValues").at("id"), "x");  // confirms that the request was processed
-  a.send({{"op", "getParameters"}, {"parameterNames", {"live.none"}}, {"id", "y"}});
-  a.read_op("parameterValues");
+  await_processed(b);
+  await_processed(a);
   served.server.offer(renumbered(20));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(served.server.encoded(), 11U);
@@ -609,9 +613,7 @@ TEST(ViewServer, ASlowClientGetsWholeFrames) {
   WebSocket slow(served.port, served.with_token(), "foxglove.sdk.v1", false, 1 << 14);
   std::uint32_t id = 0;
   for (const std::string& topic : topics) slow.subscribe(topic, ++id);
-  // Answered after all subscriptions: the first frame finds them.
-  slow.send({{"op", "getParameters"}, {"id", "g"}, {"parameterNames", {"live.none"}}});
-  slow.read_op("parameterValues");
+  await_processed(slow);  // so that the first frame is sent whole
   std::atomic<bool> is_over = false;
   std::atomic<int> offered = 0;
   std::thread run([&] {
