@@ -10,6 +10,7 @@
 #include <random>
 
 #include "support/grids.hpp"
+#include "support/region_scene.hpp"
 
 namespace cairn {
 namespace {
@@ -95,6 +96,51 @@ void expect_equal(const Image<ObjectHint>& found, const Image<ObjectHint>& expec
   ASSERT_EQ(found.size(), expected.size());
   for (int y = 0; y < found.height(); ++y) {
     for (int x = 0; x < found.width(); ++x) ASSERT_EQ(found(x, y), expected(x, y)) << x << ", " << y;
+  }
+}
+
+/// Noise everywhere, with holes. Disparities and planes are such that no sum of theirs is rounded.
+support::RegionScene random_scene(Size size, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  support::RegionScene scene(Image<RegionId>(size, RegionId{0}, {}));
+  scene.gray = random_image<Gray>(size, 0, 255, seed);
+  scene.superpixels.edges = random_image<std::uint16_t>(size, 0, 400, seed + 1);
+  const bool has_colour = seed % 2 == 0;
+  if (has_colour) scene.rgb = Image<Rgb>(size, Rgb{}, {});
+  const Image<std::uint8_t> known = random_image<std::uint8_t>(size, 0, 9, seed + 2);
+  const Image<int> nearness = random_image<int>(size, -80, 900, seed + 3);  // of blocks, so that cells differ
+  scene.for_each_pixel([&](int x, int y, std::size_t) {
+    const auto byte = [&] { return static_cast<std::uint8_t>(random() % 256); };
+    if (has_colour) scene.rgb(x, y) = {byte(), byte(), byte()};
+    const bool in_hole = known(x / 7, y / 5) == 0 || known(x, y) == 0;
+    if (in_hole) return;
+    const auto steps = static_cast<float>(nearness(x / 9, y / 6) + static_cast<int>(random() % 40));
+    scene.disparity_px(x, y) = steps / 16;
+    if (known(x, y) % 3 == 0) scene.evidence_px(x, y) = steps / 16;
+  });
+  if (seed % 3 != 0) scene.ground.plane = GroundPlane{0.03125F, 0.25F, -7.5F};
+  if (seed % 3 != 1) scene.background.planes = {{-0.0625F, 0, 9}, {0.03125F, 0.125F, -2.25F}};
+  return scene;
+}
+
+TEST(HintInput, IsThatOfTheDefinitionOnEveryTarget) {
+  std::uint32_t seed = 1;
+  for (const Size size : {Size{320, 240}, {97, 61}, {200, 31}, {643, 120}, {40, 300}, {1, 1}}) {
+    for (int i = 0; i < 3; ++i, ++seed) {
+      SCOPED_TRACE(seed);
+      const support::RegionScene scene = random_scene(size, seed);
+      const Cues cues = scene.cues();
+      const Image<std::int16_t> expected = reference::hint_input(scene.superpixels.edges, cues);
+      for (const Target target : supported_targets()) {
+        SCOPED_TRACE(name(target));
+        EXPECT_EQ(grids::numbers(hint_input(scene.superpixels.edges, cues, on(target))),
+                  grids::numbers(expected));
+      }
+      for (const int threads : {2, 3}) {
+        EXPECT_EQ(grids::numbers(hint_input(scene.superpixels.edges, cues, Exec::with_threads(threads))),
+                  grids::numbers(expected));
+      }
+    }
   }
 }
 

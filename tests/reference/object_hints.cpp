@@ -78,7 +78,107 @@ Volume doubled_and_added(const Volume& small, const Volume& like) {
   });
 }
 
+/// The pixels of cell c of n along an axis of w pixels.
+std::vector<int> pixels_of(int c, int n, int w) {
+  std::vector<int> pixels;
+  for (int x = 0; x < w; ++x) {
+    if (x * n / w == c) pixels.push_back(x);
+  }
+  if (pixels.empty()) pixels.push_back(c * w / n);
+  return pixels;
+}
+
+/// The mean of what is known.
+struct Mean {
+  double sum = 0;
+  int count = 0;
+  void add(double value) {
+    sum += value;
+    ++count;
+  }
+  void add(bool value) { add(value ? 1.0 : 0.0); }
+  [[nodiscard]] double value() const { return count > 0 ? sum / count : 0; }
+};
+
+struct Cell {
+  Mean brightness, squares, blue, red, disparity, matched, above_ground, before_background, ground, edge,
+      textured;
+};
+
+Cell cell_of(View<const std::uint16_t> edges, const Cues& cues, Size cells, int column, int row) {
+  const Size size = edges.size();
+  Cell cell;
+  for (const int y : pixels_of(row, cells.height, size.height)) {
+    for (const int x : pixels_of(column, cells.width, size.width)) {
+      const auto fx = static_cast<float>(x);
+      const auto fy = static_cast<float>(y);
+      const auto [brightness, blue, red] = colour_at(cues, x, y);
+      cell.brightness.add(double{1} * brightness);
+      cell.squares.add(double{1} * brightness * brightness);
+      cell.blue.add(double{1} * blue);
+      cell.red.add(double{1} * red);
+      cell.edge.add(double{1} * edges(x, y));
+      cell.textured.add(!std::isnan(cues.evidence_px(x, y)));
+      const double ground =
+          cues.ground.plane ? std::max(0.0F, cues.ground.plane->disparity_px(fx, fy)) : 0.0F;
+      cell.ground.add(ground);
+      const double d = cues.disparity_px(x, y);
+      cell.matched.add(!std::isnan(d));
+      if (std::isnan(d)) continue;
+      cell.disparity.add(d);
+      cell.before_background.add(d - cues.background.disparity_px(fx, fy));
+      if (ground > 0) cell.above_ground.add(d - ground);
+    }
+  }
+  return cell;
+}
+
 }  // namespace
+
+Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues) {
+  const Size size = hint_cells(edges.size());
+  Image<Cell> cells(size);
+  std::vector<double> disparities;
+  Mean brightness;
+  Mean squares;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const Cell cell = cell_of(edges, cues, size, x, y);
+      cells(x, y) = cell;
+      brightness = {brightness.sum + cell.brightness.sum, brightness.count + cell.brightness.count};
+      squares = {squares.sum + cell.squares.sum, squares.count + cell.squares.count};
+      if (cell.disparity.count > 0) disparities.push_back(cell.disparity.value());
+    }
+  }
+  std::sort(disparities.begin(), disparities.end());
+  const double nearest = disparities.empty() ? 1 : std::max(1.0, disparities[disparities.size() * 98 / 100]);
+  const double mean = brightness.value();
+  const double spread = std::sqrt(std::max(0.0, squares.value() - mean * mean)) + 8;
+  Image<std::int16_t> input({(size.width + 2) * kHintChannels, size.height + 2}, std::int16_t{0}, {});
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      int channel = (x + 1) * kHintChannels;
+      const auto tell = [&](double value, double least, double most) {
+        input(channel++, y + 1) =
+            static_cast<std::int16_t>(std::floor(std::clamp(value, least, most) * 64 + 0.5));
+      };
+      const Cell& cell = cells(x, y);
+      tell((cell.brightness.value() - mean) / spread, -4, 4);
+      tell(cell.blue.value() / 32, -4, 4);
+      tell(cell.red.value() / 32, -4, 4);
+      tell(cell.disparity.value() / nearest, 0, 2);
+      tell(cell.matched.value(), 0, 1);
+      tell(cell.above_ground.value() / 4, -1, 3);
+      tell(cues.background.planes.empty() ? 0 : cell.before_background.value() / 4, -1, 3);
+      tell(cell.ground.value() / nearest, 0, 2);
+      tell(cell.edge.value() / 4 / (2 * (double{cues.noise_sigma} + 2)), 0, 4);
+      tell(cell.textured.value(), 0, 1);
+      tell(2.0 * y / size.height - 1, -1, 1);
+      tell(cues.rgb.empty() ? 0 : 1, 0, 1);
+    }
+  }
+  return input;
+}
 
 Image<ObjectHint> hint_objects(View<const std::int16_t> input, const HintNumbers& numbers) {
   const Size cells{input.width() / kHintChannels - 2, input.height() - 2};

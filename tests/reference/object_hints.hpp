@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-/// The slow twin of hint_objects(), from the definition of a convolution.
+/// The slow twins of hint_input(), from the table of its channels in docs/stages/object_hints.md, and of hint_objects(), from
+/// the definition of a convolution.
 namespace cairn::reference {
 
 /// The parameters of a HintNetwork.
@@ -21,5 +22,7 @@ struct HintNumbers {
 
 /// `input`: as for hint_objects().
 Image<ObjectHint> hint_objects(View<const std::int16_t> input, const HintNumbers& numbers);
+
+Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues);
 
 }  // namespace cairn::reference

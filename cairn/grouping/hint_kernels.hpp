@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <array>
+#include <cairn/core/exec.hpp>
+#include <cairn/core/image.hpp>
+#include <cstdint>
+
+/// What hint_input() is computed from, per row of pixels or cells; one set per instruction set. Private to the
+/// library.
+namespace cairn::kernels {
+
+/// One row of the image.
+struct HintPixels {
+  const Gray* gray = nullptr;
+  const Rgb* rgb = nullptr;  // nullptr: the image has no colour
+  const std::uint16_t* edges = nullptr;
+  const float* disparity_px = nullptr;  // NaN = hole
+  const float* evidence_px = nullptr;
+  const float* ground_px = nullptr;  // 0 above the horizon
+  const float* background_px = nullptr;
+};
+
+/// Sums of whole numbers over pixels …
+enum WholeSum : std::size_t {
+  kBrightness,
+  kBlue,
+  kRed,
+  kSquares,
+  kEdges,
+  kTextured,
+  kMatched,
+  kAbove,
+  kWholeSums
+};
+/// … and of distances: those above the ground where there is any, those before the background where there is a
+/// disparity.
+enum RealSum : std::size_t { kDisparity, kGround, kHeight, kBefore, kRealSums };
+
+/// Arrays side by side.
+struct ColumnSums {
+  std::array<std::int32_t*, kWholeSums> whole{};
+  std::array<double*, kRealSums> real{};
+};
+struct CellSums {
+  std::array<double*, kWholeSums> whole{};
+  std::array<double*, kRealSums> real{};
+};
+
+/// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
+/// target gets the same bits.
+struct HintKernels {
+  /// Adds a row to the sums of its columns. Precondition: they hold fewer than 2¹⁵ rows.
+  void (*add_row)(const HintPixels& row, int width, const ColumnSums& sums);
+  /// The sums over columns first[cell] … last[cell] − 1, of which there are `most` or fewer, but at least one.
+  void (*sum_cells)(const ColumnSums& columns, const std::int32_t* first, const std::int32_t* last, int most,
+                    int cells, const CellSums& sums);
+  /// sums / counts; `none` where the count is 0.
+  void (*mean)(const double* sums, const double* counts, int cells, double none, double* out);
+  /// (value − zero) / unit, limited to least … most, in 1/64, rounded, halves up, to every `stride`th of `out`.
+  /// Precondition: least ≥ −16.
+  void (*put)(const double* values, int cells, double zero, double unit, double least, double most,
+              int stride, std::int16_t* out);
+};
+
+/// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
+const HintKernels* hint_kernels(Target target);
+/// The functions for the active target of `exec`.
+const HintKernels& hint_kernels(const Exec& exec);
+
+}  // namespace cairn::kernels
