@@ -7,6 +7,7 @@
 #include <cairn/grouping/object_hints.hpp>
 #include <cairn/grouping/region_cues.hpp>
 #include <cairn/grouping/surfaces_behind.hpp>
+#include <limits>
 #include <utility>
 
 namespace cairn {
@@ -54,6 +55,24 @@ struct RunMoments {
     return {n, x, n * y, xx, x * y, n * y * y, d, xd, d * y, dd};
   }
 };
+
+/// Heights of up to kMost pixels, so that no 32-bit sum overflows: twice as many to a vector.
+struct RunHeights {
+  static constexpr std::int32_t kMost = 512;
+  std::int32_t n = 0, sum = 0, squares = 0, behind = 0, on = 0;
+  /// `height`: clamped, 0 if not known. `is_known`: 0 or 1, without a branch, because which pixels have a disparity cannot be
+  /// predicted.
+  void add(std::int32_t height, int is_known) {
+    n += is_known;
+    sum += height;
+    squares += height * height;
+    behind += height < -kDisparitySteps ? 1 : 0;
+    on += is_known & static_cast<int>(std::abs(height) <= kDisparitySteps);
+  }
+  [[nodiscard]] Heights heights() const { return {n, sum, squares, behind, on}; }
+};
+constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
+static_assert(kLargest / RunHeights::kMost / clamped_height(kLargest) >= clamped_height(kLargest));
 
 /// Gathers over some rows, for gather_cues().
 class Gathering {
@@ -211,19 +230,21 @@ class Gathering {
   /// Adds the heights of a run's disparities, and of the textured ones, above the surface behind.
   void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d, int first, int last,
                    Heights& all, Heights& textured) const {
-    Heights of_all;
-    Heights of_textured;
-    for (int x = first; x < last; ++x) {
-      const std::int32_t base = behind[slot(x)];
-      const bool is_there = base != kNoDisparity;
-      const auto add = [&](Heights& heights, std::int32_t disparity) {
-        heights.add(known(disparity) - known(base), is_there && disparity != kNoDisparity);
-      };
-      add(of_all, d[x]);
-      add(of_textured, textured_[slot(x)]);
+    for (int begin = first; begin < last; begin += RunHeights::kMost) {
+      RunHeights of_all;
+      RunHeights of_textured;
+      for (int x = begin; x < std::min(begin + RunHeights::kMost, last); ++x) {
+        const std::int32_t base = behind[slot(x)];
+        const int is_known = static_cast<int>(base != kNoDisparity) & static_cast<int>(d[x] != kNoDisparity);
+        // A textured pixel has the disparity that it has among all.
+        const int is_textured = is_known & static_cast<int>(textured_[slot(x)] != kNoDisparity);
+        const std::int32_t height = clamped_height(known(d[x]) - known(base)) & -is_known;
+        of_all.add(height, is_known);
+        of_textured.add(height & -is_textured, is_textured);
+      }
+      all.add(of_all.heights());
+      textured.add(of_textured.heights());
     }
-    all.add(of_all);
-    textured.add(of_textured);
   }
 
   ContactCues& contact(std::int32_t a, std::int32_t b) {

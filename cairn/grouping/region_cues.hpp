@@ -36,7 +36,7 @@ struct Cues {
   View<const Gray> gray;
   View<const Rgb> rgb;
   View<const float> disparity_px;  // NaN = hole
-  View<const float> evidence_px;   // of these, the textured ones: find_evidence()
+  View<const float> evidence_px;   // the same, NaN where not textured: find_evidence()
   const Ground& ground;
   const Background& background;
   float noise_sigma = 0;              // grey levels
@@ -54,19 +54,13 @@ struct PlaneMoments {
   friend bool operator==(const PlaneMoments&, const PlaneMoments&) = default;
 };
 
+constexpr std::int32_t clamped_height(std::int32_t steps) {
+  return std::clamp(steps, -8 * kDisparitySteps, 24 * kDisparitySteps);
+}
 /// The distances of disparities from a surface, in 1/64 px, clamped to 8 px behind … 24 px in front.
 struct Heights {
   std::int64_t n = 0, sum = 0, squares = 0;
   std::int64_t behind = 0, on = 0;  // farther behind than 1 px; within 1 px
-  /// Without a branch, because which pixels have a disparity cannot be predicted.
-  void add(int height, bool is_known) {
-    const std::int64_t h = is_known ? std::clamp(height, -8 * kDisparitySteps, 24 * kDisparitySteps) : 0;
-    n += is_known ? 1 : 0;
-    sum += h;
-    squares += h * h;
-    behind += h < -kDisparitySteps ? 1 : 0;
-    on += static_cast<int>(is_known) & static_cast<int>(std::abs(h) <= kDisparitySteps);
-  }
   void add(const Heights& other);
   friend bool operator==(const Heights&, const Heights&) = default;
 };

@@ -267,7 +267,10 @@ TEST(GatherCues, IsTheSameForEveryTarget) {
       Scene scene(size, seed);
       scene.ground.plane = GroundPlane{-100, 20, 1500};  // from below 0 to above the largest disparity
       scene.background = {{{-90, 300, -5}, {0.1F, 0, 2}}, false};
-      for (int x = 0; x < size.width; ++x) scene.disparity_px(x, 0) = 0.37F - static_cast<float>(x);
+      for (int x = 0; x < size.width; ++x) {
+        scene.disparity_px(x, 0) = 0.37F - static_cast<float>(x);
+        if (!std::isnan(scene.evidence_px(x, 0))) scene.evidence_px(x, 0) = scene.disparity_px(x, 0);
+      }
       const Cues cues = scene.cues();
       const Superpixels superpixels = scene.superpixels(9);
       const RegionGraphCues expected = gather_cues(superpixels, cues, Exec::with_threads(1, Target::scalar));
