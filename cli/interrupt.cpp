@@ -8,11 +8,14 @@
 namespace cairn::cli {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+// Written by a signal handler, read by any thread: what is not atomic would be a race, what takes a lock could wait for
+// itself.
+std::atomic<bool> interrupted = false;
 std::atomic<void (*)()> also_done = nullptr;
+static_assert(decltype(interrupted)::is_always_lock_free && decltype(also_done)::is_always_lock_free);
 
 extern "C" void on_interrupt(int signal) {
-  interrupted = 1;
+  interrupted = true;
   if (void (*const also)() = also_done) also();
   std::signal(signal, SIG_DFL);
 }
@@ -30,7 +33,7 @@ void on_interrupt_also(void (*also)()) {
 }
 
 bool is_interrupted() {
-  return interrupted != 0;
+  return interrupted;
 }
 
 }  // namespace cairn::cli
