@@ -40,6 +40,7 @@
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/objects/locate.hpp>              // locate
+#include <cairn/objects/refine_objects.hpp>      // refine_objects
 #include <cairn/objects/space.hpp>               // label_space
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above

@@ -13,8 +13,7 @@ namespace cairn {
 /// All are measured on the main part of an object: the largest component of its mask whose neighbours (4)
 /// differ by at most 1 px of disparity, and the other pixels of the mask with a disparity between its least and
 /// its greatest. So background or another object within the mask does not stretch it, and a hole that divides it
-/// does not shorten it. The depth is that of the median disparity of the whole mask, which also orders the
-/// objects.
+/// does not shorten it. The depth is that of disparity_px, which also orders the objects.
 /// (docs/stages/objects.md, beyond the paper)
 Objects locate(Objects objects, const DisparityMap& disparity, const Ground& ground,
                const std::optional<StereoRig>& rig, const Exec& exec);

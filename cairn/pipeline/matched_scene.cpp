@@ -13,11 +13,12 @@ namespace {
 struct Matched {
   EpipolarOffset epipolar;
   Matches matches;
+  Image<Gray> right;  // corrected; empty where nothing was
   DisparityMap disparity;
 };
 
 Matched match_and_check(Given& given, const Config& config, const Exec& exec, Observed& stage) {
-  if (given.right.empty()) return {{}, {}, std::move(given.disparity)};
+  if (given.right.empty()) return {{}, {}, {}, std::move(given.disparity)};
   auto pair = StereoPair::from(given.left, given.right, given.left_rgb);
 
   EpipolarCorrection aligned;
@@ -37,7 +38,7 @@ Matched match_and_check(Given& given, const Config& config, const Exec& exec, Ob
   const auto textureless = stage("reject_textureless", reject_textureless(given.left, config.texture, exec));
   DisparityMap disparity =
       stage("combine", combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec));
-  return {aligned.offset, std::move(matches), std::move(disparity)};
+  return {aligned.offset, std::move(matches), std::move(aligned.right), std::move(disparity)};
 }
 
 }  // namespace
@@ -47,6 +48,7 @@ MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, cons
   Matched matched = match_and_check(given, config, exec, stage);
   MatchedScene scene;
   scene.matches = std::move(matched.matches);
+  scene.aligned_right = std::move(matched.right);
   scene.noise_sigma = stage("noise_sigma", noise_sigma(given.left, exec));
   if (config.fusion.method == FusionMethod::hierarchy) {
     scene.evidence_px = stage("find_evidence", find_evidence(given.left, matched.disparity, scene.noise_sigma,

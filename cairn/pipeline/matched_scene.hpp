@@ -17,10 +17,14 @@ struct Given {
 
 /// Checked disparities, the data for the checks, and the ground.
 struct MatchedScene {
-  Matches matches;           // empty for external disparities
-  float noise_sigma = 0;     // grey levels
-  Image<float> evidence_px;  // fusion.method=hierarchy: textured disparities, see find_evidence()
-  SceneDisparity found;      // its confidence is empty
+  Matches matches;            // empty for external disparities
+  Image<Gray> aligned_right;  // correct_epipolar(); empty where nothing was corrected
+  float noise_sigma = 0;      // grey levels
+  Image<float> evidence_px;   // fusion.method=hierarchy: textured disparities, see find_evidence()
+  SceneDisparity found;       // its confidence is empty
+  [[nodiscard]] View<const Gray> right_of(const Given& given) const {
+    return aligned_right.empty() ? given.right : View<const Gray>(aligned_right);
+  }
 };
 
 /// The common first half of both methods. Moves the disparities out of `given` if there is nothing to match.

@@ -4,6 +4,7 @@
 #include <cairn/objects/fuse.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/objects/refine_objects.hpp>
 #include <cairn/objects/space.hpp>
 
 #include "bindings.hpp"
@@ -209,6 +210,16 @@ void bind_objects(py::module_& m) {
       "known to "
       "be no object; noise_sigma as noise_sigma() gives it.",
       &measured, "candidates"_a, "is_background"_a, "disparity"_a, "left"_a, "noise_sigma"_a);
+  stage(
+      m, "refine_objects", {},
+      "Refines the disparity of each object by both images, and numbers the objects anew if their order "
+      "changes. Returns Objects.",
+      [](const Call& call, const Objects& objects, const DisparityInput& disparity, const Picture& left,
+         const Picture& right, const KnownRig& rig) {
+        return refine_objects({objects.labels.clone({}), objects.list}, disparity.map(), left.gray(),
+                              right.gray(), rig.rig(), call.exec);
+      },
+      "objects"_a, "disparity"_a, "left"_a, "right"_a, "rig"_a = py::none());
   stage(
       m, "locate", {},
       "Where objects are: the uncertainty of their disparity and, with a rig, position, interval of depth, "

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/objects/measure.hpp>
+
+namespace cairn {
+
+/// Refines disparity_px of each object by the images, and numbers the objects anew if their order changes.
+///
+/// Smoothed matching carries the disparity of an outline across a plain surface, whose middle is nearer. So
+/// the shift of all its disparities is estimated that makes the interior of the object look the same in both
+/// images: by least squares on the brightness with a common offset (Lucas and Kanade 1981, in one dimension),
+/// against a prior, a middle that is nearer than the outline by a tenth of the width. The shift is at most
+/// 1 px. `right`: rectified, of the size of `left`; empty: the objects stay as they are. `rig`: its focal
+/// length is used; without one it is taken for the width of the image.
+/// (docs/stages/objects.md, beyond the paper)
+Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const Gray> left,
+                       View<const Gray> right, const std::optional<StereoRig>& rig, const Exec& exec);
+
+}  // namespace cairn

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/objects/refine_objects.hpp>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr Size kSize{160, 60};
+constexpr StereoRig kRig{.focal_px = 160, .cx_px = 80, .cy_px = 30, .baseline_m = 0.1F, .doffs_px = 0};
+
+/// A wavy board and its image in the right camera, rounded to whole grey levels.
+float wave(double x, int y) {
+  return static_cast<float>(128 + 40 * std::sin(x * 0.45 + y * 0.3) + 25 * std::sin(x * 0.19 - y * 0.7));
+}
+Gray rounded(float value) {
+  return static_cast<Gray>(std::lround(value));
+}
+
+/// Boards as objects 1, 2, … in a pair of images in which they have their true disparities.
+struct Scene {
+  struct Board {
+    Rect rect;
+    float true_px;
+    float seen_px;  // by the matching
+  };
+  Image<Gray> left{kSize, Gray{90}, {}};
+  Image<Gray> right{kSize, Gray{90}, {}};
+  Objects objects{Image<ObjectId>(kSize, ObjectId::none, {}), {}};
+  DisparityMap disparity{Image<float>(kSize, 2.0F, {}), Image<Reject>(kSize, Reject::none, {})};
+
+  explicit Scene(const std::vector<Board>& boards, bool textured = true, int brighter = 0) {
+    for (const auto& [rect, true_px, seen_px] : boards) {
+      Object object;
+      object.id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
+      object.box_px = rect;
+      object.pixel_count = rect.width * rect.height;
+      object.disparity_px = seen_px;
+      objects.list.push_back(object);
+      for (int y = rect.y; y < rect.y + rect.height; ++y) {
+        for (int x = rect.x; x < rect.x + rect.width; ++x) {
+          objects.labels(x, y) = object.id;
+          disparity.disparity_px(x, y) = seen_px;
+          left(x, y) = textured ? rounded(wave(x, y)) : Gray{128};
+        }
+        for (int x = 0; x < kSize.width; ++x) {
+          const double in_left = x + double{true_px};
+          if (in_left >= rect.x && in_left < rect.x + rect.width)
+            right(x, y) = textured ? rounded(wave(in_left, y) + static_cast<float>(brighter)) : Gray{128};
+        }
+      }
+    }
+  }
+  [[nodiscard]] Objects refined(const std::optional<StereoRig>& rig = kRig, int threads = 1) const {
+    return refine_objects({objects.labels.clone(), objects.list}, disparity, left, right, rig,
+                          Exec::with_threads(threads));
+  }
+};
+
+TEST(RefineObjects, FindsTheShiftThatMakesTheImagesAgree) {
+  for (const float off : {-0.6F, -0.25F, 0.0F, 0.25F, 0.6F}) {
+    const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.3F + off}});
+    EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.3, 0.03) << off;
+  }
+}
+
+TEST(RefineObjects, IgnoresHowBrightTheCamerasAre) {
+  const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.1F}}, true, 20);
+  EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.3, 0.03);
+}
+
+TEST(RefineObjects, ExpectsThatTheMiddleOfAPlainObjectIsNearer) {
+  // 0.15 of a width of 40 px, at 12 px of disparity: 0.15 · 12 · 40 / 160.
+  const Scene scene({{{40, 10, 40, 40}, 12, 12}}, false);
+  EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.45, 1e-5);
+  // Without a rig, the width of the image serves as the focal length: here the same.
+  EXPECT_NEAR(scene.refined({}).list[0].disparity_px, 12.45, 1e-5);
+  StereoRig offset = kRig;
+  offset.doffs_px = 4;
+  EXPECT_NEAR(scene.refined(offset).list[0].disparity_px, 12.6, 1e-5);
+  // At most a pixel in all.
+  const Scene large({{{40, 0, 60, 60}, 40, 40}}, false);
+  EXPECT_NEAR(large.refined().list[0].disparity_px, 41, 1e-5);
+}
+
+TEST(RefineObjects, LeavesObjectsBeyondInfinityWithoutShift) {
+  const Scene scene({{{40, 10, 40, 40}, -3, -3}}, false);
+  EXPECT_FLOAT_EQ(scene.refined().list[0].disparity_px, -3);
+}
+
+TEST(RefineObjects, UsesNoHolesNoOutlinesAndNothingOutsideTheRightImage) {
+  Scene scene({{{40, 10, 60, 40}, 12.3F, 12.1F}});
+  for (int y = 10; y < 50; ++y) {
+    for (int x = 40; x < 44; ++x) scene.disparity.disparity_px(x, y) = 30;  // as carried from elsewhere
+    for (int x = 70; x < 74; ++x) scene.disparity.disparity_px(x, y) = kNan;
+    for (int x = 60; x < 64; ++x) scene.disparity.disparity_px(x, y) = y % 2 == 0 ? 200.0F : -200.0F;
+  }
+  EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.3, 0.03);
+}
+
+TEST(RefineObjects, WithoutARightImageNothingChanges) {
+  const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.1F}});
+  const Objects same = refine_objects({scene.objects.labels.clone(), scene.objects.list}, scene.disparity,
+                                      scene.left, {}, kRig, {});
+  EXPECT_EQ(same.list[0].disparity_px, 12.1F);
+}
+
+TEST(RefineObjects, NumbersTheNearestFirst) {
+  // The matching saw the first one nearer.
+  const Scene scene({{{20, 10, 50, 40}, 10.0F, 10.3F}, {{90, 10, 50, 40}, 10.6F, 10.2F}});
+  const Objects refined = scene.refined();
+  ASSERT_EQ(refined.list.size(), 2U);
+  EXPECT_EQ(refined.list[0].box_px.x, 90);
+  EXPECT_EQ(refined.list[1].box_px.x, 20);
+  EXPECT_GT(refined.list[0].disparity_px, refined.list[1].disparity_px);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(refined.list[i].id, ObjectId{static_cast<std::int32_t>(i) + 1});
+    EXPECT_EQ(refined.labels(refined.list[i].box_px.x, 30), refined.list[i].id);
+  }
+  EXPECT_EQ(refined.labels(0, 0), ObjectId::none);
+}
+
+TEST(RefineObjects, IsTheSameOnAnyNumberOfThreads) {
+  const Scene scene(
+      {{{5, 10, 40, 40}, 3.0F, 3.2F}, {{50, 10, 40, 40}, 9, 9.4F}, {{95, 10, 40, 40}, 20, 19.7F}});
+  const Objects one = scene.refined();
+  for (const int threads : {2, 3, 8}) {
+    const Objects more = scene.refined(kRig, threads);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(more.list[i].disparity_px, one.list[i].disparity_px);
+  }
+}
+
+}  // namespace
+}  // namespace cairn
