@@ -4,6 +4,8 @@
 #include <array>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
+#include <cairn/core/scratch.hpp>
+#include <cairn/grouping/convolution_kernels.hpp>
 #include <cairn/grouping/framed_image.hpp>
 #include <cairn/grouping/object_hints.hpp>
 #include <vector>
@@ -152,34 +154,52 @@ std::int16_t limited(int value, int least, int most) {
 
 }  // namespace
 
+struct HintNetwork::Numbers {
+  Scratch<std::int16_t> weights;  // pairs of inputs side by side
+  Scratch<std::int16_t> transformed_weights;
+  std::vector<std::int32_t> bias;
+  std::vector<float> scale;
+  std::array<kernels::Convolution, kHintLayers> layers{};
+};
+
 HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
                          std::span<const std::int32_t> bias, std::span<const float> scale)
-    : weights_(weights.size(), Pool()),
-      transformed_weights_(count_of_transformed(layers), Pool()),
-      bias_(bias.begin(), bias.end()),
-      scale_(scale.begin(), scale.end()) {
+    : numbers_(new Numbers{.weights{weights.size(), Pool()},
+                           .transformed_weights{count_of_transformed(layers), Pool()},
+                           .bias{bias.begin(), bias.end()},
+                           .scale{scale.begin(), scale.end()}}) {
+  Numbers& own = *numbers_;
   std::size_t weight = 0;
   std::size_t output = 0;
   std::size_t transformed = 0;
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
+  for (std::size_t i = 0; i < own.layers.size(); ++i) {
     const HintLayer& l = layers[i];
     for (int k = 0; k < l.side * l.side * l.inputs; ++k) {
       for (int o = 0; o < l.outputs; ++o) {
         // NOLINTNEXTLINE(bugprone-signed-char-misuse): a number, not a character
         const auto number = static_cast<std::int16_t>(weights[weight + slot(k * l.outputs + o)]);
-        weights_.data()[weight + slot((k / 2 * l.outputs + o) * 2 + k % 2)] = number;
+        own.weights.data()[weight + slot((k / 2 * l.outputs + o) * 2 + k % 2)] = number;
       }
     }
-    layers_[i] = {l.inputs,       l.outputs,      l.side, l.stride, l.least, weights_.data() + weight,
-                  &bias_[output], &scale_[output]};
+    own.layers[i] = {l.inputs,          l.outputs,         l.side,
+                     l.stride,          l.least,           own.weights.data() + weight,
+                     &own.bias[output], &own.scale[output]};
     if (is_transformed(l)) {
-      layers_[i].transformed_weights = transformed_weights_.data() + transformed;
-      transform_weights(l, weights.subspan(weight), transformed_weights_.data() + transformed);
+      own.layers[i].transformed_weights = own.transformed_weights.data() + transformed;
+      transform_weights(l, weights.subspan(weight), own.transformed_weights.data() + transformed);
       transformed += slot(kernels::kPlaces * l.inputs * l.outputs);
     }
     weight += l.weights();
     output += slot(l.outputs);
   }
+}
+
+HintNetwork::HintNetwork(HintNetwork&&) noexcept = default;
+HintNetwork& HintNetwork::operator=(HintNetwork&&) noexcept = default;
+HintNetwork::~HintNetwork() = default;
+
+const kernels::Convolution& HintNetwork::layer(std::size_t i) const {
+  return numbers_->layers.at(i);
 }
 
 const HintNetwork& hint_network() {

@@ -2,20 +2,21 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <array>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
-#include <cairn/core/scratch.hpp>
-#include <cairn/grouping/convolution_kernels.hpp>
 #include <cairn/grouping/region_cues.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
 
 /// Estimates of a small convolutional network for the cells of the image, used as cues for grouping
 /// (docs/stages/object_hints.md, beyond the paper).
 namespace cairn {
+
+namespace kernels {
+struct Convolution;
+}
 
 /// The estimates for one cell, a block of pixels.
 struct ObjectHint {
@@ -53,19 +54,17 @@ class HintNetwork {
   /// They are copied. Precondition: as many as `layers` ask for; only the last layer has a negative `least`.
   HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
               std::span<const std::int32_t> bias, std::span<const float> scale);
-  HintNetwork(HintNetwork&&) = default;
-  HintNetwork& operator=(HintNetwork&&) = default;
+  HintNetwork(HintNetwork&&) noexcept;
+  HintNetwork& operator=(HintNetwork&&) noexcept;
   HintNetwork(const HintNetwork&) = delete;
   HintNetwork& operator=(const HintNetwork&) = delete;
-  ~HintNetwork() = default;
-  [[nodiscard]] const kernels::Convolution& layer(std::size_t i) const { return layers_.at(i); }
+  ~HintNetwork();
+  /// Private to the library.
+  [[nodiscard]] const kernels::Convolution& layer(std::size_t i) const;
 
  private:
-  Scratch<std::int16_t> weights_;  // pairs of inputs side by side
-  Scratch<std::int16_t> transformed_weights_;
-  std::vector<std::int32_t> bias_;
-  std::vector<float> scale_;
-  std::array<kernels::Convolution, kHintLayers> layers_{};
+  struct Numbers;
+  std::unique_ptr<Numbers> numbers_;
 };
 
 /// The network of the library, fitted by fitting/fit_hints.py.

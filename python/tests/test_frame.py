@@ -29,7 +29,7 @@ def test_objects_tell_what_they_are(sample):
     x, y, width, height = nearest.box_px
     rows, columns = np.nonzero(mask)
     assert (columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1) == (x, y, width, height)
-    assert nearest.disparity_px == pytest.approx(np.nanmedian(frame.disparity[mask]))
+    assert nearest.disparity_px == pytest.approx(np.nanmedian(frame.disparity[mask]), abs=1)
     assert nearest.mean_colour == tuple(np.rint(sample.left[mask].mean(axis=0)).astype(int))
     assert 0 < nearest.confidence <= 1 and 0 < nearest.valid_share <= 1
     assert re.fullmatch(r"Object\(id=1, distance_m=2\.\d+, .* confidence=0\.\d+, box_on_floor=FloorBox\(.*\)\)", repr(nearest))

@@ -33,6 +33,7 @@ struct Scene {
   Image<Gray> left{kSize, Gray{90}, {}};
   Image<Gray> right{kSize, Gray{90}, {}};
   Objects objects{Image<ObjectId>(kSize, ObjectId::none, {}), {}};
+  Image<float> evidence_px{kSize, kNan, {}};
   DisparityMap disparity{Image<float>(kSize, 2.0F, {}), Image<Reject>(kSize, Reject::none, {})};
 
   explicit Scene(const std::vector<Board>& boards, bool textured = true, int brighter = 0) {
@@ -58,7 +59,7 @@ struct Scene {
     }
   }
   [[nodiscard]] Objects refined(const std::optional<StereoRig>& rig = kRig, int threads = 1) const {
-    return refine_objects({objects.labels.clone(), objects.list}, disparity, left, right, rig,
+    return refine_objects({objects.labels.clone(), objects.list}, disparity, evidence_px, left, right, rig,
                           Exec::with_threads(threads));
   }
 };
@@ -84,6 +85,12 @@ TEST(RefineObjects, ExpectsThatTheMiddleOfAPlainObjectIsNearer) {
   StereoRig offset = kRig;
   offset.doffs_px = 4;
   EXPECT_NEAR(scene.refined(offset).list[0].disparity_px, 12.6, 1e-5);
+  // Half of the interior, 32 of 40 columns, with texture.
+  Scene half({{{40, 10, 40, 40}, 12, 12}}, false);
+  for (int y = 10; y < 50; ++y) {
+    for (int x = 44; x < 60; ++x) half.evidence_px(x, y) = 12;
+  }
+  EXPECT_NEAR(half.refined().list[0].disparity_px, 12.225, 1e-5);
   // At most a pixel in all.
   const Scene large({{{40, 0, 60, 60}, 40, 40}}, false);
   EXPECT_NEAR(large.refined().list[0].disparity_px, 41, 1e-5);
@@ -107,7 +114,7 @@ TEST(RefineObjects, UsesNoHolesNoOutlinesAndNothingOutsideTheRightImage) {
 TEST(RefineObjects, WithoutARightImageNothingChanges) {
   const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.1F}});
   const Objects same = refine_objects({scene.objects.labels.clone(), scene.objects.list}, scene.disparity,
-                                      scene.left, {}, kRig, {});
+                                      scene.evidence_px, scene.left, {}, kRig, {});
   EXPECT_EQ(same.list[0].disparity_px, 12.1F);
 }
 
