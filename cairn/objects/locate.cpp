@@ -27,9 +27,9 @@ constexpr float kStep = 1.0F;  // px
 
 // ln σ = kBias + kSpread · ln(interquartile range + 0.1 px) + kSeen · valid share, fitted to how far the
 // disparities of found objects were from the true ones: ./dev bench geometry --fit.
-constexpr double kBias = 1.803;
-constexpr double kSpread = 0.486;
-constexpr double kSeen = -2.968;
+constexpr double kBias = 1.756;
+constexpr double kSpread = 0.427;
+constexpr double kSeen = -2.888;
 constexpr double kWidth95 = 1.96;   // standard deviations on either side that hold 95 %
 constexpr double kSideSigma = 2.0;  // px: uncertainty of an object's centre by its mask …
 constexpr double kEndShare = 0.2;   // … and of the end of each side of a box, as a share of its length

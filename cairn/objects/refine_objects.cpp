@@ -14,11 +14,10 @@ constexpr int kGrain = 64;  // rows
 constexpr int kSteps = 2;
 constexpr double kLargestStep = 0.5;  // px; brightness is nearly linear within it
 constexpr int kInset = 4;             // px left out at either end of a row: outlines keep their disparity
-// Measured on the fit set; half or twice these changes the median error of the depth by 0.4 cm at most.
-constexpr double kDepthShare = 0.15;  // of the width: how much nearer the middle of a plain object is …
-constexpr double kLoosePx = 0.1;      // … give or take as much, and this
-constexpr double kPixelsAsOne = 16;   // neighbours err alike, so this many count as one measurement
-constexpr double kRounding = 1;       // grey levels²; least variance of what differs
+// Chosen on the fit set; half or twice these hardly matters.
+constexpr double kSigmaPx = 0.2;     // of the shift, before anything is seen
+constexpr double kPixelsAsOne = 16;  // neighbours err alike, so this many count as one measurement
+constexpr double kRounding = 1;      // grey levels²; least variance of what differs
 
 /// Pixels of a row whose neighbours up to kInset on both sides belong to the same object and have a disparity.
 struct Stretch {
@@ -83,26 +82,14 @@ Sums compare(const std::vector<Stretch>& interior, View<const float> disparity_p
   return sums;
 }
 
-/// The share of the pixels without texture: their disparity was carried to them from others.
-double plain_share(const std::vector<Stretch>& interior, View<const float> evidence_px) {
-  std::int64_t pixels = 0;
-  std::int64_t plain = 0;
-  for (const auto& [y, first, last] : interior) {
-    const float* const e = evidence_px.row(y);
-    pixels += last - first;
-    plain += std::count_if(e + first, e + last, [](float d) { return std::isnan(d); });
-  }
-  return pixels > 0 ? static_cast<double>(plain) / static_cast<double>(pixels) : 0;
-}
-
 double shift_of(const std::vector<Stretch>& interior, View<const float> disparity_px, View<const Gray> left,
-                View<const Gray> right, double expected_px) {
-  const double weight = 1 / (kLoosePx * kLoosePx + expected_px * expected_px);  // of the prior
+                View<const Gray> right) {
+  constexpr double kPrior = 1 / (kSigmaPx * kSigmaPx);
   double shift = 0;
   for (int i = 0; i < kSteps; ++i) {
     const Sums sums = compare(interior, disparity_px, left, right, shift);
-    double wanted = weight * (expected_px - shift);
-    double known = weight;
+    double wanted = -kPrior * shift;
+    double known = kPrior;
     if (sums.n > 0) {
       const double variance = kPixelsAsOne * (sums.var_e() / sums.n + kRounding);
       wanted += sums.cov() / variance;
@@ -135,23 +122,14 @@ void number_by_distance(Objects& objects, const Exec& exec) {
 
 }  // namespace
 
-Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const float> evidence_px,
-                       View<const Gray> left, View<const Gray> right, const std::optional<StereoRig>& rig,
-                       const Exec& exec) {
+Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const Gray> left,
+                       View<const Gray> right, const Exec& exec) {
   if (right.empty() || objects.list.empty()) return objects;
   const std::vector<std::vector<Stretch>> interior = interiors(objects, disparity.disparity_px);
-  const double focal_px = rig ? double{rig->focal_px} : left.width();
-  const double doffs_px = rig ? double{rig->doffs_px} : 0;
   parallel_for(exec, static_cast<int>(interior.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i) {
-      Object& object = objects.list[i];
-      // A depth that is less by s changes a disparity d by d·s/Z, and a width w is seen as f·w/Z.
-      const double width_px = std::sqrt(static_cast<double>(object.pixel_count));
-      const double expected_px = kDepthShare * plain_share(interior[i], evidence_px) *
-                                 std::max(0.0, double{object.disparity_px} + doffs_px) * width_px / focal_px;
-      object.disparity_px =
-          static_cast<float>(double{object.disparity_px} +
-                             shift_of(interior[i], disparity.disparity_px, left, right, expected_px));
+      float& d = objects.list[i].disparity_px;
+      d = static_cast<float>(double{d} + shift_of(interior[i], disparity.disparity_px, left, right));
     }
   });
   number_by_distance(objects, exec);

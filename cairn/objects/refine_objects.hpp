@@ -11,12 +11,9 @@ namespace cairn {
 /// Smoothed matching carries the disparity of an outline across a plain surface, whose middle is nearer. So
 /// the shift of all its disparities is estimated that makes the interior of the object look the same in both
 /// images: by least squares on the brightness with a common offset (Lucas and Kanade 1981, in one dimension),
-/// against a prior: where no disparity is textured (`evidence_px`, see find_evidence()), the middle is nearer
-/// than the outline by 0.15 of the width. The shift is at most 1 px. `right`: rectified, of the size of `left`; empty: the objects stay as they are. `rig`: its focal
-/// length is used; without one it is taken for the width of the image.
-/// (docs/stages/objects.md, beyond the paper)
-Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const float> evidence_px,
-                       View<const Gray> left, View<const Gray> right, const std::optional<StereoRig>& rig,
-                       const Exec& exec);
+/// against a prior of no shift. It is at most 1 px. `right`: rectified, of the size of `left`; empty: the
+/// objects stay as they are. (docs/stages/objects.md, beyond the paper)
+Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const Gray> left,
+                       View<const Gray> right, const Exec& exec);
 
 }  // namespace cairn

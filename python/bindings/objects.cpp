@@ -214,12 +214,12 @@ void bind_objects(py::module_& m) {
       m, "refine_objects", {},
       "Refines the disparity of each object by both images, and numbers the objects anew if their order "
       "changes. Returns Objects.",
-      [](const Call& call, const Objects& objects, const DisparityInput& disparity,
-         const Disparities& evidence, const Picture& left, const Picture& right, const KnownRig& rig) {
-        return refine_objects({objects.labels.clone({}), objects.list}, disparity.map(), evidence.view(),
-                              left.gray(), right.gray(), rig.rig(), call.exec);
+      [](const Call& call, const Objects& objects, const DisparityInput& disparity, const Picture& left,
+         const Picture& right) {
+        return refine_objects({objects.labels.clone({}), objects.list}, disparity.map(), left.gray(),
+                              right.gray(), call.exec);
       },
-      "objects"_a, "disparity"_a, "evidence"_a, "left"_a, "right"_a, "rig"_a = py::none());
+      "objects"_a, "disparity"_a, "left"_a, "right"_a);
   stage(
       m, "locate", {},
       "Where objects are: the uncertainty of their disparity and, with a rig, position, interval of depth, "

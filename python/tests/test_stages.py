@@ -68,7 +68,7 @@ def by_hierarchy(sample):
     chosen = cairn.choose_objects(tree)
     groups = cairn.groups_of(superpixels, chosen, disparity)
     objects = cairn.measure_chosen(groups.labels, chosen.scores, disparity, sample.left, noise)
-    objects = cairn.refine_objects(objects, disparity, evidence, sample.left, sample.right, rig)
+    objects = cairn.refine_objects(objects, disparity, sample.left, sample.right)
     objects = cairn.locate(objects, disparity, ground, rig)
     confidence = cairn.estimate_confidence(matches, disparity)
     space = cairn.label_space(objects, disparity, confidence, ground, background, superpixels, seen, rig)
