@@ -46,13 +46,12 @@ struct Object {
   ObjectId id = ObjectId::none;
   Rect box_px;
   int pixel_count = 0;
-  float disparity_px =
-      0;  // median of its valid pixels (even number: mean of the middle two); refine_objects()
-  float valid_share = 0;  // 0 … 1: share of the mask with a disparity
-  Rgb mean_colour;        // of the mask, rounded; grey if the input had no colour
-  float edge_share = 0;   // 0 … 1: share of the outline on image edges
-  float cut_share = 0;    // 0 … 1: share of the outline at the image border
-  float confidence = 0;   // 0 … 1: probability that it matches a true object (IoU ≥ 0.5)
+  float disparity_px = 0;  // median of its valid pixels; refine_objects() refines it
+  float valid_share = 0;   // 0 … 1: share of the mask with a disparity
+  Rgb mean_colour;         // of the mask, rounded; grey if the input had no colour
+  float edge_share = 0;    // 0 … 1: share of the outline on image edges
+  float cut_share = 0;     // 0 … 1: share of the outline at the image border
+  float confidence = 0;    // 0 … 1: probability that it matches a true object (IoU ≥ 0.5)
 
   // Set by locate(). Metres need a rig and a finite depth.
   float disparity_sigma_px = 0;              // standard deviation of disparity_px
