@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Everything that is measured against truth, in one run: writes DOCS/accuracy.md and DOCS/images/accuracy/.
+"""Measures everything that needs ground truth, in one run; writes DOCS/accuracy.md and DOCS/images/accuracy/.
 
     accuracy.py DATA DOCS COMMIT [THREADS]          (with PYTHONPATH at the built module)
-    accuracy.py DATA --only FOLDER [THREADS]        prints the table of one frame set, rendered/dev/320x240
+    accuracy.py DATA --only FOLDER [THREADS]        prints the table of one frame set, such as rendered/dev/320x240
 
-DATA is the folder that holds real/ and rendered/; COMMIT is what the page says was measured. Nothing is written before
-everything is measured. Exit code 2 where the data are not there.
+DATA is the folder with real/ and rendered/; COMMIT is the commit that the page names. All files are written at the end,
+after the last measurement. Exit code 2: no data.
 """
-import collections
 import concurrent.futures
 import datetime
 import functools
@@ -29,8 +28,9 @@ from report import number, percent, table
 
 COLOURS = {"paper": "#888888", "default": "#d1495b"}
 
-# To add a row, add a line: options apart by blanks, as --set takes them; "input=grey": without colour; "preset=paper",
-# which must be first: of that preset. What the presets disagree on comes by itself: see all_ablations().
+# To add a row, add a line of space-separated options, as for --set; "input=grey" drops the colour; "preset=paper",
+# which must be first, selects that preset. Options on which the presets differ get a row automatically: see
+# all_ablations().
 ABLATIONS = {
     "match.method=window": "paper: matching of windows",
     "semi_global.penalty_edge=0": "a step costs the same at intensity edges",
@@ -54,10 +54,10 @@ ABLATIONS = {
     "objects.min_confidence=0": "paper: every remaining region is an object",
     "objects.min_area=0.5": "paper",
 }
-# The printed text has neither floor label nor thresholds of the gradients.
+# The paper's text has neither a floor label nor gradient thresholds.
 AS_PRINTED = "preset=paper ground.label_floor=false intensity.gradient_threshold=0 disparity.gradient_threshold=0"
 
-# Degradations of one thing, mild to hard: the plot's x axis, whether x are strengths, {folder: (x, label)}.
+# Series of one degradation, mild to severe: label of the plot's x axis, whether x is numeric, {folder: (x, label)}.
 STRESSES = {
     "reflectivity": ("mirror share of the floor", True, {"floor_0.0": (0, "0"), "floor_0.3": (0.3, "0.3"), "floor_0.6": (0.6, "0.6")}),
     "gain_offset": ("right image: gain, offset", False, {
@@ -73,7 +73,7 @@ SEQUENCES = ["dev_seqA", "dev_seqB"]
 MIDDLEBURY = [f"real/middlebury{year}" for year in (2001, 2003, 2005, 2006, 2014)]
 FRAME_SETS = {"Rendered, 320x240": "rendered/dev/320x240", "Rendered, 640x480": "rendered/dev/640x480",
               "rc_tabletop, real, 640x480": "real/rc_tabletop"}
-SPLITS = {  # folders, and whether choices were made on them
+SPLITS = {  # folders, and whether options were chosen on them
     "dev 320x240": (["rendered/dev/320x240"], True), "dev 640x480": (["rendered/dev/640x480"], True),
     "train 320x240": (["rendered/train/320x240"], True), "rc_tabletop": (["real/rc_tabletop"], True), "Middlebury": (MIDDLEBURY, True),
     "validate 320x240": (["rendered/validate/320x240"], False), "validate 640x480": (["rendered/validate/640x480"], False),
@@ -90,7 +90,7 @@ def folders_read():
 
 
 class TrueFrame:
-    """A pair with what is known to be true of it, in its folder or in ../gt."""
+    """A pair with its ground truth, in the pair's folder or in ../gt."""
 
     def __init__(self, folder):
         truth = folder if any((folder / name).exists() for name in ("objects.png", "disp_left.png")) else folder.parent / "gt"
@@ -108,7 +108,7 @@ class TrueFrame:
         self.partial = (truth / "partial").exists()
 
     @functools.cached_property
-    def grey(self):  # as the library makes it: (77 R + 150 G + 29 B + 128) >> 8
+    def grey(self):  # the library's formula: (77 R + 150 G + 29 B + 128) >> 8
         return self.left if self.left.ndim == 2 else ((self.left @ np.array([77, 150, 29], np.uint32) + 128) >> 8).astype(np.uint8)
 
     def segment(self, config, grey=False, **more):
@@ -125,7 +125,7 @@ THREAD = threading.local()
 
 
 def on_one_core(work):
-    """What `work` makes with a thread of the library, and its processor time in ms."""
+    """Result of `work` on one thread of the library, and its processor time in ms."""
     if not hasattr(THREAD, "exec"):
         THREAD.exec = cairn.Exec(threads=1)
     start = time.thread_time()
@@ -154,7 +154,7 @@ def share(part, whole):
 
 
 class Summary:
-    """Many frames as one. Where the truth names not every object, ours cannot be wrong."""
+    """Scores of many frames, aggregated. Frames with partial truth cannot count an object of ours as wrong."""
 
     def __init__(self, scores):
         iou = [t.iou for s in scores if s.objects for t in s.objects.truth]
@@ -181,7 +181,7 @@ class Summary:
 
 
 def configured(settings):
-    """Of "a.b=1 c.d=word input=grey": the configuration, and whether colour is withheld."""
+    """The configuration of "a.b=1 c.d=word input=grey", and whether the input is grey."""
     preset, grey, groups = "default", False, collections.defaultdict(dict)
     for setting in settings.split():
         name, value = setting.split("=")
@@ -197,7 +197,7 @@ def configured(settings):
 
 
 def all_ablations():
-    """ABLATIONS, and behind them every option on which the presets disagree and that none of them sets."""
+    """ABLATIONS, then one for every other option on which the presets differ."""
     named = {setting.split("=")[0] for settings in ABLATIONS for setting in settings.split()}
     text = lambda value: str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else str(value)
     rest = {f"{ours.name}={text(paper.default)}": "paper" for ours, paper in zip(cairn.options(), cairn.options("paper"))
@@ -233,7 +233,7 @@ def frame_set_section(title, frames, threads):
 
 
 def share_text(part, whole):
-    """With Wilson's interval of 95 %, in per cent."""
+    """The share in per cent with its 95 % Wilson interval."""
     if whole == 0:
         return "–"
     z, p = 1.96, part / whole
@@ -252,10 +252,10 @@ def splits(data, threads):
             rows.append([title, "yes" if chosen_on else "no", name, str(s.true_objects), share_text(s.found_50, s.true_objects),
                          share_text(s.found_75, s.true_objects), share_text(s.right_50, s.our_objects), percent(s.median_error),
                          number(s.phantoms_per_frame, ".2f")])
-    header = ["frames", "choices made on it", "preset", "objects", "found 0.5, %", "found 0.75, %", "precision, %", "median E, %", "phantoms"]
+    header = ["frames", "used for choices", "preset", "objects", "found 0.5, %", "found 0.75, %", "precision, %", "median E, %", "phantoms"]
     return f"""## Fit and validation
 
-Options, features and trees were chosen on the sets marked *yes*, so results there are optimistic. [What was fitted](fitting.md) has the same sets scored by trees fitted without their scenes, and [what is lost](failures.md) the failures. The other sets are only reported. In brackets: Wilson's 95 % interval. Middlebury's objects are only partly labelled, so precision is undefined there.
+Options, features and trees were chosen on the sets marked *yes*, so results there are optimistic. [Fitted models](fitting.md) has the same sets scored by trees fitted without their scenes, and [failures](failures.md) shows what is missed. The other sets are only reported. In brackets: Wilson's 95 % interval. Middlebury's objects are only partly labelled, so precision is undefined there.
 
 {table(header, rows, words=3)}
 """
@@ -265,7 +265,7 @@ Options, features and trees were chosen on the sets marked *yes*, so results the
 
 
 def tinted(frame):
-    """The truth: each object tinted, with its distance."""
+    """The left image with each true object tinted and its distance."""
     grey = frame.grey[..., None].repeat(3, 2).astype(float)
     for k, value in enumerate(v for v in np.unique(frame.objects) if v > 0):
         grey[frame.objects == value] = 0.5 * grey[frame.objects == value] + 127 * np.array(report.plt.cm.tab10(k % 10)[:3])
@@ -368,7 +368,7 @@ def middlebury(data, threads):
     matchers.update({f"OpenCV {name}": functools.partial(by_opencv, prepare) for name, (_, prepare) in theirs.items()})
     errors = {name: on_all(frames, functools.partial(errors_of, match), threads) for name, match in matchers.items()}
 
-    def row(name, columns):  # means over the pairs, each of which counts the same
+    def row(name, columns):  # means over the pairs, equally weighted
         of = [pair[columns] for pair, _ in errors[name]]
         figures = [[e.density for e in of]] + [[getattr(e, kind)[t] for e in of] for kind in ("bad_of_matched", "bad_of_known") for t in (1.0, 2.0)]
         return [name, *(percent(float(np.nanmean(f))) for f in figures), number(float(np.mean([ms for _, ms in errors[name]])), ".0f")]
@@ -400,7 +400,7 @@ OpenCV's settings: {"; ".join(f"{name}: {settings}" for name, (settings, _) in t
 
 
 def percentile(values, part):
-    """The smallest value that at least this part of them does not exceed; NaN are left out."""
+    """The smallest value that at least this share of the values does not exceed; NaN are ignored."""
     known = sorted(v for v in values if not math.isnan(v))
     return known[min(max(math.ceil(part * len(known)), 1), len(known)) - 1] if known else math.nan
 
@@ -410,7 +410,7 @@ def mean(values):
 
 
 def sequence_row(name, frames):
-    """Means over the frames, and what all but the worst twentieth of them reach."""
+    """Means over the frames, and the 95th percentile."""
     cell = lambda values, form, more_is_better: f"{number(mean(values), form)} ({number(percentile(values, 0.05 if more_is_better else 0.95), form)})"
     of = lambda value: [100 * value(s) for s in frames]
     return [name, cell(of(lambda s: s.recall_50), ".0f", True), cell(of(lambda s: s.recall_75), ".0f", True), cell(of(lambda s: s.precision_50), ".0f", True),
@@ -419,7 +419,8 @@ def sequence_row(name, frames):
 
 
 def track_row(name, scores):
-    """One true object over a sequence; scores: by frame, None where it is too small to be scored, or not in sight."""
+    """One true object over a sequence; scores: one per frame, None where it is out of view or too small to be
+    scored."""
     iou = [s.iou if s else math.nan for s in scores]
     seen, found = sum(s is not None for s in scores), sum(i >= 0.5 for i in iou)
     merged = sum(s is not None and s.iou < 0.5 and s.under_segmented for s in scores)
@@ -440,7 +441,7 @@ def sequences(data, threads, plots):
             summaries[preset] = [Summary([s]) for s in scores]
             rows.append(sequence_row(f"{name}, `{preset}`", summaries[preset]))
         names = {o["id"]: o["name"] for o in json.loads((frames[0].truth_folder / "scene.json").read_text())["objects"]}
-        by_id = [{t.id: t for t in s.objects.truth} for s in scores]  # of the last preset, which is default
+        by_id = [{t.id: t for t in s.objects.truth} for s in scores]  # of the last preset, `default`
         for k in sorted(set().union(*by_id)):
             objects.append(track_row(f"{name}, {names.get(k, k)}", [of.get(k) for of in by_id]))
         panel = curves(summaries)
@@ -472,7 +473,7 @@ def head(commit):
 Measured on {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%d} at commit {commit}, on {report.processor()} (kernels: {cairn.supported_targets()[-1]}).
 This page reports how well cairn finds objects and disparities, against ground truth and compared with OpenCV's matchers. `./dev accuracy` measures everything again and writes this page and its plots; it needs the data collection in `../shared/data`, or in `CAIRN_DATA`.
 
-**Most of it is not held out.** After the first table, results are measured on frames that the options and the trees of `default` were fitted to, so they are optimistic. The rendered frames are our own.
+**Most results are not held out.** After the first table, results are measured on frames that the options and the trees of `default` were fitted to, so they are optimistic. The rendered frames are our own.
 
 """
 
@@ -489,7 +490,7 @@ COLUMNS = """## Presets and ablations
 | density, bad-2 | over the pixels visible to both cameras: share of the pixels with a disparity, and of these the share with an error above 2 px; rc_tabletop has no true disparity |
 | ms | one core's time for the whole method, median frame |
 
-[Evaluation](evaluation.md) defines the words. **paper** and **default** are the presets, **as printed** is `paper` without the floor label and the gradient thresholds. Each other row is an ablation: `default` with one feature disabled or as in `paper`. A difference of one object is noise; each section gives the share of one object.
+[Evaluation](evaluation.md) defines the terms. **paper** and **default** are the presets, **as printed** is `paper` without the floor label and the gradient thresholds. Each other row is an ablation: `default` with one feature disabled or as in `paper`. A difference of one object is noise; each section gives the share of one object.
 
 """
 
@@ -503,7 +504,7 @@ def measure_all(data, docs, commit, threads):
     for title, folder in FRAME_SETS.items():
         tell(folder)
         text += frame_set_section(title, load_frames(data / folder), threads)
-    # The real frames may not be shown.
+    # The images of the real frames may not be published.
     shown, figures = pictures(load_frames(data / FRAME_SETS["Rendered, 320x240"]), threads)
     tell("stress")
     text += shown + stress(data, threads, plots)
@@ -528,14 +529,14 @@ def main():
     data, threads = pathlib.Path(arguments[0]), int(arguments[3]) if len(arguments) == 4 else os.cpu_count()
     missing = next((f for f in ([arguments[2]] if only else folders_read()) if not (data / f).is_dir()), None)
     if missing:
-        print(f"accuracy: {data / missing}: no such folder; CAIRN_DATA says where the data collection is", file=sys.stderr)
+        print(f"accuracy: {data / missing}: no such folder; set CAIRN_DATA to the data collection", file=sys.stderr)
         sys.exit(2)
     if only:
         print(frame_set_section(arguments[2], load_frames(data / arguments[2]), threads), end="")
         return
     start = time.monotonic()
     measure_all(data, pathlib.Path(arguments[1]), arguments[2], threads)
-    print(f"wrote {arguments[1]}/accuracy.md and its pictures in {time.monotonic() - start:.0f} s on {threads} threads")
+    print(f"wrote {arguments[1]}/accuracy.md and its images in {time.monotonic() - start:.0f} s on {threads} threads")
 
 
 if __name__ == "__main__":

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Two builds of the command on one pair, in turns: how many times as long each stage takes in the second.
+"""Compares two builds of the command on one pair: the time ratio of each stage, second to first.
 
     against.py FIRST SECOND [--rounds N] [FOLDER] [OPTIONS]
 
-FIRST and SECOND are programs called cairn. FOLDER holds left.png, right.png and perhaps calib.txt; default: a sample.
-OPTIONS go to both. A round is a few frames of each; who begins changes with every round, and a ratio is one round's, so
-that what the machine does meanwhile hits both alike. Processor time of `cairn bench` on one thread where nothing else is
-asked for; the wall time that `cairn segment` states where one of the two is too old to know `bench`.
+FIRST and SECOND are programs called cairn. FOLDER holds left.png, right.png and optionally calib.txt; default: a sample.
+OPTIONS go to both. A round runs a few frames of each program; the order alternates between rounds, and ratios are taken
+within a round, so that a change of the machine's load affects both alike. Times are the processor times of `cairn bench`
+on one thread unless OPTIONS say otherwise. If one of the programs is too old to have `bench`, they are the wall times
+that `cairn segment` reports.
 """
 import collections
 import json
@@ -41,14 +42,14 @@ def knows_bench(program):
 
 
 def times_of_bench(program, folder, options, scratch):
-    """Milliseconds of each stage in the order of the work, the whole frame last."""
+    """Milliseconds of each stage in pipeline order, the whole frame last."""
     run(program, "bench", folder, "--no-opencv", "--frames", FRAMES, "--json", scratch / "bench.json", *options)
     found = json.loads((scratch / "bench.json").read_text())
     return {**{stage["name"]: stage["cpu_ms"]["median"] for stage in found["stages"]}, "frame": found["frame"]["cpu_ms"]["median"]}
 
 
 def times_of_segment(program, folder, options, scratch):
-    """Over a folder that holds the pair several times; the first frame fills the pool and counts for nothing."""
+    """Times over a folder with several copies of the pair; the first frame fills the pool and is not counted."""
     frames = scratch / "frames"
     frames.mkdir(exist_ok=True)
     for i in range(FRAMES + 1):
@@ -87,10 +88,10 @@ def main():
     stages = dict.fromkeys([*found[0][0], *found[1][0]])
     for stage in [*(s for s in stages if s != "frame"), "frame"]:
         first, second = (np.array([times.get(stage, np.nan) for times in of]) for of in found)
-        with np.errstate(divide="ignore", invalid="ignore"):  # a stage may take no time that is measured
+        with np.errstate(divide="ignore", invalid="ignore"):  # a stage's time may be below the clock's resolution
             low, middle, high = np.quantile(second / first, [0.25, 0.5, 0.75], method="inverted_cdf")
         print(f"{stage:22} {np.median(first):12.3f} {np.median(second):12.3f} {middle:8.3f}   {low:.3f} ... {high:.3f}")
-    print(f"The median of {rounds} rounds of {FRAMES} frames each; ratio: second to first, below 1 is quicker.")
+    print(f"The median of {rounds} rounds of {FRAMES} frames each; ratio: second to first, below 1: the second is faster.")
 
 
 if __name__ == "__main__":

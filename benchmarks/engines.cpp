@@ -132,8 +132,7 @@ std::vector<Comparison> rows_for(const Scene& scene, Clock clock, const std::str
 
 void print_races(const std::vector<Scene>& scenes, const Settings& settings) {
   MarkdownTable table(
-      {"", "on", "against", "theirs, least ms", "median", "ours, least ms", "median", "ratio", "goal", "met"},
-      3);
+      {"", "on", "against", "theirs, min ms", "median", "ours, min ms", "median", "ratio", "goal", "met"}, 3);
   for (const Clock clock : {Clock::cpu, Clock::wall}) {
     for (const Scene& scene : scenes) {
       const std::vector<Comparison> rows = rows_for(scene, clock, settings.only);

@@ -191,12 +191,12 @@ std::vector<std::pair<std::string, double>> stage_times(const Scene& scene, cons
     static_cast<void>(segment(scene.pair(), std::nullopt, config, exec));
     least_rest = std::min(least_rest, rest);
   }
-  least.emplace_back("all but match", least_rest);
+  least.emplace_back("all except match", least_rest);
   return least;
 }
 
 std::string stages_section(const std::vector<Scene>& scenes, Config (*config_for)(const Scene&)) {
-  std::vector<std::string> head{"least ms"};
+  std::vector<std::string> head{"min ms"};
   std::vector<std::vector<std::pair<std::string, double>>> columns;
   for (const Scene& scene : scenes) {
     head.push_back(scene.name + " " + scene.extent());

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""How true is what a robot is told in metres: geometry.py DATA [--fit] (with PYTHONPATH at the built module)
+"""Compares distances, sizes, floor and obstacles with the truth: geometry.py DATA [--fit] (PYTHONPATH: the built module)
 
-On the rendered rooms, of which all is known: floor and obstacles by pixel; depth, its stated interval, extent and
-box of each object that is found (IoU of 0.5 and more). Prints a table of fit and validation sets side by side;
-with --fit the three numbers of locate() that say how well a median disparity is known, from the fit set.
+The rendered rooms have exact truth. Measures floor and obstacles per pixel, and for each object found (IoU of 0.5 or
+more) its depth, depth interval, extent and box. Prints a table with the fit and the validation sets in columns. --fit
+fits the three coefficients of locate() that predict the error of a median disparity, on the fit set.
 """
 import math
 import pathlib
@@ -41,12 +41,12 @@ class Truth:
 
 
 def true_plane(truth):
-    """The true floor as a GroundPlane: the one that a fit to the truth finds."""
+    """The true floor as a GroundPlane: the plane that fit_ground() finds in the true disparities."""
     return cairn.fit_ground(np.where(np.isnan(truth.disparity), np.nan, truth.floor_px).astype(np.float32), truth.rig).plane
 
 
 def span(values):
-    """Of true points: their whole extent but for single ones."""
+    """Extent of true points without the outermost 0.5 % on each side."""
     low, high = np.percentile(values, [0.5, 99.5])
     return high - low
 
@@ -66,7 +66,7 @@ def box_size(points, frame):
 
 
 def found_objects(truth, frame):
-    """Pairs of what was found and the mask of what it is."""
+    """Pairs of a found object and the mask of the true object that it matches."""
     labels = frame.objects_map
     for found in frame.objects:
         mask = labels == found.id
@@ -80,8 +80,8 @@ def found_objects(truth, frame):
 
 
 def approached(truth):
-    """What a camera sees that comes near: of each object that fills a hundredth of the picture the window about it of
-    which it fills two fifths, where that is 140 px wide and more. The share of its pixels that are objects or obstacles."""
+    """Simulates an approach: for each object that covers 1 % of the image, a window around it of which it covers 40
+    %, if that is at least 140 px wide. Yields the share of the object's pixels that are objects or obstacles."""
     height, width = truth.objects.shape
     for k in np.unique(truth.objects):
         whole = truth.objects == k
@@ -159,8 +159,8 @@ def measure(folders):
 
 
 def fit_sigma(folders):
-    """bias, spread, seen of ln sigma = bias + spread * ln(interquartile range + 0.1 px) + seen * share of valid pixels:
-    the likeliest scale of a Laplace distribution of the errors, then widened until 1.96 sigma holds 95 % of them."""
+    """Coefficients of ln sigma = bias + spread * ln(interquartile range + 0.1 px) + seen * share of valid pixels.
+    Maximum likelihood for errors with a Laplace distribution, then widened until 1.96 sigma covers 95 % of them."""
     signs, errors = [], []
     for folder in folders:
         truth = Truth(folder)
@@ -172,7 +172,7 @@ def fit_sigma(folders):
             errors.append(abs(found.disparity_px - np.median(truth.disparity[mask])))
     signs, errors = np.array(signs), np.array(errors)
     weights = np.linalg.lstsq(signs, np.log(errors + 0.02), rcond=None)[0]
-    for _ in range(2000):  # downhill; what is six times too far counts no more than that
+    for _ in range(2000):  # gradient descent; errors beyond 6 sigma are clipped
         weights -= 0.05 * signs.T @ (1 - np.minimum(errors / np.exp(signs @ weights), 6)) / len(errors)
     weights[0] += math.log(np.quantile(errors / np.exp(signs @ weights), 0.95) / 1.96)
     return len(errors), weights
@@ -184,7 +184,7 @@ def main():
         sys.exit(__doc__)
     rendered = pathlib.Path(arguments[0]) / "rendered"
     if not rendered.is_dir():
-        sys.exit(f"geometry: {rendered}: no folder, expected the rendered rooms of the data collection")
+        sys.exit(f"geometry: {rendered}: no such folder, expected the rendered rooms of the data collection")
     folders = {name: [f for s in sets for f in sorted((rendered / s).iterdir()) if f.is_dir()] for name, sets in SETS.items()}
     if "--fit" in sys.argv:
         count, (bias, spread, seen) = fit_sigma(folders["fit"])

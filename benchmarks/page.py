@@ -3,8 +3,8 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """Writes ROOT/BENCHMARK.md and its plots: page.py CAIRN ROOT COMMIT [ENGINES]
 
-The stages at three sizes, on one and on all threads, and how time grows with pixels and with disparities: what
-`cairn bench` measures on the pair that it draws. ENGINES: a file with what the program engines printed.
+Times of the stages at three sizes, on one and on all threads, and their growth with pixels and with disparities,
+measured by `cairn bench` on a synthetic pair. ENGINES: a file with the output of the program engines.
 """
 import datetime
 import json
@@ -40,11 +40,11 @@ def stage_table(cairn, preset):
     rows = [[f"`{stage['name']}`", *(ms(b["stages"][i]["wall_ms"]["median"]) for b in of)] for i, stage in enumerate(of[0]["stages"])]
     for title, cell in {
             "**frame**, median": lambda b: f"**{ms(b['frame']['wall_ms']['median'])}**",
-            "of it for disparity": lambda b: ms(b["disparity"]["wall_ms"]["median"]),
+            "of which disparity": lambda b: ms(b["disparity"]["wall_ms"]["median"]),
             "frame, p99": lambda b: ms(b["frame"]["wall_ms"]["p99"]),
             "frame, processor time": lambda b: ms(b["frame"]["cpu_ms"]["median"]),
             "frames per second": lambda b: f"{b['frames_per_second']:.1f}",
-            "images at the peak, MB": lambda b: f"{1e-6 * b['memory']['pool_bytes']:.1f}",
+            "peak image memory, MB": lambda b: f"{1e-6 * b['memory']['pool_bytes']:.1f}",
             "image buffers allocated after the first frame": lambda b: str(b["memory"]["later_allocations"]),
             "frames measured": lambda b: str(b["frames"])}.items():
         rows.append([title, *map(cell, of)])
@@ -58,7 +58,7 @@ def point(bench):
 
 
 def straight_line(x, y):
-    """Slope, value at 0 and the farthest point's distance by least squares of the relative distances."""
+    """Slope, intercept and the largest deviation of a least-squares fit of the relative residuals."""
     x, y = np.array(x), np.array(y)
     (slope, at_zero), *_ = np.linalg.lstsq(np.stack([x, np.ones_like(x)], 1) / y[:, None], np.ones_like(y), rcond=None)
     return slope, at_zero, np.max(np.abs(at_zero + slope * x - y) / y)
@@ -76,7 +76,7 @@ def growth(cairn, title, picture, x_title, unit, unit_x, form, extents, x_of):
 
 ![{title}](docs/images/benchmark/{picture.name})
 
-{table(["preset", "of", f"ms for each {unit}", "ms besides", "farthest from the line, %"], fits, words=2)}
+{table(["preset", "of", f"ms per {unit}", "constant ms", "largest deviation, %"], fits, words=2)}
 {table([x_title.split(",")[0], *(f"{p}: {part}" for p in PRESETS for part in PARTS)], rows)}
 """
 
@@ -111,12 +111,12 @@ Wall-clock times on the pair that `cairn bench` generates: the median over the f
 
 {"".join(tables)}## Growth
 
-Median processor time on one thread, and the straight line (constant ms + ms per unit) that fits it best, by relative distance. The generated scene uses three quarters of each disparity range. Matching processes whole vectors of disparities, so its time grows in steps.
+Median processor time on one thread, and the straight line (constant ms + ms per unit) that minimises the relative residuals. The generated scene uses three quarters of each disparity range. Matching processes whole vectors of disparities, so its time grows in steps.
 
 {pixels}{disparities}## Comparison with OpenCV
 
 {engines}""")
-    print(f"wrote BENCHMARK.md and its pictures in {time.monotonic() - start:.0f} s")
+    print(f"wrote BENCHMARK.md and its plots in {time.monotonic() - start:.0f} s")
 
 
 if __name__ == "__main__":

@@ -287,7 +287,7 @@ void add_row(report::MarkdownTable& table, const std::string& name, const std::v
 void compare(const std::filesystem::path& data, int threads) {
   const auto show = [&](const std::string& title, const std::vector<report::FrameSet>& sets) {
     report::MarkdownTable table({"", "found 0.5, %", "found 0.75, %", "precision, %", "mean E, %",
-                                 "median E, %", "phantoms a frame", "ms"});
+                                 "median E, %", "phantoms per frame", "ms"});
     add_row(table, "StereoSGBM and PCL, usual numbers", sets, chain(&ChainKnob::usual), threads);
     add_row(table, "StereoSGBM and PCL, searched", sets, chain(&ChainKnob::chosen), threads);
     add_row(table, "cairn, `paper`", sets, ours(Config::paper(), true), threads);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Breaks a sequence in one way after another and prints what each witness of `cairn follow` says then.
+"""Degrades a sequence in one way after another and prints the value of each reliability check of `cairn follow`.
 
 usage: reliability.py CAIRN SEQUENCE...   (folders of frames with disp_left.png and pose.txt)
 """
@@ -31,7 +31,7 @@ def pose_of(frame):
 
 
 def true_scan(frame):
-    """The ranges that a laser below the camera would measure, from the true disparities; 0 = none."""
+    """Ranges that a laser below the camera would measure, from the true disparities; 0 = no return."""
     c = calibration(frame)
     d = np.array(Image.open(frame / "disp_left.png")).astype(float) / 256
     v, u = np.mgrid[: d.shape[0], : d.shape[1]]
@@ -84,7 +84,7 @@ def frozen(left, right, k, frames):
 
 
 def hidden_floor(left, right, k, frames):
-    """From the tenth frame on, a card close before the lower part of both lenses."""
+    """From the tenth frame on, a card covers the lower part of both lenses."""
     if k < 10:
         return left[k], right[k]
     noise = np.random.default_rng(7).integers(40, 200, (left[k].height, left[k].width + 64)).astype(np.uint8)

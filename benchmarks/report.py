@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Tables and plots of the pages that are measured: docs/accuracy.md and BENCHMARK.md."""
+"""Tables and plots of docs/accuracy.md and BENCHMARK.md."""
 import math
 import os
 import pathlib
@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 
 def number(value, form=".1f"):
-    """A dash for what is not a number."""
+    """The number as text, or a dash for NaN."""
     return "–" if math.isnan(value) else format(value, form)
 
 
@@ -22,14 +22,14 @@ def percent(share):
 
 
 def table(header, rows, words=1):
-    """Markdown: the first columns, of words, to the left, the others, of numbers, to the right."""
+    """A Markdown table: the first columns, words, are left-aligned, the others, numbers, right-aligned."""
     line = lambda cells: "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
     rule = "|" + "---|" * words + "---:|" * (len(header) - words) + "\n"
     return line(header) + rule + "".join(line(row) for row in rows)
 
 
 def axis_end(most):
-    """The least of 1, 2, 5, 10, 20, 50 … that is not below: where an axis ends well."""
+    """The smallest of 1, 2, 5, 10, 20, 50 … that is not below `most`: a round end for an axis."""
     if not most > 0:
         return 1
     power = 10 ** math.floor(math.log10(most))
@@ -37,8 +37,8 @@ def axis_end(most):
 
 
 def plot(path, x, panels, x_title, ticks=None, lines=True, dots=True):
-    """Panels side by side that share their x axis. panels: (title, end of the y axis or None, {name: (colour, values)});
-    NaN parts a line. ticks: {x: label}. lines=False: x are kinds, and a line between two would mean nothing."""
+    """Panels side by side with a common x axis. panels: (title, end of the y axis or None, {name: (colour, values)});
+    NaN interrupts a line. ticks: {x: label}. lines=False: x are categories, without lines between them."""
     figure, axes = plt.subplots(1, len(panels), figsize=(2.6 * len(panels), 2.4), squeeze=False)
     for axis, (title, end, series) in zip(axes[0], panels):
         for name, (colour, values) in series.items():
@@ -57,7 +57,7 @@ def plot(path, x, panels, x_title, ticks=None, lines=True, dots=True):
 
 
 def write(path, text):
-    """Whole or not at all."""
+    """Writes the whole file or leaves it unchanged."""
     unfinished = pathlib.Path(f"{path}.unfinished")
     unfinished.write_text(text, encoding="utf-8")
     os.replace(unfinished, path)

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""soak.py DATA [--frames N] [--threads N] [--cairn PROGRAM] [--shrink N] [--only WHAT]: hours of running in short. Goes to
-and fro through a rendered tour in small images, N frames for each of
+"""soak.py DATA [--frames N] [--threads N] [--cairn PROGRAM] [--shrink N] [--only RUN]: a short endurance test. Runs
+back and forth through a rendered tour in small images, N frames for each RUN:
 
-  segmenter  cairn.Segmenter, whose sizes and presets take turns
+  segmenter  cairn.Segmenter, alternating sizes and presets
   follower   cairn.Follower with a map in memory
   live       the command cairn live, with objects as lines of JSON (needs --cairn)
 
-and prints at ten points on the way how long a frame took since the point before, the process's resident memory, and how
-many images the segmenters' pools have allocated so far. Exit code 1 where memory grew by more than 8 MB or
-images were allocated after the first tenth: something is kept, or not reused."""
+At ten points it prints the time per frame since the last point, the process's resident memory, and the number of
+images that the segmenters' pools have allocated so far. Exit code 1 if memory grew by more than 8 MB, or if
+images were allocated after the first tenth: something leaks, or is not reused."""
 import argparse
 import json
 import os
@@ -37,16 +37,16 @@ def resident_mb(process="self"):
 
 
 def to_and_fro(frames):
-    """0 1 … last … 1: whoever begins again behind its end sees no jump."""
+    """0 1 … last … 1: repeating it has no jump."""
     return frames + frames[-2:0:-1]
 
 
 class Log:
-    """Prints a line at each of the points, and what the whole came to."""
+    """Prints a line at each of the points, and a summary."""
 
     def __init__(self, name, frames):
         self.name, self.frames = name, frames
-        self.all, self.since, self.points = array("f"), array("f"), []  # a list of numbers would grow eight times as much
+        self.all, self.since, self.points = array("f"), array("f"), []  # a list of floats would grow eight times as fast
         print(f"\n{name}: {frames} frames\n{'frames':>8} {'p50':>7} {'p99':>7} {'max':>7} ms   resident MB   "
               "images allocated", flush=True)
 
@@ -130,7 +130,7 @@ def soak_live(pairs, rig, options):
             said = live.stderr.read().decode()
         print(said.strip())
         if seen < options.frames:
-            print(f"live: ended behind {seen} frames")
+            print(f"live: ended after {seen} frames")
             return False
         return log.is_fine()
 
@@ -140,15 +140,15 @@ def main():
     parser.add_argument("data", type=Path)
     parser.add_argument("--frames", type=int, default=100_000)
     parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--cairn", help="the command; without it live is left out")
-    parser.add_argument("--shrink", type=int, default=2, help="take every n-th pixel of the tour's 320x240 (default: 2)")
+    parser.add_argument("--cairn", help="the command; without it, live is skipped")
+    parser.add_argument("--shrink", type=int, default=2, help="use every n-th pixel of the tour's 320x240 (default: 2)")
     parser.add_argument("--only", choices=["segmenter", "follower", "live"])
     options = parser.parse_args()
     if options.frames < 100 * POINTS:
         sys.exit(f"soak.py: --frames {options.frames}: expected at least {100 * POINTS}")
     folders = sorted(p.parent for p in (options.data / "rendered/tour_train").glob("*/left.png"))
     if not folders:
-        sys.exit(f"soak.py: {options.data}: has no rendered/tour_train")
+        sys.exit(f"soak.py: {options.data}: no rendered/tour_train in it")
     pairs = to_and_fro([tuple(np.ascontiguousarray(image[::options.shrink, ::options.shrink]) for image in
                               cairn.load_pair(f / "left.png", f / "right.png")) for f in folders])
     whole = cairn.load_calibration(folders[0] / "calib.txt").rig
@@ -160,7 +160,7 @@ def main():
         parts["live"] = soak_live
     if options.only:
         if options.only not in parts:
-            sys.exit("soak.py: --only live: expected --cairn PROGRAM, too")
+            sys.exit("soak.py: --only live: needs --cairn PROGRAM")
         parts = {options.only: parts[options.only]}
     print(f"{os.cpu_count()} processors, {options.threads} threads, images of {pairs[0][0].shape[1]}x{pairs[0][0].shape[0]}")
     fine = [soak(pairs, rig, options) for soak in parts.values()]

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""How far the steadiness of a sequence's objects follows the truth over wrong settings.
+"""Measures how well the steadiness of a sequence's objects ranks wrong settings by their true error.
 
 usage: steadiness.py CAIRN SEQUENCE...   (folders of frames with objects.png)
 
-Each sequence is played forwards and backwards until it has 200 frames. Means of the last 100: E and steadiness
-of each setting, their rank correlation, and how many pairs that differ by more than 0.05 of E it judges right.
+Each sequence is played back and forth until it has 200 frames. Prints means of the last 100 frames: E and steadiness of
+each setting, their rank correlation, and how many of the pairs of settings that differ by more than 0.05 in E are
+ordered correctly by steadiness.
 """
 import itertools
 import json
@@ -92,7 +93,7 @@ def main():
         pairs = [(a, b) for a, b in itertools.combinations(both, 2) if abs(a[0] - b[0]) > APART]
         right = sum((a[0] < b[0]) == (a[1] > b[1]) for a, b in pairs)
         correlation = statistics.correlation(ranks([e for e, _ in both]), ranks([s for _, s in both]))
-        print(f"{name}: rank correlation {correlation:.2f}, {right} of {len(pairs)} pairs right")
+        print(f"{name}: rank correlation {correlation:.2f}, {right} of {len(pairs)} pairs ordered correctly")
 
 
 if __name__ == "__main__":

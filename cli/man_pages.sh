@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# man_pages.sh CAIRN DIR: manual pages by help2man of the command and of each of its commands, in DIR/man1, and of the
-# stages' options, cairn-options(7), in DIR/man7; from what --help and `cairn config` print.
+# man_pages.sh CAIRN DIR: makes manual pages by help2man from the output of --help and `cairn config`: of the command
+# and its subcommands in DIR/man1, and of the stages' options, cairn-options(7), in DIR/man7.
 set -euo pipefail
 cairn=$1 dir=$2
 scratch=$(mktemp -d)
@@ -11,15 +11,15 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir -p "$dir/man1" "$dir/man7"
 version=$("$cairn" --version)
 
-page() {  # NAME SECTION WHAT < the text
-  # help2man names a page after the program that it asks.
+page() {  # NAME SECTION TITLE < text
+  # help2man names a page after the program that it runs.
   { echo "cat <<'TEXT'" && cat && echo TEXT; } >"$scratch/$1"
   chmod +x "$scratch/$1"
   help2man --no-info --locale C.UTF-8 --section "$2" --name "$3" --manual cairn --source "$version" \
     --version-string "${version#cairn }" --include "$scratch/see_also" --output "$dir/man$2/$1.$2" "$scratch/$1"
 }
 
-help_of() {  # [COMMAND]: sections as help2man marks them, and examples as lines of a shell
+help_of() {  # [COMMAND]: marks the sections for help2man, and the examples as shell lines
   "$cairn" "$@" --help | sed 's/^Positionals:/*Arguments*/; s/^Subcommands:/*Commands*/; s/^  cairn /  $ cairn /'
 }
 

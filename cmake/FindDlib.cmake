@@ -1,5 +1,5 @@
-# dlib's headers: target Dlib::headers. Only what needs nothing to be linked is used; dlib's own package file asks for X11,
-# SQLite and a BLAS.
+# dlib's headers: target Dlib::headers. Only header-only parts are used; dlib's own package file requires X11, SQLite
+# and a BLAS.
 find_path(Dlib_INCLUDE_DIR dlib/optimization/max_cost_assignment.h)
 mark_as_advanced(Dlib_INCLUDE_DIR)
 include(FindPackageHandleStandardArgs)

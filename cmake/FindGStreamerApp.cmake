@@ -1,4 +1,4 @@
-# GStreamer's pipelines with images taken out of them: target GStreamerApp::app. By pkg-config, which its headers depend on.
+# GStreamer's app library: target GStreamerApp::app. Found by pkg-config, since its headers depend on others.
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(GStreamerApp QUIET IMPORTED_TARGET gstreamer-1.0 gstreamer-app-1.0 gstreamer-video-1.0)

@@ -1,5 +1,5 @@
-# OpenCV's matchers and camera models: target OpenCVCalib3d::calib3d. See FindOpenCVImgproc.cmake for why not by OpenCV's
-# own package file.
+# OpenCV's matchers and camera models: target OpenCVCalib3d::calib3d. FindOpenCVImgproc.cmake says why OpenCV's own
+# package file is not used.
 find_path(OpenCVCalib3d_INCLUDE_DIR opencv2/calib3d.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVCalib3d_LIBRARY opencv_calib3d)
 mark_as_advanced(OpenCVCalib3d_INCLUDE_DIR OpenCVCalib3d_LIBRARY)

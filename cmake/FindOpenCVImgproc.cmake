@@ -1,8 +1,8 @@
-# OpenCV's drawing functions: target OpenCVImgproc::imgproc with what it needs. Not by OpenCV's own name of the target, which
-# find_package(OpenCV) would then refuse to define.
+# OpenCV's drawing functions: target OpenCVImgproc::imgproc with its dependencies. The name differs from OpenCV's own
+# target, which find_package(OpenCV) would otherwise refuse to define.
 #
-# OpenCV's own package file demands every module of OpenCV, which on Debian are 270 more packages and 760 MB for lines and
-# text on a picture. So the two libraries are looked for directly first (libopencv-imgproc-dev has them).
+# OpenCV's own package file requires every module, which on Debian are 270 more packages and 760 MB for drawing lines
+# and text. So the two libraries of libopencv-imgproc-dev are searched for directly.
 find_path(OpenCVImgproc_INCLUDE_DIR opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVImgproc_LIBRARY opencv_imgproc)
 find_library(OpenCVImgproc_CORE_LIBRARY opencv_core)
@@ -18,7 +18,7 @@ if(OpenCVImgproc_INCLUDE_DIR AND OpenCVImgproc_LIBRARY AND OpenCVImgproc_CORE_LI
       INTERFACE_LINK_LIBRARIES ${OpenCVImgproc_CORE_LIBRARY})
   endif()
 else()
-  # Somewhere else than where libraries usually are: OpenCV_DIR tells.
+  # OpenCV_DIR names a location outside the usual library folders.
   set(opencv_required)
   if(OpenCVImgproc_FIND_REQUIRED)
     set(opencv_required REQUIRED)

@@ -1,4 +1,4 @@
-# OpenCV's optical flow: target OpenCVVideo::video. See FindOpenCVImgproc.cmake for why not by OpenCV's own package file.
+# OpenCV's optical flow: target OpenCVVideo::video. See FindOpenCVImgproc.cmake.
 find_path(OpenCVVideo_INCLUDE_DIR opencv2/video/tracking.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVVideo_LIBRARY opencv_video)
 mark_as_advanced(OpenCVVideo_INCLUDE_DIR OpenCVVideo_LIBRARY)

@@ -1,4 +1,4 @@
-# OpenCV's videos: target OpenCVVideoio::videoio. See FindOpenCVImgproc.cmake for why not by OpenCV's own package file.
+# OpenCV's videos: target OpenCVVideoio::videoio. See FindOpenCVImgproc.cmake.
 find_path(OpenCVVideoio_INCLUDE_DIR opencv2/videoio.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVVideoio_LIBRARY opencv_videoio)
 mark_as_advanced(OpenCVVideoio_INCLUDE_DIR OpenCVVideoio_LIBRARY)

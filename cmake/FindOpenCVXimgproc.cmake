@@ -1,5 +1,4 @@
-# OpenCV's graph segmentation, for the benchmarks alone: target opencv_ximgproc. See FindOpenCVImgproc.cmake for why not by
-# OpenCV's own package file.
+# OpenCV's graph segmentation, for benchmarks only: target opencv_ximgproc. See FindOpenCVImgproc.cmake.
 find_path(OpenCVXimgproc_INCLUDE_DIR opencv2/ximgproc/segmentation.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCVXimgproc_LIBRARY opencv_ximgproc)
 mark_as_advanced(OpenCVXimgproc_INCLUDE_DIR OpenCVXimgproc_LIBRARY)

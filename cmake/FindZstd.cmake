@@ -1,4 +1,4 @@
-# zstd: target Zstd::zstd. Debian's package has no file for CMake.
+# zstd: target Zstd::zstd. Debian's package has no CMake file.
 find_path(Zstd_INCLUDE_DIR zstd.h)
 find_library(Zstd_LIBRARY zstd)
 mark_as_advanced(Zstd_INCLUDE_DIR Zstd_LIBRARY)

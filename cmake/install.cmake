@@ -1,10 +1,11 @@
-# What `cmake --install` puts in place, in the components library, sequences, video, gstreamer, ros2, dev and tools; docs/install.md says how
-# it is used.
+# `cmake --install`: the components library, sequences, video, gstreamer, ros2, dev and tools; docs/install.md
+# describes their use.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/cairn)
 
-# cairn_install_library(TARGETS EXPORT COMPONENT): the shared libraries in a component, what others build with in `dev`.
+# cairn_install_library(TARGETS EXPORT COMPONENT): shared libraries go into the component, files for building against
+# them into `dev`.
 function(cairn_install_library targets export component)
   install(TARGETS ${targets} EXPORT ${export}
     LIBRARY COMPONENT ${component} NAMELINK_COMPONENT dev
@@ -27,7 +28,7 @@ endfunction()
 
 # ---- libraries and their headers ----
 
-# The rest are the library's own business: they may change or go with any version.
+# All other headers are private: they may change or disappear in any version.
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
   core/scratch grouping/segmentation_of grouping/surfaces_behind
@@ -59,7 +60,7 @@ if(CAIRN_IO)
     cairn_install_headers(tracking landmarks ros source live)
   endif()
   install(FILES docs/schema/objects.schema.json docs/schema/batch_row.schema.json packaging/slurm/cairn.sbatch DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
-  # The commands' help names these pages.
+  # The commands' help refers to these pages.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING
     REGEX "\\.(md|png|svg)$"
     PATTERN site EXCLUDE
@@ -68,7 +69,7 @@ endif()
 
 # ---- for find_package(cairn) ----
 
-# A static library leaves its own libraries to whoever links it.
+# Whoever links a static library must also link its dependencies.
 set(static_library OFF)
 get_target_property(type cairn TYPE)
 if(type STREQUAL "STATIC_LIBRARY")
@@ -81,7 +82,7 @@ foreach(optional IN ITEMS VIDEO:cairn_video:OpenCVVideoio GSTREAMER:cairn_gstrea
   list(GET optional 0 part)
   list(GET optional 1 module)
   list(GET optional 2 package)
-  if(CAIRN_HAS_${part} AND (module STREQUAL "" OR NOT TARGET ${module}))  # linked, and no module of its own
+  if(CAIRN_HAS_${part} AND (module STREQUAL "" OR NOT TARGET ${module}))  # linked directly, not a loadable module
     list(APPEND CAIRN_SEQUENCES_PACKAGES ${package})
   endif()
 endforeach()
@@ -99,9 +100,9 @@ endif()
 # ---- for pkg-config ----
 
 # cairn_install_pkgconfig(NAME DESCRIPTION LIBS REQUIRES STATIC_REQUIRES STATIC_LIBS): the last two only for static
-# libraries. As Requires.private of a shared one pkg-config would still want them to be installed.
+# libraries, because pkg-config requires packages of Requires.private to be installed even for shared ones.
 function(cairn_install_pkgconfig name description libs requires static_requires static_libs)
-  # The prefix is told from where the file lies, so that an installed tree may be moved.
+  # The prefix is relative to the file, so that an installed tree can be moved.
   file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
   if(static_library)
@@ -122,7 +123,7 @@ endif()
 list(JOIN static_requires " " static_requires)
 cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "-lcairn" "" "${static_requires}" "-pthread")
 if(CAIRN_IO)
-  # OpenCV by its libraries: its own .pc file names every module.
+  # OpenCV's libraries directly: its own .pc file names every module.
   set(opencv_libs "-lopencv_imgproc -lopencv_core")
   if(CAIRN_HAS_CALIBRATION)
     string(PREPEND opencv_libs "-lopencv_calib3d ")
@@ -159,13 +160,13 @@ if(CAIRN_IO)
   endif()
   install(DIRECTORY ${manual}/bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT tools)
   install(DIRECTORY samples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools)
-  # Their pages link them there.
+  # The pages link to the licence there.
   install(DIRECTORY examples/batch DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools USE_SOURCE_PERMISSIONS)
   if(CAIRN_HAS_TRACKING)
     install(DIRECTORY sequences DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
   endif()
 endif()
-if(NOT CAIRN_DEBIAN)  # there it is each package's copyright file
+if(NOT CAIRN_DEBIAN)  # Debian: each package's copyright file has it
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
 endif()
 include(cmake/packages.cmake)

@@ -1,9 +1,9 @@
-# cairn_library(TARGET): what our libraries have in common, static or shared (BUILD_SHARED_LIBS).
+# cairn_library(TARGET): settings common to our libraries, static or shared (BUILD_SHARED_LIBS).
 include(CheckLinkerFlag)
 set(CAIRN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/exports.map)
 check_linker_flag(CXX "LINKER:--version-script=${CAIRN_EXPORTS}" CAIRN_HAS_VERSION_SCRIPT)
 
-# An installed tree may be moved: command and libraries find each other from where they lie. Debian's find them in /usr.
+# An installed tree can be moved: command and libraries find each other by relative paths. On Debian they are in /usr.
 if(PROJECT_IS_TOP_LEVEL AND BUILD_SHARED_LIBS AND NOT CAIRN_DEBIAN)
   file(RELATIVE_PATH bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${bin_to_lib})
@@ -12,10 +12,10 @@ endif()
 function(cairn_library target)
   set_target_properties(${target} PROPERTIES
     POSITION_INDEPENDENT_CODE ON
-    # Before 1.0 each minor version may change the binary interface.
+    # Before 1.0, each minor version may change the binary interface.
     VERSION ${PROJECT_VERSION}
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-    # No macro says that a shared library is being made: the same objects for both kinds.
+    # No macro marks a shared build: both kinds use the same objects.
     DEFINE_SYMBOL "")
   get_target_property(type ${target} TYPE)
   if(type STREQUAL "SHARED_LIBRARY" AND CAIRN_HAS_VERSION_SCRIPT AND NOT CAIRN_SANITIZE)
@@ -24,7 +24,8 @@ function(cairn_library target)
   endif()
 endfunction()
 
-# cairn_headers_as_installed(TARGET FOLDERS...): <cairn/FOLDER/...> in the build, too. Links, so that an edit is seen.
+# cairn_headers_as_installed(TARGET FOLDERS...): makes <cairn/FOLDER/...> work in the build, too. Symbolic links, so
+# edits take effect.
 function(cairn_headers_as_installed target)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/cairn)
   foreach(folder IN LISTS ARGN)

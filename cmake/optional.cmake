@@ -1,8 +1,9 @@
-# cairn_wants(OPTION PACKAGES RESULT): whether what OPTION (AUTO, ON or OFF) stands for is built. AUTO: where all PACKAGES are
-# found; ON demands them. A macro: what find_package defines must stay with who asks.
+# cairn_wants(OPTION PACKAGES RESULT): sets RESULT to whether the part controlled by OPTION (AUTO, ON or OFF) is
+# built. AUTO: if all PACKAGES are found; ON requires them. A macro, so that the caller sees the variables of
+# find_package.
 macro(cairn_wants option packages result)
   set(${result} OFF)
-  if(${option})  # AUTO, too
+  if(${option})  # ON or AUTO
     set(${result} ON)
     foreach(cairn_package ${packages})
       if(${option} STREQUAL "AUTO")

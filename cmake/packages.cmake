@@ -1,21 +1,21 @@
-# cpack -G DEB: Debian packages of what cmake/install.cmake installs, one for each component; ./dev package makes them.
+# cpack -G DEB: one Debian package per component of cmake/install.cmake; run by ./dev package.
 set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 set(package_of_library libcairn${abi})
 set(section_of_library libs)
 set(description_of_library "objects from a rectified stereo pair: shared libraries")
 
-# Apart, so that who links the core alone need not install OpenCV's video and SQLite.
+# Separate, so that linking only the core does not require OpenCV's video module and SQLite.
 set(package_of_sequences libcairn-sequences${abi})
 set(section_of_sequences libs)
 set(description_of_sequences "objects from a rectified stereo pair: shared libraries for sequences")
 
-# FFmpeg and GDAL, 200 packages, for those who follow videos.
+# Separate, since FFmpeg and GDAL are 200 packages.
 set(package_of_video cairn-video)
 set(section_of_video science)
 set(description_of_video "objects from a rectified stereo pair: videos as sequences")
 
-# GStreamer, for those whose cameras it reads.
+# Separate, for users of GStreamer cameras.
 set(package_of_gstreamer cairn-gstreamer)
 set(section_of_gstreamer science)
 set(description_of_gstreamer "objects from a rectified stereo pair: cameras by GStreamer")
@@ -38,7 +38,7 @@ set(description_of_tools "objects from a rectified stereo pair: the command, wit
 set(package_of_python python3-cairn)
 set(section_of_python python)
 set(description_of_python "objects from a rectified stereo pair: Python 3 module")
-# A compiled module belongs to one minor version of Python.
+# A compiled module works with one minor version of Python only.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
 if(Python_VERSION_MINOR OR Python3_VERSION_MINOR)
   set(minor ${Python_VERSION_MINOR}${Python3_VERSION_MINOR})
@@ -90,7 +90,7 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Where the libraries that the command and the module link lie before they are installed.
+# Folders of the built libraries that the command and the module link, before installation.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS)
 foreach(folder libcairn io tracking landmarks ros source live)
   list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/${folder})

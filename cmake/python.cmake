@@ -1,10 +1,10 @@
-# Whether the Python module is built, and with which Python: CAIRN_WITH_PYTHON, Python_EXECUTABLE.
+# Decides whether the Python module is built, and for which Python: CAIRN_WITH_PYTHON, Python_EXECUTABLE.
 set(CAIRN_WITH_PYTHON OFF)
 if(NOT CAIRN_PYTHON)
   return()
 endif()
-# A Python from elsewhere that comes first in PATH has no numpy and not the system's headers, so the system's is asked for
-# by name; -DPython_EXECUTABLE=… asks for another.
+# Another Python that is first in PATH lacks numpy and the system's headers, so the system's Python is named
+# explicitly; -DPython_EXECUTABLE=… selects another.
 if(NOT DEFINED Python_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that the module is for")
 endif()

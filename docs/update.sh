@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# update.sh [--check|--pictures] BUILD_DIR: writes the generated parts of the pages anew, or with --check only says which
-# are stale.
+# update.sh [--check|--pictures] BUILD_DIR: regenerates the generated parts of the pages; with --check, only reports
+# which are stale.
 #   docs/options.md                         `cairn config --markdown`
 #   <!-- code: FILE#NAME -->                the lines of FILE between `// [NAME]` and `// [/NAME]` (or `# [NAME]`)
-#   <!-- output: COMMAND ARGUMENTS -->      what the program COMMAND in BUILD_DIR prints on stdout, without the time it took;
-#                                           SCRATCH among ARGUMENTS is a folder for its files
-# Each marker is followed by a fenced block, which is what is replaced. docs/images is made with --pictures only: every new
-# picture stays in the repository's history for ever.
+#   <!-- output: COMMAND ARGUMENTS -->      stdout of the program COMMAND in BUILD_DIR, without times; SCRATCH in
+#                                           ARGUMENTS is replaced by a temporary folder
+# A marker is followed by a fenced block, which is replaced. docs/images is regenerated with --pictures only, since
+# every new image stays in the repository's history.
 set -euo pipefail
 check=no pictures=no
 case $1 in
@@ -31,7 +31,7 @@ Look up here every option of every stage, with its value in the presets `default
 Set one with `--set stage.name=value`, several in a file with `--config FILE` ([format](formats.md)). `cairn config --preset P` prints the options in force.
 An option with a condition in the last column is refused while the condition does not hold.
 TEXT
-  # One heading per stage, and the paper's value beside the default.
+  # One heading per stage, and the paper's value next to the default.
   awk -F'|' '
     !/^\| `/ { next }
     NR == FNR { paper[$2] = $3; next }
@@ -76,7 +76,7 @@ output_of() {  # COMMAND ARGUMENTS
   "$build_dir/${words[0]}" "${words[@]:1}" | sed -E 's/, [0-9.]+ ms$//'
 }
 
-# The page with the block after each marker replaced by what it should be.
+# The page with the block after each marker regenerated.
 page_anew() {
   local line
   while IFS= read -r line; do
@@ -93,13 +93,13 @@ page_anew() {
 }
 
 stale=0
-put() {  # FILE < its contents as they should be
+put() {  # FILE < expected contents
   local contents
   contents=$(cat)
   if [[ -e $1 && $contents == "$(cat "$1")" ]]; then
     return
   elif [[ $check == yes ]]; then
-    echo "$1 is not as generated; ./dev docs writes it anew:"
+    echo "$1 is stale; ./dev docs regenerates it:"
     diff -u "$1" - <<<"$contents" || true
     stale=1
   else
@@ -117,12 +117,12 @@ done < <(find . -name '*.md' -not -path './build/*' | xargs grep -lE '^<!-- (cod
 
 picture() {  # FILE NAME
   cp "$1" "docs/images/$2.png"
-  # 256 colours are enough for a page, and a third of the bytes.
+  # 256 colours suffice for a page and take a third of the bytes.
   if command -v pngquant >/dev/null; then pngquant --force --ext .png 256 "docs/images/$2.png"; fi
   echo "wrote docs/images/$2.png"
 }
 
-# What a browser shows of a page.
+# A screenshot of a page in a browser.
 screenshot() {  # PAGE FILE
   chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1280,1180 --virtual-time-budget=4000 \
     --screenshot="$2" "file://$1" >/dev/null 2>&1
@@ -139,7 +139,7 @@ if [[ $pictures == yes ]]; then
     picture "$scratch/segment.png" segment_page
     picture "$scratch/evaluation.png" evaluation_page
   else
-    echo "no chromium: the pictures of the pages stay as they are" >&2
+    echo "no chromium: screenshots are not updated" >&2
   fi
 fi
 [[ $stale == 0 ]]

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""A job list for the generator of rendered rooms: scenes whose picture objects fill, seen by a narrow lens.
+"""Writes a job list for the generator of rendered rooms: cluttered scenes that objects fill, seen by a narrow lens.
 
 cluttered_rooms.py GENERATOR JOBS.json FIRST LAST
-GENERATOR is the folder with rooms.py; scene i of FIRST … LAST - 1 follows from room i there. The list is rendered
-as any of rooms.py is, and `./dev fit` takes what comes out of it with the other rooms.
+GENERATOR is the folder with rooms.py; scene i of FIRST … LAST - 1 is derived from its room i. The list is rendered
+like any list of rooms.py, and `./dev fit` uses the frames together with the other rooms.
 """
 import argparse
 import json
@@ -24,12 +24,12 @@ def cluttered(rooms, i):
     random = np.random.default_rng([i, 5])
     half_view = math.radians(random.uniform(13, 26))
     fx = 160 / math.tan(half_view)
-    distance = random.uniform(0.7, 2.2)  # to the middle of what stands there
-    across = 2 * distance * math.tan(half_view)  # metres of the picture's width there
+    distance = random.uniform(0.7, 2.2)  # to the middle of the objects
+    across = 2 * distance * math.tan(half_view)  # width of the field of view there, m
     pitch = math.radians(random.uniform(8, 32))
     height = distance * math.sin(pitch) + random.uniform(0.12, 0.3) * across
     near, far = distance * random.uniform(0.7, 0.8), distance * random.uniform(1.25, 1.6)
-    # The nearest thing has 25 to 60 px of disparity.
+    # The nearest object has 25 to 60 px of disparity.
     baseline = random.uniform(25, 60) * near / fx
     count = int(random.integers(5, 12))
     standing = [kind for kind in rooms.TRAIN["kinds"] if kind not in rooms.THIN and kind != "balloons"]
@@ -59,7 +59,7 @@ def cluttered(rooms, i):
             thing["lying"] = True
         objects.append(thing)
     depth = float(random.uniform(4, 5))  # of the room
-    place = depth - far - random.uniform(0.15, 0.9) * across  # of the camera: a wall is close behind the things
+    place = depth - far - random.uniform(0.15, 0.9) * across  # of the camera: a wall is close behind the objects
     aside = random.uniform(-0.2, 0.2)
     for other in ("table", "back_window", "marks"):
         room.pop(other, None)
@@ -75,9 +75,9 @@ def cluttered(rooms, i):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("generator", type=pathlib.Path, help="the folder with rooms.py")
-    parser.add_argument("jobs", type=pathlib.Path, help="what is written")
+    parser.add_argument("jobs", type=pathlib.Path, help="output file")
     parser.add_argument("first", type=int)
-    parser.add_argument("last", type=int, help="the first that is not wanted")
+    parser.add_argument("last", type=int, help="end of the range, exclusive")
     arguments = parser.parse_args()
     sys.path.insert(0, str(arguments.generator))
     import rooms

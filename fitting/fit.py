@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that judge regions (cairn/grouping/fitted_*.inc) to the frames that choices are made on.
+"""Fits the trees that score regions (cairn/grouping/fitted_*.inc) to the fit set.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
-It needs what fit_hints.py leaves in the work folder. fit.py TOOL DATA --ablation FILE: fits again without each kind
-of cues in turn, and reports what each brings.
+It needs the networks that fit_hints.py writes to the work folder. fit.py TOOL DATA --ablation FILE: refits without
+each kind of cue in turn, and reports the gain of each.
 
-Two things are fitted by gradient boosting: whether two neighbouring regions show one thing, to the pairs that
-the growing of a tree of regions meets; and whether a region is a whole object, to the regions in such trees.
-Which pairs and regions are met depends on the first, so it is fitted twice. Regions are always taken from trees
-that were grown by what was fitted without their scene, in `--folds` folds; so is every figure that is printed for
-the fit set. Frames under `validate` are only reported. Everything is seeded: the same frames give the same trees.
+Gradient boosting fits two scores: whether two neighbouring regions belong to the same object, on the pairs that occur
+while the merge tree grows; and whether a region is a whole object, on the regions of such trees. Which pairs and
+regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
+not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. Frames under
+`validate` are only reported. Everything is seeded: the same frames give the same trees.
 """
 import argparse
 import json
@@ -24,24 +24,24 @@ import zlib
 
 import numpy as np
 
-WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # of a frame: there are few of these
-PAIRS_KEPT = 0.3  # of all that are met: there are millions
+WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # per frame, since these sets are small
+PAIRS_KEPT = 0.3  # share of all pairs, of which there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 SEED = 7
-HALVES = 2  # of the scenes, that a network is fitted without (fit_hints.py)
+HALVES = 2  # of the scenes; each network is fitted without one (fit_hints.py)
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
               "2006/Lampshade1"]
 
 
-CUES = {  # by what their features' names hold
+CUES = {  # by substrings of their features' names
     "colours and brightness": ("colour", "brightness"), "edges": ("edge",), "steps of disparity": ("step",),
     "planes of disparity": ("plane", "slope", "spread of disparity", "spread, relative"),
     "the ground": ("ground", "floor"), "the background": ("background",), "evidence": ("evidence",),
     "hints": ("hints:",),
     "shape and place": ("box", "outline over", "outline of", "longer than before", "area", "extent", "middle",
                         "width", "height, share", "its foot", "image's", "borders of"),
-    "the tree": ("alike", "one thing", "becomes a part", "likely the same")}
+    "the tree": ("same-object", "its parent", "same object likely")}
 
 
 def frames_in(folder):
@@ -67,7 +67,7 @@ def validation_sets(data):
 
 
 def fold_of(frame, folds):
-    return zlib.crc32(frame.name.encode()) % folds  # a scene has one name at all sizes
+    return zlib.crc32(frame.name.encode()) % folds  # a scene has the same name at all sizes
 
 
 def jobs_of(sets):
@@ -75,7 +75,8 @@ def jobs_of(sets):
 
 
 def run_tool(tool, work, jobs, files, *options):
-    """What the tool prints for each job. files(i): those of job i. Two processes at a time, told apart by @."""
+    """The tool's output for each job. files(i): the files of job i. Runs two processes; @ is replaced by the
+    process's number."""
     processes = []
     for part in range(2):
         lines = [f"{frame} {colour} {files(i)}\n" for i, (frame, colour, _) in enumerate(jobs) if i % 2 == part]
@@ -94,13 +95,13 @@ def run_tool(tool, work, jobs, files, *options):
 
 
 def source_number(value):
-    """A float of C++."""
+    """A C++ float literal."""
     text = f"{value:.9g}"
     return text + ("F" if "." in text or "e" in text else ".0F")
 
 
 def source_rows(items):
-    """In lines of C++."""
+    """Items in lines of C++."""
     line, lines = "", []
     for item in items:
         if len(line) + len(item) > 108:
@@ -111,7 +112,7 @@ def source_rows(items):
 
 
 class Nodes:
-    """Trees as the library keeps them: a node's two branches stand side by side."""
+    """Trees in the library's layout: a node's two branches are adjacent."""
 
     def __init__(self, base):
         self.base, self.roots, self.nodes = base, [], []
@@ -148,7 +149,7 @@ class Nodes:
 
 
 def by_edges():
-    """To begin with: what parts two regions is the edge between them, and the step of disparity."""
+    """Initial score: the edge between two regions, and their step in disparity."""
     trees = Nodes(0.0)
     for feature, steps in ((2, [0.5 * k for k in range(1, 80)]), (11, [0.25 * k for k in range(1, 40)])):
         for step in steps:
@@ -159,7 +160,7 @@ def by_edges():
 
 
 def fitted(labels, weights, features, trees, depth, least_weight, eta):
-    import xgboost  # the only function that needs it
+    import xgboost  # only this function needs it
 
     data = xgboost.DMatrix(features, label=labels, weight=weights)
     model = xgboost.train(
@@ -206,16 +207,16 @@ class Fitting:
         values = np.concatenate(values)
         names = self.region_features if name == "regions" else self.pair_features
         for i, feature in enumerate(names):
-            # What a hint tells is a cue of the hints alone.
+            # Features from hints count as cues of the hints only.
             if any(word in feature for word in self.without) and ("hints:" in self.without or "hints:" not in feature):
-                values[:, i] = 0  # alike everywhere: no tree looks at it
+                values[:, i] = 0  # constant, so no tree splits on it
         return np.concatenate(heads), values
 
     def model(self, kind, fold):
         return self.work / f"{kind}_{fold}"
 
     def fit_pairs(self):
-        if not self.met_by_edges:  # the same for every fit
+        if not self.met_by_edges:  # does not depend on the fit
             by_edges().write(self.work / "by_edges")
             self.run(lambda i: (self.work / "by_edges", "-"), "--pairs", self.work / "pairs_by_edges@")
             self.met_by_edges = True
@@ -245,7 +246,7 @@ class Fitting:
         self.run(self.of_fold_pairs, "--regions", self.work / "regions@")
         head, features = self.records("regions", len(self.region_features))
         job = head[:, 0].astype(int)
-        # Half right where more than half of it is, wholly where three quarters are.
+        # Label 0.5 from half of the object, 1 from three quarters.
         labels = 0.5 * (head[:, 1] >= 0.5) + 0.5 * (head[:, 1] >= 0.75)
         for fold in [*range(self.folds), "all"]:
             take = self.fold[job] != fold if fold != "all" else job >= 0
@@ -257,14 +258,14 @@ class Fitting:
 
 
 def shares_of(gains, names):
-    """Which share of what all splits gain each feature's have, largest first."""
+    """Share of each feature in the gain of all splits, largest first."""
     total = sum(gains.values())
     shares = [(gains.get(f"f{i}", 0.0) / total, name) for i, name in enumerate(names)]
     return sorted(shares, key=lambda item: (-item[0], item[1]))
 
 
 def runs_of(numbers):
-    """1 to 4, 6, 8 to 9"""
+    """"1 to 4, 6, 8 to 9" from numbers."""
     runs = []
     for number in numbers:
         if runs and number == runs[-1][1] + 1:
@@ -285,7 +286,7 @@ def page(fitting, sets, reports, score):
         rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get(name, []))
         if rooms:
             more += f"*{name}*: the generator's numbers {runs_of(rooms)} (`{script} jobs.json FIRST LAST+1`).\n"
-    return f"""# What was fitted
+    return f"""# Fitted models
 
 <!-- Written by ./dev fit; do not edit. -->
 
@@ -316,7 +317,7 @@ def share_of(hits, of):
 
 
 def share_with_interval(hits, of):
-    """Wilson's interval of 95 %."""
+    """The share with its 95 % Wilson interval."""
     if of == 0:
         return "–"
     p, z = hits / of, 1.96
@@ -326,7 +327,7 @@ def share_with_interval(hits, of):
 
 
 def report(rows, jobs):
-    lines = ["| frames | input | objects | found .5 | found .75 | precision | median E, % | phantoms a frame | stated ≥ .8, right | ms |",
+    lines = ["| frames | input | objects | found .5 | found .75 | precision | median E, % | phantoms per frame | precision at confidence ≥ .8 | ms |",
              "|---|---|---:|---|---|---|---:|---:|---|---:|"]
     for name in dict.fromkeys(name for _, _, name in jobs):
         for colour in ("colour", "grey"):
@@ -347,7 +348,7 @@ def report(rows, jobs):
 
 
 def ablation(fitting, validation, path):
-    """Objects found on the validation frames after fitting again without one kind of cue."""
+    """Refits without one kind of cue at a time and counts the objects found on the validation frames."""
     names = {"all frames": lambda name: True, "rooms": lambda name: "x" in name, "tabletops": lambda name: "rc" in name,
              "Middlebury": lambda name: "middlebury" in name}
     lines = ["| without | " + " | ".join(f"{name}, {colour}" for name in names for colour in ("colour", "grey")) +
@@ -368,12 +369,12 @@ def ablation(fitting, validation, path):
         right, ours = sum(int(row[4]) for row in complete), sum(int(row[3]) for row in complete)
         lines.append(f"| {cue} | " + " | ".join(cells) + f" | {share_of(right, ours)} |")
         say(lines[-1])
-    path.write_text(f"""# What each cue brings
+    path.write_text(f"""# Contribution of each cue
 
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
 This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the validation frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
-The trees were fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row differs from [what was fitted](fitting.md); the [hints](stages/object_hints.md) are those of the networks that it left. A difference of fewer than three objects is noise.
+The trees were fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row differs from [fitted models](fitting.md); the [hints](stages/object_hints.md) come from the networks of an earlier `./dev fit`. A difference of fewer than three objects is noise.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
         f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
@@ -397,8 +398,8 @@ def main():
     parser.add_argument("--hints", type=pathlib.Path, help="the folder with fitted networks, if not the work folder")
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn/grouping)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
-    parser.add_argument("--ablation", type=pathlib.Path, help="where the report on single cues is written")
-    parser.add_argument("--min-scores", default="0.3", help="for the report; the first for the page")
+    parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
+    parser.add_argument("--min-scores", default="0.3", help="thresholds for the report; the page shows the first")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     sets = fit_sets(arguments.data, arguments.rooms)

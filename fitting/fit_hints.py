@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the network of cairn/grouping/object_hints.hpp to the frames that choices are made on.
+"""Fits the network of cairn/grouping/object_hints.hpp to the fit set.
 
 fit_hints.py TOOL DATA [--rooms FOLDER] [--work FOLDER] [--out FOLDER] [--steps N]
 
-It learns, for each cell of about 2×2 pixels, whether it shows an object, whether an object's outline passes, where the
-middle of its object is, and how large that is. It is fitted once without each of two halves of the scenes, so that
-fit.py sees for each frame what a network says that has not seen it, and once to all. Its numbers are then rounded:
-weights to 8 bits for each output, activations to whole numbers. Everything is seeded, on one thread for each network:
-the same frames give the same numbers on the same processor.
+For each cell of about 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's
+outline, and the centre and size of its object. It is fitted once without each of two halves of the scenes, so that
+fit.py has for each frame the output of a network that has not seen it, and once on all scenes. It is then quantised:
+weights to 8 bits per output channel, activations to integers. Everything is seeded and each network uses one thread:
+the same frames give the same weights on the same processor.
 """
 import argparse
 import pathlib
@@ -23,19 +23,19 @@ from fit import HALVES, SEED, WEIGHTS, fit_sets, fold_of, jobs_of, run_tool, sou
 
 BATCH = 12
 RATE, DECAY = 3e-3, 2e-3
-CLOSE_UPS = 0.3  # of the samples: as a camera with a narrower view sees them
+CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 WIDTH, HEIGHT = 160, 120  # cells of the canvas that frames are fitted on
 CHANNELS = 12
-FIRST, SECOND, THIRD, LAST = 16, 40, 48, 32  # channels at 1/2, 1/4, 1/8 and 1/16, and before the end
-UNIT = 64  # of the input
-GREATEST = 8191  # of an activation: kGreatestActivation
-# The end's numbers: log-odds of an object and of an outline, in 1/16; the way to the middle in 16 cells, told in
-# 1/8 cell; log₂ of the size, told in 1/16.
-TOLD = [16, 16, 128, 128, 16]
+FIRST, SECOND, THIRD, LAST = 16, 40, 48, 32  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
+UNIT = 64  # scale of the input
+GREATEST = 8191  # activation: kGreatestActivation
+# Outputs: log-odds of an object and of an outline, quantised to 1/16; offset to the centre in units of 16 cells,
+# quantised to 1/8 cell; log₂ of the size, quantised to 1/16.
+STEPS_PER_UNIT = [16, 16, 128, 128, 16]
 
 
 def load(path, jobs):
-    """Of each job: channels, true objects, whether the truth is partial."""
+    """For each job: channels, true objects, whether the truth is partial."""
     frames = [None] * len(jobs)
     for part in range(2):
         values, at = np.fromfile(f"{path}{part}", np.int16), 0
@@ -53,7 +53,7 @@ DOWN, ACROSS = np.mgrid[:HEIGHT, :WIDTH].astype(np.float32)
 
 
 def targets(truth):
-    """Object, outline, middle (2), log₂ of the size, root of the size, known; of each cell."""
+    """Per cell: object, outline, centre (2), log₂ of the size, root of the size, known."""
     out = np.zeros((7, HEIGHT, WIDTH), np.float32)
     out[0], out[6] = truth > 0, truth >= 0
     for down, across in ((0, 1), (1, 0)):
@@ -74,18 +74,19 @@ def targets(truth):
 
 
 def see_closer(data, scale, inside):
-    """A crop as a camera of a narrower view would see it: what hint_input() tells relative to the image is told anew."""
+    """A crop as a camera with a narrower field of view would see it; recomputes the inputs that hint_input()
+    normalises by the image."""
     brightness = data[0][inside]
     data[0][inside] = np.clip((brightness - brightness.mean()) / (brightness.std() + 0.1), -4, 4)
     matched = inside & (data[4] > 0)
     if matched.any():
         data[[3, 7]] = np.minimum(data[[3, 7]] / max(np.quantile(data[3][matched], 0.98), 0.02), 2)
-    data[5:7] = np.clip(data[5:7] * scale, -1, 3)  # differences of disparities
+    data[5:7] = np.clip(data[5:7] * scale, -1, 3)  # disparity differences
     data[10][inside] = np.broadcast_to(2 * DOWN[:, :1] / HEIGHT - 1, inside.shape)[inside]
 
 
 class Samples:
-    """Frames on the canvas: mirrored, scaled, moved, brighter, without a floor …"""
+    """Augmented frames on the canvas: mirrored, scaled, shifted, brightened, without a floor …"""
 
     def __init__(self, frames):
         self.frames, self.random = frames, np.random.RandomState(SEED)
@@ -111,7 +112,7 @@ class Samples:
         if narrower:
             see_closer(data, scale * width / WIDTH, ~outside)
         if partial:
-            ids[ids == 0] = -1  # may be an object that is not labelled
+            ids[ids == 0] = -1  # may be an unlabelled object
         data[0] = data[0] * random.uniform(0.8, 1.25) + random.uniform(-0.2, 0.2)
         data[0] += random.standard_normal((HEIGHT, WIDTH)).astype(np.float32) * random.uniform(0, 0.06)
         data[1:3] *= random.uniform(0.7, 1.4)
@@ -142,12 +143,12 @@ def network():
                 layer(THIRD, THIRD, 2), layer(THIRD, THIRD), layer(THIRD, THIRD),
                 layer(THIRD, THIRD, 1, 1), layer(THIRD, THIRD), layer(THIRD, SECOND, 1, 1), layer(SECOND, SECOND),
                 layer(SECOND, FIRST, 1, 1), layer(FIRST, LAST)])
-            self.end = nn.Conv2d(LAST, 4 * len(TOLD), 1)
+            self.end = nn.Conv2d(LAST, 4 * len(STEPS_PER_UNIT), 1)
             with torch.no_grad():
                 self.end.bias.copy_(torch.tensor([-2.0, -2.5, 0, 0, 8]).repeat_interleave(4))
 
         def forward(self, data, seen=None):
-            """`seen`: is told the greatest activation after each step."""
+            """`seen`: called with the largest activation after each layer."""
             def run(steps, data):
                 for i in steps:
                     data = self.steps[i](data)
@@ -170,28 +171,29 @@ def network():
     return Network()
 
 
-def loss_of(told, truth):
+def loss_of(output, truth):
     import torch
     from torch.nn import functional as F
 
-    def shared(told, truth, weight, **more):
-        return (F.binary_cross_entropy_with_logits(told, truth, reduction="none", **more) * weight).sum() / (weight.sum() + 1)
+    def shared(output, truth, weight, **more):
+        return (F.binary_cross_entropy_with_logits(output, truth, reduction="none", **more) * weight).sum() / (weight.sum() + 1)
 
     known, objects, root = truth[:, 6], truth[:, 0], truth[:, 5] + 1
-    # Each object counts by the root of its size.
+    # Each object is weighted by the root of its size.
     weight = objects / root
-    x = (torch.from_numpy(ACROSS) + 16 * told[:, 2] - truth[:, 2]) / root
-    y = (torch.from_numpy(DOWN) + 16 * told[:, 3] - truth[:, 3]) / root
+    x = (torch.from_numpy(ACROSS) + 16 * output[:, 2] - truth[:, 2]) / root
+    y = (torch.from_numpy(DOWN) + 16 * output[:, 3] - truth[:, 3]) / root
     middle = F.smooth_l1_loss(x, 0 * x, reduction="none", beta=0.1) + F.smooth_l1_loss(y, 0 * y, reduction="none", beta=0.1)
-    size = F.smooth_l1_loss(told[:, 4], truth[:, 4], reduction="none", beta=0.3)
-    parts = [shared(told[:, 0], objects, known),
-             shared(told[:, 1], truth[:, 1], known, pos_weight=torch.tensor(2.0)),
+    size = F.smooth_l1_loss(output[:, 4], truth[:, 4], reduction="none", beta=0.3)
+    parts = [shared(output[:, 0], objects, known),
+             shared(output[:, 1], truth[:, 1], known, pos_weight=torch.tensor(2.0)),
              (middle * weight).sum() / (weight.sum() + 1), 0.3 * (size * weight).sum() / (weight.sum() + 1)]
     return sum(parts), np.array([float(part) for part in parts])
 
 
 def fitted(frames, often, steps):
-    """A network fitted to the frames, `often` each: a moving mean over the last of its steps."""
+    """A network fitted to the frames, each used `often` times; its weights are an exponential average over the last
+    steps."""
     import torch
 
     torch.manual_seed(SEED)
@@ -225,17 +227,17 @@ def fitted(frames, often, steps):
 
 
 def rounded(net, frames):
-    """The layers in whole numbers: (inputs, outputs, side, stride, least), weights, biases, scales of each."""
+    """The layers as integers: (inputs, outputs, side, stride, least), weights, biases and scales of each."""
     import torch
 
     seen = [0.0] * len(net.steps)
     with torch.no_grad():
         for cells, _, _ in frames:
             net(torch.from_numpy(cells[None].astype(np.float32) / UNIT), seen)
-    # What is added up has one scale: the decoder's 1×1 layers that of the encoder's.
+    # Summands need a common scale: the decoder's 1×1 layers use that of the encoder's.
     for small, like in ((10, 6), (12, 3), (14, 1)):
         seen[small] = seen[like] = max(seen[small], seen[like])
-    scales = [GREATEST / 3 / max(s, 1e-6) for s in seen]  # three times what was seen still fits
+    scales = [GREATEST / 3 / max(s, 1e-6) for s in seen]  # headroom: three times the largest activation seen
     source = {0: UNIT, 15: scales[14], 13: scales[12], 11: scales[10]}
     source |= {2: scales[1], 4: scales[3], 7: scales[6], 10: scales[9], 12: scales[11], 14: scales[13]}
     layers = []
@@ -244,11 +246,11 @@ def rounded(net, frames):
         convolution = step if end else step[0]
         weight = convolution.weight.detach().numpy().astype(np.float64)
         if end:
-            # The kernels want a multiple of 8 outputs.
-            told = np.repeat(np.array(TOLD, float), 4)
-            weight = np.concatenate([weight * told[:, None, None, None], np.zeros((4, *weight.shape[1:]))])
-            bias, into = np.concatenate([convolution.bias.detach().numpy() * told, np.zeros(4)]), 1.0
-            # One output's scale serves all of its weights.
+            # The kernels need a multiple of 8 outputs.
+            steps = np.repeat(np.array(STEPS_PER_UNIT, float), 4)
+            weight = np.concatenate([weight * steps[:, None, None, None], np.zeros((4, *weight.shape[1:]))])
+            bias, into = np.concatenate([convolution.bias.detach().numpy() * steps, np.zeros(4)]), 1.0
+            # All weights of an output channel have the same scale.
         else:
             norm = step[1]
             gain = (norm.weight / torch.sqrt(norm.running_var + norm.eps)).detach().numpy().astype(np.float64)
@@ -289,7 +291,7 @@ def write_source(layers, path):
 
 
 def fit_one(arguments, jobs, half):
-    """In a process of its own: without one half of the scenes, or to all."""
+    """Runs in its own process: fits without one half of the scenes, or on all."""
     frames = load(arguments.work / "inputs", jobs)
     takes = [i for i, job in enumerate(jobs) if half == "all" or fold_of(job[0], HALVES) != int(half)]
     often = [int(WEIGHTS.get(jobs[i][2], 1)) for i in takes]
@@ -310,7 +312,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     parser.add_argument("--out", type=pathlib.Path, help="where the source is written (cairn/grouping)")
     parser.add_argument("--steps", type=int, default=4800)
-    parser.add_argument("--only", help="one half, or all: what is in the work folder already is not made again")
+    parser.add_argument("--only", help="one half, or all: results in the work folder are reused")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     jobs = jobs_of(fit_sets(arguments.data, arguments.rooms))

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Draws the frames in which the preset default loses most objects: worst_frames.py DATA OUT [COUNT]
+"""Draws the frames in which the preset default misses most objects: worst_frames.py DATA OUT [COUNT]
 
-Of rendered/train and of the Middlebury pairs with masks: one row per frame, the truth next to our result (PYTHONPATH
+Covers rendered/train and the Middlebury pairs with masks: one row per frame, the truth next to our result (PYTHONPATH
 names the built module). Middlebury's images may not be published: only their masks are drawn. Prints one line per
-frame: the objects found, and what became of the others.
+frame: the number of objects found, and the fate of the others.
 """
 import argparse
 import pathlib
@@ -20,7 +20,7 @@ COLOURS[0] = 25
 
 
 def tile(picture, mask):
-    """The mask's objects in colour over the picture, or alone."""
+    """The mask's objects in colour over the image, or alone."""
     drawn = COLOURS[mask % 256]
     if picture is not None:
         drawn = np.where((mask > 0)[..., None], drawn // 2 + picture // 2, picture // 2)
@@ -28,7 +28,7 @@ def tile(picture, mask):
 
 
 def why(truth, ours, k):
-    """What became of object k of the truth."""
+    """The fate of true object k."""
     mask = truth == k
     share = lambda part: int(round(100 * part.sum() / mask.sum()))
     ids, counts = np.unique(ours[mask], return_counts=True)
@@ -38,10 +38,10 @@ def why(truth, ours, k):
     region = ours == most
     others = [o for o in np.unique(truth[region]) if o not in (0, k)]
     if any((region & (truth == o)).sum() > 0.3 * (truth == o).sum() for o in others):
-        return "one with its neighbour"
+        return "merged with a neighbour"
     if (region & ~mask).sum() > mask.sum():
-        return "flooded into the background"
-    return f"{share(mask & region)} % of it, in parts" if (ids > 0).sum() > 1 else f"{share(mask & region)} % of it"
+        return "merged with the background"
+    return f"{share(mask & region)} % found, split" if (ids > 0).sum() > 1 else f"{share(mask & region)} % found"
 
 
 def judge(folder):

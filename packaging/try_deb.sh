@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# try_deb.sh FOLDER [ROOT]: the packages in FOLDER on a clean Debian 12. Makes the root with debootstrap in ROOT (default: a
-# new folder, which is removed again; an existing root is used as it is), installs cairn there with nothing but what apt
-# brings along, and runs the command on every sample; then the headers with a compiler, by CMake and by pkg-config; then the
-# Python module, where its package is there. Needs root, debootstrap and a Debian mirror (CAIRN_MIRROR).
+# try_deb.sh FOLDER [ROOT]: tries the packages in FOLDER on a clean Debian 12. Creates the root with debootstrap in
+# ROOT (default: a temporary folder; an existing root is used as it is). Installs cairn there with apt only and runs
+# the command on every sample; then compiles with the headers, by CMake and by pkg-config; then imports the Python
+# module, if its package exists. Needs root, debootstrap and a Debian mirror (CAIRN_MIRROR).
 set -euo pipefail
 packages=$(cd "$1" && pwd)
 root=${2:-}
@@ -44,7 +44,7 @@ if [[ ! -x $root/usr/bin/apt-get ]]; then
     { tail -5 "$packages/debootstrap.log" >&2; fail "debootstrap failed"; }
 fi
 mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
-# The host's way to a mirror, whatever it is: names, proxy, its certificates.
+# The host's access to a mirror: names, proxy, certificates.
 cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
 if [[ -n ${http_proxy:-} ]]; then echo "Acquire::http::Proxy \"$http_proxy\";" >"$root/etc/apt/apt.conf.d/90proxy"; fi
 rm -rf "$root/cairn" && mkdir "$root/cairn"
@@ -55,7 +55,7 @@ before=$(count_packages)
 say "the command"
 mapfile -t tools < <(packages_named 'libcairn[0-9]*'; packages_named 'libcairn-sequences*'; packages_named cairn)
 install_inside "${tools[@]}"
-echo "$(inside cairn --version); $(($(count_packages) - before)) packages came along or are its own"
+echo "$(inside cairn --version); $(($(count_packages) - before)) packages installed, including its own"
 for sample in "$source_dir"/samples/*/; do
   name=$(basename "$sample")
   inside cairn segment "/usr/share/doc/cairn/examples/$name" -o "/tmp/demo/$name"
@@ -80,14 +80,15 @@ inside cairn evaluate /tmp/demo/four_in_a_row /usr/share/doc/cairn/examples/four
 inside bash -c 'source /usr/share/bash-completion/completions/cairn && complete -p cairn' >/dev/null ||
   fail "bash completion cannot be sourced"
 
-# expect_refusal WORDS ARGUMENTS...: cairn ends with exit code 2 and one line with WORDS: the module was loaded and asked.
+# expect_refusal WORDS ARGUMENTS...: cairn must end with exit code 2 and one line with WORDS, which shows that the
+# module was loaded.
 expect_refusal() {
   local words=$1 code=0 said
   shift
   said=$(inside cairn "$@" 2>&1 >/dev/null) || code=$?
   [[ $code == 2 && $said == *"$words"* && $(wc -l <<<"$said") == 1 ]] || fail "cairn $*: exit code $code, $said"
 }
-# try_module PACKAGE WORDS ARGUMENTS...: without its package cairn names it, with it the module answers.
+# try_module PACKAGE WORDS ARGUMENTS...: without PACKAGE cairn must name it; with it the module must answer.
 try_module() {
   local package=$1
   compgen -G "$packages/${package}_*.deb" >/dev/null || return 0
@@ -130,7 +131,7 @@ print("import cairn:", len(frame.objects), "objects, those of the command")
 PYTHON
 fi
 
-say "and away again"
+say "removal"
 mapfile -t ours < <(inside dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed \(.*cairn.*\)/\1/p')
 inside apt-get purge --yes "${ours[@]}" >/dev/null 2>&1
 left=$(inside find /usr -name 'cairn*' -o -name 'libcairn*')

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# cmake -DFOLDER=… -DOUT=… -P embed.cmake: the files of the page as string constants of a C++ source.
+# cmake -DFOLDER=… -DOUT=… -P embed.cmake: writes the files of the page as string constants into a C++ source.
 set(source "// Made from page/ by page/embed.cmake.\n#include <page/html_template.hpp>\n\nnamespace cairn::io {\n\n")
 foreach(part IN ITEMS
     SharedStyle:shared.css SharedScript:shared.js

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The player of `cairn follow --html`. Its data are JSON blocks (source/follow_page.cpp): `run`, and for each frame
-// `facts-N`, its line of tracks.jsonl, read at once, and `maps-N`, read when it is shown; `happened`, the lines of
+// The player of `cairn follow --html`. Its data are JSON blocks (source/follow_page.cpp): `run`; for each frame
+// `facts-N`, its line of tracks.jsonl, parsed at once, and `maps-N`, decoded when shown; `happened`, the lines of
 // events.jsonl. It follows shared.js in one <script>.
 (() => {
   const {width, height, rig} = run;
@@ -15,13 +15,13 @@
     const facts = block(`facts-${index}`);
     facts.index = index;
     facts.tracks.forEach((track, i) => { track.slot = i + 1; });
-    facts.trackOf = [undefined, ...facts.tracks];  // by the number in the map
+    facts.trackOf = [undefined, ...facts.tracks];  // by the label in the map
     facts.tracks = facts.tracks.filter((track) => track.state !== 'dead');
     facts.byTrack = new Map(facts.tracks.map((track) => [track.id, track]));
     return facts;
   });
-  // The odometry's frame is brought into the map's, frame by frame, so that landmarks and tracks are in one; as long as it
-  // is not known where that is, by what is known soonest afterwards.
+  // Transforms the odometry's frame into the map's, frame by frame, so that landmarks and tracks share one frame.
+  // Until that transform is known, the earliest known one is used.
   const inMap = frames.map((facts) => facts.map_from_odom);
   for (let k = run.frames - 2; k >= 0; --k) inMap[k] ??= inMap[k + 1];
   for (let k = 1; k < run.frames; ++k) inMap[k] ??= inMap[k - 1];
@@ -54,13 +54,13 @@
     return [0, 3, 6, 1, 4, 7, 2, 5, 8].map((k) => m[k]);
   }
   const seconds = frames.map((facts) => (facts.stamp_ns - frames[0].stamp_ns) / 1e9);
-  /** When each frame is shown in playing: pauses of the sequence are cut short. */
+  /** When each frame is shown during playback: long pauses of the sequence are shortened. */
   const playedAt = [0];
   for (let k = 1; k < run.frames; ++k) {
     const pause = seconds[k] - seconds[k - 1];
     playedAt.push(playedAt[k - 1] + (pause > 0 ? Math.min(pause, kLongestPause) : 0.1));
   }
-  /** The frame in which a landmark became one; one that was known before is there from the first. */
+  /** The frame in which a landmark was created; 0 for one from an earlier visit. */
   function sinceOf(landmark) {
     for (const facts of frames) {
       const track = facts.tracks.find((t) => t.landmark === landmark);
@@ -72,20 +72,20 @@
   const isSeen = (track) => track.object > 0;
   const speedOf = (track) => (track.velocity_m_s ? Math.hypot(...track.velocity_m_s) : null);
 
-  /** Row by row: from the camera to the map. */
+  /** From the camera to the map, row-major. */
   function rotationOf([x, y, z, w]) {
     return [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
       2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
       2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)];
   }
   for (const facts of frames) facts.rotation = facts.pose && rotationOf(facts.pose.quaternion_xyzw);
-  /** How far along the camera's axis, in m: the z that objects.json states. Null where the camera's place is not known. */
+  /** Depth along the camera's axis in m, the z of objects.json. Null if the camera's position is unknown. */
   function depthOf(track, facts) {
     if (!rig || !facts.pose || !track.position_m) return null;
     return facts.rotation.reduce((sum, value, k) => (k % 3 === 2 ? sum + value * (track.position_m[(k - 2) / 3] - facts.pose.position_m[(k - 2) / 3]) : sum), 0);
   }
 
-  /** Each track's frames, in which it counts. */
+  /** The frames of each track in which it counts. */
   const lives = new Map();
   for (const facts of frames) {
     for (const track of facts.tracks) {
@@ -124,10 +124,10 @@
       default: return [words(String(kind)), what, sure].filter(Boolean).join(' ');
     }
   }
-  // That a whole run has no motion of its own is no refusal of one frame's.
+  // A run that never has motion is not a refusal of single frames.
   const kNoRefusals = ['none', 'off', 'no_rig'];
   const refusalOf = (facts) => (facts.index === 0 || kNoRefusals.includes(facts.motion.refusal) ? null : facts.motion.refusal);
-  /** Runs of frames of which `value` is the same and not null: {value, from, to}. */
+  /** Runs of frames in which `value` is the same and not null: {value, from, to}. */
   function runsOf(value) {
     const all = [];
     frames.forEach((facts, index) => {
@@ -142,7 +142,7 @@
   const hasPlace = rig !== null && frames.some((facts) => facts.pose);
   const indexOfFrame = new Map(frames.map((facts) => [facts.frame, facts.index]));
   const written = block('happened').filter((event) => indexOfFrame.has(event.frame)).map((event) => ({...event, index: indexOfFrame.get(event.frame)}));
-  /** What the tracks themselves show. */
+  /** Events derived from the tracks themselves. */
   const shown = [...lives.values()].flatMap(({id, at}) => {
     const all = [{index: at[0], kind: 'new', track: id, to_m: frames[at[0]].byTrack.get(id).position_m}];
     let moving = false, seen = at[0];
@@ -164,7 +164,7 @@
 
   // ---- decoding ----
 
-  const kMostPixelsKept = 8e6;  // some 5 bytes each
+  const kMostPixelsKept = 8e6;  // about 5 bytes each
   const mapsOf = keptLast(decode, () => Math.max(4, Math.floor(kMostPixelsKept / (width * height || 1))));
   async function decode(index) {
     const packed = block(`maps-${index}`);
@@ -178,7 +178,7 @@
     frame: 0,
     maps: null,
     near: null,     // the track under the pointer
-    picked: null,   // the track that was clicked; it stays so in all frames
+    picked: null,   // the track that was clicked, in all frames
     mode: 0,
     speed: 1,
     curve: null,
@@ -230,7 +230,7 @@
       ['seen', isNumber(track.hits) ? counted(track.hits, 'frame') : null],
     ])];
   }
-  /** The picture and its masks; the pictures' own pixels only where the frame is another one. */
+  /** The image and its masks; the images' own pixels only when the frame changes. */
   function paintScreen(otherPicture = false) {
     const {picture, labels} = state.maps, facts = current();
     if (otherPicture) {
@@ -263,7 +263,7 @@
   // ---- from above ----
 
   const above = {nodes: new Map(), follows: false, zoom: 1, middle: null, fit: null};
-  /** What holds the camera's way and all tracks but the farthest hundredth. */
+  /** The bounding box of the camera's path and of all tracks but the farthest 1 %. */
   function extent() {
     const xs = [], ys = [];
     for (const facts of frames) {
@@ -282,7 +282,7 @@
     const way = frames.filter((facts) => facts.pose).map((facts) => facts.pose.position_m);
     return {x: span(xs, way.map((p) => p[0])), y: span(ys, way.map((p) => p[1]))};
   }
-  /** Places in the map as pixels of the drawing: x goes up, y to the left. */
+  /** Positions in the map as pixels of the drawing: x goes up, y to the left. */
   const toDrawing = ([x, y]) => [above.wide / 2 - above.scale * (y - above.centre[1]), above.high / 2 - above.scale * (x - above.centre[0])];
   const text2 = (p) => `${p[0].toFixed(1)},${p[1].toFixed(1)}`;
 
@@ -333,7 +333,7 @@
       else hideTip();
     });
     above.drawing.addEventListener('pointerleave', () => { near(null); hideTip(); });
-    let dragged = null;  // since the button went down
+    let dragged = null;  // since the button was pressed
     above.stage.addEventListener('pointerdown', (event) => {
       if (event.button === 0 && event.pointerType !== 'touch') dragged = {x: event.clientX, y: event.clientY, centre: above.centre, far: false};
     });
@@ -349,7 +349,7 @@
     addEventListener('pointerup', () => setTimeout(() => { dragged = null; }));
     above.stage.addEventListener('click', (event) => { if (!dragged?.far) pick(trackAt(event)); });
     above.stage.addEventListener('wheel', (event) => {
-      if (!event.ctrlKey && !event.metaKey) return;  // without them the page scrolls
+      if (!event.ctrlKey && !event.metaKey) return;  // otherwise the page scrolls
       event.preventDefault();
       zoom(Math.exp(-event.deltaY / 300));
     }, {passive: false});
@@ -377,7 +377,7 @@
     const {x, y} = above.fit, camera = current().pose?.position_m;
     above.centre = above.follows && camera ? camera.slice(0, 2) : above.middle ?? [(x[0] + x[1]) / 2, (y[0] + y[1]) / 2];
   }
-  /** What is the same in all frames as long as the view is. */
+  /** The layer that is the same in all frames, as long as the view is. */
   function drawGround() {
     const {wide, high, scale, centre} = above;
     const step = roundStep(Math.max(wide, high) / scale, 9);
@@ -398,7 +398,7 @@
     above.layers.grid.replaceChildren(svg('path', {class: 'grid', d: lines.join('')}), ...names,
       svg('path', {class: 'origin', d: `M${ox - 5} ${oy}h10M${ox} ${oy - 5}v10`}));
     above.count.textContent = `a line every ${step} m`;
-    // A piece for each frame, so that the way up to a frame is their beginning.
+    // One piece per frame, so that the path up to a frame is a prefix.
     let broken = true;
     above.pieces = frames.map((facts) => {
       if (!facts.pose) {
@@ -416,7 +416,7 @@
         svg('title', {}, `landmark ${l.id}${l.name ? `, ${l.name}` : ''}${l.gone ? ': gone' : ''}`));
     }));
   }
-  /** A covariance's two axes: half their lengths in m and the angle of the longer one, in the drawing. */
+  /** The axes of a covariance: half their lengths in m, and the angle of the longer one in the drawing. */
   function ellipse(covariance, columns) {
     const xx = covariance[0], xy = covariance[1], yy = covariance[columns + 1];
     if (![xx, xy, yy].every(isNumber)) return {rx: 0, ry: 0, turned: 0};
@@ -440,7 +440,7 @@
     above.nodes.set(id, parts);
     return parts;
   }
-  /** Where a track was in the last seconds, up to this frame. */
+  /** The path of a track in the last seconds, up to this frame. */
   function trailOf(id) {
     const life = lives.get(id);
     if (!life) return '';
@@ -538,7 +538,7 @@
     };
     if (hasPlace) for (const r of refusedRuns) band(r, themed('--band-refused'));
     if (hasPlace) for (const r of lostRuns) band(r, themed('--band-lost'));
-    // Gaps of the sequence.
+    // Gaps in the sequence.
     g.strokeStyle = themed('--quiet');
     g.setLineDash([2, 3]);
     for (let k = 1; k < run.frames; ++k) {
@@ -596,7 +596,7 @@
       for (let k = 1; k <= life.at.length; ++k) {
         if (k < life.at.length && life.at[k] === life.at[k - 1] + 1 && kind(k) === kind(begin)) continue;
         const x = timeX(life.at[begin]) - half, w = timeX(life.at[k - 1]) + half - x, what = kind(begin);
-        // Seen: a bar, thicker where it moves; not seen, but remembered: a thread.
+        // In view: a bar, thicker while moving; out of view, but remembered: a thin line.
         const thick = what === 2 ? laneHeight - 1 : what === 1 ? Math.max(2, laneHeight - 4) : 1;
         g.fillRect(x, y + (laneHeight - thick) / 2, w, thick);
         begin = k;
@@ -726,10 +726,10 @@
 
   // ---- playing ----
 
-  let wanted = 0;  // the frame asked for last
+  let wanted = 0;  // the frame requested last
   let drawn = null;
   let drawing = false;
-  /** The frame itself comes when it is decoded; where more are asked for than that, the last one of them. */
+  /** Shows the frame once it is decoded; if more were requested meanwhile, only the last of them. */
   function show(index) {
     wanted = Math.min(run.frames - 1, Math.max(0, index));
     byId('slider').value = wanted;
@@ -764,7 +764,7 @@
     drawing = false;
   }
   let later = null;
-  /** What can wait until the pointer or the clock does. */
+  /** Updates that can wait until the pointer or the clock rests. */
   function afterwards(index) {
     clearTimeout(later);
     if (playing) {
@@ -808,7 +808,7 @@
     byId('speed').selectedIndex = place;
     if (playing) Object.assign(playing, {clock: performance.now(), from: playedAt[wanted]});
   }
-  /** To a frame that was asked for. */
+  /** Goes to a requested frame. */
   function go(index) {
     pause();
     return show(index);
@@ -864,7 +864,7 @@
         paintScreen();
       }
     });
-    // A list that was used with the pointer leaves the keys to the player.
+    // A list used with the pointer returns the keys to the player.
     addEventListener('change', ({target}) => { if (target.matches('select:not(:focus-visible)')) target.blur(); });
     byId('slider').addEventListener('input', (event) => go(Number(event.target.value)));
     byId('strip').addEventListener('pointermove', (event) => { if (event.pointerType !== 'touch') describeTime(event); });
@@ -872,7 +872,7 @@
     timeLegend();
     drawStrip();
     new ResizeObserver(() => { if (byId('strip').clientWidth !== strip.wide) drawStrip(); }).observe(byId('strip'));
-    // The curve is drawn with the theme's colours.
+    // The curve uses the theme's colours.
     byId('theme').addEventListener('click', drawStrip);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawStrip);
     addEventListener('hashchange', () => go(Number(location.hash.slice(1)) - 1 || 0));

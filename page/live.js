@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The page of `cairn live --view`: a client of the Foxglove WebSocket protocol like any other, on the host and port that it
-// came from. Messages are ROS 2's in CDR, and JSON. It follows shared.js and live_scene.js in one <script>.
+// The page of `cairn live --view`: an ordinary client of the Foxglove WebSocket protocol, on the host and port that
+// served the page. Messages are ROS 2's in CDR, and JSON. It follows shared.js and live_scene.js in one <script>.
 (() => {
   // ---- the connection ----
 
   const kTopics = ['left', 'labels', 'reject', 'disparity', 'obstacles', 'stats'];
-  const kSilence = 3000;  // ms without a frame that are worth a word
+  const kSilence = 3000;  // ms without a frame before a notice is shown
   const kLongestWait = 5000;  // ms between attempts to connect
   const link = {
     socket: null, state: 'connecting', attempt: 0, retryAt: 0, since: performance.now(), refused: false,
     channels: new Map(),       // topic → id of its channel
     subscriptions: new Map(),  // id of a subscription → topic
-    last: 0,                   // the id given last
+    last: 0,                   // the last id assigned
   };
 
   function connect() {
@@ -29,7 +29,7 @@
     link.channels.clear();
     link.subscriptions.clear();
     frames.clear();
-    Object.assign(latest, {picture: -1n, disparity: -1n});  // another run's stamps may be earlier
+    Object.assign(latest, {picture: -1n, disparity: -1n});  // stamps of another run may be earlier
     socket.onopen = () => {
       Object.assign(link, {state: 'open', attempt: 0, refused: false, since: performance.now()});
       send({op: 'subscribeParameterUpdates', parameterNames: []});
@@ -50,7 +50,7 @@
     link.retryAt = performance.now() + wait;
     setTimeout(connect, wait);
     watch();
-    // A server that is there but refuses has begun anew, with another token.
+    // A running server that refuses was restarted, with another token.
     const answer = await fetch('/options.json', {cache: 'no-store'}).catch(() => null);
     link.refused = answer?.status === 401 || answer?.status === 403;
     watch();
@@ -81,8 +81,8 @@
     }
   }
 
-  // Who is not looked at costs nothing: neither the robot's time nor the network's.
-  const inView = new Map();  // panel → whether it is
+  // A panel out of view costs nothing: neither the robot's time nor bandwidth.
+  const inView = new Map();  // panel → whether it is in view
   const needs = () => {
     const visible = document.visibilityState === 'visible';
     const sees = (panel) => visible && inView.get(panel) !== false;
@@ -108,7 +108,7 @@
 
   // ---- messages ----
 
-  /** Reads what CDR (XCDR1, little endian) wrote; places are aligned from behind the four bytes of the encapsulation. */
+  /** Reads CDR (XCDR1, little endian); alignment is relative to the end of the 4-byte encapsulation header. */
   class Cdr {
     constructor(buffer, offset) {
       this.view = new DataView(buffer, offset + 4);
@@ -140,7 +140,7 @@
     cdr.header();
     return {format: cdr.text(), bytes: cdr.bytes()};
   }
-  /** An Image of one channel as numbers without padding. */
+  /** An Image of one channel as numbers, without padding. */
   function plainImage(cdr) {
     cdr.header();
     const height = cdr.u32(), width = cdr.u32(), encoding = cdr.text();
@@ -149,7 +149,7 @@
     const Numbers = each === 2 ? Uint16Array : Uint8Array;
     if (step * height > bytes.length || width * each > step) throw new Error('an image is cut off');
     if (step === each * width && each === 1) return {width, height, values: bytes.subarray(0, step * height)};
-    // A copy: what is received is not aligned.
+    // A copy, because the received bytes are not aligned.
     if (step === width * each) return {width, height, values: new Numbers(bytes.slice(0, step * height).buffer)};
     const tight = new Uint8Array(width * height * each);
     for (let y = 0; y < height; ++y) tight.set(bytes.subarray(y * step, y * step + width * each), y * width * each);
@@ -172,12 +172,12 @@
     return {bytes, step, count: Math.min(width * height, step ? Math.floor(bytes.length / step) : 0), place, colour: fields.get('rgb') ?? null};
   }
 
-  // Messages of one frame have one stamp. A few frames are kept, since `left` is decoded later than the rest
-  // arrives; what is shown together is of one stamp.
+  // Messages of one frame have the same stamp. A few frames are kept, because `left` is decoded after the rest has
+  // arrived; parts shown together have the same stamp.
   const kKept = 6;
   const kPanelOf = {left: 'picture', labels: 'picture', disparity: 'disparity', reject: 'disparity'};
-  const frames = new Map();  // stamp → {stamp, at, and by topic what came}
-  const latest = {picture: -1n, disparity: -1n};  // the stamp that was drawn last, or will be
+  const frames = new Map();  // stamp → {stamp, at, and the message of each topic}
+  const latest = {picture: -1n, disparity: -1n};  // the stamp drawn last, or about to be drawn
   let decoding = 0;
 
   function receive(buffer) {
@@ -201,7 +201,7 @@
   }
   async function decode({format, bytes}, stamp) {
     const frame = frameOf(stamp);
-    if (decoding > 2) return;  // this browser is too slow: it shows fewer
+    if (decoding > 2) return;  // this browser is too slow: skip a frame
     ++decoding;
     try {
       put('left', await createImageBitmap(new Blob([bytes], {type: format.includes('png') ? 'image/png' : 'image/jpeg'})), frame.stamp);
@@ -229,17 +229,17 @@
     const panel = kPanelOf[topic];
     if (topic === 'obstacles') newest.cloud = value;
     if (panel) putInPanel(panel, frame);
-    // Each picture of the screen costs the browser much, whatever has changed in it: a frame's parts come together.
+    // Each repaint is costly for the browser, however small: all parts of a frame are drawn together.
     if ([...link.subscriptions.values()].every((name) => frame[name])) drawNow();
     else drawsSoon ||= setTimeout(drawNow, kTogether);
   }
   function putInPanel(panel, frame) {
     const pair = panel === 'picture' ? ['left', 'labels'] : ['disparity', 'reject'];
     const isWhole = pair.every((name) => frame[name]);
-    // Labels may not come, if they were subscribed to later; then it is better to see the image alone than none.
+    // Labels may be missing if they were subscribed to later; then show the image without them.
     const isLate = panel === 'picture' && frame.left && performance.now() - (drawnAt.picture ?? link.since) > 400;
     if (!isWhole && !isLate) return;
-    if (frame.stamp < latest[panel]) return;  // its picture was decoded late
+    if (frame.stamp < latest[panel]) return;  // its image was decoded late
     latest[panel] = frame.stamp;
     due[panel] = frame;
   }
@@ -247,11 +247,11 @@
   // ---- painting at the screen's pace ----
 
   const due = {}, drawnAt = {};
-  const newest = {cloud: null, stats: null, source: null};  // source: asked for since the last frame
+  const newest = {cloud: null, stats: null, source: null};  // source: requested since the last frame
   const shown = {};  // what is on the screen: {picture: frame, disparity: frame}
   const kReading = 200;  // ms
   let readAt = 0;
-  const kTogether = 40;  // ms that a frame's parts wait for the others; some never come, as images that this browser is too slow to decode
+  const kTogether = 40;  // ms to wait for the other parts of a frame; some never come, such as images that this browser is too slow to decode
   let asked = 0, drawsSoon = 0;
   function drawNow() {
     clearTimeout(drawsSoon);
@@ -265,7 +265,7 @@
       if (performance.now() - readAt >= kReading) slowly();
     });
   }
-  /** How long frames take from the arrival of their first message until they are drawn; for those who measure. */
+  /** Time from the arrival of a frame's first message until it is drawn; for measurements. */
   const cairnStats = window.cairnStats = {computed: 0, received: 0, drawn: 0, p50_ms: 0, p95_ms: 0};  // computed: by the robot
   const delays = [];
   const drawnTimes = [];
@@ -293,14 +293,14 @@
       canvases: [...root.querySelectorAll('canvas')], marks: root.querySelector('.marks'),
     }];
   }));
-  // Kept, since asking for them would lay the page out again and again.
-  const sizes = new Map();  // element → {wide, high} on the screen
+  // Cached, because querying them triggers a layout each time.
+  const sizes = new Map();  // element → size on the screen
   const measured = new ResizeObserver((entries) => {
     for (const {target, contentRect} of entries) sizes.set(target, {wide: contentRect.width, high: contentRect.height});
     stripIsOld = true;
     if (shown.picture?.labels) placeMarks(shown.picture.labels);
   });
-  /** An image as large as a canvas, whose pixels are numbers. */
+  /** A bitmap as large as a canvas, with pixels as integers. */
   function buffers(canvas) {
     let image = null, context = null, pixels = null;
     return {
@@ -316,7 +316,7 @@
       put: () => context.putImageData(image, 0, 0),
     };
   }
-  /** Nothing where it stands there already: the page would be laid out again. */
+  /** Does nothing if the text is unchanged, to avoid a layout. */
   function write(node, text) {
     if (node.textContent !== text) node.textContent = text;
   }
@@ -334,7 +334,7 @@
     phase: false,   // of blinking
     overlay: kept('overlay', 'masks'),
     isPaused: false,
-    pausedAt: -Infinity,  // when it was asked for here
+    pausedAt: -Infinity,  // when it was requested here
   };
   const chosen = () => state.near ?? state.picked;
   function kept(name, otherwise) {
@@ -347,7 +347,7 @@
   function keep(name, value) {
     try {
       localStorage.setItem(`cairn.${name}`, value);
-    } catch { /* a browser that keeps nothing */ }
+    } catch { /* a browser without storage */ }
   }
   function pick(id) {
     state.picked = id === state.picked ? null : id;
@@ -373,7 +373,7 @@
   function paintPicture(frame, again = false) {
     const {canvases: [photo], screen} = panels.picture;
     const before = shown.picture;
-    if (frame.left?.width) {  // a picture that was given back has none
+    if (frame.left?.width) {  // a closed bitmap has none
       const {width, height} = frame.left;
       if (photo.width !== width || photo.height !== height) {
         [photo.width, photo.height] = [width, height];
@@ -396,10 +396,10 @@
     shown.picture = frame;
     drawnAt.picture = performance.now();
     if (!frame.isCounted) count(frame);
-    frame.isCounted = true;  // one comes again where subscriptions change
+    frame.isCounted = true;  // messages repeat when subscriptions change
   }
 
-  /** The middle of each label, from each fourth pixel. */
+  /** The centroid of each label, from every fourth pixel. */
   function middles({width, height, values}) {
     const all = new Map();
     for (let y = 1; y < height; y += 2) {
@@ -433,7 +433,7 @@
         pictureMarks.set(id, mark);
         mark.wide = mark.node.offsetWidth;
       }
-      // Smoothed: a mask's edge flickers, a name should not.
+      // Smoothed, because a mask's edge flickers and its name should not.
       const near = Math.hypot(mark.x - x, mark.y - y) < 40 ? 0.45 : 1;
       mark.x += (x - mark.x) * near;
       mark.y += (y - mark.y) * near;
@@ -443,7 +443,7 @@
       mark.node.remove();
       pictureMarks.delete(id);
     }
-    // Names that would lie on others move down.
+    // Overlapping names move down.
     const placed = [];
     for (const mark of [...pictureMarks.values()].sort((a, b) => a.y - b.y)) {
       const half = mark.wide / 2 + 1, x = Math.min(wide - half, Math.max(half, mark.x));
@@ -461,11 +461,11 @@
       node.classList.toggle('moving', thingsById.get(id)?.is_moving === true);
     }
   }
-  /** Not for each frame: nobody reads 30 numbers a second. */
+  /** Throttled: 30 updates a second would be unreadable. */
   function writeMarks() {
     const changed = [...pictureMarks].filter(([id, {text}]) => text !== markText(id));
     for (const [id, mark] of changed) mark.node.lastChild.textContent = mark.text = markText(id);
-    for (const [, mark] of changed) mark.wide = mark.node.offsetWidth;  // all at once: the page is laid out once
+    for (const [, mark] of changed) mark.wide = mark.node.offsetWidth;  // all at once: one layout
   }
   function trackUnder(event) {
     const labels = shown.picture?.labels, at = labels && pixelUnder(event, panels.picture.screen, labels);
@@ -478,7 +478,7 @@
   const {reasons, ramp} = run.look;
   const disparityImage = buffers(panels.disparity.canvases[0]);
   const colours = {valid: new Uint32Array(256), hole: new Uint32Array(256), key: ''};
-  const range = {low: 1, high: 255};  // of the values that are there, 1 … 255
+  const range = {low: 1, high: 255};  // of the values present, 1 … 255
   const reasonOf = (bits) => reasons.find(({bit}) => bits & bit) ?? null;
   const pixelsOf = (value) => {
     const d = newest.stats?.num_disparities;
@@ -533,7 +533,7 @@
     drawnAt.disparity = performance.now();
     if (!again) followRange(values.length);
   }
-  /** The colours span what is there, between 1 % and 99 %; they follow slowly. */
+  /** The colours span the values present, from 1 % to 99 %; they adapt slowly. */
   function followRange() {
     let all = 0, low = 1, high = 255;
     for (let v = 1; v < 256; ++v) all += histogram[v];
@@ -612,7 +612,7 @@
   const kHistory = 120;  // frames
   const history = [];    // {frame, stages: Map, latency}
   let thingsById = new Map();
-  const life = {frame: null, at: 0, count: 0};  // the last frame that came, and when
+  const life = {frame: null, at: 0, count: 0};  // the last frame received, and when
   const trails = new Map();  // track → [{t, place}]
   const kTrail = 6, kJump = 1.5;  // s, m
 
@@ -633,18 +633,18 @@
       takeThings(stats, Number(stamp / 1000n) / 1e6);
       stripIsOld = true;
     }
-    // Frames that were on their way when it was paused know nothing of it.
+    // Frames in flight when it was paused still report it as running.
     if (stats.paused === true || performance.now() - state.pausedAt > 1000) state.isPaused = stats.paused === true;
     if (life.count === 1) slowly();
   }
 
   // Matrices are rows of 3×4.
-  const kLevelCamera = [0, 0, 1, 0, -1, 0, 0, 0, 0, -1, 0, 0];  // where no floor is known
+  const kLevelCamera = [0, 0, 1, 0, -1, 0, 0, 0, 0, -1, 0, 0];  // if no floor is known
   function floorFromCamera({ground}) {
     if (!ground?.normal || !ground.forward || !ground.left) return null;
     return [...ground.forward, 0, ...ground.left, 0, ...ground.normal, ground.height_m];
   }
-  /** Null where the camera's place is not known. */
+  /** Null if the camera's position is unknown. */
   function mapFromCamera({camera}) {
     if (!camera) return null;
     const [x, y, z, w] = camera.quaternion_xyzw, [a, b, c] = camera.position_m;
@@ -676,12 +676,13 @@
       if (!points.length) trails.delete(id);
     }
   }
-  /** Of its box, in the camera's frame; corner k at (k & 1, k & 2, k & 4) of its axes. They come around its base, then its top. */
+  /** Corners of its box in the camera's frame, from corners k at (k & 1, k & 2, k & 4) of its axes; first around its
+      base, then around its top. */
   function cornersOf({corners_m: around}) {
     if (!Array.isArray(around) || around.length !== 8) return null;
     return [0, 1, 3, 2, 4, 5, 7, 6].map((k) => around[k]);
   }
-  /** The trails, kept in the map, as they are from here. */
+  /** The trails, stored in the map, relative to the current camera. */
   function trailsFromHere(stats, only) {
     const onFloor = floorFromCamera(stats) ?? kLevelCamera, inMap = mapFromCamera(stats);
     if (!inMap) return [];
@@ -741,7 +742,7 @@
   const strip = {canvas: document.querySelector('.strip canvas'), stages: [], chosenAt: 0, top: 10};
   let stripIsOld = true;
   function chooseStages() {
-    // Again as soon as the first frames, which take longer, are of no weight.
+    // Again once the first frames, which take longer, no longer dominate.
     if (strip.stages.length && life.count - strip.chosenAt < Math.min(240, strip.chosenAt + 10)) return;
     strip.chosenAt = life.count;
     const sums = new Map();
@@ -787,7 +788,7 @@
     context.textAlign = 'right';
     context.fillText('ms', left - 6, high - 5);
     const first = kHistory - history.length, tops = history.map(() => y(0));
-    // Colour by colour: one after the other a frame's would take three times as long.
+    // Grouped by colour: frame by frame would take three times as long.
     for (const stage of [...strip.stages, null]) {
       context.fillStyle = strip.colours.get(stage) ?? kOther;
       history.forEach(({stages}, k) => {
@@ -906,7 +907,7 @@
       small: life.at ? `What is shown is frame ${life.frame}.` : 'None has come since this page was opened.',
     };
   }
-  /** While no frame comes, none says how the camera does. */
+  /** While no frames arrive, no message reports the state of the camera. */
   async function askStatus() {
     if (link.state !== 'open' || state.isPaused || performance.now() - Math.max(life.at, link.since) < kSilence - 1000) return;
     const answer = await fetch('/status.json', {cache: 'no-store'}).catch(() => null);
@@ -935,7 +936,7 @@
     if (document.title !== title) document.title = title;
   }
 
-  /** Words of the server. */
+  /** Messages of the server. */
   function said(level, text) {
     if (!text) return;
     const name = tuning.rows.size ? [...tuning.rows.keys()].find((n) => text.includes(n)) : undefined;
@@ -958,7 +959,7 @@
 
   const tuning = {rows: new Map(), refused: new Map(), options: [], revision: null, tunable: null, waiting: 0, sent: new Map(), timer: 0};
   const kMinus = /^[−-]1 = off, /;
-  /** What an option's domain says: {choices} or {low, high, odd, hasOff}. */
+  /** The parsed domain of an option: {choices} or {low, high, odd, hasOff}. */
   function domainOf({type, domain = ''}) {
     const text = String(domain);
     if (type === 'bool') return {};
@@ -967,8 +968,8 @@
     return {low, high, odd: text.includes('odd'), hasOff: kMinus.test(text), whole: type === 'int'};
   }
   /**
-   * A slider's 0 … 1 and an option's values. Ranges of many decades are spaced by logarithm, and very wide ones end at what
-   * somebody may want; the box beside the slider takes any.
+   * Maps a slider's 0 … 1 to an option's values and back. Ranges of several decades are logarithmic, and very wide
+   * ones end at the largest useful value; the box next to the slider accepts any.
    */
   function scaleOf({low, high, odd, whole}, first) {
     const isWide = high - low > 2000 * Math.max(whole ? 1 : 0, Math.abs(first) || 1e-3) || (low >= 0 && high >= 200 && high > 12 * Math.max(1, first));
@@ -1159,7 +1160,7 @@
   }
   function reset() {
     const changed = tuning.options.filter((o) => o.value !== o.first);
-    // Together: one by one, those in between might be refused.
+    // In one message: one by one, intermediate combinations might be refused.
     if (changed.length) send({op: 'setParameters', id: 'reset', parameters: changed.map((o) => ({name: o.name, value: typed(o, o.first)}))});
     tuning.refused.clear();
     reloadOptions();
@@ -1246,7 +1247,7 @@
     byId('yaml').addEventListener('click', copyYaml);
     byId('search').addEventListener('input', findOptions);
     byId('changed-only').addEventListener('change', findOptions);
-    // A button that was clicked, not reached by keys, leaves the space bar to pause.
+    // A button that was clicked, rather than reached by keys, leaves the space bar to pause.
     byId('bar').addEventListener('click', (event) => { if (event.detail) event.target.closest('button')?.blur(); });
     addEventListener('keydown', (event) => {
       if (event.altKey || event.ctrlKey || event.metaKey) return;
@@ -1278,7 +1279,7 @@
     watch();
     connect();
   }
-  /** What is read rather than watched; with a frame where there is one. */
+  /** Notices to read rather than watch; with the current frame, if there is one. */
   function slowly() {
     readAt = performance.now();
     watch();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The 3-D view of `cairn live --view`. Its frame is the floor's below the camera: x forward, y left, z up (ROS REP 103), in
-// m. It follows shared.js and comes before live.js, in one <script>. It is drawn in two dimensions: some boxes, lines and
-// a thinned cloud take a millisecond, whereas WebGL without a graphics processor takes 30, where a browser has it at all.
+// The 3-D view of `cairn live --view`. Its frame is the floor's below the camera: x forward, y left, z up (ROS REP
+// 103), in m. It follows shared.js and precedes live.js in one <script>. It is drawn with the 2-D canvas: some boxes,
+// lines and a thinned cloud take a millisecond, whereas WebGL without a GPU takes 30, if the browser has it at all.
 
-/** The little of linear algebra that a camera needs; matrices column by column. */
+/** The linear algebra that a camera needs; column-major matrices. */
 const kMatrix = {
   product(a, b) {
     const out = new Float64Array(16);
@@ -14,14 +14,14 @@ const kMatrix = {
   },
   perspective(degrees, aspect) {
     const f = 1 / Math.tan(degrees * Math.PI / 360);
-    return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, -1, -1, 0, 0, 0, 0];  // no use is made of its depths
+    return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, -1, -1, 0, 0, 0, 0];  // depths are not used
   },
   looking(eye, at) {
     const away = unit3(minus3(eye, at)), right = unit3(cross3([0, 0, 1], away)), up = cross3(away, right);
     const back = (axis) => -dot3(axis, eye);
     return [right[0], up[0], away[0], 0, right[1], up[1], away[1], 0, right[2], up[2], away[2], 0, back(right), back(up), back(away), 1];
   },
-  /** From the rows of a 3×4 or 4×4 matrix. */
+  /** From row-major 3×4 or 4×4. */
   ofRows: (m) => [m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0, m[3], m[7], m[11], 1],
 };
 const minus3 = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -34,8 +34,8 @@ const kSides = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6
 const kEdges = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 /**
- * The 3-D view in a stage. `refresh()` draws it with the screen's next picture, `paintWithOthers()` in this one if it is time;
- * it asks `look()` for
+ * The 3-D view in a stage. `refresh()` draws it with the screen's next repaint, `paintWithOthers()` in the current
+ * one if it is due; `look()` returns its content:
  *   things  [{id, corners (8), colour, text, chosen, dim, moving}]
  *   trails  [{colour, points}]
  *   cloud   {bytes, step, count, place, colour (offsets; colour may be null)}, or null
@@ -44,8 +44,8 @@ const kEdges = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], 
  */
 function makeScene(stage, look, onPick) {
   const canvas = stage.querySelector('canvas'), context = canvas.getContext('2d', {alpha: false});
-  const kNear = 0.05;  // m before the eye
-  // A picture waits so many times the time of the last one, but no longer than so many ms: the images come first.
+  const kNear = 0.05;  // m in front of the eye
+  // A repaint waits for this multiple of the last one's duration, but at most this many ms: the images have priority.
   const kShare = 40, kLongest = 400;
 
   // ---- what is shown, and from where ----
@@ -54,14 +54,14 @@ function makeScene(stage, look, onPick) {
   const kViews = {behind: {yaw: 0, pitch: 0.52, far: 6.5}, side: {yaw: 1.15, pitch: 0.42, far: 6.5}, above: {yaw: 0, pitch: 1.55, far: 8}};
   const view = {at: [2.6, 0, 0.3], ...kViews.behind, isTouched: false, reach: 0};
   let size = {wide: 0, high: 0, dpr: 1};  // of the canvas
-  const room = {wide: 0, high: 0};        // for it
-  let clip = new Float64Array(16);        // from the floor's frame to the screen, of the last picture
+  const room = {wide: 0, high: 0};        // available to it
+  let clip = new Float64Array(16);        // from the floor's frame to the screen, of the last repaint
   let asked = 0, waits = 0, pause = 0, paintedAt = -Infinity;
   let grip = null;  // where the pointer holds the view
   const draw = () => { asked ||= requestAnimationFrame(() => { asked = 0; paint(); }); };
-  /** Within a frame of the page; where the last picture is too new, with one of the next. */
+  /** Draws in the current repaint of the page, or in the next if the last one is too recent. */
   function paintWithOthers() {
-    if (asked) return;  // a picture of its own comes at once
+    if (asked) return;  // an individual repaint is already due
     if (grip || performance.now() - paintedAt >= pause) paint();
     else waits ||= setTimeout(draw, pause + 100);
   }
@@ -75,7 +75,8 @@ function makeScene(stage, look, onPick) {
     fit(1);
     draw();
   }
-  /** Things seen are in the middle, as long as nobody has turned the view; slowly and not for little, so that it stays calm. */
+  /** Centres the visible objects until the user turns the view; slowly and not for small changes, so that it stays
+      calm. */
   function fit(share) {
     if (view.isTouched || !shown.things.length) return;
     const ahead = shown.things.map((t) => t.corners[0][0]).sort((a, b) => a - b);
@@ -89,17 +90,17 @@ function makeScene(stage, look, onPick) {
 
   // ---- places on the screen ----
 
-  /** Of a place in the floor's frame: x·w, y·w, and w, how far it lies before the eye. */
+  /** Projects a point of the floor's frame: x·w, y·w, and w, its depth in front of the eye. */
   const project = ([x, y, z]) => [0, 1, 3].map((r) => clip[r] * x + clip[4 + r] * y + clip[8 + r] * z + clip[12 + r]);
   const onScreen = ([x, y, w]) => [(x / w + 1) / 2 * size.wide, (1 - y / w) / 2 * size.high];
-  /** Lines, drawn together with others that look alike: a stroke for each would take longer than all of them. */
+  /** Lines, batched by style: one stroke for each line would take longer than for all. */
   function pen() {
     const looks = new Map(), kAlphas = 24;
     return {
       line(from, to, colour, alpha, width) {
         let a = project(from), b = project(to);
         if (a[2] < kNear && b[2] < kNear) return;
-        // What lies behind the eye is cut off before it is projected.
+        // Parts behind the eye are clipped before projection.
         const cut = (p, q) => p.map((v, k) => v + (q[k] - v) * (p[2] - kNear) / (p[2] - q[2]));
         if (a[2] < kNear) a = cut(b, a);
         else if (b[2] < kNear) b = cut(a, b);
@@ -139,7 +140,7 @@ function makeScene(stage, look, onPick) {
     const places = () => context.setTransform(dpr, 0, 0, dpr, 0, 0), pixels = () => context.setTransform(1, 0, 0, 1, 0, 0);
     pixels();
     context.drawImage(floorPicture(), 0, 0);
-    // A box's points lie between its sides.
+    // Points in a box lie between its sides.
     places();
     paintSides((towardsEye) => towardsEye <= 0);
     pixels();
@@ -154,7 +155,7 @@ function makeScene(stage, look, onPick) {
 
   const kReach = 14;  // m of grid around the camera
   const floor = {canvas: document.createElement('canvas'), key: ''};
-  /** The ground of the picture, which changes with the view alone. */
+  /** The background of the view; it changes with the view only. */
   function floorPicture() {
     const {width, height} = canvas, key = [...clip, width, height, shown.hasFloor].join();
     if (key === floor.key) return floor.canvas;
@@ -178,9 +179,9 @@ function makeScene(stage, look, onPick) {
     return floor.canvas;
   }
 
-  const kMostPixels = 2e6;  // of the points' picture, which is as fine as the canvas up to here
+  const kMostPixels = 2e6;  // of the point image, at the canvas's resolution up to this limit
   const points = {canvas: document.createElement('canvas'), image: null, pixels: null, depths: null};
-  /** A PointCloud2 as it came. Points without a colour of their own are coloured by their height over the floor. */
+  /** A PointCloud2 as received. Points without colour are coloured by their height above the floor. */
   function paintCloud({bytes, step, count, place, colour}) {
     const share = Math.min(1, Math.sqrt(kMostPixels / (canvas.width * canvas.height)));
     const width = Math.max(1, Math.round(canvas.width * share)), height = Math.max(1, Math.round(canvas.height * share));
@@ -227,7 +228,7 @@ function makeScene(stage, look, onPick) {
   }
 
   const middle = (places) => [0, 1, 2].map((k) => places.reduce((sum, p) => sum + p[k], 0) / places.length);
-  /** Those sides of the boxes that `isWanted`, by how far they look towards the eye. */
+  /** The sides of the boxes for which `isWanted` is true, by how far they face the eye. */
   function paintSides(isWanted) {
     const from = eye();
     for (const {corners, colour, dim, chosen} of shown.things) {
@@ -244,7 +245,7 @@ function makeScene(stage, look, onPick) {
     }
     context.globalAlpha = 1;
   }
-  /** Trails and edges, which are seen through the cloud. */
+  /** Trails and edges, visible through the cloud. */
   function paintLines() {
     const lines = pen();
     for (const {points: way, colour} of shown.trails) {
@@ -265,7 +266,7 @@ function makeScene(stage, look, onPick) {
         lines.line(at, end, white, 0.8, 1.3);
         lines.line(end, ends[(k + 1) % 4], white, 0.8, 1.3);
       });
-      // The edges of the view, on the floor.
+      // The outline of the field of view on the floor.
       if (shown.hasFloor) {
         for (const x of [left, right]) {
           const [p, q] = [0.6, 9].map((far) => { const e = toFloor([x * far, 0, far]); return [e[0], e[1], 0.002]; });
@@ -294,7 +295,7 @@ function makeScene(stage, look, onPick) {
     context.beginPath();
     context.roundRect(left, top, wide, high, round);
   }
-  /** The names over the boxes, and the metres on the floor. */
+  /** The names above the boxes, and the distance marks on the floor. */
   function paintNames() {
     const wanted = [];
     const put = (text, place, isName, thing) => {
@@ -308,7 +309,7 @@ function makeScene(stage, look, onPick) {
       put(thing.moving ? `${thing.text} ➜` : thing.text, top, true, thing);
     }
     if (shown.hasFloor) for (const metre of [1, 2, 3, 4, 6, 8, 10]) if (metre < view.far * 1.6) put(`${metre} m`, [metre, 0, 0], false, null);
-    // Names that would lie on others move up, the nearest box's the least.
+    // Overlapping names move up, that of the nearest box least.
     const placed = [];
     context.textBaseline = 'middle';
     for (const mark of wanted.sort((a, b) => b.isName - a.isName || b.y - a.y)) {
@@ -388,7 +389,7 @@ function makeScene(stage, look, onPick) {
     view.pitch = Math.min(1.55, Math.max(-0.2, view.pitch + turn[1]));
     draw();
   });
-  /** The id of the nearest box under the pointer; null beside all. */
+  /** The id of the nearest box under the pointer, or null. */
   function thingAt(event) {
     const box = stage.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
     let best = null;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The page of `cairn segment --html` and `cairn evaluate --html`. Its data are JSON blocks beside this script
-// (page/html_page.cpp): `run`, and for each frame `facts-N`, read at once, and `maps-N`, read when it is shown. It
+// The page of `cairn segment --html` and `cairn evaluate --html`. Its data are JSON blocks next to this script
+// (page/html_page.cpp): `run`, and for each frame `facts-N`, parsed at once, and `maps-N`, decoded when shown. It
 // follows shared.js in one <script>.
 (() => {
   // ---- data ----
@@ -24,7 +24,7 @@
     return steps && Float32Array.from(steps, (n) => (n === 0 ? NaN : map.low + (n - 1) / map.steps));
   }
 
-  const kMostPixelsKept = 5e6;  // some 40 bytes each
+  const kMostPixelsKept = 5e6;  // about 40 bytes each
   const mapsOf = keptLast(decode, (index) => Math.max(2, Math.floor(kMostPixelsKept / (frames[index].width * frames[index].height || 1))));
   async function decode(index) {
     const packed = block(`maps-${index}`);
@@ -36,7 +36,7 @@
     maps.true_disparity = await disparities(packed.true_disparity, count);
     const truth = await unpacked(packed.true_objects, count);
     maps.true_objects = truth && Int32Array.from(truth, (n) => n - 1);  // −1 = don't care
-    for (const source of [maps.left, maps.right]) await decodedPicture(source);  // so that it is there at once when it is shown
+    for (const source of [maps.left, maps.right]) await decodedPicture(source);  // so that it is shown without delay
     return maps;
   }
 
@@ -57,18 +57,19 @@
   };
   const current = () => frames[state.frame];
 
-  /** Distance of a disparity in m: the frame's rig says it. */
+  /** Distance in m for a disparity, by the frame's rig. */
   function metres(disparity, rig = current().rig) {
     if (!rig) return NaN;
     const shifted = disparity + rig.doffs_px;
     return shifted > 0 ? (rig.focal_px * rig.baseline_m) / shifted : Infinity;
   }
-  /** Where a pixel with a disparity is, in m from the left camera: x right, y down, z forward. Null without metres. */
+  /** Position of a pixel with a disparity in the left camera's frame, in m: x right, y down, z forward. Null without
+      a rig. */
   function placeInCamera(x, y, disparity) {
     const {rig} = current(), z = metres(disparity);
     return isNumber(z) ? [(x - rig.cx_px) * z / rig.focal_px, (y - rig.cy_px) * z / rig.focal_px, z] : null;
   }
-  /** The same place from the floor below the camera: x forward, y left, z up. Null without a floor. */
+  /** The same position relative to the floor below the camera: x forward, y left, z up. Null without a floor. */
   function placeOnFloor(place) {
     const matrix = current().result?.floor_frame?.floor_from_camera;
     return place && matrix ? [0, 4, 8].map((row) => place.reduce((sum, value, k) => sum + matrix[row + k] * value, matrix[row + 3])) : null;
@@ -77,7 +78,7 @@
     object?.position_m ? `${fixed(object.position_m[2], 2)} m`
       : isNumber(object?.disparity_px) ? `${fixed(object.disparity_px, 1)} px` : '';
 
-  /** A true object has the colour of ours that it is compared with; a missed one has none. */
+  /** A true object has the colour of the matched object of ours; a missed one has none. */
   const kMissed = '#ff4d6a', kNotScored = '#b8bec6';
   const truthColour = (id) => {
     const ours = current().truth.get(id)?.ours;
@@ -86,7 +87,7 @@
   const reasonOf = (bits) => run.look.reasons.find((reason) => bits & reason.bit) ?? run.look.reasons[0];
   const reasonsOf = (bits) => run.look.reasons.filter((reason) => bits & reason.bit).map((r) => r.name);
 
-  // Enough hues for any neighbours to differ; which one an id gets means nothing.
+  // Enough hues to distinguish neighbours; the assignment has no meaning.
   const kRegionColours = Array.from({length: 64}, (_, i) => {
     const hue = (i * 0.61803399) % 1, light = [0.62, 0.5, 0.74][i % 3];
     const channel = (shift) => {
@@ -214,7 +215,7 @@
     return score.error === null ? 'missed' : `E ${fixed(100 * score.error, 0)} %`;
   }
   function paintTruth(out, {true_objects: labels}) {
-    // A true object belongs to ours that it is compared with, so the two are chosen together.
+    // A true object is selected together with the matched object of ours.
     const ours = state.near ?? state.picked;
     const chosen = ours === null ? null : [...current().truth.values()].find((t) => t.ours === ours)?.id ?? -2;
     paintLabels(out, labels, current().width, truthColour, chosen);
@@ -233,7 +234,7 @@
   const kFloor = 2;
   const spaceOf = ({space, objects}, i) => (space[i] === 255 ? (objects?.[i] > 0 ? 0 : 1) : space[i] === 128 ? kFloor : 3);
 
-  /** All of the space, or one kind of it. */
+  /** All of the space, or one class of it. */
   function paintSpace(out, maps, only = null) {
     const shown = (kind) => only === null || only === kind;
     const colours = kSpaces.map(([, colour], kind) => (shown(kind) ? pixel(colour, 165) : 0)), counts = kSpaces.map(() => 0);
@@ -255,7 +256,7 @@
     const [ax, ay] = polar(long / 2, yaw), [bx, by] = polar(short / 2, yaw + Math.PI / 2);
     return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([a, b]) => [x + a * ax + b * bx, y + a * ay + b * by]);
   }
-  /** The directions in which the camera sees the sides of its picture, from the right to the left. */
+  /** The viewing directions of the image's sides, from right to left. */
   function sideAngles({rig, width, result}) {
     const m = result.floor_frame.floor_from_camera;
     return [width - 0.5, -0.5].map((column) => {
@@ -264,13 +265,13 @@
     });
   }
 
-  let drawnPlace = null;  // floor → drawing, in the view from above that is shown
+  let drawnPlace = null;  // floor → drawing, of the current view from above
   function drawAbove() {
     const facts = current(), {obstacle_scan: scan, objects, config} = facts.result;
     const wide = 480, high = 360, bottom = 18;
     const dots = (scan?.ranges_m ?? []).flatMap((range, i) =>
       (range === null ? [] : [polar(range, scan.angle_min_rad + i * scan.angle_increment_rad)]));
-    const boxes = objects.filter((o) => o.box_on_floor).map((o) => ({...o, corners: cornersOf(o.box_on_floor)})).reverse();  // the nearest on top
+    const boxes = objects.filter((o) => o.box_on_floor).map((o) => ({...o, corners: cornersOf(o.box_on_floor)})).reverse();  // nearest on top
     const places = [...dots, ...boxes.flatMap((o) => o.corners)];
     const reach = 1.05 * (places.length ? Math.max(...places.map((p) => Math.hypot(...p))) : config?.space?.range ?? 6);
     const [right, left] = sideAngles(facts);
@@ -300,7 +301,7 @@
       legend: [el('div', {class: 'chips'}, chip(kScan, 'obstacle scan'), chip(kSeen, 'field of view'), el('span', {}, 'numbered: the objects’ boxes on the floor'))],
     };
   }
-  /** Rings a place in the view from above; none without one. */
+  /** Rings a position in the view from above; removes the ring if there is none. */
   function ringAbove(onFloor) {
     const ring = document.querySelector('.above .here');
     if (!ring) return;
@@ -308,7 +309,7 @@
     for (const [name, value] of Object.entries({cx: x, cy: y, visibility: onFloor ? 'visible' : 'hidden'})) ring.setAttribute(name, value);
   }
 
-  /** panel → its modes; `needs` are the maps without which there is nothing to show. */
+  /** panel → its modes; `needs` are the maps that it requires. */
   const kPanels = {
     left: [
       {name: 'Left picture', needs: ['left'], base: 'plain'},
@@ -397,7 +398,7 @@
     if (!rig) return result ? 'no calibration: no metres' : null;
     return `focal length ${fixed(rig.focal_px, 1)} px, baseline ${fixed(rig.baseline_m, 3)} m`;
   }
-  /** The box of what is no object while its row is pointed at or chosen. */
+  /** The box of an obstacle that is not an object, while its row is hovered or selected. */
   function leftOutBox(name) {
     const left = state.nearLeftOut ?? state.leftOut;
     if (!left || name === 'above') return [];
@@ -415,11 +416,11 @@
   const ringLeftOut = () => ringAbove(placeOnFloor((state.nearLeftOut ?? state.leftOut)?.position_m));
   function repaintObjects() {
     for (const name of ['objects', 'truth']) if (panels[name] && state.maps) repaint(name, false);
-    // Not drawn anew: what the pointer is on would be another then.
+    // Not redrawn, because that would replace the element under the pointer.
     const chosen = state.near ?? state.picked;
     for (const thing of document.querySelectorAll('.above .thing')) thing.classList.toggle('dim', chosen !== null && thing.dataset.key !== String(chosen));
   }
-  /** The object that the pointer is on, outside of the pictures. */
+  /** The object under the pointer, outside of the images. */
   function near(id) {
     state.near = id;
     markRow('objects', id);
@@ -428,14 +429,14 @@
 
   // ---- the right picture ----
 
-  /** How many rows the right picture is lower there, where the frame was corrected for it. */
+  /** The vertical shift of the right image there, if the frame was corrected for it. */
   function rowsLower(x) {
     const epipolar = current().result?.epipolar;
     return epipolar?.outcome === 'corrected' ? epipolar.rows + epipolar.rows_per_px * (x - (current().width - 1) / 2) : 0;
   }
-  /** Where the right picture shows what the left one has at (x, y). */
+  /** The position in the right image that matches (x, y) of the left one. */
   const inRight = (x, y, disparity) => [x - disparity, y + rowsLower(x - disparity)];
-  /** The pixel of the left picture that is matched with this one of the right: the nearest of several. Or null. */
+  /** The pixel of the left image matched with this one of the right: the nearest of several, or null. */
   function fromRight({x, y}) {
     const {width, height} = current(), {disparity} = state.maps;
     const row = Math.round(y - rowsLower(x));
@@ -448,13 +449,13 @@
 
   // ---- the pointer ----
 
-  /** The pixel of the left picture that the pointer is on, or the one matched with it. */
+  /** The pixel of the left image under the pointer, or matched with the one under it. */
   function placeOf(event, name) {
     const {stage, isRight} = panels[name], at = pixelUnder(event, stage, current());
     return at && isRight ? fromRight(at) : at;
   }
 
-  /** What is known of one pixel. */
+  /** All data of one pixel. */
   function described({x, y, i}) {
     const {maps} = state, facts = current();
     const parts = [el('div', {class: 'at'}, `x ${x}, y ${y}`)];
@@ -583,7 +584,7 @@
 
   function leftOutCard() {
     const found = current().result?.left_out;
-    if (!found) return null;  // a result of before there was such a list
+    if (!found) return null;  // a result from an earlier version without this list
     const title = 'Not objects, and why';
     if (!found.length) return card(title, null, el('p', {class: 'empty'}, 'none'));
     const list = found.map((left, key) => ({key, ...left}));
@@ -691,7 +692,7 @@
   }
 
   const kBins = 20;
-  /** The last bin holds what reaches the cap: misses, mostly. */
+  /** The last bin contains values at the cap, mostly misses. */
   const binOf = (score) => Math.min(kBins, Math.floor(cappedError(score) / kCap * kBins));
   const binText = (bin) => bin === kBins ? `${100 * kCap} % and more, or missed`
     : `${Math.round(100 * kCap * bin / kBins)} to ${Math.round(100 * kCap * (bin + 1) / kBins)} %`;
@@ -765,7 +766,7 @@
     const columns = evaluates
       ? [[scored ? histogramCard() : null, objectsCard(), leftOutCard(), timesCard()], [scored ? truthCard() : null, many ? framesCard() : null, optionsCard()]]
       : [[objectsCard(), leftOutCard(), many ? timesCard() : null], [many ? framesCard() : timesCard(), optionsCard()]];
-    // A table that is filled anew stays where it was scrolled to.
+    // A table keeps its scroll position when it is refilled.
     const scrolled = [...document.querySelectorAll('#tables table')].map((t) => [t.id, t.parentElement.scrollTop]);
     byId('tables').replaceChildren(...columns.map((cards) => el('div', {class: 'column'}, cards)));
     for (const [id, to] of scrolled) if (to && byId(id)) byId(id).parentElement.scrollTop = to;
@@ -785,7 +786,7 @@
     return parts.flatMap((part, i) => (i ? [' · ', part] : [part]));
   }
 
-  let wanted = 0;  // the frame asked for last: an earlier one that is decoded later is not shown
+  let wanted = 0;  // the frame requested last: an earlier one that is decoded later is not shown
   async function show(index) {
     wanted = Math.min(run.frames - 1, Math.max(0, index));
     const mine = wanted;
@@ -814,8 +815,8 @@
   }
 
   const kMsPerFrame = 200;
-  let playing = null;  // a token of the run through the frames that is under way
-  /** From the frame shown to the last, from the first where the last is shown. */
+  let playing = null;  // token of the current playback
+  /** Plays from the current frame to the last; from the first if the last is shown. */
   async function play() {
     const mine = playing = {};
     playButton(true);
@@ -831,7 +832,7 @@
     playButton(false);
   }
   const playOrPause = () => (playing ? pause() : play());
-  /** To a frame that was asked for. */
+  /** Goes to a requested frame. */
   function go(index) {
     pause();
     return show(index);
@@ -846,7 +847,7 @@
     sharpen();
   }
 
-  /** Enlarged maps show their pixels; in a reduced one thin outlines would be broken by them. */
+  /** Enlarged maps show single pixels; reduced ones are smoothed, which keeps thin outlines intact. */
   function sharpen() {
     for (const {stage} of Object.values(panels)) stage.classList.toggle('reduced', stage.clientWidth < current().width);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// What the scripts of all pages share; each page's own script follows in the same <script> element. A page's data are
-// JSON blocks (page/page_parts.hpp), of which `run` is about all of it.
+// Shared by the scripts of all pages; each page's own script follows in the same <script> element. A page's data are
+// JSON blocks (page/page_parts.hpp); `run` describes the whole run.
 'use strict';
 
 // ---- small helpers ----
@@ -20,7 +20,7 @@ function made(node, properties, children) {
   node.append(...children.flat().filter((child) => child !== null && child !== undefined));
   return node;
 }
-/** An element; properties that are no attributes of their own begin with "on" (listeners) or are `style`. */
+/** Creates an element; properties that are not attributes begin with "on" (listeners) or are `style`. */
 const el = (tag, properties = {}, ...children) => made(document.createElement(tag), properties, children);
 const svg = (tag, properties = {}, ...children) => made(document.createElementNS('http://www.w3.org/2000/svg', tag), properties, children);
 
@@ -30,10 +30,10 @@ const percent = (share, digits = 1) => (isNumber(share) ? `${(100 * share).toFix
 const counted = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
 const words = (name) => name.replaceAll('_', ' ');
 const polar = (radius, angle) => [radius * Math.cos(angle), radius * Math.sin(angle)];
-/** The first of 1, 2, 5, 10, … of which `span` holds less than `most`. */
+/** The first of 1, 2, 5, 10, … of which `span` contains fewer than `most`. */
 const roundStep = (span, most) => [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((step) => span / step < most) ?? 200;
 
-/** "#rrggbb" as the four bytes of a canvas' pixel, in this machine's order (little endian everywhere). */
+/** "#rrggbb" as a canvas pixel in this machine's byte order (little endian everywhere). */
 function pixel(colour, alpha = 255) {
   const n = parseInt(colour.slice(1), 16);
   return ((alpha << 24) | ((n & 255) << 16) | (n & 0xff00) | (n >> 16)) >>> 0;
@@ -52,19 +52,19 @@ const mixed = (a, b, shareOfB) => {
 const run = block('run');
 const idColour = (id) => run.look.objects[id % run.look.objects.length];
 
-// Not PNGs that a canvas gives back: browsers that guard against fingerprinting alter what is read from one.
+// Not PNGs read back from a canvas: browsers that guard against fingerprinting alter what is read.
 async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** The numbers of a packed map; null where there is none. */
+/** The numbers of a packed map, or null. */
 async function unpacked(map, count) {
   if (!map) return null;
   const planes = await inflated(map.data);
   if (map.bytes === 1) {
-    for (let i = 1; i < count; ++i) planes[i] += planes[i - 1];  // modulo 256 by itself
+    for (let i = 1; i < count; ++i) planes[i] += planes[i - 1];  // modulo 256
     return planes;
   }
   const values = new Uint32Array(count);
@@ -78,7 +78,7 @@ async function unpacked(map, count) {
   return values;
 }
 
-/** The picture of a data URI, ready to be drawn; null where there is none or it is broken. */
+/** The image of a data URI, decoded; null if there is none or it is damaged. */
 async function decodedPicture(uri) {
   if (!uri) return null;
   const image = new Image();
@@ -86,7 +86,7 @@ async function decodedPicture(uri) {
   return image.decode().then(() => image, () => null);
 }
 
-/** `make(index)`, kept for the `most` indices asked for last, so that a slider goes back at once. */
+/** `make(index)`, cached for the `most` indices requested last, so that a slider moves back at once. */
 function keptLast(make, most) {
   const kept = new Map();
   return (index) => {
@@ -107,8 +107,8 @@ function onBorder(labels, i, width) {
 }
 
 /**
- * Fills the pixels of labelled things: tinted (but for `outlinesAlone`), outlined, all but the chosen one faint where one
- * is chosen. `colourOf` may return null for a label that is drawn as if it were none.
+ * Fills the pixels of labelled objects: tinted (unless `outlinesAlone`), outlined; faint except for the selected one,
+ * if any. `colourOf` may return null for a label that is drawn as background.
  */
 function paintLabels(out, labels, width, colourOf, chosen, outlinesAlone = false) {
   const inside = [], edge = [], shade = outlinesAlone ? 0 : pixel('#000000', 50), dontCare = pixel('#9aa0a8', 110);
@@ -129,7 +129,7 @@ function paintLabels(out, labels, width, colourOf, chosen, outlinesAlone = false
   }
 }
 
-/** The names of labelled things, to be laid over a picture of this size. places: {id, x, y}. */
+/** The names of labelled objects, to be laid over an image of this size. places: {id, x, y}. */
 function marks(places, textOf, chosen, {width, height}) {
   return places.map(({id, x, y}) => el('span', {
     class: `mark${chosen !== null && chosen !== id ? ' dim' : ''}`, 'data-key': id,
@@ -137,10 +137,10 @@ function marks(places, textOf, chosen, {width, height}) {
   }, textOf(id)));
 }
 
-/** Moves marks into the picture where they reach over its sides, and down where they would lie on others. */
+/** Moves marks into the image where they extend beyond its sides, and down where they overlap others. */
 function partMarks(all) {
   if (!all.length) return;
-  // All are measured before any is moved: the page is laid out once.
+  // All are measured before any is moved, for a single layout.
   const inside = all[0].parentElement.getBoundingClientRect(), placed = [];
   const boxes = all.map((mark) => mark.getBoundingClientRect());
   all.forEach((mark, i) => {
@@ -156,7 +156,7 @@ function partMarks(all) {
   });
 }
 
-/** The pixel of a picture of this size, filling `stage`, that the pointer is on; null beside it. */
+/** The pixel under the pointer, of an image of this size that fills `stage`; null outside. */
 function pixelUnder(event, stage, {width, height}) {
   const box = stage.getBoundingClientRect();
   const x = Math.floor((event.clientX - box.left) / box.width * width);
@@ -192,12 +192,12 @@ const hideTip = () => { byId('tip').hidden = true; };
 
 // ---- tables ----
 
-const sorting = {};  // table → {column, descending}, which outlives the frame
+const sorting = {};  // table → {column, descending}, kept from frame to frame
 
 /**
- * A table whose heads sort. columns: {name, title, text, value (what is sorted by), show (a cell's nodes), bad}.
- * What has no value comes last, whichever way. `refill(data)` of the result shows other rows; those with the key of one
- * that is there stay the same elements, so that a pointer on one stays on it.
+ * A table with sortable columns. columns: {name, title, text, value (sort key), show (a cell's nodes), bad}. Missing
+ * values come last in either direction. `refill(data)` of the result shows other rows; rows with a known key keep
+ * their elements, so that a hovered row stays hovered.
  */
 function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
   const body = el('tbody');
@@ -207,7 +207,7 @@ function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
       sorting[id] = {column: c, descending: before?.column === c ? !before.descending : false};
       fill();
     }}, column.name)));
-  const shown = new Map();  // key → its row: the element, what is shown, and the text of its cells
+  const shown = new Map();  // key → its row: the element, its data, and the text of its cells
 
   function rowOf(value) {
     const name = key?.(value);
@@ -249,7 +249,7 @@ function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
     heads.forEach((head, c) => head.setAttribute('aria-sort', c !== column ? 'none' : descending ? 'descending' : 'ascending'));
     const wanted = list.map(rowOf), kept = new Set(wanted);
     for (const [name, row] of shown) if (!kept.has(row.node)) shown.delete(name);
-    // Rows that are in place already are not touched.
+    // Rows already in place are not touched.
     const same = wanted.length === body.rows.length && wanted.every((node, i) => node === body.rows[i]);
     if (!same) body.replaceChildren(...wanted);
   };
@@ -266,18 +266,18 @@ function table(id, columns, data, {key, pickRow, selected, enter} = {}) {
 const number = (name, value, digits, more = {}) => ({name, value, show: (row) => fixed(value(row), digits), ...more});
 const share = (name, value, more = {}) => ({name, value, show: (row) => (isNumber(value(row)) ? fixed(100 * value(row), 1) : '–'), ...more});
 
-/** Marks a table's row as pointed at. */
+/** Marks a table's row as hovered. */
 function markRow(id, key) {
   for (const row of document.querySelectorAll(`#${id} tbody tr`)) row.classList.toggle('near', row.dataset.key === String(key));
 }
-/** Marks a table's row as chosen and scrolls to it. */
+/** Marks a table's row as selected and scrolls to it. */
 function selectRow(id, key) {
   for (const row of document.querySelectorAll(`#${id} tbody tr`)) {
     row.setAttribute('aria-selected', row.dataset.key === String(key));
     if (row.dataset.key === String(key)) scrollToRow(row);
   }
 }
-/** Its table is scrolled, not the page: the picture that was clicked stays where it is. */
+/** Scrolls its table, not the page: the image that was clicked stays in place. */
 function scrollToRow(row) {
   const box = row.closest('.scroll');
   if (row.offsetTop < box.scrollTop + row.offsetHeight || row.offsetTop + row.offsetHeight > box.scrollTop + box.clientHeight) {
@@ -296,7 +296,7 @@ function trouble(text) {
   byId('trouble').hidden = false;
 }
 
-/** What every page begins with. */
+/** The start of every page. */
 function beginPage() {
   byId('command').textContent = run.command;
   byId('title').textContent = run.title;
@@ -316,15 +316,15 @@ function playButton(plays) {
 }
 
 /**
- * The keys and buttons that lead through frames. `wanted()`: the frame asked for last; `more`: key → the frame that it
- * leads to, beside arrows, Home and End.
+ * Keys and buttons that change the frame. `wanted()`: the frame requested last; `more`: key → target frame, in
+ * addition to arrows, Home and End.
  */
 function leadThroughFrames({wanted, go, playOrPause, more = () => ({})}) {
   byId('slider').max = run.frames - 1;
   byId('previous').addEventListener('click', () => go(wanted() - 1));
   byId('next').addEventListener('click', () => go(wanted() + 1));
   byId('play').addEventListener('click', playOrPause);
-  // A button that was clicked, not reached by keys, leaves the space bar to play and pause.
+  // A button that was clicked, rather than reached by keys, leaves the space bar to play and pause.
   byId('frames').addEventListener('click', (event) => { if (event.detail && event.target.matches('button')) event.target.blur(); });
   addEventListener('keydown', (event) => {
     if (run.frames < 2 || event.altKey || event.ctrlKey || event.metaKey) return;

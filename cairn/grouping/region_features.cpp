@@ -145,7 +145,8 @@ void depth_features(const std::array<std::string_view, 5>& names, const PlaneMom
 
 constexpr std::array<std::string_view, 5> kMatchedNames{
     "step of the planes at the border, px", "distance of the smaller one from the other's plane, px",
-    "what a common plane is worse, px", "distance from a common plane, px", "step of the means, relative"};
+    "residual added by a common plane, px", "distance from a common plane, px",
+    "step of the means, relative"};
 constexpr std::array<std::string_view, 5> kTexturedNames{
     "evidence: step of the planes at the border, px",
     "evidence: distance of the smaller one from the other's plane, px",
@@ -181,7 +182,7 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
       contact.far_n > 0 ? (swapped ? -1 : 1) * mean_px(contact.far_sum, contact.far_n) : double{kUnknown});
   out("step 3 px away from it, px", mean_px(contact.far_abs, contact.far_n));
   out("share of the border with disparities there", share(contact.far_n, contact.length));
-  out("share of these that are level", share(contact.level, contact.far_n));
+  out("share of level disparities there", share(contact.level, contact.far_n));
   depth_features(kTexturedNames, s.textured, fits_s.textured, l.textured, fits_l.textured, kLeastTextured,
                  contact, frame.width, out);
   depth_features(kMatchedNames, s.matched, fits_s.matched, l.matched, fits_l.matched, kLeastMatched, contact,
@@ -195,16 +196,16 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("height of the larger one above the ground, px", mean_px(l.above_ground.sum, l.above_ground.n));
   out("share of the smaller one on the ground", share(s.above_ground.on, s.above_ground.n));
   out("share of the larger one on the ground", share(l.above_ground.on, l.above_ground.n));
-  out("the smaller one before the background, px", mean_px(s.before_background.sum, s.before_background.n));
-  out("the larger one before the background, px", mean_px(l.before_background.sum, l.before_background.n));
+  out("smaller one in front of the background, px", mean_px(s.before_background.sum, s.before_background.n));
+  out("larger one in front of the background, px", mean_px(l.before_background.sum, l.before_background.n));
   const double fill = (area_s + area_l) / common_box_area(s, l);
-  out("both fill of their box", fill);
-  out("what that is more than before", fill - std::max(area_s / box_area(s), area_l / box_area(l)));
+  out("fill of the union's box", fill);
+  out("gain of fill by the union", fill - std::max(area_s / box_area(s), area_l / box_area(l)));
   const auto outline_s = static_cast<double>(s.perimeter);
   const auto outline_l = static_cast<double>(l.perimeter);
   const double outline = (outline_s + outline_l - 2 * length) / std::sqrt(area_s + area_l);
-  out("outline of both over the root of their area", outline);
-  out("what that is longer than before",
+  out("outline of the union over the root of its area", outline);
+  out("union's outline, longer than before",
       outline - std::max(outline_s / std::sqrt(area_s), outline_l / std::sqrt(area_l)));
   out("image's border, share of the smaller one's outline",
       share(at_image_border(s), at_image_border(s) + s.perimeter));
@@ -215,10 +216,10 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("noise, grey levels", frame.noise_sigma);
   out("disparity of the smaller one, share of the nearest",
       known(fits_s.matched.any, fits_s.matched.d / frame.nearest_px));
-  out("the smaller one's colours beside the floor's", fits_s.to_floor);
-  out("the larger one's colours beside the floor's", fits_l.to_floor);
-  out("the smaller one's colours beside the background's", fits_s.to_background);
-  out("the larger one's colours beside the background's", fits_l.to_background);
+  out("distance of the smaller one's colours from the floor's", fits_s.to_floor);
+  out("distance of the larger one's colours from the floor's", fits_l.to_floor);
+  out("distance of the smaller one's colours from the background's", fits_s.to_background);
+  out("distance of the larger one's colours from the background's", fits_l.to_background);
   list_merge_hints({s, fits_s}, {l, fits_l}, contact, frame, out);
 }
 
@@ -245,7 +246,7 @@ void list_merge_hints(const RegionSide& smaller, const RegionSide& larger, const
   out("hints: distance of the centroids, share of the width", known(any, apart / frame.cells_across));
   out("hints: spread of the votes, relative", known(any, v.spread / std::sqrt(cells + 1)));
   out("hints: difference of the sizes", known(any, vs.size - vl.size));
-  out("hints: area over the size voted for", known(any, log2_of(cells + 1) - v.size));
+  out("hints: area over the voted size", known(any, log2_of(cells + 1) - v.size));
   out("hints: outline inside the smaller one", known(frame.has_hints, share(s.hints.outline, s.area) / 16));
 }
 
@@ -255,7 +256,7 @@ void list_shape(const RegionCues& r, const FrameCues& frame, Out& out) {
   const auto area = static_cast<double>(r.area);
   const auto outline = static_cast<double>(r.perimeter + at_image_border(r));
   out("area, share of the image", area / image);
-  out("fills of its box", area / box_area(r));
+  out("fill of its box", area / box_area(r));
   out("outline over the root of the area", outline / std::sqrt(area));
   const double x = static_cast<double>(r.x) / area;
   const double y = static_cast<double>(r.y) / area;
@@ -264,10 +265,10 @@ void list_shape(const RegionCues& r, const FrameCues& frame, Out& out) {
   const double xy = static_cast<double>(r.xy) / area - x * y;
   const double sum = xx + yy;
   const double difference = root((xx - yy) * (xx - yy) + 4 * xy * xy);
-  out("least over greatest extent, squared", (sum - difference) / std::max(1e-9, sum + difference));
+  out("smallest over largest extent, squared", (sum - difference) / std::max(1e-9, sum + difference));
   out("area over that of an ellipse of its extents", area / std::max(1e-9, root(xx * yy - xy * xy)));
-  out("its middle below the image's, share of the height", y / frame.height);
-  out("its middle beside the image's, share of the width", std::abs(x) / frame.width);
+  out("vertical offset of its middle from the image's, share of the height", y / frame.height);
+  out("horizontal offset of its middle from the image's, share of the width", std::abs(x) / frame.width);
   out("width, share of the image's", (r.right - r.left + 1.0) / frame.width);
   out("height, share of the image's", (r.bottom - r.top + 1.0) / frame.height);
   out("its foot, share of the image's height", (r.bottom + 1.0) / frame.height);
@@ -275,7 +276,7 @@ void list_shape(const RegionCues& r, const FrameCues& frame, Out& out) {
   out("image's right border, share of its outline", static_cast<double>(r.at_image_border[1]) / outline);
   out("image's top, share of its outline", static_cast<double>(r.at_image_border[2]) / outline);
   out("image's bottom, share of its outline", static_cast<double>(r.at_image_border[3]) / outline);
-  out("borders of the image that it touches",
+  out("number of borders of the image that it touches",
       static_cast<double>(std::count_if(r.at_image_border.begin(), r.at_image_border.end(),
                                         [](std::int64_t pixels) { return pixels > 0; })));
   out("spread of brightness, grey levels", spread(r, 0));
@@ -372,16 +373,16 @@ void list_surroundings(const Surroundings& s, std::size_t neighbours, double own
   out("step down around it, 3 px away, px", mean_px(s.far_sum, s.far_n));
   out("step down right at the outline, px", mean_px(s.near_sum, s.near_n));
   out("share of the outline with disparities", share(static_cast<double>(s.far_n), s.length));
-  out("share of these where it is nearer", share(s.nearer, s.far_n));
-  out("share of these where it is farther", share(s.farther, s.far_n));
-  out("share of these that are level", share(s.level, s.far_n));
-  out("difference of brightness to what is around, grey levels", share(s.brightness, s.length));
-  out("difference of colour to what is around, grey levels",
+  out("share of disparities there where it is nearer", share(s.nearer, s.far_n));
+  out("share of disparities there where it is farther", share(s.farther, s.far_n));
+  out("share of level disparities there", share(s.level, s.far_n));
+  out("difference of brightness to the neighbours, grey levels", share(s.brightness, s.length));
+  out("difference of colour to the neighbours, grey levels",
       known(frame.has_colour, share(s.colour, s.length)));
-  out("distance of the colours' histograms to what is around", share(s.histogram, s.length));
-  out("what is around it on the ground, share", share(s.on_ground, s.on_ground_length));
-  out("what is around it in the background, share", share(s.on_background, s.on_background_length));
-  out("step of the means to what is around, relative",
+  out("distance of the colours' histograms to the neighbours", share(s.histogram, s.length));
+  out("neighbours on the ground, share", share(s.on_ground, s.on_ground_length));
+  out("neighbours in the background, share", share(s.on_background, s.on_background_length));
+  out("step of the means to the neighbours, relative",
       s.step_length > 0 ? s.step / s.step_length / std::max(1.0, own_px) : double{kUnknown});
   out("step at its foot, px", mean_px(s.foot_sum, s.foot_n));
   out("the largest neighbour over its own area", std::min(s.largest, 1000.0));
@@ -442,12 +443,12 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("share below the ground", share(ground.behind, ground.n));
   out("share above the ground", share(ground.n - ground.on - ground.behind, ground.n));
   const Heights& background = r.before_background;
-  out("before the background, px", mean_px(background.sum, background.n));
+  out("in front of the background, px", mean_px(background.sum, background.n));
   out("share in the background", share(background.on + background.behind, background.n));
-  out("a ground is known", frame.has_ground ? 1 : 0);
+  out("ground known", frame.has_ground ? 1 : 0);
   out("floor and walls known", frame.walls_and_floor);
   out("noise, grey levels", frame.noise_sigma);
-  out("its parts were one thing", origin.same_thing);
+  out("same-object score of its parts", origin.same_thing);
   out("its larger part, share", origin.larger_part);
   out("evidence: step of the planes around, px", share(around.textured_step, around.textured_length));
   out("step of the planes around, px", share(around.matched_step, around.matched_length));
@@ -455,14 +456,14 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("evidence: height above the ground, px",
       mean_px(r.textured_above_ground.sum, r.textured_above_ground.n));
   out("evidence: height above the ground over its error", how_clear(r.textured_above_ground));
-  out("evidence: before the background, px",
+  out("evidence: in front of the background, px",
       mean_px(r.textured_before_background.sum, r.textured_before_background.n));
-  out("evidence: before the background over its error", how_clear(r.textured_before_background));
+  out("evidence: in front of the background over its error", how_clear(r.textured_before_background));
   const bool alone = neighbours.empty();
-  out("most alike neighbour", alone ? double{kUnknown} : around.most_same_thing);
-  out("how alike what is around is", share(around.same_thing, around.length));
-  out("share of the outline to what is likely the same thing", share(around.wants, around.length));
-  out("its least alike parts", origin.least_same_thing);
+  out("same-object score, highest of the neighbours", alone ? double{kUnknown} : around.most_same_thing);
+  out("same-object score, mean over the outline", share(around.same_thing, around.length));
+  out("share of the outline with the same object likely", share(around.wants, around.length));
+  out("same-object score, lowest inside", origin.least_same_thing);
   out("disparities in the image, share", frame.matched_share);
   out("evidence in the image, share", frame.evidence_share);
   out("its colours beside the floor's", region.fits.to_floor);
@@ -476,20 +477,20 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("hints: outline around it",
       known(frame.has_hints && !alone, share(static_cast<double>(around.outline), around.length) / 16));
   out("hints: object, around it", known(frame.has_hints && !alone, share(around.object, around.length)));
-  out("hints: object, greatest of the neighbours", known(frame.has_hints && !alone, around.most_object));
+  out("hints: object, largest of the neighbours", known(frame.has_hints && !alone, around.most_object));
   out("hints: spread of the votes, relative", known(votes.any, votes.spread / std::sqrt(cells + 1)));
   out("hints: its centroid from that of its votes, relative",
       known(votes.any,
             distance(static_cast<double>(r.x) / area * frame.cells_across / frame.width - votes.x,
                      static_cast<double>(r.y) / area * frame.cells_across / frame.width - votes.y) /
                 std::sqrt(cells + 1)));
-  out("hints: area over the size voted for", known(votes.any, log2_of(cells + 1) - votes.size));
+  out("hints: area over the voted size", known(votes.any, log2_of(cells + 1) - votes.size));
   out("hints: centroids around it, relative",
       known(around.centroids_length > 0, around.centroids / around.centroids_length / std::sqrt(cells + 1)));
   out("hints: nearest centroid around it, relative",
       known(around.centroids_length > 0, around.nearest_centroid / std::sqrt(cells + 1)));
-  out("its share of what it becomes a part of", kUnknown);
-  out("how alike it is to the rest of that", kUnknown);
+  out("its share of its parent", kUnknown);
+  out("same-object score, rest of its parent", kUnknown);
 }
 
 }  // namespace

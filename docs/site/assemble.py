@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""assemble.py SOURCE_DIR PAGES_DIR [BUILD_DIR]: the pages of the repository as the site takes them.
+"""assemble.py SOURCE_DIR PAGES_DIR [BUILD_DIR]: copies the repository's pages to where the site generator reads them.
 
-Pages and pictures keep their places. A link to a source file leads to a page with its text, one to a folder without
-a README to a list of its files. With BUILD_DIR, where the Python module is built, its reference is written, too.
+Pages and images keep their paths. A link to a source file becomes a page with its text, a link to a folder without a
+README a list of its files. With BUILD_DIR, where the Python module is built, writes the module's reference, too.
 """
 import importlib
 import inspect
@@ -88,7 +88,7 @@ class Assembly:
 
 
 def markdown_of(name, text):
-    """A docstring: its signature and what is indented as code, the rest as prose."""
+    """A docstring as Markdown: signature and indented lines as code, the rest as prose."""
     parts = []
     for paragraph in re.split(r"\n\s*\n", text):
         if not parts and paragraph.startswith(f"{name}("):
@@ -105,7 +105,7 @@ def python_reference(build):
     sys.path.insert(0, str(build / "python"))
     cairn = importlib.import_module("cairn")
     parts = ["# Python\n", inspect.getdoc(cairn) or ""]
-    first = ["segment", "Segmenter", "options"]  # the others follow by name
+    first = ["segment", "Segmenter", "options"]  # then alphabetically
     public = [n for n in getattr(cairn, "__all__", dir(cairn)) if not n.startswith("_")]
     public.sort(key=lambda n: (first.index(n) if n in first else len(first), n))
     things = {n: getattr(cairn, n) for n in public if not inspect.ismodule(getattr(cairn, n))}

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""check_links.py SITE: every link of every page of a built site leads to a file of it, and a #fragment to an id."""
+"""check_links.py SITE: checks that every link of a built site leads to one of its files, and every #fragment to an
+id."""
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -28,7 +29,7 @@ def main(site):
     for path, page in pages.items():
         for link in page.links:
             parts = urlsplit(link)
-            # The page for what is not found stands anywhere on a server, so its links begin at the root.
+            # The 404 page is served at any depth, so its links are absolute.
             if parts.scheme or parts.netloc or link.startswith(("javascript:", "/")):
                 continue
             count += 1
@@ -38,9 +39,9 @@ def main(site):
             known = pages.get(target)
             fragment = unquote(parts.fragment)
             if not target.exists() or (fragment and known and fragment not in known.ids and fragment != "__top"):
-                print(f"{path.relative_to(site)}: {link}: not there")
+                print(f"{path.relative_to(site)}: {link}: not found")
                 bad += 1
-    print(f"{len(pages)} pages, {count} links, {bad} of them lead nowhere")
+    print(f"{len(pages)} pages, {count} links, {bad} of them broken")
     return 1 if bad or not count else 0
 
 

@@ -6,7 +6,7 @@
     frame = cairn.segment(left, right, cairn.load_calibration("calib.txt"))
     frame.objects, frame.disparity, frame.reject
 
-Every stage of the method is a function of its C++ name; cairn.options() lists what can be set.
+Every stage of the method is a function with its C++ name; cairn.options() lists all options.
 """
 
 try:

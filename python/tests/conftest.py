@@ -19,7 +19,7 @@ def source():
 
 @pytest.fixture(scope="session")
 def command():
-    """The command of the same build."""
+    """The command from the same build."""
     path = os.environ.get("CAIRN_COMMAND")
     if not path:
         pytest.skip("CAIRN_COMMAND does not say where the command is")
@@ -27,7 +27,7 @@ def command():
 
 
 class Sample:
-    """A pair with its calibration; the frame is made once."""
+    """A pair with its calibration; the frame is computed once."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -36,7 +36,7 @@ class Sample:
         self.frame = cairn.segment(self.left, self.right, self.calibration)
 
     def gray(self):
-        """Both pictures in grey."""
+        """Both images in grey."""
         return tuple(gray_of(picture) for picture in (self.left, self.right))
 
 
@@ -51,7 +51,7 @@ def sample():
 
 
 def same(a, b):
-    """Bit for bit, holes included."""
+    """Equal bit for bit, holes included."""
     return (a is None and b is None) or (
         a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
     )

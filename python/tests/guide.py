@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What docs/python.md shows; test_guide.py runs it."""
+"""Code of docs/python.md; test_guide.py runs it."""
 
 import cairn
 import numpy as np
@@ -51,7 +51,7 @@ def followed(folder):
     found = []
     # [follow]
     for step in cairn.follow(folder, tracking={"min_hits": 2}):  # any source of `cairn follow`
-        x, y, z = step.map_from_camera[:3, 3]  # where the camera is, m
+        x, y, z = step.map_from_camera[:3, 3]  # position of the camera, m
         for track in step.tracks:
             if track.state == "confirmed":
                 pixels = step.ids == track.id
@@ -83,7 +83,7 @@ def stages(left, right, rig):
 
 def tuned(folder, left, right, rig):
     # [tune]
-    frames = cairn.load_tuning_frames(folder, truth=True)  # each with left.png, right.png, calib.txt, objects.png
+    frames = cairn.load_tuning_frames(folder, truth=True)  # folders with left.png, right.png, calib.txt, objects.png
     tuning = cairn.tune(frames, options=["superpixels.count", "objects.*"], evaluations=5, holdout=0.25)
     print(tuning)  # losses before and after, also on the frames held out
     better = cairn.segment(left, right, rig, config=tuning.config)
@@ -95,6 +95,6 @@ def doctor(left, right, rig, pairs):
     # [doctor]
     for finding in cairn.diagnose(cairn.measure_pair(left, right), rig):
         print(f"{finding.severity}, {finding.kind}: {finding.says}. {finding.remedy}")
-    late = cairn.measure_synchrony(pairs).lag  # frames that the right camera is late
+    late = cairn.measure_synchrony(pairs).lag  # delay of the right camera in frames
     # [/doctor]
     return late

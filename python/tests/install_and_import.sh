@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# install_and_import.sh BUILD_DIR PYTHON: installs the component `python` into new folders, as Debian's /usr and as any
-# other prefix, and imports it from there alone.
+# install_and_import.sh BUILD_DIR PYTHON: installs the component `python` into new folders, as for Debian's /usr and
+# for another prefix, and imports it from there only.
 set -euo pipefail
 build_dir=$1 python=$2
 unset PYTHONPATH
@@ -24,4 +24,4 @@ else
   imports "$scratch"/system/usr/lib/python3.*/site-packages
 fi
 imports "$scratch"/own/lib/python3.*/*-packages
-[[ ! -e $scratch/own/bin ]]  # nothing of the other components
+[[ ! -e $scratch/own/bin ]]  # no file of another component

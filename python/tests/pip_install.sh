@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# pip_install.sh SOURCE_DIR PYTHON: `pip install .` into a new environment, without any index, and the module used there.
+# pip_install.sh SOURCE_DIR PYTHON: runs `pip install .` in a new environment, without an index, and uses the module
+# there.
 set -euo pipefail
 source_dir=$1 python=$2
 unset PYTHONPATH
@@ -11,7 +12,7 @@ trap 'rm -rf "$scratch"' EXIT
 
 if ! "$python" -m venv --system-site-packages "$scratch/venv" >"$scratch/log" 2>&1; then
   cat "$scratch/log"
-  echo "skipped: $python makes no environments (Debian: python3-venv)"
+  echo "skipped: $python cannot create environments (Debian: python3-venv)"
   exit 77
 fi
 "$scratch/venv/bin/pip" install --no-index "$source_dir"
@@ -32,4 +33,4 @@ assert len(frame.objects) == 4 and frame.ground, frame
 print(frame)
 PYTHON
 "$scratch/venv/bin/pip" uninstall --yes cairn
-[[ -z $(find "$scratch/venv" -path '*site-packages/cairn*') ]]  # nothing stays that pip does not know
+[[ -z $(find "$scratch/venv" -path '*site-packages/cairn*') ]]  # uninstalling leaves no file

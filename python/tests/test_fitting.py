@@ -114,7 +114,7 @@ def test_the_ablation_fits_without_each_kind_of_cues(tmp_path, capsys):
 def test_a_hint_is_a_cue_of_the_hints_alone(tmp_path):
     np.arange(1, 6, dtype=np.float32).tofile(tmp_path / "regions0")
     (tmp_path / "regions1").write_bytes(b"")
-    names = ["hints: area over the size voted for", "area, share of the image"]
+    names = ["hints: area over the voted size", "area, share of the image"]
     for without, kept in ((("area",), [4, 0]), (("hints:",), [0, 5]), ((), [4, 5])):
         fake = types.SimpleNamespace(work=tmp_path, without=without, region_features=names)
         _, values = fit.Fitting.records(fake, "regions", 2)
@@ -155,15 +155,15 @@ def test_what_became_of_a_lost_object():
     ours = np.zeros_like(truth)
     assert worst.why(truth, ours, 1) == "missed"
     ours[5:15, 5:25] = 3
-    assert worst.why(truth, ours, 1) == "one with its neighbour"
-    assert worst.why(np.where(truth == 1, 1, 0), ours, 1) == "100 % of it"
+    assert worst.why(truth, ours, 1) == "merged with a neighbour"
+    assert worst.why(np.where(truth == 1, 1, 0), ours, 1) == "100 % found"
     ours[:] = 0
     ours[5:9, 5:15] = 1
-    assert worst.why(truth, ours, 1) == "40 % of it"
+    assert worst.why(truth, ours, 1) == "40 % found"
     ours[10:13, 5:15] = 2
-    assert worst.why(truth, ours, 1) == "40 % of it, in parts"
+    assert worst.why(truth, ours, 1) == "40 % found, split"
     ours[:, :15] = 5
-    assert worst.why(truth, ours, 1) == "flooded into the background"
+    assert worst.why(truth, ours, 1) == "merged with the background"
     ours[:] = 0
     ours[5:15, 5:6] = 1
     assert worst.why(truth, ours, 1) == "missed"

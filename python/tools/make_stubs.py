@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""make_stubs.py FILE: writes the type stubs of the module, from the module itself. The build calls it.
+"""make_stubs.py FILE: writes the module's type stubs, by inspecting the module. The build calls it.
 
-Functions begin their help with their signature, and attributes have their type, see bindings/define.hpp.
+Docstrings of functions begin with their signature, and attributes have a type: see bindings/define.hpp.
 """
 
 import inspect
@@ -46,7 +46,7 @@ __version__: str
 '''
 
 
-# What is not said by a signature.
+# Declarations that no signature contains.
 SPECIAL = {
     "__eq__": "def __eq__(self, other: object) -> bool: ...",
     "__iadd__": "def __iadd__(self, other: {owner}) -> {owner}: ...",
@@ -94,7 +94,7 @@ def function_stub(title, function, decorator=""):
 
 
 def doc_of(text):
-    """Without the list of options: it stands with the groups."""
+    """The docstring without the list of options, which is shown with the groups."""
     text = re.split(r"\n\nOptions, |\n\nconfig: a cairn.Config", text.strip())[0].strip()
     lines = [wrapped for line in text.split("\n") for wrapped in textwrap.wrap(line, 100)]
     if len(lines) < 2:
@@ -149,5 +149,5 @@ def stubs():
 
 if __name__ == "__main__":
     file = pathlib.Path(sys.argv[1])
-    file.unlink(missing_ok=True)  # it may be a link
+    file.unlink(missing_ok=True)  # may be a link
     file.write_text(stubs())

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What `pip install .` calls (PEP 517, see pyproject.toml): CMake builds and installs the module, the rest is a zip file.
+"""Backend of `pip install .` (PEP 517, see pyproject.toml): CMake builds and installs the module; a wheel is a zip file.
 
-Needs nothing from an index; what the library needs (docs/install.md) must be installed. CMAKE_ARGS in the environment is
-handed on to CMake. Why no backend from elsewhere: docs/decisions/dependencies.md.
+Downloads nothing; the library's dependencies (docs/install.md) must be installed. CMAKE_ARGS in the environment is
+passed to CMake. Why no existing backend is used: docs/decisions/dependencies.md.
 """
 
 import base64
@@ -36,9 +36,9 @@ def run(*command):
 
 
 def installed_package(folder, tag):
-    """Builds the module for the Python that runs this, and installs it alone into the folder."""
+    """Builds the module for the running Python and installs only it into the folder."""
     if not shutil.which("cmake"):
-        raise SystemExit("cairn: there is no cmake, expected 3.25 or later; docs/install.md lists what else is needed")
+        raise SystemExit("cairn: found no cmake, expected 3.25 or later; docs/install.md lists the other dependencies")
     build = SOURCE / "build" / f"pip-{tag}"
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     run("cmake", "-S", SOURCE, "-B", build, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DCAIRN_PYTHON=ON",
@@ -49,7 +49,7 @@ def installed_package(folder, tag):
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    """Without it pip would build everything once more to learn the name."""
+    """Optional in PEP 517; without it pip would build twice to learn the name."""
     info = pathlib.Path(metadata_directory) / f"cairn-{VERSION}.dist-info"
     info.mkdir()
     (info / "METADATA").write_text(metadata())

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""batch_engines.py CAIRN SOURCE_DIR [ENGINE...]: a run by each engine that the examples are for has the rows of one worker
-alone. Engines that are not installed are skipped (apt: parallel, snakemake, python3-distributed; slurm-wlm munge iproute2,
-for root: a cluster of one node in a network namespace). Exits with 77 where all are."""
+"""batch_engines.py CAIRN SOURCE_DIR [ENGINE...]: checks that a batch run gives the same rows with every engine in
+examples/batch as with a single worker. Engines that are not installed are skipped (apt: parallel, snakemake,
+python3-distributed; slurm-wlm munge iproute2, for root: a one-node cluster in a network namespace). Exit code 77: all
+skipped."""
 import hashlib
 import importlib.util
 import os
@@ -22,7 +23,7 @@ class Skipped(Exception):
 
 
 def run(*command, **options):
-    """The program's output; with what it said where it fails."""
+    """The program's output; on failure, an exception with it."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300, **options)
     assert done.returncode == 0, f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout
@@ -40,7 +41,7 @@ def planned(folder):
 
 
 def merged(run_folder):
-    """The digest of the rows, as the command says it and as they are."""
+    """The digest of the rows, as printed by the command and as computed here."""
     rows = run_folder.parent / "rows.jsonl"
     said = run(cairn, "batch", "merge", run_folder, "-o", rows).split()[0]
     assert said == hashlib.sha256(rows.read_bytes()).hexdigest()
@@ -82,7 +83,7 @@ def slurm(folder):
     if subprocess.run(["unshare", "--net", "--uts", "--mount", "--pid", "--fork", "true"], capture_output=True).returncode:
         raise Skipped("no namespaces here")
     planned(folder)
-    # With the first process of the namespace all daemons end.
+    # The daemons end with the first process of the namespace.
     run("unshare", "--net", "--uts", "--mount", "--pid", "--fork", "--mount-proc", sys.executable, __file__, cairn, source,
         "--inside", folder)
     return merged(folder / "run")
@@ -137,7 +138,7 @@ def start_cluster(folder):
         "--log-file", folder / "munge/log", "--seed-file", folder / "munge/seed")
     (folder / "slurm.conf").write_text(CONFIG.format(folder=folder))
     os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
-    # Into files: whoever reads their output would wait until the daemons end.
+    # Output goes to files: reading a pipe would block until the daemons end.
     with open(folder / "daemons.log", "w") as log:
         for daemon in ("slurmctld", "slurmd"):
             subprocess.run([daemon], check=True, stdout=log, stderr=log)
@@ -145,7 +146,7 @@ def start_cluster(folder):
 
 
 def inside(folder):
-    """An array with a task that is cancelled, then the same line again: only that task's shard is worked on."""
+    """Cancels a task of an array, then submits the same line again: only that task's shard is processed."""
     start_cluster(folder)
     os.environ["CAIRN"] = str(cairn)
     os.chdir(folder)

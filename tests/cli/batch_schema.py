@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""batch_schema.py CAIRN SOURCE_DIR: the rows of a batch run are what docs/schema/batch_row.schema.json says, and broken ones
-are refused. Exits with 77 (skipped) without python3-jsonschema."""
+"""batch_schema.py CAIRN SOURCE_DIR: checks that the rows of a batch run match docs/schema/batch_row.schema.json, and
+that broken rows do not. Exit code 77 (skipped) without python3-jsonschema."""
 import copy
 import json
 import pathlib
@@ -17,7 +17,7 @@ except ImportError:
     sys.exit(77)
 
 cairn, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-# As one document: python3-jsonschema of Debian 12 follows no references between urns.
+# A single document: python3-jsonschema of Debian 12 does not follow references between URNs.
 whole = (source / "docs/schema/objects.schema.json").read_text().replace('"#/$defs/', '"#/$defs/document/$defs/')
 published = json.loads((source / "docs/schema/batch_row.schema.json").read_text().replace("urn:cairn:objects:1#", "#/$defs/document"))
 published["$defs"] = {"document": {key: part for key, part in json.loads(whole).items() if key in ("properties", "$defs")}}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""follow_page_in_browser.py CAIRN SOURCE_DIR: the player of `cairn follow --html` in headless Chromium. Plays, scrubs, points
-and compares what the page says with the files of the result; measures how long a frame takes to be drawn among 1,000.
-Skipped as in_browser.py says. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
+"""follow_page_in_browser.py CAIRN SOURCE_DIR: tests the player of `cairn follow --html` in headless Chromium. Plays,
+scrubs, points, and compares the page with the result files; measures the time to draw a frame out of 1,000. Skipped
+under the conditions in in_browser.py. CAIRN_SCREENSHOTS=DIR keeps screenshots."""
 import json
 import math
 import pathlib
@@ -51,7 +51,8 @@ def with_blocks(page, blocks):
 
 
 def with_happenings(page):
-    """What a rig that stands still before things that do has not: refusals, a lost place, motion, events, landmarks."""
+    """Adds what the run of a static rig in a static scene lacks: refusals, a lost position, motion, events,
+    landmarks."""
     blocks = blocks_of(page)
     for k in range(FRAMES):
         facts = blocks[f"facts-{k}"]
@@ -134,7 +135,7 @@ class Player(PageTest):
         return [t for t in self.lines[index]["tracks"] if t["object"] and t["state"] != "tentative"]
 
     def drawn_from_above(self):
-        """The drawing's px of a metre, of the map's origin, of the camera, and of each track's dot."""
+        """The drawing's px per metre, and in px the map's origin, the camera, and each track's dot."""
         return self.browser.execute_script(
             "const d = document.querySelector('.above'), c = (n) => [n.cx.baseVal.value, n.cy.baseVal.value];"
             "const step = Number(document.querySelector('[data-panel=above] .count').textContent.match(/[\\d.]+/)[0]);"
@@ -171,7 +172,7 @@ class Player(PageTest):
         self.assertEqual(self.column("tracks", "x m"), [f"{t['position_m'][0]:.2f}" for t in listed])
         pose = self.lines[5]["pose"]
         x, y, z, w = pose["quaternion_xyzw"]
-        axis = (2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y))  # of the camera, in the map
+        axis = (2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y))  # camera axis in the map
         depths = [sum(a * (p - c) for a, p, c in zip(axis, t["position_m"], pose["position_m"])) for t in listed]
         for shown, depth in zip(self.column("tracks", "distance m"), depths):
             self.assertAlmostEqual(float(shown), depth, delta=0.006)
@@ -187,10 +188,11 @@ class Player(PageTest):
         self.assertEqual(sum(where), sum(t["area"] for t in self.areas(6)))
 
     def areas(self, index):
-        """Pixels of each confirmed track that is seen, counted in its run lengths."""
+        """Pixels of each confirmed track in view, counted from its run lengths."""
         result = []
         for track in self.seen(index):
-            # COCO's: 5 bits a character, differences to the run but one before from the third on.
+            # COCO encoding: 5 bits per character, from the third run on as differences to the run before the previous
+            # one.
             runs, text, at = [], track["rle"]["counts"], 0
             while at < len(text):
                 value, shift, more = 0, 0, True
@@ -221,13 +223,13 @@ class Player(PageTest):
         self.wait_for_frame(0)
         ActionChains(self.browser).key_down(Keys.SHIFT).send_keys(Keys.ARROW_RIGHT).key_up(Keys.SHIFT).perform()
         self.wait_for_frame(FRAMES - 1)
-        # A click on the time line goes to the frame that is drawn there.
+        # A click on the timeline selects the frame drawn there.
         self.move_pointer(self.find("#strip"), 0.5, 0.5)
         self.assertIn(f"/ {FRAMES}", self.find("#tip").text)
         self.click_there()
         shown = int(self.browser.execute_script("return document.getElementById('slider').value"))
         self.assertIn(shown, (3, 4))
-        self.wait_for_frame(shown)  # it is decoded first
+        self.wait_for_frame(shown)  # wait until it is decoded
         time.sleep(0.3)
         self.assertEqual(self.browser.execute_script("return location.hash"), f"#{shown + 1}")
 
@@ -287,7 +289,7 @@ class Player(PageTest):
         for key, place in tracks.items():
             assert_at(drawn["tracks"][key], place)
         assert_at(drawn["camera"], [1.5, 0.5])
-        # Nothing is drawn where the place is not known, and a landmark from its first frame on.
+        # Nothing is drawn while the position is unknown; a landmark is drawn from its first frame on.
         self.go(4)
         self.assertEqual(self.drawn_from_above()["camera_shown"], "hidden")
         shown = "return [...document.querySelectorAll('.landmark')].map((l) => l.getAttribute('visibility'))"
@@ -311,7 +313,7 @@ class Player(PageTest):
         self.assertIn("chosen", self.find(f".above .track[data-key='{track}']").get_attribute("class"))
         self.click_there()
         self.assertEqual(self.find(f"#tracks tr[data-key='{track}']").get_attribute("aria-selected"), "true")
-        self.go(5)  # it stays the chosen one
+        self.go(5)  # the choice persists
         self.assertIn("chosen", self.find(f".above .track[data-key='{track}']").get_attribute("class"))
         self.press(Keys.ESCAPE)
         self.assertEqual(self.find_all("#tracks tr[aria-selected=true]"), [])
@@ -326,7 +328,7 @@ class Player(PageTest):
         before = self.pixels("#strip canvas")
         self.find_all("#curve option")[2].click()
         self.assertNotEqual(self.pixels("#strip canvas"), before)
-        self.find("h1").click()  # the keys are the player's again
+        self.find("h1").click()  # keys control the player again
         self.go(6)
         self.assertGreater(len(self.find_all(".mark")), 0)
         tinted = sum(value >> 24 > 100 for value in self.pixels(".screen canvas:nth-of-type(2)"))
@@ -372,7 +374,7 @@ class Player(PageTest):
         median, p95 = times[len(times) // 2], times[math.ceil(0.95 * len(times)) - 1]
         print(f"{LONG} frames, {self.long.stat().st_size / 1e6:.1f} MB: open {opened:.2f} s, a frame is drawn within "
               f"{median:.1f} ms (median), {p95:.1f} ms (95 %)")
-        self.assertLess(p95, 250)  # 50 ms are asked for on a machine of one's own; a test's may be a busy one
+        self.assertLess(p95, 250)  # the target is 50 ms on an idle machine; tests may run on a busy one
 
 
 if __name__ == "__main__":

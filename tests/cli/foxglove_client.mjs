@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// foxglove_client.mjs CAIRN SOURCE_DIR BUILD_DIR: a client of Foxglove's own makers reads every channel of cairn live
-// --view, with both subprotocols, and changes an option. Exits with 77 (skipped) where its npm packages neither are in
-// BUILD_DIR/npm nor can be installed there.
+// foxglove_client.mjs CAIRN SOURCE_DIR BUILD_DIR: Foxglove's own client reads every channel of cairn live --view with
+// both subprotocols, and changes an option. Exit code 77 (skipped) if its npm packages are neither in BUILD_DIR/npm
+// nor installable there.
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
 import {existsSync, mkdirSync} from 'node:fs';
@@ -34,7 +34,7 @@ function load() {
 
 const [{FoxgloveClient}, {MessageReader}, {parse}, WebSocket] = load();
 
-/// Until what `run` begins has come, 30 s at most.
+/// Waits until the program started by `run` is ready, 30 s at most.
 function within(what, run) {
   return new Promise((resolve, reject) => {
     const timer = setTimeout(() => reject(new Error(`${what}: nothing came for 30 s`)), 30_000);
@@ -60,7 +60,7 @@ async function start() {
   return {run, address, text: () => text};
 }
 
-/// A reader of each channel, from what the server says of it alone.
+/// A reader for each channel, based on the server's schema only.
 function readerOf({encoding, schema, schemaEncoding}) {
   if (encoding === 'json') {
     assert.equal(schemaEncoding, 'jsonschema');
@@ -89,7 +89,7 @@ function checkMessages(messages) {
     const {data} = messages[`/cairn/${name}`];
     return [name, name === 'disparity' ? data : new Uint16Array(data.slice().buffer)];
   }));
-  // A hole has a reason, and nothing else has.
+  // Exactly the holes have a reason.
   assert.ok(disparity.every((value, at) => (value === 0) === (reject[at] !== 0)));
   const ids = new Set(labels);
   ids.delete(0);
@@ -99,7 +99,7 @@ function checkMessages(messages) {
   assert.ok(detections.length > 0);
   for (const {id, bbox} of detections) {
     const object = stats.objects.find((one) => String(one.id) === id);
-    if (!object) continue;  // an object that is no track
+    if (!object) continue;  // an object without a track
     const {x, y, z} = bbox.center.position;
     [x, y, z].forEach((value, axis) => assert.ok(Math.abs(value - object.position_m[axis]) < 1e-3, `${id}: ${value}`));
   }
@@ -131,7 +131,7 @@ async function check(address, subprotocol) {
     answers.set(what, resolve);
     ask(what);
   });
-  // While it is paused, all channels show the same frame.
+  // While paused, all channels show the same frame.
   await asked('pause', (id) => client.setParameters([{name: 'live.pause', value: true}], id));
 
   const readers = new Map(), byStamp = new Map();

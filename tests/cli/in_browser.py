@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What the tests of pages share: headless Chromium, and helpers to look at a page. Importing it ends the program with 77
-(skipped) where Debian's chromium, chromium-driver, python3-selenium or python3-pil is absent."""
+"""Shared by the tests of pages: headless Chromium, and helpers to inspect a page. Importing it exits with 77
+(skipped) without Debian's chromium, chromium-driver, python3-selenium or python3-pil."""
 import os
 import pathlib
 import shutil
@@ -25,7 +25,7 @@ for program in ("chromium", "chromedriver"):
         sys.exit(77)
 
 CAIRN, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
-HOSTILE = "<!--<script> & \"x\""  # a name that must be shown, not obeyed
+HOSTILE = "<!--<script> & \"x\""  # a name that must be escaped
 
 
 def cairn(*arguments):
@@ -35,7 +35,7 @@ def cairn(*arguments):
 def browser(*more_arguments):
     options = webdriver.ChromeOptions()
     options.binary_location = shutil.which("chromium")
-    # No sandbox: Chromium refuses to run as root with one, and the page is our own.
+    # No sandbox: as root, Chromium does not start with one, and the page is our own.
     for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1366,1000",
                      *more_arguments):
         options.add_argument(argument)
@@ -44,7 +44,7 @@ def browser(*more_arguments):
 
 
 class PageTest(unittest.TestCase):
-    """A test of pages in `self.browser`; nothing may have been complained about in its console."""
+    """A test of pages in `self.browser`; fails if the console has errors."""
 
     def tearDown(self):
         self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [])
@@ -71,14 +71,14 @@ class PageTest(unittest.TestCase):
         return self.browser.execute_script("return document.querySelector('#frame-name').firstChild.textContent")
 
     def column(self, table, name):
-        """The texts of a column, from the top."""
+        """The texts of a column, top to bottom."""
         return self.browser.execute_script(
             "const t = document.getElementById(arguments[0]);"
             "const c = [...t.tHead.rows[0].cells].findIndex((h) => h.textContent === arguments[1]);"
             "return [...t.tBodies[0].rows].map((r) => r.cells[c].textContent);", table, name)
 
     def move_pointer(self, element, right, down):
-        """To the place of an element that is these shares of its width and height from its corner."""
+        """Moves the pointer to the point at these shares of an element's width and height."""
         self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
         left, top, wide, high = self.browser.execute_script(
             "const b = arguments[0].getBoundingClientRect(); return [b.left, b.top, b.width, b.height]", element)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""live_page_in_browser.py CAIRN SOURCE_DIR [LivePage.TEST]: the page of `cairn live --view` in headless Chromium: what it
-draws against what `cairn segment` finds, options, pause and step, a server that goes and comes back. Skipped as
-in_browser.py says, and where views are not built in. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
+"""live_page_in_browser.py CAIRN SOURCE_DIR [LivePage.TEST]: tests the page of `cairn live --view` in headless
+Chromium: drawings against the results of `cairn segment`, options, pause and step, reconnection. Skipped under the
+conditions in in_browser.py, and if views are not built. CAIRN_SCREENSHOTS=DIR keeps screenshots."""
 import json
 import os
 import pathlib
@@ -19,11 +19,11 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 TOKEN = "0123456789abcdef-of-a-test"
-FRAMES = 3000  # at 5 Hz: longer than a test looks that does not loop, on however busy a machine
+FRAMES = 3000  # at 5 Hz: outlasts every test without --loop, even on a busy machine
 
 
 class Live:
-    """A `cairn live` whose view can be looked at."""
+    """A running `cairn live --view`."""
 
     def __init__(self, source, *arguments, at="127.0.0.1:0"):
         self.process = subprocess.Popen(
@@ -51,7 +51,7 @@ class Live:
 
 
 def long_sequence(folder):
-    """The ball rolls to and fro."""
+    """The ball rolls back and forth."""
     frames = sorted((SOURCE / "sequences" / "rolling_ball").glob("0*"))
     there_and_back = frames + frames[-2:0:-1]
     folder.mkdir()
@@ -61,7 +61,7 @@ def long_sequence(folder):
 
 
 def processor_ms(root):
-    """What a process and those under it have taken so far."""
+    """Processor time of a process and its children so far, ms."""
     stats = {}
     for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -81,7 +81,7 @@ class LivePage(PageTest):
         cls.folder = tempfile.TemporaryDirectory()
         cls.source = pathlib.Path(cls.folder.name) / HOSTILE
         long_sequence(cls.source)
-        cls.browser = browser("--disable-3d-apis")  # as on a computer without a graphics processor
+        cls.browser = browser("--disable-3d-apis")  # like a computer without a GPU
         cls.browser.set_script_timeout(60)
         cls.lives = []
 
@@ -126,21 +126,21 @@ class LivePage(PageTest):
         return self.script("return window.cairnStats.drawn")
 
     def look_at(self, live, frames=3):
-        # localStorage outlives a page.
+        # localStorage persists between pages.
         self.browser.get(live.url)
         self.script("localStorage.clear()")
         self.browser.get(live.url)
         self.wait_until(lambda: self.drawn() >= frames, f"{frames} frames are drawn")
 
     def frame(self):
-        """What the server says of the newest frame."""
+        """The server's newest message about a frame."""
         return self.browser.execute_async_script(
             "const done = arguments[0]; fetch('/status.json').then((r) => r.json()).then(done)")
 
     def pause(self):
         self.find("#pause").click()
         self.wait_until(lambda: self.find("#link").text == "paused", "it is paused")
-        time.sleep(1.0)  # the frame at hand
+        time.sleep(1.0)  # lets the current frame finish
 
     def step(self):
         before = self.frame()["frame"]
@@ -190,8 +190,9 @@ class LivePage(PageTest):
         self.keep("live")
 
     def test_prints_how_fast_it_draws(self):
-        """A pair every 33 ms. Measured, not judged: a drawn frame is all that is asked for. The preset `default` takes more
-        than 33 ms of one processor for a pair, so what is received is what it computes beside the browser; `paper` keeps pace."""
+        """Sends a pair every 33 ms. Measures without a limit; a drawn frame is the only requirement. The preset
+        `default` needs more than 33 ms of one processor per pair, so it receives what it can compute next to the
+        browser; `paper` keeps up."""
         print(f"30 pairs a second to {os.cpu_count()} processors, load before {os.getloadavg()[0]:.1f}; Chromium without a graphics processor")
         for preset in ("default", "paper"):
             live = self.live("--pace", "6", "--loop", "--preset", preset)
@@ -199,7 +200,7 @@ class LivePage(PageTest):
             for panels in ("all panels", "the left image alone"):
                 if panels != "all panels":
                     ActionChains(self.browser).double_click(self.find("[data-panel=picture] canvas")).perform()
-                time.sleep(20)  # its figures are those of the last 300 frames
+                time.sleep(20)  # its statistics cover the last 300 frames
                 counts = lambda: [*self.script("return [performance.now(), window.cairnStats.received, window.cairnStats.drawn, window.cairnStats.computed]"),
                                   processor_ms(self.browser.service.process.pid), processor_ms(live.process.pid)]
                 before = counts()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""live_ros2_fastdds.py COMMAND LISTENER SOURCE_DIR [FRAMES [FOLDER]]: another implementation of DDS receives every
-frame of `cairn live --ros2`, and in them what `cairn segment` finds."""
+"""live_ros2_fastdds.py COMMAND LISTENER SOURCE_DIR [FRAMES [FOLDER]]: checks that another implementation of DDS
+receives every frame of `cairn live --ros2`, with the results of `cairn segment`."""
 import json
 import os
 import pathlib
@@ -24,7 +24,7 @@ def lines(text):
 
 
 with tempfile.TemporaryDirectory() as folder:
-    # The first frames pass before the two know each other: they are more than what is counted.
+    # Extra frames: the first ones are published before the two have discovered each other.
     early = 30
     for index in range(frames + early):
         (pathlib.Path(folder) / f"{index:04d}").symlink_to(sample)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// node mcap_client.mjs FILE.mcap: reads a recording with others' programs (npm: @mcap/core, @foxglove/rosmsg,
-// @foxglove/rosmsg2-serialization, @foxglove/rosmsg-msgs-common, zstd by fzstd) in both ways, with checksums, and prints
-// what it holds as JSON. CAIRN_NODE_MODULES says where they are. Exit code 77: they are not there.
+// node mcap_client.mjs FILE.mcap: reads a recording with third-party packages (npm: @mcap/core, @foxglove/rosmsg,
+// @foxglove/rosmsg2-serialization, @foxglove/rosmsg-msgs-common, zstd by fzstd), as a stream and by its index, with
+// checksums, and prints its content as JSON. CAIRN_NODE_MODULES names their folder. Exit code 77: they are missing.
 import { createRequire } from "node:module";
 import fs from "node:fs";
 import path from "node:path";
@@ -27,7 +27,7 @@ const file = process.argv[2];
 const bytes = fs.readFileSync(file);
 const decompressHandlers = { zstd: (packed, size) => zstd.decompress(packed, new Uint8Array(Number(size))) };
 
-// By the definition that the file has, and by the official one where that is known. Both must say the same.
+// By the definition in the file, and by the official one if there is one. Both must give the same.
 const readers = new Map();
 function decode(schema, data) {
   if (!readers.has(schema.name)) {
@@ -69,7 +69,7 @@ function plain(_key, value) {
   return value;
 }
 
-// In order, as a stream.
+// As a stream, in order.
 const stream = new mcap.McapStreamReader({ validateCrcs: true, includeChunks: false, decompressHandlers });
 stream.append(bytes);
 const streamed = {};

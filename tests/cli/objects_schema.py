@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""objects_schema.py CAIRN SOURCE_DIR: what the command writes is what docs/schema/objects.schema.json says, and a broken
-document is refused. Exits with 77 (skipped) without python3-jsonschema."""
+"""objects_schema.py CAIRN SOURCE_DIR: checks that the command's output matches docs/schema/objects.schema.json, and
+that broken documents do not. Exit code 77 (skipped) without python3-jsonschema."""
 import copy
 import json
 import pathlib
@@ -20,8 +20,8 @@ published = json.loads((source / "docs/schema/objects.schema.json").read_text())
 
 
 def strict(schema):
-    """The same without room for keys that the schema does not name, and with none left out that came later than 1.0: for
-    readers it is open, for the writer it is not."""
+    """The schema without unknown keys and with all keys added after 1.0 required: it is open for readers, not for the
+    writer."""
     if isinstance(schema, list):
         return [strict(part) for part in schema]
     if not isinstance(schema, dict):
@@ -63,7 +63,7 @@ def documents():
         yield "no ground", written(lonely, "--set", "ground.source=off")
 
 
-# Documents of 1.0 have none of them.
+# Documents of version 1.0 have none of these.
 LATER = {"stamp_ns", "floor_frame", "left_out", "obstacle_scan", "disparity_sigma_px", "depth_interval_m", "box_on_floor"}
 
 failures = 0
@@ -88,7 +88,7 @@ expect(any(document["external_disparity"] for document in checked), "no document
 
 
 def every_key(node, path=()):
-    """The path of every key that the schema asks for."""
+    """The path of every key that the schema requires."""
     if isinstance(node, list):
         if node and isinstance(node[0], dict):
             yield from every_key(node[0], (*path, 0))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""page_in_browser.py CAIRN SOURCE_DIR: the pages of --html in headless Chromium. Sorts tables, moves the slider, points at
-pixels and compares what the page says with the files of the result. Exits with 77 (skipped) where Debian's chromium,
-chromium-driver, python3-selenium or python3-pil is absent. CAIRN_SCREENSHOTS=DIR keeps pictures of what was seen."""
+"""page_in_browser.py CAIRN SOURCE_DIR: tests the pages of --html in headless Chromium. Sorts tables, moves the
+slider, points at pixels, and compares the page with the result files. Exit code 77 (skipped) without Debian's
+chromium, chromium-driver, python3-selenium or python3-pil. CAIRN_SCREENSHOTS=DIR keeps screenshots."""
 import base64
 import io
 import json
@@ -35,7 +35,7 @@ class Page(PageTest):
             shutil.copytree(SOURCE / "samples" / sample, cls.frames / sample)
         (cls.frames / "overlap").rename(cls.frames / HOSTILE)
         cls.names = sorted(path.name for path in cls.frames.iterdir())
-        # One more check than the preset has, so that some pixels have two reasons.
+        # One check more than in the preset, so that some pixels have two reasons.
         cairn("segment", cls.frames, "--html", "-o", cls.results, "--set", "uniqueness.ratio=5")
         cairn("evaluate", cls.results, cls.frames, "--html", root / "scores", "--json", root / "scores.json")
         cls.evaluation = json.loads((root / "scores.json").read_text())
@@ -59,11 +59,11 @@ class Page(PageTest):
         self.fail(f"table {table} has no column {name}")
 
     def two_in_a_row(self):
-        """Panels large enough for a pointer to find every pixel, and small enough for the window."""
+        """Panels large enough to point at single pixels, and small enough for the window."""
         self.find("[data-columns='2']").click()
 
     def point_at(self, panel, x, y):
-        """Moves the pointer to the middle of a pixel and returns what the page says of it."""
+        """Moves the pointer to the middle of a pixel and returns the page's description of it."""
         stage = self.find(f"[data-panel={panel}] .stage")
         self.move_pointer(stage, (x + 0.5) / 320, (y + 0.5) / 240)
         tip = self.find("#tip")
@@ -79,7 +79,7 @@ class Page(PageTest):
         return maps, json.loads((folder / "objects.json").read_text())
 
     def legend(self, panel):
-        """What the chips of a panel say: name → per cent."""
+        """The chips of a panel's legend: name → per cent."""
         chips = [chip.text.rsplit(" %", 1)[0].rsplit("\n", 1) for chip in self.find_all(f"[data-panel={panel}] .chip")]
         return {name: float(share) for name, share in chips}
 
@@ -152,7 +152,7 @@ class Page(PageTest):
         row.click()
         ActionChains(self.browser).move_to_element(self.find("h1")).perform()
         self.assertEqual(self.find("#left-out tr[data-key='1']").get_attribute("aria-selected"), "true")
-        self.assertEqual(len(self.find_all(".stage .box")), 5)  # it stays until the next click
+        self.assertEqual(len(self.find_all(".stage .box")), 5)  # persists until the next click
         self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", row)
         row.click()
         ActionChains(self.browser).move_to_element(self.find("h1")).perform()
@@ -170,7 +170,7 @@ class Page(PageTest):
             " dots: all('.dot', (d) => [d.cx.baseVal.value, d.cy.baseVal.value]),"
             " boxes: Object.fromEntries(all('.thing', (g) => [g.dataset.key, [...g.querySelector('polygon').points].map((p) => [p.x, p.y])]))};")
         self.assertGreater(len(drawn["rings"]), 1)
-        scale = drawn["rings"][0] / float(drawn["labels"][0].removesuffix(" m"))  # px of the drawing for a metre
+        scale = drawn["rings"][0] / float(drawn["labels"][0].removesuffix(" m"))  # px of the drawing per metre
         for radius, label in zip(drawn["rings"], drawn["labels"]):
             self.assertAlmostEqual(radius, scale * float(label.removesuffix(" m")), delta=0.01)
 
@@ -195,7 +195,7 @@ class Page(PageTest):
                                   y + a * long / 2 * math.sin(yaw) + b * short / 2 * math.cos(yaw))
                        for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
             assert_there(drawn["boxes"][str(found["id"])], corners)
-        # The place of the pixel pointed at is ringed, and a box leads to its row.
+        # The position of the pixel under the pointer is ringed, and a box leads to its row.
         maps, _ = self.result(0)
         x, y = next((x, y) for y in range(120, 240) for x in range(320)
                     if maps["objects"].getpixel((x, y)) == 1 and maps["disparity"].getpixel((x, y)))
@@ -246,8 +246,8 @@ class Page(PageTest):
         shown = Image.open(io.BytesIO(base64.b64decode(self.find("[data-panel=left] img").get_attribute("src").split(",")[1])))
         with Image.open(self.frames / self.names[0] / "right.png") as image:
             difference = ImageStat.Stat(ImageChops.difference(shown.convert("L"), image.convert("L"))).mean[0]
-        self.assertLess(difference, 2)  # a JPEG, and how colours become grey
-        # The ring is where the right camera sees the pixel, and leads back to it.
+        self.assertLess(difference, 2)  # JPEG artefacts, and the conversion to grey
+        # The ring is at the pixel in the right image, and leads back to the left one.
         maps, _ = self.result(0)
         disparity = maps["disparity"].load()
         x, y = next((x, y) for y in range(120, 240) for x in range(160, 320) if disparity[x, y])
@@ -282,7 +282,7 @@ class Page(PageTest):
         self.wait_for_frame(1)
         body.send_keys(Keys.END)
         self.wait_for_frame(2)
-        body.send_keys(Keys.ARROW_RIGHT)  # there is none
+        body.send_keys(Keys.ARROW_RIGHT)  # already the last frame
         self.wait_for_frame(2)
         self.find("#previous").click()
         self.wait_for_frame(1)
@@ -305,7 +305,7 @@ class Page(PageTest):
         self.assertEqual(self.browser.execute_script("return seen"), ["1", "2"])
         time.sleep(0.4)
         self.assertFalse(self.playing())
-        # The space bar begins anew at the end and pauses; a frame asked for pauses, too.
+        # The space bar restarts at the end and pauses; selecting a frame pauses, too.
         body = self.find("body")
         body.send_keys(Keys.SPACE)
         self.wait_for_frame(0)
@@ -339,7 +339,7 @@ class Page(PageTest):
         maps, document = self.result(0)
         width, height = maps["reject"].size
         seen = {"hole": 0, "object": 0, "two reasons": 0}
-        # Some of each kind: spread over the picture, and the first pixels that have two reasons.
+        # Some of each kind: spread over the image, and the first pixels with two reasons.
         places = [(x, y) for y in range(7, height, 41) for x in range(5, width, 53)]
         bits = maps["reject"].load()
         places += [(x, y) for y in range(height) for x in range(width) if bin(bits[x, y]).count("1") > 1][:3]
@@ -381,7 +381,7 @@ class Page(PageTest):
         self.assertGreater(seen["hole"], 3)
         self.assertGreater(seen["object"], 1)
         self.assertGreater(seen["two reasons"], 0)
-        self.assertEqual(len(self.find_all(".cross")), 4)  # the same pixel in the other pictures
+        self.assertEqual(len(self.find_all(".cross")), 4)  # the same pixel in the other panels
 
     def test_a_click_singles_an_object_out(self):
         self.open("segment")
@@ -467,7 +467,7 @@ class Page(PageTest):
 
 
 def orders(names):
-    """Every order of a few words: which reason is told first is the page's business."""
+    """Every order of a few words: the page may list the reasons in any order."""
     if len(names) < 2:
         return [names]
     return [[name, *rest] for name in names for rest in orders([other for other in names if other != name])]

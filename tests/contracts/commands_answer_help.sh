@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# commands_answer_help.sh CAIRN: every command of cairn answers --help on stdout with its name and exit code 0, and bad
-# usage ends with exit code 2 and one line on stderr.
+# commands_answer_help.sh CAIRN: checks that every command answers --help on stdout with its name and exit code 0, and
+# wrong usage with exit code 2 and one line on stderr.
 set -euo pipefail
 cairn=$1
 bad=0

@@ -1,11 +1,11 @@
-# What the project promises to those who build on it. Included by tests/CMakeLists.txt.
+# Promises to users of the project. Included by tests/CMakeLists.txt.
 
-# Each public header compiles alone, and twice over: one generated source per header.
+# Each public header compiles alone, and twice: one generated source per header.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
   ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp ${PROJECT_SOURCE_DIR}/page/*.hpp
   ${PROJECT_SOURCE_DIR}/tracking/*.hpp ${PROJECT_SOURCE_DIR}/landmarks/*.hpp ${PROJECT_SOURCE_DIR}/source/*.hpp
   ${PROJECT_SOURCE_DIR}/ros/*.hpp ${PROJECT_SOURCE_DIR}/live/*.hpp)
-# What a kernel's source includes once per instruction set is no header in this sense.
+# A header that a kernel's source includes once per instruction set is not a header in this sense.
 list(FILTER headers EXCLUDE REGEX "-inl\\.hpp$")
 if(NOT CAIRN_IO)
   list(FILTER headers EXCLUDE REGEX "^(io|page)/|^cairn/opencv\\.hpp$")
@@ -27,7 +27,7 @@ if(CAIRN_IO)
   target_link_libraries(cairn_headers_alone PRIVATE cairn::io OpenCVImgproc::imgproc)
 endif()
 if(CAIRN_HAS_TRACKING)
-  find_package(Eigen3 REQUIRED NO_MODULE)  # in headers that are not installed
+  find_package(Eigen3 REQUIRED NO_MODULE)  # used in headers that are not installed
   find_package(nlohmann_json REQUIRED)
   target_link_libraries(cairn_headers_alone PRIVATE cairn::sequences Eigen3::Eigen nlohmann_json::nlohmann_json)
 endif()
@@ -45,7 +45,7 @@ cairn_contract(installed_headers_are_complete ${here}/headers_are_complete.sh ${
 cairn_contract(no_include_runs_upwards ${here}/no_upward_includes.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(links_of_the_pages_exist ${here}/links_exist.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(no_temporaries_in_shared_folders ${here}/no_shared_temporaries.sh ${PROJECT_SOURCE_DIR})
-# No generator expression: the comma of "address,undefined" would part its arguments.
+# No generator expression: the comma of "address,undefined" would split its arguments.
 set(consumer_flags)
 if(CAIRN_SANITIZE)
   set(consumer_flags -fsanitize=${CAIRN_SANITIZE})
@@ -68,7 +68,7 @@ if(CAIRN_IO)
   cairn_contract(commands_answer_help ${here}/commands_answer_help.sh $<TARGET_FILE:cairn_cli>)
   cairn_contract(manual_pages_and_completion ${here}/manual.sh $<TARGET_FILE:cairn_cli> ${PROJECT_BINARY_DIR}/manual)
   cairn_contract(docs_are_as_generated ${PROJECT_SOURCE_DIR}/docs/update.sh --check ${PROJECT_BINARY_DIR})
-  # Debian's Python, which has Debian's modules.
+  # Debian's Python, for which Debian's modules are installed.
   find_program(CAIRN_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
   if(CAIRN_SYSTEM_PYTHON)
     cairn_contract(shown_code_runs ${CAIRN_SYSTEM_PYTHON} ${here}/shown_code_runs.py
@@ -80,7 +80,7 @@ if(CAIRN_IO)
   cairn_contract(instruction_counts ${PROJECT_SOURCE_DIR}/benchmarks/instruction_counts.sh --check ${PROJECT_BINARY_DIR})
   set_tests_properties(contracts/instruction_counts PROPERTIES SKIP_RETURN_CODE 77)
 endif()
-# What is shipped is a release build.
+# Release builds only, since they are shipped.
 if(CAIRN_INSTALL_RULES AND NOT CMAKE_CROSSCOMPILING)
   cairn_contract(release_builds_are_hardened ${here}/release_is_hardened.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CXX_COMPILER})
 endif()

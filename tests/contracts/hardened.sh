@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# hardened.sh PATH...: every program and shared library of PATHs (files, or folders that are searched) was built as
-# cmake/hardening.cmake has it: at random addresses, with tables that are read-only once it runs, no stack that can be run,
-# canaries, and no library path but one from where it lies. Of all of them together at least one calls the C library's
-# checked functions: in most C++ there is none to be checked. Exit code 77 where readelf is missing.
+# hardened.sh PATH...: checks that every program and shared library of PATHs (files, or folders to search) was built
+# with the options of cmake/hardening.cmake: position-independent, with read-only tables at run time, a non-executable
+# stack, canaries, and only relative library paths. At least one of them must call the C library's checked functions;
+# most C++ code has no such call. Exit code 77 without readelf.
 set -euo pipefail
 command -v readelf >/dev/null || { echo "skipped: readelf is not installed (binutils)"; exit 77; }
 

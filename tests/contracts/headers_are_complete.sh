@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# headers_are_complete.sh CMAKE BUILD_DIR: every header of ours that an installed one includes is installed, too.
+# headers_are_complete.sh CMAKE BUILD_DIR: checks that every cairn header included by an installed one is installed,
+# too.
 set -euo pipefail
 prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT

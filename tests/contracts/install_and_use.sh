@@ -2,26 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# install_and_use.sh HOW SOURCE_DIR BUILD_DIR COMPILER: the library from BUILD_DIR, installed into a new folder and that
-# folder moved, as others use it (HOW):
+# install_and_use.sh HOW SOURCE_DIR BUILD_DIR COMPILER: installs the library from BUILD_DIR into a new folder, moves
+# that folder, and uses it as other projects do (HOW):
 #   cmake         tests/consumer finds it by find_package(cairn), builds and runs
-#   pkg-config    the same programs, built with what pkg-config says
-#   headers       each installed header compiles alone, with nothing of the source tree in reach
+#   pkg-config    the same programs, built with the flags of pkg-config
+#   headers       each installed header compiles alone, without access to the source tree
 #   fetch         tests/consumer builds the library from its sources by FetchContent (nothing is downloaded or installed)
-# Exit code 77 where pkg-config is not installed.
+# Exit code 77 without pkg-config.
 set -euo pipefail
 how=$1 source_dir=$2 build_dir=$3 compiler=$4
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 read -ra flags <<<"${CAIRN_CONSUMER_FLAGS:-}"
 
-# Moved behind the installer's back: nothing in it may name the place that it was made for.
+# Moved after installation: no file may contain the original path.
 install_and_move() {
   cmake --install "$build_dir" --prefix "$scratch/first" >/dev/null
   mv "$scratch/first" "$scratch/prefix"
   ! grep -rlI -e "$scratch/first" -e "$source_dir" "$scratch/prefix" || { echo "these name a path of the build"; exit 1; }
   PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name cairn.pc)")
-  LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH")${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}  # only for shared ones
+  LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH")${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}  # for shared libraries
   export PKG_CONFIG_PATH LD_LIBRARY_PATH
 }
 
@@ -53,7 +53,7 @@ compile() {  # PACKAGES SOURCE OUTPUT
   "$compiler" -std=c++20 "${flags[@]}" "$2" -o "$3" $words
 }
 
-# Without what cairn::io was built with: the core is still found, and whoever asks for io is told why there is none.
+# Without a dependency of cairn::io: the core is still found, and requesting io reports the missing package.
 lose_io() {
   mkdir "$scratch/lost"
   printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(lost CXX)' 'find_package(cairn REQUIRED)' \
@@ -65,7 +65,7 @@ lose_io() {
   grep -q 'CMakeLists.txt:4' <<<"$said" && grep -q 'component io is missing: yaml-cpp' <<<"$said" || { echo "$said"; exit 1; }
 }
 
-# The installed command finds its module: what it says of a video that is none comes from there.
+# The installed command finds its module: only the module can report an invalid video this way.
 find_video_module() {
   [[ -e $(find "$scratch/prefix" -name cairn-video.so) ]] || return 0
   echo "no video" >"$scratch/broken.mp4"
@@ -74,7 +74,7 @@ find_video_module() {
   ! grep -q 'cairn-video.so\|videoio' <<<"$said" && grep -q 'broken.mp4' <<<"$said" || { echo "$said"; exit 1; }
 }
 
-# And that for cameras.
+# The same for the camera module.
 find_gstreamer_module() {
   [[ -e $(find "$scratch/prefix" -name cairn-gstreamer.so) ]] || return 0
   local said

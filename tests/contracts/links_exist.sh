@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# links_exist.sh SOURCE_DIR: every relative link of every page leads to a file that is there, and a #fragment to a heading.
+# links_exist.sh SOURCE_DIR: checks that every relative link of every page leads to an existing file, and every
+# #fragment to a heading.
 set -euo pipefail
 cd "$1"
 
-# Anchors as GitHub makes them: lower case, punctuation dropped, blanks to hyphens.
+# Anchors in GitHub's form: lower case, no punctuation, hyphens for spaces.
 anchors() {
   awk '/^```/ { code = !code } !code && /^#+ / { sub(/^#+ +/, ""); print tolower($0) }' "$1" |
     sed -E 's/[^[:alnum:] _-]//g; s/ /-/g'

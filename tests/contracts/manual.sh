@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# manual.sh CAIRN MANUAL_DIR: the manual pages, where help2man made them, are sound roff and have every command and option
-# that --help has; bash completes commands, options, values, files and names of options.
+# manual.sh CAIRN MANUAL_DIR: checks that the manual pages, if help2man made them, are valid roff and have every
+# command and option of --help; and that bash completes commands, options, values, files and option names.
 set -euo pipefail
 cairn=$1 manual=$2
 bad=0
@@ -47,7 +47,7 @@ expect() {  # WHAT EXPECTED FOUND
   [[ $2 == "$3" ]] || complain "$1: expected '$2', found '$3'"
 }
 
-bash_offers() {  # WORD...: what bash would offer for the last one
+bash_offers() {  # WORD...: completions of the last word
   (
     cd "$scratch"
     # shellcheck disable=SC1091

@@ -19,13 +19,13 @@ bad=0 cases=0
 while IFS=$'\t' read -r name expected; do
   cases=$((cases + 1))
   if message=$(compile -D"$name"); then
-    echo "$name compiles, and must not"
+    echo "$name compiles, but must not"
     bad=1
   elif ! grep -qE "$expected" <<<"$message"; then
-    printf '%s fails for another reason than "%s":\n%s\n' "$name" "$expected" "$message"
+    printf '%s fails, but not with "%s":\n%s\n' "$name" "$expected" "$message"
     bad=1
   fi
 done < <(sed -nE 'N; s/.*defined\((CASE_[a-z_]+)\)\n *\/\/ expect: (.*)/\1\t\2/p; D' "$file")
 echo "$cases cases"
-# Every case has its expectation, or it would never be tried.
+# A case without an expectation would never be tried.
 [[ $cases == $(grep -c 'defined(CASE_' "$file") && $cases -gt 0 && $bad == 0 ]]

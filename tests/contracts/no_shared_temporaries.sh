@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# no_shared_temporaries.sh SOURCE_DIR: what is installed writes nowhere but where it was asked to. A temporary file lies
-# beside the file that it becomes (io/atomic_file.hpp), never in a folder that others may write to.
+# no_shared_temporaries.sh SOURCE_DIR: checks that installed code writes only where requested. A temporary file is
+# next to its final name (io/atomic_file.hpp), never in a folder that others may write to.
 set -euo pipefail
 cd "$1"
 readonly installed=(cairn io page tracking landmarks ros source live batch timing cli python/bindings python/cairn)
@@ -11,6 +11,6 @@ readonly calls='temp_directory_path|tmpnam|tempnam|tmpfile|mktemp|mkstemp|mkoste
 readonly folders='"/(var/)?tmp|/dev/shm|TMPDIR'
 [[ $(ls -d "${installed[@]}" | wc -l) == "${#installed[@]}" ]]
 if grep -rnE --include='*.[ch]pp' --include='*.py' "\b($calls)\b|$folders" "${installed[@]}"; then
-  echo "these make files in a shared folder; expected: none, or beside the final name through write_file()"
+  echo "these create files in a shared folder; expected none, or next to the final name through write_file()"
   exit 1
 fi

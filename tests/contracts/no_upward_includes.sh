@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# no_upward_includes.sh SOURCE_DIR: every folder includes only what is below it (ARCHITECTURE.md).
+# no_upward_includes.sh SOURCE_DIR: checks that every folder includes only lower ones (ARCHITECTURE.md).
 set -euo pipefail
 cd "$1"
 
-# From the lowest to the highest; `cairn` is what lies in that folder itself.
+# From the lowest to the highest; `cairn` means files directly in that folder.
 ranks='cairn/core cairn/image cairn/matching cairn/disparity cairn/regions cairn/scene cairn/grouping cairn/objects
   cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn tracking io page landmarks ros source live timing batch cli python
   examples benchmarks tests'
@@ -21,14 +21,14 @@ find cairn tracking io page landmarks ros source live timing batch cli python ex
       depth = split(path, parts, "/")
       return parts[1] == "cairn" && depth > 2 ? "cairn/" parts[2] : parts[1]
     }
-    # Also the files that kernels are compiled from, which each_target-inl.hpp includes by a macro.
+    # Also the files from which kernels are compiled; each_target-inl.hpp includes them by a macro.
     match($0, /^ *#(include|define CAIRN_[A-Z_]+) [<"][^>"]+[>"]/) {
       split($0, quoted, /[<>"]/)
       from = folder_of(FILENAME)
-      sub("^(\\.\\./)+", "", quoted[2])  # beside the folder, as it is installed
+      sub("^(\\.\\./)+", "", quoted[2])  # relative to the parent folder, as installed
       to = folder_of(quoted[2])
-      if (to ~ "^cairn/(io|page|tracking|source|landmarks|ros|live)$") sub("cairn/", "", to)  # as they are installed
-      if (to !~ "^cairn(/|$)" && !(to in rank)) next  # not ours, or beside the file
+      if (to ~ "^cairn/(io|page|tracking|source|landmarks|ros|live)$") sub("cairn/", "", to)  # as installed
+      if (to !~ "^cairn(/|$)" && !(to in rank)) next  # not ours, or in the same folder
       if (!(from in rank) || !(to in rank)) {
         printf "%s:%d: a folder without a rank: %s includes %s\n", FILENAME, FNR, from, to
         wrong = 1

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
-# release_is_hardened.sh SOURCE_DIR COMPILER: a release build compiles every source and links every program and shared
-# library as cmake/hardening.cmake has it; one with sanitizers does not. Configures only; hardened.sh looks into what was
-# built, and `./dev package` into what the packages hold.
+# release_is_hardened.sh SOURCE_DIR COMPILER: checks that a release build compiles every source and links every
+# program and shared library with the options of cmake/hardening.cmake, and a build with sanitizers does not. Only
+# configures; hardened.sh checks the binaries, and `./dev package` the packages.
 set -euo pipefail
 source_dir=$1 compiler=$2
 scratch=$(mktemp -d)
@@ -17,7 +17,7 @@ configure() {  # FOLDER CMAKE-ARGS
     { tail -20 "$scratch/log"; exit 1; }
 }
 commands() { grep '"command":' "$scratch/$1/compile_commands.json"; }
-# What each program, shared library and module is linked with, a line each.
+# Link flags of each program, shared library and module, one line each.
 links() {
   awk '/^build .*: CXX_(EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY)_LINKER/ { name = $2 } /^ *LINK_FLAGS/ && name { print name, $0; name = "" }
        /^$/ { if (name) { print name; name = "" } }' "$scratch/$1/build.ninja"

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""ros_package.py SOURCE_DIR: packaging/ros2/cairn_ros is a package as ROS has them, and what its sources include and its
-CMakeLists.txt looks for is what it depends on. Exits with 77 (skipped) without python3-catkin-pkg."""
+"""ros_package.py SOURCE_DIR: checks that packaging/ros2/cairn_ros is a valid ROS package, and that it depends on
+everything that its sources include and its CMakeLists.txt finds. Exit code 77 (skipped) without
+python3-catkin-pkg."""
 import pathlib
 import re
 import sys

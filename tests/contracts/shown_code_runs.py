@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""shown_code_runs.py SOURCE_DIR BUILD_DIR COMPILER: what the pages show as code works as it stands there.
+"""shown_code_runs.py SOURCE_DIR BUILD_DIR COMPILER: runs the code shown on the pages.
 
 A fenced block of a page is
-  sh      run by bash, block after block, in one folder for each page
-  python  run by this interpreter, all blocks of a page together, where the module was built
-  cpp     declarations of the library, which the compiler must know already, word for word
-unless one of these stands in the line before it:
-  <!-- code: ... -->, <!-- output: ... -->   it is generated; docs/update.sh --check looks after it
-  <!-- not run: WHY -->                      it is let alone
-The examples in the commands' help are run as well.
-That folder holds left.png, right.png and calib.txt of a sample, frames/ with all samples and truth/, the same. A page
-that speaks of boards/ gets OpenCV's checkerboards there, and the first of them as left.png and right.png; where
-Debian's opencv-doc is not installed, what it shows is not run.
+  sh      run by bash, block after block, in one folder per page
+  python  run by this interpreter, all blocks of a page together, in the folder of the built module
+  cpp     declarations of the library, which must match the headers word for word
+unless the line before it is one of:
+  <!-- code: ... -->, <!-- output: ... -->   generated; docs/update.sh --check compares it
+  <!-- not run: WHY -->                      skipped
+The examples in the commands' help are run, too.
+The folder holds left.png, right.png and calib.txt of a sample, frames/ with all samples, and truth/, a copy of it. A page
+that mentions boards/ gets OpenCV's checkerboards there, and the first of them as left.png and right.png; without
+Debian's opencv-doc its blocks are skipped.
 """
 import os
 import re
@@ -70,7 +70,7 @@ def raw_scene(folder):
     (folder / "boards").mkdir()
     for file in [*BOARDS.glob("left[0-9]*.jpg"), *BOARDS.glob("right[0-9]*.jpg")]:
         shutil.copy(file, folder / "boards")
-    for side in ("left", "right"):  # what is in a picture tells its format, not its name
+    for side in ("left", "right"):  # the format is detected from the content, not the name
         shutil.copy(BOARDS / f"{side}01.jpg", folder / f"{side}.png")
 
 
@@ -100,7 +100,7 @@ def run_python(blocks, folder, environment):
 
 
 def check_declarations(block, compiler, source):
-    """A declaration that the headers have already is redundant, and the compiler says so; one that differs is not."""
+    """The compiler reports a repeated declaration as redundant; one that differs is not reported."""
     code = "#include <cairn/cairn.hpp>\n" + "".join(
         f"#include <{name}>\n" for name in re.findall(r"//.*?((?:cairn|io|page|tracking|source|landmarks)/\w+(?:/\w+)*\.hpp)", block.text))
     code += f"namespace cairn {{\n{block.text}}}\n"
@@ -114,7 +114,7 @@ def check_declarations(block, compiler, source):
 
 
 def run_examples(build, source, environment):
-    """The lines below "Examples:" of every command's help, one after the other in one folder."""
+    """Runs the lines below "Examples:" of every command's help, in order, in one folder."""
     text = subprocess.run([build / "cairn", "--help"], capture_output=True, text=True).stdout
     names = re.findall(r"^  (\w+) ", text[text.index("Subcommands:"):], re.M)
     with tempfile.TemporaryDirectory() as scratch:
@@ -124,7 +124,8 @@ def run_examples(build, source, environment):
             help_text = subprocess.run([build / "cairn", "help", name], capture_output=True, text=True).stdout
             lines = re.findall(r"^  (cairn .*)$", help_text[help_text.index("Examples:"):], re.M)
             for number, line in enumerate(lines, 1):
-                # On pages: boards are not everywhere, bench takes long. A map comes from a sequence: map_test.cpp.
+                # Run on pages instead: boards/ may be missing, bench is slow, and a map needs a sequence
+                # (map_test.cpp).
                 if name in ("calibrate", "rectify", "bench", "map"):
                     continue
                 block = Block(f"cairn help {name}", number, "sh", "")
@@ -143,7 +144,7 @@ def main(source, build, compiler):
             folder = Path(scratch)
             if any("boards/" in b.text for b in checked):
                 if not (BOARDS / "left01.jpg").exists():
-                    print(f"{page}: not run: there is no {BOARDS}")
+                    print(f"{page}: not run: no {BOARDS}")
                     continue
                 raw_scene(folder)
             elif any(b.language != "cpp" for b in checked):

@@ -140,9 +140,9 @@ TEST(MergeFeatures, SayHowABoxDiffersFromItsWall) {
       << "the smaller is nearer";
   EXPECT_NEAR(features.contact("step of the planes at the border, px"), 6.5, 0.1);
   EXPECT_NEAR(features.contact("evidence: step of the planes at the border, px"), 6.5, 0.1);
-  EXPECT_EQ(features.contact("share of these that are level"), 0);
+  EXPECT_EQ(features.contact("share of level disparities there"), 0);
   EXPECT_EQ(features.contact("disparities, share of the smaller one"), 1);
-  EXPECT_EQ(features.contact("both fill of their box"), 1);
+  EXPECT_EQ(features.contact("fill of the union's box"), 1);
 }
 
 TEST(MergeFeatures, DoNotDependOnWhichOfTheTwoIsFirst) {
@@ -161,23 +161,23 @@ TEST(ObjectFeatures, SayHowARegionStands) {
   scene.background.planes = {{0.05F, 0, 5}};
   const Features features(scene);
   EXPECT_FLOAT_EQ(features.region(1, "area, share of the image"), 80.0F / (24 * 16));
-  EXPECT_EQ(features.region(1, "fills of its box"), 1);
-  EXPECT_EQ(features.region(1, "borders of the image that it touches"), 0);
-  EXPECT_EQ(features.region(0, "borders of the image that it touches"), 4);
+  EXPECT_EQ(features.region(1, "fill of its box"), 1);
+  EXPECT_EQ(features.region(1, "number of borders of the image that it touches"), 0);
+  EXPECT_EQ(features.region(0, "number of borders of the image that it touches"), 4);
   EXPECT_EQ(features.region(1, "neighbours"), 1);
   EXPECT_NEAR(features.region(1, "step down around it, 3 px away, px"), 6.5, 0.1);
-  EXPECT_EQ(features.region(1, "share of these where it is nearer"), 1);
-  EXPECT_EQ(features.region(0, "share of these where it is farther"), 1);
+  EXPECT_EQ(features.region(1, "share of disparities there where it is nearer"), 1);
+  EXPECT_EQ(features.region(0, "share of disparities there where it is farther"), 1);
   EXPECT_NEAR(features.region(1, "height above the ground, px"), 12 - 0.5 * 8.5 - 2, 0.01);
-  EXPECT_NEAR(features.region(1, "before the background, px"), 12 - 5 - 0.05 * 9.5, 0.02);
+  EXPECT_NEAR(features.region(1, "in front of the background, px"), 12 - 5 - 0.05 * 9.5, 0.02);
   EXPECT_EQ(features.region(0, "share in the background"), 1);
-  EXPECT_EQ(features.region(1, "a ground is known"), 1);
+  EXPECT_EQ(features.region(1, "ground known"), 1);
   EXPECT_EQ(features.region(1, "disparity, share of the nearest"), 1);
-  EXPECT_EQ(features.region(1, "its parts were one thing"), 20) << "a superpixel";
+  EXPECT_EQ(features.region(1, "same-object score of its parts"), 20) << "a superpixel";
   EXPECT_EQ(features.region(0, "its colours beside the background's"), 0) << "it is all of that";
   EXPECT_FLOAT_EQ(features.region(1, "its colours beside the background's"), 2);
-  EXPECT_EQ(features.contact("the smaller one's colours beside the background's"), 2);
-  EXPECT_EQ(features.contact("the larger one's colours beside the background's"), 0);
+  EXPECT_EQ(features.contact("distance of the smaller one's colours from the background's"), 2);
+  EXPECT_EQ(features.contact("distance of the larger one's colours from the background's"), 0);
   EXPECT_EQ(features.region(1, "its colours beside the floor's"), kUnknown) << "nothing lies on the floor";
 }
 
@@ -186,28 +186,28 @@ TEST(Features, AreUnknownWhereNothingIsKnown) {
   const Features features(scene);
   for (const char* name :
        {"difference of colour, grey levels", "step right at the border, px", "step 3 px away from it, px",
-        "step 3 px away from it, with its sign, px", "share of these that are level",
+        "step 3 px away from it, with its sign, px", "share of level disparities there",
         "step of the planes at the border, px", "evidence: step of the means, relative",
         "height of the smaller one above the ground, px", "share of the larger one on the ground",
-        "the smaller one before the background, px", "disparity of the smaller one, share of the nearest"})
+        "smaller one in front of the background, px", "disparity of the smaller one, share of the nearest"})
     EXPECT_EQ(features.contact(name), kUnknown) << name;
   for (const char* name :
        {"spread of colour, grey levels", "step down around it, 3 px away, px", "step at its foot, px",
         "distance from its plane, px", "evidence: slope down, relative", "height above the ground, px",
         "height above the ground, relative", "share on the ground", "share in the background",
         "least step of the planes around, px", "evidence: height above the ground over its error",
-        "what is around it on the ground, share", "its colours beside the floor's",
+        "neighbours on the ground, share", "its colours beside the floor's",
         "its colours beside the background's"})
     EXPECT_EQ(features.region(0, name), kUnknown) << name;
   EXPECT_EQ(features.contact("disparities, share of the smaller one"), 0);
-  EXPECT_EQ(features.region(0, "a ground is known"), 0);
+  EXPECT_EQ(features.region(0, "ground known"), 0);
 }
 
 TEST(Features, AllThatIsUnknownIsSaidOfARegionThatIsTheWholeImage) {
   const Features features(RegionScene(Image<RegionId>(Size{3, 2}, RegionId{0}, {})));
-  for (const char* name :
-       {"mean edge around it, grey levels", "most alike neighbour", "how alike what is around is",
-        "its share of what it becomes a part of", "how alike it is to the rest of that"})
+  for (const char* name : {"mean edge around it, grey levels", "same-object score, highest of the neighbours",
+                           "same-object score, mean over the outline", "its share of its parent",
+                           "same-object score, rest of its parent"})
     EXPECT_EQ(features.region(0, name), kUnknown) << name;
   for (const float value : features.of_regions[0]) EXPECT_TRUE(std::isfinite(value));
   EXPECT_EQ(features.region(0, "area, share of the image"), 1);
@@ -218,8 +218,8 @@ TEST(TellEnd, FillsInTheLastTwo) {
   ObjectFeatures features{};
   tell_end(features, 0.25F, -1.5F);
   const auto names = object_feature_names();
-  EXPECT_EQ(features.at(where(names, "its share of what it becomes a part of")), 0.25F);
-  EXPECT_EQ(features.at(where(names, "how alike it is to the rest of that")), -1.5F);
+  EXPECT_EQ(features.at(where(names, "its share of its parent")), 0.25F);
+  EXPECT_EQ(features.at(where(names, "same-object score, rest of its parent")), -1.5F);
   EXPECT_EQ(std::count(features.begin(), features.end(), 0.0F), std::ptrdiff_t{kObjectFeatures} - 2);
 }
 
