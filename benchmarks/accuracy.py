@@ -272,7 +272,7 @@ def tinted(frame):
     return grey.astype(np.uint8)
 
 
-def pictures(frames, threads):
+def best_median_worst(frames, threads):
     scores = score_all(frames, cairn.Config(), False, threads)
     order = sorted(range(len(frames)), key=lambda i: Summary([scores[i]]).mean_error)
     text = ("## The best, the median and the worst frame\n\nRanked by the mean E of a frame's objects, over `rendered/dev/320x240` with `default`. "
@@ -505,7 +505,7 @@ def measure_all(data, docs, commit, threads):
         tell(folder)
         text += frame_set_section(title, load_frames(data / folder), threads)
     # The images of the real frames may not be published.
-    shown, figures = pictures(load_frames(data / FRAME_SETS["Rendered, 320x240"]), threads)
+    shown, figures = best_median_worst(load_frames(data / FRAME_SETS["Rendered, 320x240"]), threads)
     tell("stress")
     text += shown + stress(data, threads, plots)
     tell("middlebury")

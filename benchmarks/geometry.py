@@ -99,7 +99,7 @@ def approached(truth):
             continue
         rig = cairn.Rig(focal_px=truth.rig.focal_px, cx_px=truth.rig.cx_px - x, cy_px=truth.rig.cy_px - y, baseline_m=truth.rig.baseline_m)
         range_px = min(int(np.nanmax(truth.disparity)) + 4, w)
-        pair = [np.ascontiguousarray(picture[window]) for picture in (truth.left, truth.right)]
+        pair = [np.ascontiguousarray(image[window]) for image in (truth.left, truth.right)]
         frame = cairn.segment(*pair, rig, match={"num_disparities": range_px})
         yield (frame.space[whole[window]] == 255).mean()
 

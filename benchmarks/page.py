@@ -64,17 +64,17 @@ def straight_line(x, y):
     return slope, at_zero, np.max(np.abs(at_zero + slope * x - y) / y)
 
 
-def growth(cairn, title, picture, x_title, unit, unit_x, form, extents, x_of):
+def growth(cairn, title, file, x_title, unit, unit_x, form, extents, x_of):
     x = [float(x_of(*extent)) for extent in extents]
     points = {p: [point(measured(cairn, *extent, p, 1, 1.5)) for extent in extents] for p in PRESETS}
     lines = {(p, part): straight_line(x, [of[part] for of in points[p]]) for p in PRESETS for part in PARTS}
-    plot(picture, x, [(f"preset {p}, ms of one core", None, {part: (colour, [of[part] for of in points[p]]) for part, colour in PARTS.items()})
+    plot(file, x, [(f"preset {p}, ms of one core", None, {part: (colour, [of[part] for of in points[p]]) for part, colour in PARTS.items()})
                       for p in PRESETS], x_title)
     fits = [[p, part, number(slope * unit_x, ".2f"), number(at_zero, ".2f"), percent(off)] for (p, part), (slope, at_zero, off) in lines.items()]
     rows = [[format(value, form), *(f"{points[p][i][part]:.2f}" for p in PRESETS for part in PARTS)] for i, value in enumerate(x)]
     return f"""### {title}
 
-![{title}](docs/images/benchmark/{picture.name})
+![{title}](docs/images/benchmark/{file.name})
 
 {table(["preset", "of", f"ms per {unit}", "constant ms", "largest deviation, %"], fits, words=2)}
 {table([x_title.split(",")[0], *(f"{p}: {part}" for p in PRESETS for part in PARTS)], rows)}
@@ -85,14 +85,14 @@ def main():
     if len(sys.argv) not in (4, 5):
         sys.exit(__doc__)
     cairn, root, commit = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
-    start, pictures = time.monotonic(), root / "docs" / "images" / "benchmark"
-    pictures.mkdir(parents=True, exist_ok=True)
+    start, plots = time.monotonic(), root / "docs" / "images" / "benchmark"
+    plots.mkdir(parents=True, exist_ok=True)
     tables, machine = zip(*(stage_table(cairn, preset) for preset in PRESETS))
     sizes = [((w, h), 64) for w, h in ((320, 240), (480, 360), (640, 480), (800, 600), (960, 720), (1280, 960))]
-    pixels = growth(cairn, "Time against pixels", pictures / "pixels.svg", "megapixels, 64 disparities", "megapixel", 1, ".2f", sizes,
+    pixels = growth(cairn, "Time against pixels", plots / "pixels.svg", "megapixels, 64 disparities", "megapixel", 1, ".2f", sizes,
                     lambda size, n: 1e-6 * size[0] * size[1])
     ranges = [((640, 480), n) for n in range(32, 257, 32)]
-    disparities = growth(cairn, "Time against disparities", pictures / "disparities.svg", "disparities, 640x480", "64 disparities", 64, ".0f", ranges,
+    disparities = growth(cairn, "Time against disparities", plots / "disparities.svg", "disparities, 640x480", "64 disparities", 64, ".0f", ranges,
                          lambda size, n: n)
     engines = "Not measured in this run: it needs OpenCV's calib3d and the data collection.\n"
     if len(sys.argv) == 5:

@@ -89,14 +89,14 @@ def hidden_floor(left, right, k, frames):
         return left[k], right[k]
     noise = np.random.default_rng(7).integers(40, 200, (left[k].height, left[k].width + 64)).astype(np.uint8)
     card = Image.fromarray(noise).filter(ImageFilter.GaussianBlur(1))
-    pictures = []
-    for picture, shift in ((left[k], 0), (right[k], 24)):
-        drawn = picture.copy()
-        half = picture.height * 2 // 5
-        part = card.crop((shift, half, shift + picture.width, picture.height))
-        drawn.paste(part.convert(picture.mode), (0, half))
-        pictures.append(drawn)
-    return pictures
+    images = []
+    for image, shift in ((left[k], 0), (right[k], 24)):
+        drawn = image.copy()
+        half = image.height * 2 // 5
+        part = card.crop((shift, half, shift + image.width, image.height))
+        drawn.paste(part.convert(image.mode), (0, half))
+        images.append(drawn)
+    return images
 
 
 BREAKAGES = [
@@ -122,8 +122,8 @@ def follow(cairn, sequence, change, factors, work):
     for k, frame in enumerate(frames):
         folder = work / "in" / frame.name
         folder.mkdir(parents=True)
-        for name, picture in zip(("left.png", "right.png"), change(left, right, k, frames)):
-            picture.save(folder / name)
+        for name, image in zip(("left.png", "right.png"), change(left, right, k, frames)):
+            image.save(folder / name)
         text = (frame / "calib.txt").read_text().splitlines()
         (folder / "calib.txt").write_text(
             "\n".join("%s=%.9g" % (key, float(value) * factors[key]) if key in factors else f"{key}={value}"

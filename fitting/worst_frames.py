@@ -19,11 +19,11 @@ COLOURS = np.random.RandomState(5).randint(70, 256, (256, 3)).astype(np.uint8)
 COLOURS[0] = 25
 
 
-def tile(picture, mask):
+def tile(image, mask):
     """The mask's objects in colour over the image, or alone."""
     drawn = COLOURS[mask % 256]
-    if picture is not None:
-        drawn = np.where((mask > 0)[..., None], drawn // 2 + picture // 2, picture // 2)
+    if image is not None:
+        drawn = np.where((mask > 0)[..., None], drawn // 2 + image // 2, image // 2)
     return Image.fromarray(drawn.astype(np.uint8)).resize(TILE, Image.NEAREST)
 
 

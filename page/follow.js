@@ -115,12 +115,12 @@
       case 'moved': return `${what} was moved${far === null ? '' : ` by ${fixed(far, 2)} m, to ${place(to)}`}${also}${sure}`;
       case 'gone': return `${what} is gone${from ? ` from ${place(from)}` : ''}${also}${sure}`;
       case 'new': return `${what} is new${to ? ` at ${place(to)}` : ''}${also}${sure}`;
-      case 'back': return `${what} is seen again${also}${sure}`;
-      case 'relocated': return `the camera’s place is found again${to ? `: ${place(to)}` : ''}${sure}`;
-      case 'moving': return `${what} begins to move${also}${sure}`;
-      case 'stopped': return `${what} stands still${also}${sure}`;
+      case 'back': return `${what} reappears${also}${sure}`;
+      case 'relocated': return `camera relocalised${to ? `: ${place(to)}` : ''}${sure}`;
+      case 'moving': return `${what} starts to move${also}${sure}`;
+      case 'stopped': return `${what} stops${also}${sure}`;
       case 'refused': return `motion refused: ${words(reason)}${count > 1 ? `, ${count} frames` : ''}`;
-      case 'lost': return `the camera’s place is not known${count > 1 ? `, ${count} frames` : ''}`;
+      case 'lost': return `camera position unknown${count > 1 ? `, ${count} frames` : ''}`;
       default: return [words(String(kind)), what, sure].filter(Boolean).join(' ');
     }
   }
@@ -198,7 +198,7 @@
     screen.box = el('div', {class: 'screen'}, screen.picture, screen.labels, screen.marks);
     screen.count = el('span', {class: 'count'});
     screen.pixels = new ImageData(Math.max(1, width), Math.max(1, height));
-    const select = el('select', {title: 'What lies over the picture (m)', 'aria-label': 'What lies over the picture', onchange: (event) => {
+    const select = el('select', {title: 'Overlay on the image (m)', 'aria-label': 'Overlay on the image', onchange: (event) => {
       state.mode = event.target.selectedIndex;
       paintScreen();
     }}, kModes.map((name) => el('option', {}, name)));
@@ -289,12 +289,12 @@
   function makeAbove() {
     if (!hasPlace) {
       byId('pictures').append(el('figure', {class: 'panel', 'data-panel': 'above'}, el('figcaption', {}, el('h2', {}, 'From above')),
-        el('div', {class: 'stage'}, el('div', {class: 'none'}, rig ? 'the camera’s place is not known' : 'no calibration: no metres'))));
+        el('div', {class: 'stage'}, el('div', {class: 'none'}, rig ? 'camera position unknown' : 'no calibration: no metres'))));
       return;
     }
     above.fit = extent();
     above.layers = Object.fromEntries(['grid', 'way', 'walked', 'moved', 'landmarks', 'camera', 'tracks'].map((name) => [name, svg('g')]));
-    above.drawing = svg('svg', {class: 'above', role: 'img', 'aria-label': 'The tracks from above'},
+    above.drawing = svg('svg', {class: 'above', role: 'img', 'aria-label': 'Top view of the tracks'},
       svg('defs', {}, svg('marker', {id: 'tip-of-arrow', viewBox: '0 0 8 8', refX: 7, refY: 4, markerWidth: 7, markerHeight: 7, orient: 'auto-start-reverse'},
         svg('path', {d: 'M0 0L8 4L0 8Z', fill: 'context-stroke'}))),
       ...Object.values(above.layers));
@@ -304,13 +304,13 @@
     Object.assign(above, {doubt, sight, eye});
     above.layers.camera.append(sight, doubt, eye);
     const button = (name, title, onclick, more = {}) => el('button', {type: 'button', title, 'aria-label': title, onclick, ...more}, name);
-    above.followButton = button('follow', 'Keep the camera in the middle', () => {
+    above.followButton = button('follow', 'Centre the camera', () => {
       above.follows = !above.follows;
       if (above.follows && above.zoom < 2) above.zoom = 2;
       above.middle = null;
       layOutAbove();
     }, {'aria-pressed': 'false'});
-    const buttons = el('div', {class: 'choice', role: 'group', 'aria-label': 'The view from above'},
+    const buttons = el('div', {class: 'choice', role: 'group', 'aria-label': 'Top view'},
       button('whole', 'The whole run', () => {
         Object.assign(above, {zoom: 1, middle: null, follows: false});
         layOutAbove();
@@ -397,7 +397,7 @@
     const [ox, oy] = toDrawing([0, 0]);
     above.layers.grid.replaceChildren(svg('path', {class: 'grid', d: lines.join('')}), ...names,
       svg('path', {class: 'origin', d: `M${ox - 5} ${oy}h10M${ox} ${oy - 5}v10`}));
-    above.count.textContent = `a line every ${step} m`;
+    above.count.textContent = `grid of ${step} m`;
     // One piece per frame, so that the path up to a frame is a prefix.
     let broken = true;
     above.pieces = frames.map((facts) => {
@@ -509,7 +509,7 @@
     {name: 'reliability', value: reliabilityOf, top: 1, show: (v) => fixed(v, 2)},
     {name: 'inlier share', value: (f) => (hasPlace && f.index > 0 && f.motion.followed > 0 ? f.motion.inliers / f.motion.followed : null), top: 1, show: (v) => percent(v, 0)},
     {name: 'tracks in view', value: (f) => f.tracks.filter((t) => counts(t) && isSeen(t)).length, show: (v) => fixed(v, 0)},
-    {name: 'ms a frame', value: (f) => f.ms, show: (v) => `${fixed(v, 1)} ms`},
+    {name: 'ms per frame', value: (f) => f.ms, show: (v) => `${fixed(v, 1)} ms`},
   ];
   const offered = kCurves.map((curve) => ({...curve, values: frames.map((f) => curve.value(f) ?? null)})).filter(({values}) => values.some(isNumber));
   const kInset = 8;  // px: half of the slider's thumb
@@ -627,7 +627,7 @@
       rows([
         ...offered.map((curve) => [curve.name, isNumber(curve.values[index]) ? curve.show(curve.values[index]) : null]),
         ['motion refused', facts.pose && refusalOf(facts) ? words(refusalOf(facts)) : null],
-        ['place', facts.pose || !hasPlace ? null : 'not known'],
+        ['place', facts.pose || !hasPlace ? null : 'unknown'],
         ['track', onLane ? `${lane.id}: ${stateOf(onLane)}` : null],
       ]), ...close.map((e) => group(null, [[`frame ${e.index + 1}`, e.text]])));
   }
@@ -636,8 +636,8 @@
     byId('time-legend').replaceChildren(el('div', {class: 'chips'},
       kinds.map((kind) => chip(colourOfKind(kind), words(kind), undefined, {title: counted(events.filter((e) => e.kind === kind).length, 'event')})),
       hasPlace && refusedRuns.length ? chip(kKinds.refused, 'motion refused') : null,
-      hasPlace && lostRuns.length ? chip(kKinds.lost, 'place not known') : null,
-      lanes.length ? el('span', {}, `a line for each track: thick where it is seen, thickest where it moves${lives.size > lanes.length ? `; the ${lanes.length} longest of ${lives.size}` : ''}`) : null));
+      hasPlace && lostRuns.length ? chip(kKinds.lost, 'position unknown') : null,
+      lanes.length ? el('span', {}, `one line per track: thick while in view, thickest while moving${lives.size > lanes.length ? `; the ${lanes.length} longest of ${lives.size}` : ''}`) : null));
   }
 
   // ---- tables ----
@@ -651,10 +651,10 @@
     ];
     if (hasPlace) {
       columns.push(number('distance m', (t) => depthOf(t, current()), 2, {title: 'along the axis of the camera'}),
-        number('x m', (t) => t.position_m?.[0], 2, {title: 'in the map: forward of where the run began'}),
+        number('x m', (t) => t.position_m?.[0], 2, {title: 'in the map: forward from the start'}),
         number('y m', (t) => t.position_m?.[1], 2, {title: 'in the map: to the left'}),
         number('z m', (t) => t.position_m?.[2], 2, {title: 'in the map: up'}),
-        number('± m', (t) => (t.covariance_m2 ? ellipse(t.covariance_m2, 3).rx : null), 2, {title: 'half the longer axis of the ellipse that holds its place with 95 %'}),
+        number('± m', (t) => (t.covariance_m2 ? ellipse(t.covariance_m2, 3).rx : null), 2, {title: 'semi-major axis of the 95 % ellipse of its position'}),
         number('speed m/s', (t) => (t.moving ? speedOf(t) : null), 2));
     }
     columns.push(number('confidence', (t) => t.confidence, 2), number('seen', (t) => t.hits, 0, {title: 'frames'}));
@@ -827,8 +827,8 @@
   function summaryText() {
     const facts = current(), p = facts.pose?.position_m;
     const parts = [el('b', {}, `${counted(lives.size, 'track')} in ${counted(run.frames, 'frame')}`), `${fixed(seconds.at(-1), 1)} s`];
-    if (hasPlace) parts.push(`${fixed(facts.way, 2)} of ${fixed(way, 2)} m`, p ? `camera at x ${fixed(p[0], 2)}, y ${fixed(p[1], 2)}, z ${fixed(p[2], 2)} m` : 'place not known');
-    else parts.push(rig ? 'place not known' : 'no calibration: no metres');
+    if (hasPlace) parts.push(`${fixed(facts.way, 2)} of ${fixed(way, 2)} m`, p ? `camera at x ${fixed(p[0], 2)}, y ${fixed(p[1], 2)}, z ${fixed(p[2], 2)} m` : 'position unknown');
+    else parts.push(rig ? 'position unknown' : 'no calibration: no metres');
     if (facts.pose && refusalOf(facts)) parts.push(`motion refused: ${words(refusalOf(facts))}`);
     if (isNumber(facts.ms)) parts.push(`${fixed(facts.ms, 1)} ms`);
     return parts.flatMap((part, i) => (i ? [' · ', part] : [part]));
@@ -838,7 +838,7 @@
     beginPage();
     if (!run.frames) return trouble('This sequence has no frames.');
     byId('about').textContent = `cairn ${run.cairn}. Space plays; ← and → step, with shift by ten; e leads to the next event; ` +
-      'm changes what lies over the picture. Click a track in the picture, from above or in the table to follow it; Esc lets it go.';
+      'm changes the overlay. Click a track in the image, the top view or the table to follow it; Esc deselects it.';
     makeScreen();
     makeAbove();
     makeTables();

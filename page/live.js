@@ -123,7 +123,7 @@
     }
     bytes() {
       const count = this.u32(), start = this.view.byteOffset + this.at;
-      if (this.at + count > this.view.byteLength) throw new Error('a message is cut off');
+      if (this.at + count > this.view.byteLength) throw new Error('truncated message');
       this.at += count;
       return new Uint8Array(this.view.buffer, start, count);
     }
@@ -147,7 +147,7 @@
     cdr.u8();
     const step = cdr.u32(), bytes = cdr.bytes(), each = encoding === 'mono16' || encoding === '16UC1' ? 2 : 1;
     const Numbers = each === 2 ? Uint16Array : Uint8Array;
-    if (step * height > bytes.length || width * each > step) throw new Error('an image is cut off');
+    if (step * height > bytes.length || width * each > step) throw new Error('truncated image');
     if (step === each * width && each === 1) return {width, height, values: bytes.subarray(0, step * height)};
     // A copy, because the received bytes are not aligned.
     if (step === width * each) return {width, height, values: new Numbers(bytes.slice(0, step * height).buffer)};
@@ -206,7 +206,7 @@
     try {
       put('left', await createImageBitmap(new Blob([bytes], {type: format.includes('png') ? 'image/png' : 'image/jpeg'})), frame.stamp);
     } catch {
-      said(2, '/cairn/left: a picture cannot be decoded');
+      said(2, '/cairn/left: cannot decode an image');
     } finally {
       --decoding;
     }
@@ -714,11 +714,11 @@
   const speedOf = (thing) => (thing.velocity_m_s ? Math.hypot(...thing.velocity_m_s) : null);
   const sizeOf = ({size_m: size}) => (Array.isArray(size) && size.every(isNumber) ? size : null);
   const thingsTable = table('things', [
-    {name: 'id', title: 'Track, never used twice', value: (t) => t.id, show: (t) => [swatch(idColour(t.id)), String(t.id)]},
-    number('distance m', (t) => t.distance_m, 2, {title: 'From the camera'}),
-    {name: 'size m', title: 'Of the box: length × width × height', value: (t) => sizeOf(t)?.reduce((a, b) => a * b) ?? null, show: (t) => sizeOf(t)?.map((v) => fixed(v, 2)).join(' × ') ?? '–'},
-    number('confidence', (t) => t.confidence, 2, {title: 'How likely it is one object'}),
-    {name: 'state', text: true, title: 'Of the track; the speed of those that move', value: (t) => (t.is_moving ? '' : stateOf(t)),
+    {name: 'id', title: 'Track id, never reused', value: (t) => t.id, show: (t) => [swatch(idColour(t.id)), String(t.id)]},
+    number('distance m', (t) => t.distance_m, 2, {title: 'Distance from the camera'}),
+    {name: 'size m', title: 'Box: length × width × height', value: (t) => sizeOf(t)?.reduce((a, b) => a * b) ?? null, show: (t) => sizeOf(t)?.map((v) => fixed(v, 2)).join(' × ') ?? '–'},
+    number('confidence', (t) => t.confidence, 2, {title: 'Probability that it is one object'}),
+    {name: 'state', text: true, title: 'State of the track; speed if moving', value: (t) => (t.is_moving ? '' : stateOf(t)),
       show: (t) => (t.is_moving ? [el('span', {class: 'moving'}, isNumber(speedOf(t)) ? `moving, ${fixed(speedOf(t), 2)} m/s` : 'moving')] : stateOf(t))},
   ], [], {key: (t) => t.id, pickRow: (t) => pick(t.id), selected: (t) => t.id === state.picked, enter: (t) => near(t?.id ?? null)});
   const stateOf = (thing) => words(String(thing.state ?? ''));
@@ -807,7 +807,7 @@
       write(node, `${fixed(median(history.map(({stages}) => stages.get(node.dataset.stage) ?? 0)), 1)}`);
     }
     const all = median(history.map(({stages}) => [...stages.values()].reduce((a, b) => a + b, 0)));
-    write(byId('time-note'), history.length ? `${fixed(all, 1)} ms a frame` : '');
+    write(byId('time-note'), history.length ? `${fixed(all, 1)} ms per frame` : '');
   }
   function describeTime(event) {
     const box = strip.canvas.getBoundingClientRect(), each = (box.width - 34) / kHistory;
@@ -843,19 +843,19 @@
     if (!stats) return;
     const {drops = {}, source = {}} = stats, here = cairnStats.p50_ms, age = stats.latency_ms + here;
     const comes = link.state === 'open' && performance.now() - life.at < kSilence && !state.isPaused;
-    gauge('rate', comes ? fixed(stats.rate_hz, 1) : '–', 'Hz', 'Frames that are worked on each second');
-    gauge('drawn', comes && inView.get('picture') !== false ? fixed(drawnRate(), 1) : '–', 'Hz', 'Frames that this page draws each second');
+    gauge('rate', comes ? fixed(stats.rate_hz, 1) : '–', 'Hz', 'Frames processed per second');
+    gauge('drawn', comes && inView.get('picture') !== false ? fixed(drawnRate(), 1) : '–', 'Hz', 'Frames drawn by this page per second');
     gauge('age', comes ? fixed(age, 0) : '–', 'ms', `From a pair's arrival at the computer until it is drawn here: ${fixed(stats.latency_ms, 1)} ms there, ${fixed(here, 1)} ms here (median), without the network between`, comes && age > 250 ? 'warn' : '');
-    const lost = [['replaced', 'replaced', 'a newer pair was there before their turn came'], ['too_old', 'too old', 'older than --max-age when their turn came'], ['at_source', 'at source', 'lost or unpaired at the camera']];
+    const lost = [['replaced', 'replaced', 'replaced by a newer pair while waiting'], ['too_old', 'too old', 'older than --max-age when processing was due'], ['at_source', 'at source', 'lost or unpaired at the camera']];
     const some = lost.filter(([key]) => drops[key] > 0);
     const all = lost.reduce((sum, [key]) => sum + (drops[key] ?? 0), 0);
-    gauge('dropped', String(all), some.map(([key, name]) => `${drops[key]} ${name}`).join(', '), `Pairs that were not worked on: ${lost.map(([key, , why]) => `${drops[key] ?? 0}: ${why}`).join('; ')}`);
+    gauge('dropped', String(all), some.map(([key, name]) => `${drops[key]} ${name}`).join(', '), `Pairs dropped: ${lost.map(([key, , why]) => `${drops[key] ?? 0}: ${why}`).join('; ')}`);
     const {skew_ms: skew} = source;
-    gauge('skew', isNumber(skew) ? fixed(skew, 2) : null, 'ms', 'Between the stamps of left and right');
-    gauge('unpaired', source.unpaired > 0 ? String(source.unpaired) : null, '', 'Images of one side without the other within --max-skew');
-    gauge('reconnects', source.is_live ? String(source.reconnects ?? 0) : null, '', 'How often the camera had to be opened again', source.is_connected === false ? 'bad' : '');
-    gauge('skipped', stats.skipped > 0 ? String(stats.skipped) : null, '', 'Messages that were too slow for this network or browser, and left out');
-    gauge('viewers', isNumber(stats.clients) ? String(stats.clients) : null, '', 'Clients that are connected');
+    gauge('skew', isNumber(skew) ? fixed(skew, 2) : null, 'ms', 'Difference of the stamps of left and right');
+    gauge('unpaired', source.unpaired > 0 ? String(source.unpaired) : null, '', 'Images without a partner within --max-skew');
+    gauge('reconnects', source.is_live ? String(source.reconnects ?? 0) : null, '', 'Reconnections of the camera', source.is_connected === false ? 'bad' : '');
+    gauge('skipped', stats.skipped > 0 ? String(stats.skipped) : null, '', 'Messages dropped because the network or the browser was too slow');
+    gauge('viewers', isNumber(stats.clients) ? String(stats.clients) : null, '', 'Connected clients');
     byId('playback').hidden = stats.is_file !== true;
     for (const id of ['pause', 'step', 'record']) byId(id).disabled = !stats.tunable;
     byId('pause').setAttribute('aria-pressed', String(state.isPaused));
@@ -865,7 +865,7 @@
     record.hidden = stats.can_record !== true;
     record.setAttribute('aria-pressed', String(stats.recording === true));
     record.lastChild.textContent = stats.recording ? 'recording' : 'record';
-    record.title = stats.recording ? 'End the recording' : 'Record what the camera gives (--record FILE.mcap)';
+    record.title = stats.recording ? 'Stop recording' : 'Record the camera (--record FILE.mcap)';
     byId('revision').textContent = stats.revision > 0 ? counted(stats.revision, 'change') : '';
     if (isNumber(stats.revision) && stats.revision !== tuning.revision) {
       if (tuning.revision !== null) reloadOptions();
@@ -893,18 +893,18 @@
       return {
         kind: 'gone', word: 'server gone', bad: true,
         head: link.refused ? 'The server refuses this page' : `No server for ${seconds(now - link.since)}`,
-        text: link.refused ? 'It was started again and has a new token: open the address that it printed.' : 'cairn live has ended, or the network between is down.',
-        small: `${left} (${counted(link.attempt, 'attempt')} so far).${life.at ? ' What is shown is the last that came.' : ''}`,
+        text: link.refused ? 'The server was restarted with a new token: open the address that it printed.' : 'cairn live has ended, or the network is down.',
+        small: `${left} (${counted(link.attempt, 'attempt')} so far).${life.at ? ' The last frame received is shown.' : ''}`,
       };
     }
     if (state.isPaused) return {kind: 'paused', word: 'paused'};
     if (idle < kSilence) return life.at ? {kind: 'live', word: stats?.is_file ? 'playing' : 'live'} : {kind: 'waiting', word: 'waiting'};
     const source = newest.source ?? stats?.source ?? {}, trouble = String(source.trouble || '');
     const why = source.is_connected === false ? `camera not connected${trouble ? `: ${trouble}` : ''}`
-      : trouble || (stats?.is_file ? 'the file has ended, or a frame takes long' : 'the camera is open, but gives none');
+      : trouble || (stats?.is_file ? 'end of the file, or a slow frame' : 'the camera is connected, but delivers no frames');
     return {
       kind: 'waiting', word: 'no frames', head: `No frame for ${seconds(idle)}`, text: why,
-      small: life.at ? `What is shown is frame ${life.frame}.` : 'None has come since this page was opened.',
+      small: life.at ? `Frame ${life.frame} is shown.` : 'No frame received since this page was opened.',
     };
   }
   /** While no frames arrive, no message reports the state of the camera. */
@@ -1036,7 +1036,7 @@
       row.write(text);
     };
     const id = `o-${name.replace(/[^\w-]/g, '_')}`;
-    const undo = el('button', {class: 'undo', type: 'button', title: 'Back to the first value', 'aria-label': `${name}: back to the first value`, onclick: () => change(row.option.first)}, '↺');
+    const undo = el('button', {class: 'undo', type: 'button', title: 'Reset to the initial value', 'aria-label': `${name}: reset to the initial value`, onclick: () => change(row.option.first)}, '↺');
     const facts = el('p', {class: 'help'}), refused = el('p', {class: 'refused', hidden: true});
     let control, bar = null;
     if (type === 'bool') {
@@ -1064,7 +1064,7 @@
       });
       let last = on;
       const off = domain.hasOff ? el('input', {type: 'checkbox', onchange: () => change(off.checked ? '-1' : String(last))}) : null;
-      bar = el('div', {class: 'bar'}, slider, off ? el('label', {title: 'Switches it off'}, off, 'off') : null);
+      bar = el('div', {class: 'bar'}, slider, off ? el('label', {title: 'Turn off'}, off, 'off') : null);
       row.write = (text) => {
         const value = Number(text), isOff = domain.hasOff && value === -1;
         control.value = isOff ? 'off' : text;
@@ -1092,7 +1092,7 @@
       if (row.off) row.off.disabled = !isOpen;
       const isChanged = fresh.value !== fresh.first;
       undo.style.visibility = isChanged && tuning.tunable ? '' : 'hidden';
-      undo.title = `Back to ${fresh.first}`;
+      undo.title = `Reset to ${fresh.first}`;
       row.node.classList.toggle('changed', isChanged);
       row.node.classList.toggle('inactive', fresh.active === false);
       facts.replaceChildren(help, ...(fresh.active === false && fresh.needs ? [' ', el('span', {class: 'needs'}, `Needs ${fresh.needs}.`)] : []));
@@ -1156,7 +1156,7 @@
     tuning.isSought = isSought;
     if (!tuning.empty) return;
     tuning.empty.hidden = found > 0;
-    tuning.empty.textContent = onlyChanged && !parts.length ? 'Nothing is changed.' : 'No option has these words.';
+    tuning.empty.textContent = onlyChanged && !parts.length ? 'No option was changed.' : 'No option matches.';
   }
   function reset() {
     const changed = tuning.options.filter((o) => o.value !== o.first);
@@ -1167,7 +1167,7 @@
   }
   async function copyYaml() {
     const answer = await fetch('/config.yaml', {cache: 'no-store'}).catch(() => null);
-    if (!answer?.ok) return toast('The configuration cannot be fetched: the server is gone or refuses.', 'error');
+    if (!answer?.ok) return toast('Cannot fetch the configuration: the server is not reachable or refuses.', 'error');
     const text = await answer.text();
     try {
       await navigator.clipboard.writeText(text);
@@ -1215,7 +1215,7 @@
   function begin() {
     byId('command').textContent = run.command;
     makeLegend();
-    for (const name of kOverlays) byId('overlay').append(el('button', {type: 'button', onclick: () => setOverlay(name), title: 'What lies over the image (m)'}, name));
+    for (const name of kOverlays) byId('overlay').append(el('button', {type: 'button', onclick: () => setOverlay(name), title: 'Overlay on the image (m)'}, name));
     if (!kOverlays.includes(state.overlay)) state.overlay = kOverlays[0];
     setOverlay(state.overlay);
     for (const name of ['behind', 'side', 'above']) byId('viewpoints').append(el('button', {type: 'button', onclick: () => scene.lookFrom(name)}, name));

@@ -152,7 +152,7 @@
       count: `${percent(valid ? sure / valid : NaN)} of them ≥ 0.8`,
       legend: [
         el('div', {class: 'scale', style: {background: `linear-gradient(to right, ${kUnsure}, ${kSure})`}}),
-        el('div', {class: 'ticks'}, ['0', 'how likely within 1 px', '1'].map((t) => el('span', {}, t))),
+        el('div', {class: 'ticks'}, ['0', 'probability of an error below 1 px', '1'].map((t) => el('span', {}, t))),
         el('div', {class: 'chips'}, chip(kNothing, 'hole')),
       ],
     };
@@ -179,7 +179,7 @@
       count: `of ${percent(known / out.length, 0)} with truth`,
       legend: [el('div', {class: 'chips'},
         names.map((name, i) => chip(kErrorClasses[i][1], name, counts[i] / known)), chip('#4b5057', 'hole', holes / known),
-        known < out.length ? chip('#000000', 'truth not known') : null)],
+        known < out.length ? chip('#000000', 'no ground truth') : null)],
     };
   }
 
@@ -223,7 +223,7 @@
     return {
       count: counted(places.length, 'object'),
       marks: marks(places, (id) => `${id}: ${errorText(truth.get(id))}`, chosen, current()),
-      legend: [el('div', {class: 'chips'}, el('span', {}, 'coloured as ours that fits best'),
+      legend: [el('div', {class: 'chips'}, el('span', {}, 'coloured like the best-matching object of ours'),
         [...truth.values()].some((t) => !t.ours) ? chip(kMissed, 'missed') : null,
         places.some(({id}) => !truth.has(id)) ? chip(kNotScored, 'not scored') : null)],
     };
@@ -282,7 +282,7 @@
     const arc = (radius) => `M${at(polar(radius, right))}A${scale * radius} ${scale * radius} 0 0 0 ${at(polar(radius, left))}`;
     const step = roundStep(reach, 7);
     const rings = Array.from({length: Math.floor(reach / step)}, (_, i) => Number((step * (i + 1)).toPrecision(3)));
-    const drawing = svg('svg', {class: 'above', viewBox: `0 0 ${wide} ${high}`, role: 'img', 'aria-label': 'The floor from above'},
+    const drawing = svg('svg', {class: 'above', viewBox: `0 0 ${wide} ${high}`, role: 'img', 'aria-label': 'Top view of the floor'},
       svg('path', {class: 'seen', fill: kSeen, d: `${arc(reach)}L${at([0, 0])}Z`}),
       ...rings.flatMap((radius) => {
         const [x, y] = at(polar(radius, right));
@@ -297,7 +297,7 @@
       svg('title', {}, `object ${id}: ${size.slice(0, 2).map((length) => fixed(length, 2)).join(' × ')} m, ${fixed(size[2], 2)} m high`))),
       svg('path', {class: 'camera', d: `M${at([0, 0])}l-7 10h14Z`}), svg('circle', {class: 'here', r: 6, visibility: 'hidden'}));
     return {
-      drawing, count: `a ring every ${step} m`,
+      drawing, count: `rings every ${step} m`,
       legend: [el('div', {class: 'chips'}, chip(kScan, 'obstacle scan'), chip(kSeen, 'field of view'), el('span', {}, 'numbered: the objects’ boxes on the floor'))],
     };
   }
@@ -312,8 +312,8 @@
   /** panel → its modes; `needs` are the maps that it requires. */
   const kPanels = {
     left: [
-      {name: 'Left picture', needs: ['left'], base: 'plain'},
-      {name: 'Right picture', needs: ['right'], base: 'plain', picture: 'right'},
+      {name: 'Left image', needs: ['left'], base: 'plain'},
+      {name: 'Right image', needs: ['right'], base: 'plain', picture: 'right'},
     ],
     disparity: [
       {name: 'Disparity', needs: ['disparity'], paint: (out, m) => paintDisparity(out, m.disparity, m.reject)},
@@ -386,7 +386,7 @@
     partMarks(shown.marks ?? []);
     if (!withLegend) return;
     const heading = offered.length === 1 ? el('h2', {}, mode.name)
-      : el('select', {'aria-label': `What the panel ${title} shows`, onchange: (event) => {
+      : el('select', {'aria-label': `Content of the panel ${title}`, onchange: (event) => {
           state.modes[name] = event.target.selectedIndex;
           repaint(name);
         }}, offered.map((other) => el('option', {selected: other === mode}, other.name)));
@@ -469,7 +469,7 @@
         ['x, y', place && `${fixed(place[0], 2)}, ${fixed(place[1], 2)} m`],
         ['above the floor', above && `${fixed(above[2], 2)} m`],
         ['confidence', !hole && maps.confidence ? fixed(maps.confidence[i] / 255, 2) : null],
-        ['true disparity', maps.true_disparity ? (Number.isNaN(truth) ? 'not known' : `${fixed(truth, 2)} px`) : null],
+        ['true disparity', maps.true_disparity ? (Number.isNaN(truth) ? 'unknown' : `${fixed(truth, 2)} px`) : null],
       ]));
     }
     if (maps.space) parts.push(group(null, [['space', kSpaces[spaceOf(maps, i)][0]]]));
@@ -547,7 +547,7 @@
     const columns = [{name: 'id', value: (o) => o.id, show: (o) => [swatch(idColour(o.id)), o.id]}];
     if (has('position_m')) columns.push(number('distance m', (o) => o.position_m?.[2], 2));
     if (has('depth_interval_m')) {
-      columns.push({name: 'interval m', title: 'holds its distance with 95 %; sorts by its width',
+      columns.push({name: 'interval m', title: '95 % interval of the distance; sorted by its width',
         value: (o) => o.depth_interval_m && (o.depth_interval_m[1] ?? Infinity) - o.depth_interval_m[0],
         show: (o) => o.depth_interval_m?.map((z) => (z === null ? '∞' : fixed(z, 2))).join(' – ') ?? '–'});
     }
@@ -563,11 +563,11 @@
           number('y m', (o) => o.position_m?.[1], 2, {title: 'below the left camera'}));
       }
       if (has('extent_m')) {
-        columns.push({name: 'size m', title: 'width × height × depth; sorts by the largest',
+        columns.push({name: 'size m', title: 'width × height × depth; sorted by the largest',
           value: (o) => (o.extent_m ? Math.max(...o.extent_m) : null),
           show: (o) => o.extent_m?.map((length) => fixed(length, 2)).join(' × ') ?? '–'});
       }
-      columns.push(share('valid %', (o) => o.valid_share, {title: 'share of its pixels that have a disparity'}));
+      columns.push(share('valid %', (o) => o.valid_share, {title: 'share of its pixels with a disparity'}));
     }
     columns.push(number('area px', (o) => o.area ?? o.score?.area_px, 0));
     return card(evaluates ? 'Objects found' : 'Objects', note, table('objects', columns, list, {
@@ -589,10 +589,10 @@
     if (!found.length) return card(title, null, el('p', {class: 'empty'}, 'none'));
     const list = found.map((left, key) => ({key, ...left}));
     const columns = [{name: 'reason', text: true, value: (l) => l.reason, show: (l) => l.reason,
-      title: 'background: most of it lies on a wall; too small: less than objects.min_area; low confidence: no region is likely enough an object'}];
+      title: 'background: mostly on a wall; too small: below objects.min_area; low confidence: no region has a sufficient score'}];
     if (list.some((l) => l.position_m)) columns.push(number('distance m', (l) => l.position_m?.[2], 2));
     columns.push(number('disparity px', (l) => l.disparity_px, 1));
-    if (list.some((l) => l.confidence > 0)) columns.push(number('confidence', (l) => l.confidence, 2, {title: 'the best of a region that holds its middle'}));
+    if (list.some((l) => l.confidence > 0)) columns.push(number('confidence', (l) => l.confidence, 2, {title: 'highest score of the regions that contain its centre'}));
     columns.push(number('area px', (l) => l.area, 0));
     return card(title, counted(list.length, 'obstacle'), table('left-out', columns, list, {
       key: (l) => l.key, selected: (l) => l.key === state.leftOut?.key,
@@ -619,18 +619,18 @@
     const columns = [{name: 'frame', text: true, value: (f) => f.name, show: (f) => f.name}];
     if (evaluates) {
       columns.push(
-        share('E %', meanError, {title: 'mean, each counted as 200 % at most'}),
-        {name: 'found', title: 'true objects with IoU ≥ 0.5, of all scored', value: (f) => counts(f) && counts(f).found_50 - counts(f).scored,
+        share('E %', meanError, {title: 'mean, capped at 200 % each'}),
+        {name: 'found', title: 'share of the scored true objects with IoU ≥ 0.5', value: (f) => counts(f) && counts(f).found_50 - counts(f).scored,
           show: (f) => (counts(f) ? `${counts(f).found_50}/${counts(f).scored}` : '–'), bad: (f) => counts(f)?.found_50 < counts(f)?.scored},
         number('ours', (f) => counts(f)?.ours, 0), number('right', (f) => counts(f)?.right_50, 0),
         number('phantoms', (f) => counts(f)?.phantoms, 0, {bad: (f) => counts(f)?.phantoms > 0}),
-        share('bad-1 %', (f) => visible(f)?.bad_of_matched['1'], {title: 'of the matched pixels that both cameras see'}),
+        share('bad-1 %', (f) => visible(f)?.bad_of_matched['1'], {title: 'of the matched pixels visible to both cameras'}),
         share('density %', (f) => visible(f)?.density));
     } else {
       columns.push(
         number('objects', (f) => f.objects.length, 0),
         number('nearest m', (f) => f.result?.objects[0]?.position_m?.[2], 2),
-        share('disparity %', (f) => f.valid_share, {title: 'share of the pixels that have a disparity'}),
+        share('disparity %', (f) => f.valid_share, {title: 'share of the pixels with a disparity'}),
         {name: 'ground', text: true, value: groundText, show: (f) => el('span', {title: groundText(f)}, groundText(f).split(':')[0])},
         number('ms', (f) => total(f.result?.timings_ms), 1));
     }
@@ -640,14 +640,14 @@
   }
   function groundText({result}) {
     if (!result) return '–';
-    return result.ground?.plane ? 'found' : `none: ${words(result.ground?.refusal ?? 'not known')}`;
+    return result.ground?.plane ? 'found' : `none: ${words(result.ground?.refusal ?? 'unknown')}`;
   }
 
   function timesCard() {
     const times = Object.entries(current().result?.timings_ms ?? {});
     if (!times.length) return null;
     const most = Math.max(...times.map(([, t]) => t));
-    return card('Time per stage', `${fixed(total(current().result.timings_ms), 1)} ms in all`, table('times', [
+    return card('Time per stage', `${fixed(total(current().result.timings_ms), 1)} ms in total`, table('times', [
       {name: 'stage', text: true, value: ([stage]) => stage, show: ([stage]) => words(stage)},
       number('ms', ([, t]) => t, 2),
       {name: '', grow: true, text: true, value: ([, t]) => t, show: ([, t]) => el('span', {class: 'bar', style: {width: `${100 * t / most}%`}})},
@@ -678,14 +678,14 @@
     if (o) {
       list.push([percent(o.recall_50), `of ${counted(o.scored, 'object')} found`, 'true objects with IoU ≥ 0.5']);
       if (o.ours !== null) list.push([percent(o.precision_50), `precision of ${counted(o.ours, 'object')}`, 'IoU ≥ 0.5'],
-        [fixed(o.phantoms_per_frame, 2), 'phantoms per frame', 'less than a quarter on any true object']);
+        [fixed(o.phantoms_per_frame, 2), 'phantoms per frame', 'objects with less than a quarter on any true object']);
       list.push([percent(o.median_error), `median E; mean ${percent(o.mean_error)}`, 'Eq. 5: 1/IoU − 1, counted as 200 % at most'],
         [fixed(o.mean_boundary_f, 3), 'boundary F', 'mean over all scored']);
     }
     const seen = d?.both_cameras ?? d?.all;
     if (seen) {
-      list.push([percent(seen.bad_of_matched['1']), 'bad-1 of the matched', d.both_cameras ? 'pixels that both cameras see' : 'all pixels with truth'],
-        [percent(seen.density), 'density', 'share of the pixels with truth that have a disparity']);
+      list.push([percent(seen.bad_of_matched['1']), 'bad-1 of the matched', d.both_cameras ? 'pixels visible to both cameras' : 'all pixels with truth'],
+        [percent(seen.density), 'density', 'share of the pixels with ground truth that have a disparity']);
     }
     byId('tiles').replaceChildren(...list.map(([value, name, title]) => el('div', {class: 'tile', title}, el('b', {}, value), el('span', {}, name))));
     byId('tiles').hidden = list.length === 0;
@@ -729,7 +729,7 @@
       class: `hit${state.bin === bin ? ' on' : ''}`, 'data-bin': bin, x: x(bin), width: step, y: top, height: height - top - bottom,
       onclick: () => { state.bin = state.bin === bin ? null : bin; fillTables(); },
     }, svg('title', {}, `E ${binText(bin)}: ${counted(count, 'true object')}`))));
-    const result = card('Histogram of E', 'over the true objects of all frames; click a bar to list them', el('div', {class: 'histogram'}, drawing));
+    const result = card('Histogram of E', 'true objects of all frames; click a bar to list them', el('div', {class: 'histogram'}, drawing));
     result.id = 'histogram';
     return result;
   }
@@ -740,7 +740,7 @@
       {name: 'id', value: (t) => t.id, show: (t) => t.id},
       share('E %', (t) => t.error ?? Infinity, {show: (t) => (t.error === null ? 'missed' : fixed(100 * t.error, 1)), bad: (t) => t.iou < 0.5}),
       number('IoU', (t) => t.iou, 3), number('boundary F', (t) => t.boundary_f, 3),
-      number('ours', (t) => t.ours, 0, {title: 'the object of ours that fits best'}), number('area px', (t) => t.area_px, 0),
+      number('ours', (t) => t.ours, 0, {title: 'the best-matching object of ours'}), number('area px', (t) => t.area_px, 0),
       {name: 'segmented', text: true, value: segmented, show: segmented},
     ];
     if (run.frames > 1) columns.unshift({name: 'frame', text: true, value: (t) => t.name, show: (t) => t.name});
@@ -778,8 +778,8 @@
     if (isNumber(valid)) parts.push(`disparity on ${percent(valid)} of the pixels`);
     if (result) {
       const {ground, epipolar} = result;
-      parts.push(ground?.plane ? `ground found, support ${percent(ground.support, 0)}` : `no ground (${words(ground?.refusal ?? 'not known')})`);
-      if (epipolar?.outcome === 'corrected') parts.push(`right picture moved by ${fixed(epipolar.rows, 2)} rows`);
+      parts.push(ground?.plane ? `ground found, support ${percent(ground.support, 0)}` : `no ground (${words(ground?.refusal ?? 'unknown')})`);
+      if (epipolar?.outcome === 'corrected') parts.push(`right image shifted by ${fixed(epipolar.rows, 2)} rows`);
       if (result.external_disparity) parts.push('disparity given');
       parts.push(`preset ${result.preset}`, `${fixed(total(result.timings_ms), 1)} ms`);
     }
@@ -854,9 +854,9 @@
 
   function begin() {
     beginPage();
-    byId('about').textContent = `cairn ${run.cairn}. Point at a pixel to see what is known of it; click an object to single it out` +
+    byId('about').textContent = `cairn ${run.cairn}. Point at a pixel to inspect it; click an object to highlight it` +
       (run.frames > 1 ? '; ← and → change the frame, space plays.' : '.');
-    byId('columns').append(...[4, 3, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} in a row`, onclick: () => {
+    byId('columns').append(...[4, 3, 2, 1].map((n) => el('button', {type: 'button', 'data-columns': n, title: `${n} columns`, onclick: () => {
       state.columns = n;
       layOut();
     }}, String(n))));

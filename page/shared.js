@@ -306,7 +306,7 @@ function beginPage() {
     root.dataset.theme = dark ? 'light' : 'dark';
   });
   if (typeof DecompressionStream === 'undefined') {
-    trouble('This browser cannot unpack the pictures (no DecompressionStream): Chrome 80, Firefox 113, Safari 16.4 or later can.');
+    trouble('This browser cannot decompress the images (no DecompressionStream). Use Chrome 80, Firefox 113, Safari 16.4 or later.');
   }
 }
 

@@ -37,7 +37,7 @@ class Sample:
 
     def gray(self):
         """Both images in grey."""
-        return tuple(gray_of(picture) for picture in (self.left, self.right))
+        return tuple(gray_of(image) for image in (self.left, self.right))
 
 
 def gray_of(rgb):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What may come in and how; who owns what comes out."""
+"""Input arrays: accepted types and layouts. Output arrays: ownership."""
 
 import ctypes
 import gc
@@ -22,39 +22,39 @@ def address(array):
 # ---- in ----
 
 
-def test_grey_pictures_are_read_where_they_lie():
-    picture = np.zeros((48, 64), np.uint8)
-    assert _cairn._address_of_pixels(picture) == address(picture)
-    window = picture[5:40, 7:50]  # rows of a larger picture
+def test_grey_images_are_not_copied():
+    image = np.zeros((48, 64), np.uint8)
+    assert _cairn._address_of_pixels(image) == address(image)
+    window = image[5:40, 7:50]  # a window of a larger image
     assert _cairn._address_of_pixels(window) == address(window)
-    row = picture[3:4, :]
+    row = image[3:4, :]
     assert _cairn._address_of_pixels(row) == address(row)
-    every_other_row = picture[::2]
+    every_other_row = image[::2]
     assert _cairn._address_of_pixels(every_other_row) == address(every_other_row)
-    picture.flags.writeable = False
-    assert _cairn._address_of_pixels(picture) == address(picture)
+    image.flags.writeable = False
+    assert _cairn._address_of_pixels(image) == address(image)
 
 
-def test_colours_are_read_where_they_lie():
-    picture = np.zeros((48, 64, 3), np.uint8)
-    for there in (picture, picture[5:40, 7:50], picture[3:4], picture[::2], picture[:, :1]):
+def test_colour_images_are_not_copied():
+    image = np.zeros((48, 64, 3), np.uint8)
+    for there in (image, image[5:40, 7:50], image[3:4], image[::2], image[:, :1]):
         assert _cairn._address_of_pixels(there) == address(there)
-    for other in (picture[:, :, ::-1], picture[::-1], picture[:, ::2], np.asfortranarray(picture)):
+    for other in (image[:, :, ::-1], image[::-1], image[:, ::2], np.asfortranarray(image)):
         assert _cairn._address_of_pixels(other) != address(other)
-    assert _cairn._address_of_pixels(picture, bgr=True) != address(picture)  # another order, another array
+    assert _cairn._address_of_pixels(image, bgr=True) != address(image)  # another channel order needs a copy
 
 
-def test_a_frame_holds_the_colours_themselves(sample):
+def test_a_frame_shares_the_colour_image(sample):
     left = sample.left.copy()
     frame = cairn.segment(left, sample.right, sample.calibration)
     before = frame.overlay()
-    left[:] = 255 - left  # what the guide warns of
+    left[:] = 255 - left  # which the guide warns against
     assert not same(frame.overlay(), before)
 
 
-def test_pixels_that_do_not_lie_side_by_side_are_copied():
-    picture = np.zeros((48, 64), np.uint8)
-    for other in (picture[:, ::2], picture.T, picture[::-1], picture[:, ::-1], np.asfortranarray(picture)):
+def test_pixels_that_are_not_adjacent_are_copied():
+    image = np.zeros((48, 64), np.uint8)
+    for other in (image[:, ::2], image.T, image[::-1], image[:, ::-1], np.asfortranarray(image)):
         assert _cairn._address_of_pixels(other) != address(other)
 
 
@@ -62,41 +62,41 @@ def test_any_layout_gives_the_same_frame(sample):
     left, right = sample.gray()
     expected = cairn.segment(left, right, sample.calibration)
 
-    def with_room(picture):
+    def with_room(image):
         room = np.full((300, 400), 77, np.uint8)
-        room[30:270, 40:360] = picture
+        room[30:270, 40:360] = image
         return room[30:270, 40:360]
 
-    def spread(picture):
+    def spread(image):
         wide = np.zeros((240, 640), np.uint8)
-        wide[:, ::2] = picture
+        wide[:, ::2] = image
         return wide[:, ::2]
 
-    def upside_down(picture):
-        return np.ascontiguousarray(picture[::-1])[::-1]
+    def upside_down(image):
+        return np.ascontiguousarray(image[::-1])[::-1]
 
     for layout in (with_room, spread, upside_down, np.asfortranarray, lambda p: p[:, :, None], memoryview):
         assert same_frame(cairn.segment(layout(left), layout(right), sample.calibration), expected)
 
 
-def test_colour_is_rgb_and_bgr_when_told(sample):
-    swapped = [np.ascontiguousarray(picture[:, :, ::-1]) for picture in (sample.left, sample.right)]
+def test_colour_is_rgb_unless_bgr_is_given(sample):
+    swapped = [np.ascontiguousarray(image[:, :, ::-1]) for image in (sample.left, sample.right)]
     assert same_frame(cairn.segment(*swapped, sample.calibration, bgr=True), sample.frame)
-    views = [picture[:, :, ::-1] for picture in swapped]  # a view that is RGB, its channels backwards
+    views = [image[:, :, ::-1] for image in swapped]  # a view that is RGB, its channels backwards
     assert same_frame(cairn.segment(*views, sample.calibration), sample.frame)
     taken_for_rgb = cairn.segment(*swapped, sample.calibration)
     assert [o.mean_colour for o in taken_for_rgb.objects] != [o.mean_colour for o in sample.frame.objects]
 
 
-def test_grey_of_colours_is_the_files_grey(sample):
+def test_grey_from_colour_equals_load_pair(sample):
     left, right = sample.gray()
     in_grey = cairn.match(left, right, num_disparities=32)
     in_colour = cairn.match(sample.left, sample.right, num_disparities=32)
     assert same(in_grey.best, in_colour.best) and same(in_grey.cost, in_colour.cost)
 
 
-def test_nothing_is_read_beyond_a_pictures_last_pixel():
-    """Pictures that end where the process's memory ends."""
+def test_reads_stop_at_the_last_pixel():
+    """Images that end at the end of mapped memory."""
     libc = ctypes.CDLL(None, use_errno=True)
     random = np.random.default_rng(5)
 
@@ -108,9 +108,9 @@ def test_nothing_is_read_beyond_a_pictures_last_pixel():
         last_page = everything[(pages - 1) * mmap.PAGESIZE :]
         if libc.mprotect(ctypes.c_void_p(address(last_page)), mmap.PAGESIZE, 0) != 0:
             pytest.skip("memory cannot be protected here")
-        picture = everything[(pages - 1) * mmap.PAGESIZE - area : (pages - 1) * mmap.PAGESIZE].reshape(height, width)
-        picture[:] = random.integers(0, 256, picture.shape)
-        return picture
+        image = everything[(pages - 1) * mmap.PAGESIZE - area : (pages - 1) * mmap.PAGESIZE].reshape(height, width)
+        image[:] = random.integers(0, 256, image.shape)
+        return image
 
     for height, width in ((40, 61), (33, 64), (50, 97)):
         left, right = at_the_end(height, width), at_the_end(height, width)
@@ -121,17 +121,17 @@ def test_nothing_is_read_beyond_a_pictures_last_pixel():
 
 
 @pytest.mark.parametrize("height, width", [(1, 1), (1, 40), (40, 1), (9, 9), (17, 33)])
-def test_any_size_that_the_window_fits_is_taken_and_others_are_refused_by_name(height, width):
-    picture = np.zeros((height, width), np.uint8)
+def test_any_size_that_fits_the_window_is_accepted_and_others_name_the_option(height, width):
+    image = np.zeros((height, width), np.uint8)
     for preset, option in (("default", "match.method"), ("paper", "match.window_size")):
         if min(height, width) >= 9:
-            assert cairn.segment(picture, picture, preset=preset, match={"num_disparities": 5}).shape == (height, width)
+            assert cairn.segment(image, image, preset=preset, match={"num_disparities": 5}).shape == (height, width)
             continue
         with pytest.raises(cairn.Error, match=f"option {option}"):
-            cairn.segment(picture, picture, preset=preset, match={"num_disparities": 1})
+            cairn.segment(image, image, preset=preset, match={"num_disparities": 1})
 
 
-BAD_PICTURES = [
+BAD_IMAGES = [
     (None, "left: found None, expected an image"),
     (3, "left: found a value of type int"),
     ("left.png", "left: found a value of type str"),
@@ -149,20 +149,20 @@ BAD_PICTURES = [
 ]
 
 
-@pytest.mark.parametrize("picture, words", BAD_PICTURES)
-def test_a_bad_picture_is_refused_by_name(sample, picture, words):
+@pytest.mark.parametrize("image, words", BAD_IMAGES)
+def test_a_bad_image_is_refused_by_name(sample, image, words):
     with pytest.raises(cairn.Error, match=words):
-        cairn.segment(picture, sample.right)
+        cairn.segment(image, sample.right)
     with pytest.raises(cairn.Error, match=words.replace("left: ", "right: ")):
-        cairn.segment(sample.left, picture)
+        cairn.segment(sample.left, image)
 
 
-def test_pictures_of_two_sizes_are_refused(sample):
+def test_images_of_two_sizes_are_refused(sample):
     with pytest.raises(cairn.Error, match="left image is 320x240, right image is 319x240"):
         cairn.segment(sample.left, sample.right[:, 1:])
 
 
-def test_disparities_may_be_any_floats_but_no_integers(sample):
+def test_disparities_may_be_any_float_type_but_not_integers(sample):
     truth = cairn.load_disparity(sample.folder / "disp_left.png")
     expected = cairn.segment(sample.left, disparity_map=truth)
     for other in (truth.astype(np.float64), np.asfortranarray(truth), truth.astype(">f4"), cairn.external_disparity(truth)):
@@ -180,7 +180,7 @@ def test_disparities_may_be_any_floats_but_no_integers(sample):
 # ---- out ----
 
 
-def test_arrays_of_a_frame_are_its_own_memory_and_outlive_it(sample):
+def test_arrays_of_a_frame_share_its_memory_and_outlive_it(sample):
     frame = cairn.segment(sample.left, sample.right, sample.calibration)
     assert address(frame.disparity) == address(frame.disparity)
     assert address(frame.disparity) == address(frame.disparity_map.disparity_px)
@@ -188,13 +188,13 @@ def test_arrays_of_a_frame_are_its_own_memory_and_outlive_it(sample):
     before = disparity.copy()
     del frame
     gc.collect()
-    [cairn.segment(sample.left[::-1], sample.right) for _ in range(3)]  # would reuse freed memory
+    [cairn.segment(sample.left[::-1], sample.right) for _ in range(3)]  # would overwrite freed memory
     np.testing.assert_array_equal(disparity, before)
     assert labels.max() == len(sample.frame.groups) - 1
     assert repr(objects) == repr(sample.frame.objects)
 
 
-def test_arrays_have_the_types_and_shapes_that_the_guide_says(sample):
+def test_arrays_have_the_types_and_shapes_of_the_guide(sample):
     frame = sample.frame
     for name, kind in (("disparity", np.float32), ("reject", np.uint16), ("confidence", np.float32), ("floor", np.uint8),
                        ("objects_map", np.int32)):
@@ -213,7 +213,7 @@ def test_arrays_have_the_types_and_shapes_that_the_guide_says(sample):
     assert frame.overlay().dtype == np.uint8 and frame.overlay().shape[2] == 3
 
 
-def test_what_stages_rely_on_cannot_be_written_to(sample):
+def test_arrays_that_stages_rely_on_are_read_only(sample):
     for array in (sample.frame.disparity, sample.frame.objects_map, sample.frame.groups.labels):
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 1
@@ -221,10 +221,10 @@ def test_what_stages_rely_on_cannot_be_written_to(sample):
             array.flags.writeable = True
         array.copy()[0, 0] = 1
     refined = cairn.refine_subpixel(cairn.match(sample.left, sample.right, num_disparities=8))
-    refined[0, 0] = 3  # nobody else's
+    refined[0, 0] = 3  # a separate array
 
 
-def test_a_frame_keeps_the_left_picture_only_as_long_as_it_lives(sample):
+def test_a_frame_releases_the_left_image_when_it_is_deleted(sample):
     left, right = sample.gray()
     kept, unkept = weakref.ref(left), weakref.ref(right)
     frame = cairn.segment(left, right)
@@ -253,7 +253,7 @@ def test_memory_does_not_grow_with_the_number_of_frames(sample):
     assert resident() - before < 30 * per_frame
 
 
-def test_gray_of_helper_is_the_librarys(sample):
+def test_the_helper_gray_of_equals_the_library(sample):
     colour = np.random.default_rng(1).integers(0, 256, (20, 40, 3)).astype(np.uint8)
     np.testing.assert_array_equal(
         cairn.gradient(gray_of(colour), 1.0), cairn.gradient(colour, 1.0)

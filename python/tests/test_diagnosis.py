@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What is wrong with a rig, as the doctor finds it."""
+"""Diagnosis of a rig, as by `cairn doctor`."""
 
 import json
 import subprocess
@@ -17,7 +17,7 @@ def measures(sample):
 
 
 def sequence(frames, late=0):
-    """Noise that drifts by a pixel more or less each time; the right camera may be `late` by so many frames."""
+    """Noise that drifts irregularly; the right camera is `late` frames late."""
     texture = np.random.default_rng(1).integers(0, 256, (48, 160), np.uint8)
     shifts = np.cumsum(np.random.default_rng(2).integers(0, 4, frames + 4)) + 4
     lefts = [np.ascontiguousarray(texture[:, s % 60 : s % 60 + 96]) for s in shifts]
@@ -25,7 +25,7 @@ def sequence(frames, late=0):
     return [(lefts[i + 2], rights[i + 2 - late]) for i in range(frames)]
 
 
-def test_nothing_is_said_of_a_good_pair(sample, measures):
+def test_a_good_pair_has_no_findings(sample, measures):
     assert cairn.diagnose(measures, sample.calibration) == []
     assert measures.size == (320, 240) and measures.found_points > 24 and measures["agreeing_percent"] > 40
     assert abs(measures.offset_rows) < 0.5 and sum(measures.rows_histogram) == measures.found_points
@@ -38,20 +38,20 @@ def test_nothing_is_said_of_a_good_pair(sample, measures):
         measures.offset_row
 
 
-def test_measures_are_those_of_the_doctor(sample, measures, command, tmp_path):
+def test_measures_equal_those_of_the_command(sample, measures, command, tmp_path):
     report = tmp_path / "report.json"
     subprocess.run([command, "doctor", sample.folder, "--json", report], capture_output=True)
     assert measures.as_dict() == json.loads(report.read_text())["pairs"][0]["measured"]
 
 
-def test_swapped_cameras_are_told(sample):
+def test_swapped_cameras_are_reported(sample):
     (found,) = cairn.diagnose(cairn.measure_pair(sample.right, sample.left), sample.calibration)
     assert (found.kind, found.severity, found.unit) == ("cameras swapped", "broken", "%")
     assert found.value > 60 and "negative disparity" in found.says and "Exchange" in found.remedy
     assert found.says in repr(found) and found.number == "points with a negative disparity"
 
 
-def test_findings_are_those_of_the_doctor(sample, command, tmp_path):
+def test_findings_equal_those_of_the_command(sample, command, tmp_path):
     cairn.save_png(tmp_path / "left.png", sample.right)
     cairn.save_png(tmp_path / "right.png", sample.left)
     report = tmp_path / "report.json"
@@ -62,7 +62,7 @@ def test_findings_are_those_of_the_doctor(sample, command, tmp_path):
     assert [{**f.as_dict(), "pairs": t["pairs"]} for f, t in zip(found, told)] == told
 
 
-def test_the_range_is_the_calibrations_unless_it_is_given(sample, measures):
+def test_the_range_defaults_to_that_of_the_calibration(sample, measures):
     def kinds(*arguments, **keywords):
         return [f.kind for f in cairn.diagnose(measures, *arguments, **keywords)]
 
@@ -72,21 +72,21 @@ def test_the_range_is_the_calibrations_unless_it_is_given(sample, measures):
     assert kinds(num_disparities=320) == ["disparity range too large"]
 
 
-def test_limits_are_ones_own(sample, measures):
+def test_limits_can_be_set(sample, measures):
     strict = cairn.diagnose(measures, sample.calibration, limits={"warn_edge": np.float32(1), "least_points": 9})
     assert [f.kind for f in strict] == ["blurred"] and strict[0].severity == "warning"
     assert "warn_rows = 0.75 rows (0 … 100): " in cairn.diagnose.__doc__
 
 
-def test_cameras_that_run_together_are_no_finding():
+def test_synchronous_cameras_have_no_findings():
     together = cairn.measure_synchrony(sequence(14))
     assert together.frames == 14 and together.lag == 0 and cairn.diagnose(together) is None
-    assert len(together.motion) == len(together.agreement) == 5  # of lags from -2 to 2
+    assert len(together.motion) == len(together.agreement) == 5  # for lags from -2 to 2
     assert together.tells and together.change is None
     assert cairn.diagnose(cairn.measure_synchrony([])) is None
 
 
-def test_a_camera_that_becomes_late_is_told():
+def test_a_camera_that_becomes_late_is_reported():
     together, late = sequence(34), sequence(34, 1)
     measured = cairn.measure_synchrony(together[:17] + late[17:])
     frame = measured.change["from"]
@@ -94,40 +94,40 @@ def test_a_camera_that_becomes_late_is_told():
     assert f"from frame {frame} on" in cairn.diagnose(measured).says
 
 
-def test_a_still_sequence_tells_nothing():
+def test_a_static_sequence_has_no_findings():
     measured = cairn.measure_synchrony(sequence(1) * 9)
     assert not measured.tells and cairn.diagnose(measured).severity == "note"
 
 
-def test_one_picture_given_twice_is_told(sample):
+def test_identical_images_are_reported(sample):
     measured = cairn.measure_pair(sample.left, sample.left)
     assert measured.identical and [f.kind for f in cairn.diagnose(measured)] == ["identical images"]
     assert cairn.measure_pair(sample.left[:20, :20], sample.left[:20, :20]).gain is None  # not measured
 
 
 @pytest.mark.parametrize("late", [-1, 2])
-def test_a_camera_that_is_late_is_told(late):
+def test_a_late_camera_is_reported(late):
     measured = cairn.measure_synchrony(iter(sequence(16, late)), exec=cairn.Exec(2))
     found = cairn.diagnose(measured)
     assert measured.lag == late == found.value and found.kind == "not synchronised" and found.severity == "broken"
     assert f"lag={late}" in repr(measured)
 
 
-def test_a_picture_that_is_repeated_is_counted():
+def test_repeated_images_are_counted():
     pairs = sequence(5)
     pairs[3] = (pairs[3][0], pairs[2][1])
     moving = cairn.measure_synchrony(pairs)
     assert moving.left_repeats == 0 and moving.right_repeats >= 1 and cairn.diagnose(moving).severity == "warning"
 
 
-def test_the_smallest_pictures_are_measured():
+def test_the_smallest_images_are_measured():
     dot = np.zeros((1, 1), np.uint8)
     measured = cairn.measure_pair(dot, dot)
     assert np.isnan(measured.disparity_px(0.5)) and len(measured.disparities_px) == 0 and "size=(1, 1)" in repr(measured)
     assert cairn.diagnose(measured)[0].kind == "too little texture"
 
 
-def test_what_cannot_be_judged_is_refused_by_name(sample, measures):
+def test_invalid_input_is_refused_by_name(sample, measures):
     left, right = sample.gray()
     half = left[:, :160]
     calls = {

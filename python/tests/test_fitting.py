@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""fitting/: trees as sources and files, reports, what became of a lost object. Nothing is fitted here."""
+"""fitting/: trees as sources and files, reports, the fate of a missed object. Nothing is fitted here."""
 
 import importlib.util
 import pathlib
@@ -39,13 +39,13 @@ def trees():
     return nodes
 
 
-def test_the_branches_of_a_node_are_neighbours_the_yes_first():
+def test_the_branches_of_a_node_are_adjacent_yes_first():
     nodes = trees()
     assert nodes.roots == [0, 5]
     assert nodes.nodes == [(3, 1, 1.5), (0, 3, -2), (-1, 0, 0.25), (-1, 0, -1), (-1, 0, 3), (-1, 0, 7)]
 
 
-def test_trees_are_written_for_the_tool_and_as_a_source(tmp_path):
+def test_trees_are_written_for_the_tool_and_as_source_code(tmp_path):
     trees().write(tmp_path / "trees")
     assert (tmp_path / "trees").read_text() == "0.5 2 6\n0 5\n3 1 1.5\n0 3 -2\n-1 0 0.25\n-1 0 -1\n-1 0 3\n-1 0 7\n"
     trees().write_source(tmp_path / "source", "SameThing")
@@ -72,7 +72,7 @@ def test_frames_are_folders_with_true_objects(tmp_path):
     assert fit.frames_in(tmp_path) == [tmp_path / "a", tmp_path / "b"]
 
 
-def test_numbers_read_well():
+def test_numbers_are_formatted():
     assert fit.runs_of([1, 2, 3, 4, 6, 8, 9]) == "1 to 4, 6, 8 to 9"
     assert fit.share_with_interval(0, 0) == "–"
     assert fit.share_with_interval(8, 10) == "0.80 (0.49 … 0.94)"
@@ -86,11 +86,11 @@ def test_every_kind_of_cues_has_features():
             assert word in names, f"{cue}: {word}"
 
 
-# Of a job: its number, the true objects, partial, ours, right, phantoms, IoUs, scores:right, milliseconds.
+# For each job: its number, the true objects, partial, ours, right, phantoms, IoUs, scores:right, milliseconds.
 ROWS = ["0 2 0 3 2 1 =0.9,0.6 =0.95:1,0.85:0,0.4:1 7".split(" "), "1 1 1 5 0 9 =0.2 =0.9:0 3".split(" ")]
 
 
-def test_a_report_counts_partial_frames_for_what_is_found_only():
+def test_a_report_counts_partial_frames_in_recall_only():
     jobs = [(pathlib.Path("a"), "colour", "rooms"), (pathlib.Path("b"), "colour", "rooms")]
     row = fit.report(ROWS, jobs).splitlines()[2]
     found = fit.share_with_interval
@@ -111,7 +111,7 @@ def test_the_ablation_fits_without_each_kind_of_cues(tmp_path, capsys):
     assert "fitted to 3 frames" in page and "in 2 folds" in page
 
 
-def test_a_hint_is_a_cue_of_the_hints_alone(tmp_path):
+def test_a_hint_counts_as_a_cue_of_the_hints_only(tmp_path):
     np.arange(1, 6, dtype=np.float32).tofile(tmp_path / "regions0")
     (tmp_path / "regions1").write_bytes(b"")
     names = ["hints: area over the voted size", "area, share of the image"]
@@ -121,7 +121,7 @@ def test_a_hint_is_a_cue_of_the_hints_alone(tmp_path):
         assert values.tolist() == [kept]
 
 
-def test_clutter_is_a_set_of_its_own(tmp_path):
+def test_clutter_is_a_separate_set(tmp_path):
     for name in ("train_s300", "clutter_s2000", "train_s301"):
         (tmp_path / "rooms" / name).mkdir(parents=True)
         for file in ("left.png", "objects.png"):
@@ -132,7 +132,7 @@ def test_clutter_is_a_set_of_its_own(tmp_path):
     assert "clutter" not in fit.fit_sets(tmp_path, None)
 
 
-def test_a_close_view_is_told_as_a_narrow_lens_tells_it(monkeypatch):
+def test_a_close_view_has_the_input_of_a_narrow_lens(monkeypatch):
     monkeypatch.syspath_prepend(str(SOURCE / "fitting"))
     hints = load("fit_hints")
     data = np.zeros((hints.CHANNELS, hints.HEIGHT, hints.WIDTH), np.float32)
@@ -146,7 +146,7 @@ def test_a_close_view_is_told_as_a_narrow_lens_tells_it(monkeypatch):
     assert data[10, 0, 80] == -1 and (data[:, ~inside] == 0).all()
 
 
-def test_what_became_of_a_lost_object():
+def test_the_fate_of_a_lost_object():
     pytest.importorskip("PIL")
     worst = load("worst_frames")
     truth = np.zeros((20, 40), int)
@@ -176,7 +176,7 @@ def test_what_became_of_a_lost_object():
     (["--ablation"], "fit: no data collection in '/nowhere'"),
     (["--worst"], "fit: no data collection in '/nowhere'"),
 ])
-def test_the_door_refuses_what_it_does_not_know(arguments, message):
+def test_dev_refuses_unknown_arguments(arguments, message):
     environment = {"CAIRN_DATA": "/nowhere", "CAIRN_INSTALL": "no", "PATH": "/usr/bin:/bin"}
     done = subprocess.run([SOURCE / "dev", "fit", *arguments], capture_output=True, text=True, env=environment)
     assert message in done.stderr and done.stderr.count("\n") == 1 and done.returncode == 1

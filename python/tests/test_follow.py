@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Sequences: the module follows as the command does, and refuses what it refuses."""
+"""Sequences: the module gives the results and refusals of the command."""
 
 import json
 import pickle
@@ -36,14 +36,14 @@ def plain(value):
     return [json.loads(line) for line in value.splitlines()]
 
 
-def test_a_sequence_gives_the_lines_of_the_command(command, steps):
+def test_a_sequence_gives_the_output_of_the_command(command, steps):
     done = subprocess.run([command, "follow", SEQUENCE, "--json-lines"], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert plain("".join(step.to_json() for step in steps)) == plain(done.stdout)
     assert len(steps) == 6
 
 
-def test_options_files_and_frames_are_those_of_the_command(command, tmp_path):
+def test_options_files_and_frames_equal_those_of_the_command(command, tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text("tracking:\n  min_hits: 2\nodometry:\n  max_features: 150\n")
     done = subprocess.run(
@@ -54,7 +54,7 @@ def test_options_files_and_frames_are_those_of_the_command(command, tmp_path):
     assert plain("".join(step.to_json() for step in mine)) == plain(done.stdout)
 
 
-def test_pair_by_pair_is_the_same_as_the_sequence(steps, pairs, rig):
+def test_pair_by_pair_equals_the_whole_sequence(steps, pairs, rig):
     follower = cairn.Follower(rig)
     for i, (left, right) in enumerate(pairs):
         step = follower.next(left, right, seconds=0.3 * i)
@@ -65,7 +65,7 @@ def test_pair_by_pair_is_the_same_as_the_sequence(steps, pairs, rig):
         assert json.loads(step.frame.to_json())["stamp_ns"] == step.stamp_ns
 
 
-def test_a_step_shows_the_camera_and_what_it_sees(steps):
+def test_a_step_contains_the_camera_and_its_objects(steps):
     last = steps[-1]
     assert last.ids.dtype == np.int64 and last.ids.shape == last.frame.shape and not last.ids.flags.writeable
     assert last.map_from_camera.shape == (4, 4) and last.map_from_camera.dtype == np.float64
@@ -90,7 +90,7 @@ def test_steps_can_be_pickled(steps):
     assert [repr(track) for track in back.tracks] == [repr(track) for track in steps[-1].tracks]
 
 
-def test_without_a_rig_there_are_ids_only(pairs):
+def test_without_a_rig_there_are_only_ids(pairs):
     follower = cairn.Follower(match={"num_disparities": 32})
     for i, (left, right) in enumerate(pairs[:3]):
         step = follower.next(left, right, i)
@@ -98,7 +98,7 @@ def test_without_a_rig_there_are_ids_only(pairs):
     assert all(track.position_m is None and track.covariance_m2 is None for track in step.tracks)
 
 
-def test_a_pose_that_is_known_is_taken_as_it_is(pairs, rig):
+def test_a_known_pose_is_used_unchanged(pairs, rig):
     follower = cairn.Follower(rig)
     pose = np.array([[0, 0, 1, 5], [-1, 0, 0, 0], [0, -1, 0, 1], [0, 0, 0, 1]], dtype=float)
     step = follower.next(*pairs[0], 0, pose=pose)
@@ -109,11 +109,11 @@ def test_a_pose_that_is_known_is_taken_as_it_is(pairs, rig):
             follower.next(*pairs[1], 1, pose=wrong)
 
 
-def test_a_prior_stands_in_where_the_picture_shows_nothing(pairs, rig):
+def test_a_prior_replaces_odometry_on_blank_images(pairs, rig):
     follower = cairn.Follower(rig)
     follower.next(*pairs[0], 0)
     ahead = np.eye(4)
-    ahead[2, 3] = -0.05  # what was 1 m ahead is 0.95 m ahead now
+    ahead[2, 3] = -0.05  # a point 1 m ahead is 0.95 m ahead now
     prior = cairn.MotionPrior(ahead, 1e-4 * np.eye(6))
     assert prior.kind == "wheels" and pickle.loads(pickle.dumps(prior)).now_from_before[2, 3] == -0.05
     black = np.zeros_like(pairs[0][0])
@@ -124,7 +124,7 @@ def test_a_prior_stands_in_where_the_picture_shows_nothing(pairs, rig):
         cairn.MotionPrior(ahead, np.eye(6), "sonar")
 
 
-def test_stamps_must_rise_and_sizes_must_stay(pairs, rig):
+def test_stamps_must_increase_and_sizes_stay_the_same(pairs, rig):
     follower = cairn.Follower(rig)
     left, right = pairs[0]
     follower.next(left, right, stamp_ns=10)
@@ -141,7 +141,7 @@ def test_stamps_must_rise_and_sizes_must_stay(pairs, rig):
     assert follower.next(left, right, np.int64(1_700_000_000_000_000_000)).index == 1
 
 
-def test_what_the_command_refuses_is_refused_in_its_words(command, tmp_path):
+def test_refusals_have_the_wording_of_the_command(command, tmp_path):
     for assignment, options in [("tracking.min_hist=2", {"tracking": {"min_hist": 2}}),
                                 ("tracking.min_hits=0", {"tracking": {"min_hits": 0}}),
                                 ("match.window_size=4", {"match": {"window_size": 4}})]:

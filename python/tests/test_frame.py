@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Frames, objects and rigs as one meets them in a notebook; files."""
+"""Frames, objects and rigs, as used in a notebook; files."""
 
 import json
 import re
@@ -20,7 +20,7 @@ PAPER_STAGES = """match refine_subpixel reject_inconsistent reject_ambiguous rej
     locate estimate_confidence label_space left_out_of""".split()
 
 
-def test_objects_tell_what_they_are(sample):
+def test_objects_have_attributes_and_a_repr(sample):
     frame = sample.frame
     nearest = frame.objects[0]
     assert nearest.id == 1 and nearest.distance_m == nearest.position_in_camera_m[2] == pytest.approx(2.13, abs=0.1)
@@ -45,7 +45,7 @@ def test_objects_are_a_sequence(sample):
     assert same(objects.labels, sample.frame.objects_map)
 
 
-def test_distances_have_an_interval_and_boxes_stand_on_the_floor(sample):
+def test_distances_have_an_interval_and_boxes_are_on_the_floor(sample):
     frame = sample.frame
     nearest = frame.objects[0]
     low, high = nearest.depth_interval_m
@@ -61,7 +61,7 @@ def test_distances_have_an_interval_and_boxes_stand_on_the_floor(sample):
     assert on_floor[:2] == pytest.approx(box.centre_in_floor_m[:2], abs=0.4)
 
 
-def test_what_stands_in_the_way_is_known_object_or_not(sample):
+def test_obstacles_are_reported_whether_objects_or_not(sample):
     frame = sample.frame
     assert set(np.unique(frame.space)) == {0, 128, 255}
     assert (frame.space[frame.objects_map > 0] == 255).all() and same(frame.floor, (frame.space == 128).astype(np.uint8) * 255)
@@ -97,7 +97,7 @@ def test_without_a_rig_there_are_no_metres(sample):
     assert repr(frame.objects[0]).startswith("Object(id=1, distance_m=None, ")
 
 
-def test_a_frame_shows_itself(sample, tmp_path):
+def test_a_frame_renders_itself(sample, tmp_path):
     frame = sample.frame
     png = frame._repr_png_()
     assert png.startswith(b"\x89PNG\r\n\x1a\n")
@@ -107,7 +107,7 @@ def test_a_frame_shows_itself(sample, tmp_path):
     assert same(shown, cairn.draw_objects(sample.left, frame.objects, frame.floor))
     view, drawn = frame.disparity_view(), cairn.draw_disparity(frame.disparity_map, sample.calibration)
     assert same(view[:, :640], drawn[:, :640])
-    assert not same(view, drawn)  # the frame knows which reasons are in force, and its legend lists these alone
+    assert not same(view, drawn)  # the frame's legend lists only the reasons in force
     assert repr(frame).startswith("<cairn.Frame 320x240, ground found, Objects(4\n  Object(id=1")
     assert frame.ground and frame.ground.refusal == "none" and 0 < frame.ground.support <= 1
     a, b, c = frame.ground.plane
@@ -117,7 +117,7 @@ def test_a_frame_shows_itself(sample, tmp_path):
     assert frame.epipolar.outcome == "aligned"
 
 
-def test_the_paper_asks_its_own_stages_only(sample):
+def test_the_preset_paper_runs_its_own_stages_only(sample):
     frame = cairn.segment(sample.left, sample.right, sample.calibration, preset="paper")
     assert list(frame.timings) == PAPER_STAGES
 
@@ -130,7 +130,7 @@ def test_reasons_have_names(sample):
     assert seen_by_one.any() and np.isnan(sample.frame.disparity[seen_by_one]).all()
 
 
-def test_a_rig_is_numbers_or_a_file(sample, tmp_path):
+def test_a_rig_is_made_of_numbers_or_a_file(sample, tmp_path):
     rig = cairn.Rig(focal_px=700, baseline_m=0.12, cx_px=320, cy_px=240)
     assert rig.point_in_camera_m(320, 240, 42) == pytest.approx((0, 0, 2))
     assert rig.point_in_camera_m(0, 0, 0) is None
@@ -146,17 +146,17 @@ def test_a_rig_is_numbers_or_a_file(sample, tmp_path):
         cairn.load_calibration(tmp_path / "calib.txt")
 
 
-def test_files_come_back_as_they_were_written(tmp_path):
+def test_files_are_read_back_as_written(tmp_path):
     random = np.random.default_rng(3)
     disparity = (random.integers(1, 200 * 256, (20, 30)) / 256).astype(np.float32)
     disparity[3, 4] = np.nan
     for name in ("map.png", "map.pfm"):
         cairn.save_disparity(tmp_path / name, disparity)
         np.testing.assert_array_equal(cairn.load_disparity(tmp_path / name), disparity)
-    for picture in (random.integers(0, 256, (9, 7, 3)).astype(np.uint8), random.integers(0, 256, (9, 7)).astype(np.uint8)):
-        cairn.save_png(tmp_path / "picture.png", picture)
-        assert same(cairn.load_picture(str(tmp_path / "picture.png")), np.ascontiguousarray(picture)) or np.array_equal(
-            cairn.load_picture(tmp_path / "picture.png"), picture
+    for image in (random.integers(0, 256, (9, 7, 3)).astype(np.uint8), random.integers(0, 256, (9, 7)).astype(np.uint8)):
+        cairn.save_png(tmp_path / "image.png", image)
+        assert same(cairn.load_picture(str(tmp_path / "image.png")), np.ascontiguousarray(image)) or np.array_equal(
+            cairn.load_picture(tmp_path / "image.png"), image
         )
     labels = random.integers(0, 60000, (9, 7)).astype(np.uint16)
     cairn.save_png(tmp_path / "labels.png", labels)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What the guide shows, runs."""
+"""Runs the code shown in the guide."""
 
 import re
 import subprocess

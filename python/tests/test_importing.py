@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Who starts a Python that the module is not for is told so."""
+"""Messages for a Python that the module was not built for."""
 
 import pathlib
 import shutil
@@ -29,7 +29,7 @@ def copy(tmp_path):
     return tmp_path
 
 
-def test_another_python_is_told_which_is_wanted(copy):
+def test_another_python_gets_the_expected_version(copy):
     other = copy / "cairn" / "_cairn.cpython-399-x86_64-linux-gnu.so"
     other.write_bytes(b"")
     running = f"Python {sys.version_info[0]}.{sys.version_info[1]} ({sys.executable})"
@@ -38,14 +38,14 @@ def test_another_python_is_told_which_is_wanted(copy):
     assert last_line_of_importing(copy).startswith(f"ImportError: cairn: found no built module _cairn in {copy / 'cairn'}, expected")
 
 
-def test_a_python_without_numpy_is_told_so():
-    # -S: without the folders where numpy is installed
+def test_a_python_without_numpy_gets_a_message():
+    # -S: without the folders that contain numpy
     line = last_line_of_importing(PACKAGE.parent, "-S")
     assert line == f"ImportError: cairn needs numpy, and {sys.executable} cannot import it: No module named 'numpy'"
 
 
-def test_other_errors_stay_what_they_are(copy):
-    """A library that is missing, a file that is cut off: what the system says tells more."""
+def test_other_errors_are_unchanged(copy):
+    """A missing library or a truncated file: the system's own message says more."""
     suffix = next(PACKAGE.glob("_cairn.*.so")).name
     (copy / "cairn" / suffix).write_bytes(b"")
     assert "file too short" in last_line_of_importing(copy)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Options: listed, set, shown; always the library's own."""
+"""Options are listed, set and shown as in the library."""
 
 import re
 import subprocess
@@ -12,7 +12,7 @@ import cairn
 from conftest import same_frame
 
 
-def test_options_are_those_of_the_commands_reference(command):
+def test_options_equal_those_of_the_command(command):
     table = subprocess.run([command, "config", "--markdown"], capture_output=True, text=True, check=True).stdout
     listed = re.findall(r"^\| `(.*?)` \| (?:`(.*?)`)? ?\| (.*?) \| (.*?) \| (.*?) \|(?: `(.*?)`)? \|$", table.replace(r"\|", "¦"), re.M)
     options = cairn.options()
@@ -98,7 +98,7 @@ def test_a_calibrations_search_range_is_a_default(sample):
     assert rig_only.config["match.num_disparities"] == 64
 
 
-def test_what_is_no_option_is_refused(sample):
+def test_unknown_options_are_refused(sample):
     with pytest.raises(TypeError, match="no keyword argument 'window_size'"):
         cairn.segment(sample.left, sample.right, window_size=9)
     with pytest.raises(cairn.Error, match="options match: found 9, expected a dict"):

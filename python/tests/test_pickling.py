@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""What pickle and copy.deepcopy make of the module's values."""
+"""pickle and copy.deepcopy of the module's values."""
 
 import concurrent.futures
 import copy
@@ -21,7 +21,7 @@ def shown_by(value):
 
 
 def parts(value):
-    """All that a value shows, arrays as their bytes, down to plain numbers."""
+    """All attributes of a value, arrays as bytes, recursively down to plain numbers."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, dict):
@@ -35,7 +35,7 @@ def parts(value):
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_frame_comes_back_the_same_with_all_its_parts(sample, way):
+def test_a_frame_survives_pickling_with_all_its_parts(sample, way):
     back = way(sample.frame)
     assert same_frame(back, sample.frame)
     assert parts(back) == parts(sample.frame)
@@ -45,14 +45,14 @@ def test_a_frame_comes_back_the_same_with_all_its_parts(sample, way):
     assert not back.disparity.flags.writeable
 
 
-def test_objects_come_back_without_their_frame(sample):
+def test_objects_survive_pickling_without_their_frame(sample):
     objects = pickle.loads(pickle.dumps(sample.frame.objects))
     assert parts(objects) == parts(sample.frame.objects) and same(objects.labels, sample.frame.objects_map)
     nearest = pickle.loads(pickle.dumps(sample.frame.objects[0]))
     assert parts(nearest) == parts(sample.frame.objects[0]) and nearest.position_in_camera_m is not None
 
 
-def test_a_frame_without_colour_rig_and_matching_comes_back(sample):
+def test_a_frame_without_colour_rig_and_matching_survives_pickling(sample):
     gray, truth = sample.gray()[0], cairn.load_disparity(sample.folder / "disp_left.png")
     frame = cairn.segment(gray, disparity_map=truth, preset="paper")
     assert frame.confidence is None and frame.rig is None and frame.objects[0].position_in_camera_m is None
@@ -67,7 +67,7 @@ FLOOR = [(10, 200, 4, 200), (300, 210, 293, 210), (20, 230, 12, 230), (280, 190,
 
 def one_of_each(sample):
     left, right = sample.left, sample.right
-    # What follows goes on from frame to frame; what it finds can be sent away.
+    # The next values keep state from frame to frame; their results can be pickled.
     step = cairn.Follower(sample.calibration).next(left, right, 0) if isinstance(cairn.Follower, type) else None
     matches = cairn.match(left, right, num_disparities=32)
     superpixels = cairn.cut_superpixels(left, sample.frame.disparity_map, 1, count=20)
@@ -126,7 +126,7 @@ def test_every_class_can_be_pickled(sample):
     values = one_of_each(sample)
     for value in values:
         back = pickle.loads(pickle.dumps(value))
-        if not isinstance(value, (cairn.Exec, cairn.Segmenter)):  # whose buffers stay behind
+        if not isinstance(value, (cairn.Exec, cairn.Segmenter)):  # whose buffers cannot be pickled
             assert parts(back) == parts(value), type(value)
         assert repr(back) == repr(value)
     reached = {type(value) for value in values} | {cairn.Frame, cairn.Object, cairn.Objects, cairn.GroundPlane}
@@ -136,7 +136,7 @@ def test_every_class_can_be_pickled(sample):
     assert {c for c in public if not issubclass(c, Exception)} - following <= reached
 
 
-def test_stages_and_segmenters_go_on_with_what_came_back(sample):
+def test_stages_and_segmenters_accept_unpickled_values(sample):
     matches = pickle.loads(pickle.dumps(cairn.match(sample.left, sample.right, num_disparities=32)))
     direct = cairn.match(sample.left, sample.right, num_disparities=32)
     assert same(cairn.refine_subpixel(matches), cairn.refine_subpixel(direct))
@@ -160,12 +160,12 @@ def frame_of(folder):
     return cairn.segment(left, right, cairn.load_calibration(folder / "calib.txt"))
 
 
-def test_another_process_sends_its_frames_back(sample):
+def test_another_process_returns_its_frames(sample):
     with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as workers:
         assert same_frame(workers.submit(frame_of, sample.folder).result(), sample.frame)
 
 
-def test_what_another_version_pickled_is_refused(sample):
+def test_pickles_of_another_version_are_refused(sample):
     version, state = sample.frame.objects.__getstate__()
     assert version == cairn.__version__
     objects = cairn.Objects.__new__(cairn.Objects)

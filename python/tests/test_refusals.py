@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Calls that cannot be are refused in one plain line that names the argument."""
+"""Invalid calls are refused in one plain line that names the argument."""
 
 import numpy as np
 import pytest
@@ -40,14 +40,14 @@ BAD_CALLS = [
 
 
 @pytest.mark.parametrize("call, words", BAD_CALLS)
-def test_a_call_that_cannot_be_is_told_in_one_line(call, words):
+def test_an_invalid_call_is_refused_in_one_line(call, words):
     with pytest.raises(cairn.Error) as refusal:
         call()
     assert str(refusal.value) == words
     assert isinstance(refusal.value, TypeError) and isinstance(refusal.value, ValueError)
 
 
-def test_wrong_values_of_options_are_told_by_name():
+def test_wrong_values_of_options_are_reported_by_name():
     for value in ("x", 64.5, np.float32(64.5), None, float("nan"), 1e300, [1, 2]):
         with pytest.raises(cairn.Error, match="^option match.num_disparities: found '.*', expected a whole number, 1 … 1024$"):
             cairn.segment(GREY, GREY, match={"num_disparities": value})
@@ -68,11 +68,11 @@ def test_a_whole_number_may_be_of_any_type(number):
     cairn.disparity_errors(ids.astype(np.float32), ids.astype(np.float32), skip_left=number(3))
 
 
-def test_every_function_and_method_refuses_so():
+def test_every_function_and_method_refuses_in_one_line():
     """In one line, where pybind11 itself would list every signature."""
 
     class Odd:
-        """Fits no argument."""
+        """Matches no argument type."""
 
     odd, told = Odd(), 0
     for name in cairn.__all__:
@@ -91,15 +91,15 @@ def test_every_function_and_method_refuses_so():
     assert told > 60
 
 
-def test_an_error_inside_a_call_stays_what_it_is():
-    def pictures():
+def test_an_error_raised_inside_a_call_is_unchanged():
+    def images():
         yield GREY, GREY
         raise TypeError("made by the caller")
 
     with pytest.raises(TypeError, match="^made by the caller$"):
-        cairn.measure_synchrony(pictures())
+        cairn.measure_synchrony(images())
 
 
-def test_signatures_and_words_stay_with_the_functions():
+def test_functions_keep_signature_and_docstring():
     assert cairn.segment.__name__ == "segment" and cairn.segment.__module__ == "cairn"
     assert cairn.segment.__doc__.startswith("segment(left: ImageLike, right: Optional[ImageLike] = None, rig: RigLike = None")

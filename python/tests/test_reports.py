@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""benchmarks/: what writes docs/accuracy.md and BENCHMARK.md: tables, plots, and the list of what is undone."""
+"""benchmarks/: tables and plots of docs/accuracy.md and BENCHMARK.md, and the list of ablations."""
 
 import math
 import pathlib
@@ -23,7 +23,7 @@ def test_a_table_puts_words_left_and_numbers_right():
     assert report.table(["a", "b"], [["x|y", "1"]], words=2) == "| a | b |\n|---|---|\n| x\\|y | 1 |\n"
 
 
-def test_what_is_no_number_is_a_dash():
+def test_nan_is_a_dash():
     assert (report.percent(0.6214), report.percent(math.nan)) == ("62.1", "–")
 
 
@@ -47,14 +47,14 @@ def test_each_ablation_is_a_configuration_that_differs_from_default():
         assert grey or config.as_dict() != cairn.Config().as_dict(), settings
 
 
-def test_ablations_cover_every_option_of_the_run_stages_on_which_the_presets_disagree():
+def test_ablations_cover_every_option_on_which_the_presets_differ():
     named = " ".join(accuracy.all_ablations())
     for ours, paper in zip(cairn.options(), cairn.options("paper")):
         if ours.default != paper.default and ours.active:
             assert f"{ours.name}=" in named
 
 
-def test_as_printed_is_paper_without_floor_label_and_thresholds_of_gradients():
+def test_as_printed_is_paper_without_floor_label_and_gradient_thresholds():
     config, grey = accuracy.configured(accuracy.AS_PRINTED)
     paper = cairn.Config("paper")
     changed = {f"{group}.{name}": value for group, of in config.as_dict().items() for name, value in of.items() if paper[f"{group}.{name}"] != value}

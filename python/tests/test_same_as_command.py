@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""The module finds what the command finds, and refuses what it refuses in the same words."""
+"""The module gives the results of the command, and its refusals in the same wording."""
 
 import json
 import subprocess
@@ -45,7 +45,7 @@ def test_every_sample_gives_the_numbers_of_the_command(command, folder, preset, 
 
 @pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("folder", SAMPLES, ids=lambda folder: folder.name)
-def test_disparities_are_the_commands_to_the_last_bit(command, folder, preset, tmp_path):
+def test_disparities_equal_the_commands_bit_for_bit(command, folder, preset, tmp_path):
     file = tmp_path / "disparity.pfm"
     done = run(command, "disparity", folder / "left.png", folder / "right.png", "--preset", preset, "-o", file)
     assert done.returncode == 0, done.stderr
@@ -54,7 +54,7 @@ def test_disparities_are_the_commands_to_the_last_bit(command, folder, preset, t
     np.testing.assert_array_equal(scene.disparity, cairn.load_disparity(file))
 
 
-def test_a_disparity_map_from_elsewhere_gives_what_the_command_makes_of_it(command, sample, tmp_path):
+def test_an_external_disparity_map_gives_the_result_of_the_command(command, sample, tmp_path):
     truth = sample.folder / "disp_left.png"
     done = run(command, "segment", sample.folder, "--disparity", truth, "--json")
     assert done.returncode == 0, done.stderr
@@ -64,7 +64,7 @@ def test_a_disparity_map_from_elsewhere_gives_what_the_command_makes_of_it(comma
 
 
 @pytest.mark.parametrize("folder", SAMPLES, ids=lambda folder: folder.name)
-def test_scores_are_those_of_the_command(command, folder, tmp_path):
+def test_scores_equal_those_of_the_command(command, folder, tmp_path):
     left, right = cairn.load_pair(folder / "left.png", folder / "right.png")
     frame = cairn.segment(left, right, cairn.load_calibration(folder / "calib.txt"))
     frame.save(tmp_path / "result")
@@ -108,7 +108,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("assignment, options", REFUSED, ids=lambda value: value if isinstance(value, str) else "")
-def test_a_bad_option_is_refused_in_the_words_of_the_command(command, sample, assignment, options):
+def test_a_bad_option_is_refused_with_the_wording_of_the_command(command, sample, assignment, options):
     done = run(command, "segment", sample.folder, "--set", assignment)
     assert done.returncode == 2
     with pytest.raises(cairn.Error) as refusal:
@@ -117,7 +117,7 @@ def test_a_bad_option_is_refused_in_the_words_of_the_command(command, sample, as
     assert isinstance(refusal.value, ValueError)
 
 
-def test_a_bad_file_is_refused_in_the_words_of_the_command(command, sample, tmp_path):
+def test_a_bad_file_is_refused_with_the_wording_of_the_command(command, sample, tmp_path):
     missing = tmp_path / "none.png"
     done = run(command, "segment", missing, sample.folder / "right.png")
     with pytest.raises(cairn.Error) as refusal:

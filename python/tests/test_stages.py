@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Every stage under its C++ name; one behind the other they make the frame."""
+"""Every stage under its C++ name; run in sequence, they give the frame."""
 
 import re
 
@@ -11,10 +11,10 @@ import cairn
 from conftest import same, same_frame
 
 
-def test_every_stage_of_the_umbrella_header_is_there(source):
+def test_every_stage_of_the_umbrella_header_is_bound(source):
     text = (source / "cairn" / "cairn.hpp").read_text()
     names = {name for words in re.findall(r"// ([a-z_, ]+)(?::.*)?$", text, re.M) for name in words.split(", ")}
-    for header in (source / "cairn" / "disparity").glob("*.hpp"):  # the checks, which it has by way of Config
+    for header in (source / "cairn" / "disparity").glob("*.hpp"):  # the checks, which it includes through Config
         names |= set(re.findall(r"^Image<Reject> (reject_\w+)\(", header.read_text(), re.M))
     assert {"match", "fuse", "measure", "cut_superpixels", "segment", "diagnose", "reject_flat"} <= names
     assert [name for name in sorted(names) if not callable(getattr(cairn, name.strip(), None))] == []
@@ -63,7 +63,7 @@ def by_hierarchy(sample):
     tree = cairn.grow_merge_tree(superpixels, sample.left, seen, evidence, ground, background, noise)
     hints = cairn.hint_objects(superpixels, sample.left, seen, evidence, ground, background, noise)
     assert hints.shape == (120, 160, 5) and hints.dtype == np.int16 and np.abs(hints[..., :2]).max() <= 96
-    shows_object = hints[..., 0].repeat(2, 0).repeat(2, 1) > 0  # of each pixel
+    shows_object = hints[..., 0].repeat(2, 0).repeat(2, 1) > 0  # per pixel
     assert (shows_object & (sample.frame.objects_map > 0)).sum() > 0.8 * (sample.frame.objects_map > 0).sum()
     chosen = cairn.choose_objects(tree)
     groups = cairn.groups_of(superpixels, chosen, disparity)
@@ -116,7 +116,7 @@ def test_a_segmentation_is_gradient_watershed_graph_growing(sample):
     assert same(made.labels, cairn.segment_intensity(gray).labels)
 
 
-def test_a_check_of_ones_own_is_an_array(sample):
+def test_a_custom_check_is_an_array(sample):
     """examples/03_your_own_check.cpp in Python."""
     matches = cairn.match(sample.left, sample.right, num_disparities=32)
     saturated = np.where(sample.gray()[0] >= 150, np.uint16(cairn.Reject.no_data), np.uint16(0))
@@ -126,14 +126,14 @@ def test_a_check_of_ones_own_is_an_array(sample):
     assert ((frame.reject & cairn.Reject.no_data) != 0).sum() == (saturated != 0).sum()
 
 
-def test_matches_hold_all_that_the_checks_need(sample):
+def test_matches_contain_the_input_of_the_checks(sample):
     matches = cairn.match(sample.left, sample.right, num_disparities=16)
     for name in ("best", "best_right", "cost", "runner_up", "mean_cost", "cost_before", "cost_after"):
         assert getattr(matches, name).shape == (240, 320), name
     assert matches.row_offset is None and matches.best.dtype == np.int16
     assert cairn.match(np.zeros((9, 9), np.uint8), np.zeros((9, 9), np.uint8), num_disparities=1).best.shape == (9, 9)
     assert cairn.reject_inconsistent(matches, method="vote").dtype == np.uint16
-    assert not cairn.reject_ambiguous(matches).any()  # off in the preset default
+    assert not cairn.reject_ambiguous(matches).any()  # disabled in the preset default
 
 
 def test_a_stages_option_without_effect_is_refused(sample):
@@ -148,11 +148,11 @@ def test_a_stages_option_without_effect_is_refused(sample):
     assert cairn.match_semi_global(*pair, penalty_small=0.5, num_disparities=16, config=paper).best.shape == (240, 320)
     with pytest.raises(cairn.Error, match="match.cost has no effect"):
         cairn.match_semi_global(*pair, cost="sad", config=paper)
-    # A stage of the way that the configuration does not go: whoever calls it goes that way.
+    # A stage of the method that the configuration does not select: calling it selects that method.
     assert len(cairn.segment_intensity(sample.left, min_region_area=1)) > 0
 
 
-def test_the_ground_takes_what_the_calibration_knows(sample):
+def test_the_ground_uses_the_calibration(sample):
     points = [(10, 200, 4, 200), (300, 210, 293, 210), (20, 230, 12, 230), (280, 190, 275, 190)]
     known = cairn.Calibration(sample.calibration.rig, ground_points=np.array(points), camera_height_m=0.4, camera_pitch_deg=15)
     assert known.ground_points == points and known.camera_height_m == np.float32(0.4) and known.camera_pitch_deg == 15
@@ -171,7 +171,7 @@ def test_the_ground_takes_what_the_calibration_knows(sample):
         cairn.Calibration(camera_height_m=0)
 
 
-def test_what_does_not_belong_together_is_refused(sample):
+def test_mismatched_arguments_are_refused(sample):
     frame, half = sample.frame, sample.left[:, :160]
     other = cairn.cut_superpixels(half, np.ones(half.shape[:2], np.float32), 1)
     superpixels = cairn.cut_superpixels(sample.left, frame.disparity_map, 1)
@@ -225,7 +225,7 @@ def test_what_does_not_belong_together_is_refused(sample):
             pytest.fail(f"call {number} was accepted")
 
 
-def test_a_moved_right_picture_is_moved_back(sample):
+def test_a_shifted_right_image_is_shifted_back(sample):
     moved = np.roll(sample.right, 2, axis=0)
     correction = cairn.correct_epipolar(sample.left, moved, num_disparities=32)
     assert correction.offset.outcome == "corrected" and abs(correction.offset.rows - 2) < 0.1

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Video, and several threads at once."""
+"""Video, and concurrent threads."""
 
 import concurrent.futures
 import gc
@@ -15,7 +15,7 @@ import cairn
 from conftest import same_frame
 
 
-def test_a_segmenter_gives_what_segment_gives(sample):
+def test_a_segmenter_equals_segment(sample):
     segmenter = cairn.Segmenter(sample.calibration, exec=cairn.Exec(2))
     assert same_frame(segmenter.segment(sample.left, sample.right), sample.frame)
     assert segmenter.rig == sample.calibration.rig and segmenter.config == cairn.Config()
@@ -41,7 +41,7 @@ def test_from_the_second_frame_on_no_image_is_allocated(sample, preset):
     assert segmenter.exec.heap_allocations == after_two
 
 
-def test_frames_that_live_on_keep_their_own_pictures(sample):
+def test_earlier_frames_keep_their_images(sample):
     segmenter = cairn.Segmenter(sample.calibration)
     first = segmenter.segment(sample.left, sample.right)
     second = segmenter.segment(np.flipud(sample.left), np.flipud(sample.right))
@@ -49,7 +49,7 @@ def test_frames_that_live_on_keep_their_own_pictures(sample):
     assert same_frame(first, sample.frame) and not same_frame(second, sample.frame)
 
 
-def test_two_threads_get_what_one_gets(sample):
+def test_two_threads_get_the_results_of_one(sample):
     segmenter = cairn.Segmenter(sample.calibration, exec=cairn.Exec(2))
 
     def work(number):
@@ -63,7 +63,7 @@ def test_two_threads_get_what_one_gets(sample):
 
 
 def test_other_threads_run_while_one_segments(sample):
-    large = [np.tile(picture, (4, 4, 1)) for picture in (sample.left, sample.right)]
+    large = [np.tile(image, (4, 4, 1)) for image in (sample.left, sample.right)]
     state = {"inside": False, "ticks": 0, "frame": None}
 
     def work():
@@ -78,12 +78,12 @@ def test_other_threads_run_while_one_segments(sample):
         time.sleep(0.001)
     worker.join()
     assert state["frame"].shape == (960, 1280)
-    assert state["ticks"] >= 5  # with the lock held it could be one
+    assert state["ticks"] >= 5  # with the lock held it would be at most one
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
 def test_a_forked_process_can_segment(sample):
-    """As multiprocessing does, after threads have been started."""
+    """As in multiprocessing, after threads have been started."""
     child = os.fork()
     if child == 0:
         try:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Options searched on frames, as the command searches them."""
+"""Options tuned on frames, as by the command."""
 
 import json
 import os
@@ -24,12 +24,12 @@ def frames():
 
 
 def quick(frames, **more):
-    """Twelve evaluations of two options, one of them spoilt."""
+    """Twelve evaluations of two options, one of them set to a bad value."""
     arguments = {"options": ["objects.min_confidence", "objects.min_area"], "evaluations": 12, "budget_s": 600, **SPOILT, **more}
     return cairn.tune(frames, **arguments)
 
 
-def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
+def test_the_result_equals_that_of_the_command(frames, command, tmp_path):
     tuning = quick(frames, holdout=0.25, seed=3)
     subprocess.run(
         [command, "tune", SOURCE / "samples", "--truth", "--options", "objects.min_confidence,objects.min_area", "--evaluations", "12",
@@ -43,7 +43,7 @@ def test_what_is_found_is_what_the_command_finds(frames, command, tmp_path):
     assert {**mine, "seconds": 0} == {**{key: value for key, value in found.items() if key != "config"}, "seconds": 0}
 
 
-def test_a_spoilt_option_is_mended(frames):
+def test_a_bad_option_is_repaired(frames):
     tuning = quick(frames)
     loss = tuning.tuned_on["loss"]
     assert loss["after"] < loss["before"] and tuning.kept_because is None and tuning["held_out"] is None
@@ -54,7 +54,7 @@ def test_a_spoilt_option_is_mended(frames):
     assert back.config == tuning.config and repr(back) == repr(tuning) and back.as_dict() == tuning.as_dict()
 
 
-def test_frames_from_files_are_frames_from_arrays(frames, sample):
+def test_frames_from_files_equal_frames_from_arrays(frames, sample):
     by_hand = cairn.TuningFrame(
         sample.left, sample.right, sample.calibration, name=sample.folder.name,
         objects=cairn.load_labels(sample.folder / "objects.png"), truth_px=cairn.load_disparity(sample.folder / "disp_left.png"),
@@ -65,7 +65,7 @@ def test_frames_from_files_are_frames_from_arrays(frames, sample):
     assert one.tuned_on["loss"] == other.tuned_on["loss"] and one.config == other.config
 
 
-def test_without_truth_disparities_are_judged_by_their_contradictions(sample):
+def test_without_truth_disparities_are_judged_by_consistency(sample):
     pair = (sample.left, sample.right)
     tuning = cairn.tune([pair, pair], evaluations=3, budget_s=600, match={"num_disparities": 32})
     assert tuning.goal == "consistency" and 0 < tuning.tuned_on["loss"]["before"] < 1
@@ -73,7 +73,7 @@ def test_without_truth_disparities_are_judged_by_their_contradictions(sample):
     assert tuning.config["match.num_disparities"] == 32
 
 
-def test_progress_is_told_before_each_evaluation(frames):
+def test_progress_is_called_before_each_evaluation(frames):
     told = []
     tuning = quick(frames, evaluations=4, progress=lambda now: told.append(now))
     assert [now["evaluations"] for now in told][:4] == [0, 1, 2, 3]
@@ -105,11 +105,11 @@ def test_ctrl_c_keeps_the_best_so_far(frames):
     def at_once(now):
         raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt):  # there is no best yet
+    with pytest.raises(KeyboardInterrupt):  # no result yet
         quick(frames, progress=at_once)
 
 
-def test_ctrl_c_from_outside_is_heard_while_frames_are_measured(frames):
+def test_ctrl_c_interrupts_a_running_measurement(frames):
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
 
     def when_the_start_is_known(now):
@@ -135,13 +135,13 @@ def test_other_threads_run_meanwhile(frames):
     assert ticks[0] >= 5
 
 
-def test_names_that_can_be_searched():
+def test_tunable_names_are_listed():
     names = [option.name for option in cairn.options()]
     assert cairn.tunables() == names
     assert cairn.tunables(["objects.*"]) == [name for name in names if name.startswith("objects.")]
 
 
-def test_what_cannot_be_tuned_is_refused(frames, sample):
+def test_invalid_requests_are_refused(frames, sample):
     left, right = sample.left, sample.right
     calls = {
         "frames: found none, expected one or more": lambda: cairn.tune([]),

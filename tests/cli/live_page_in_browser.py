@@ -169,7 +169,7 @@ class LivePage(PageTest):
 
     # ---- tests ----
 
-    def test_draws_what_the_server_finds(self):
+    def test_draws_the_results_of_the_server(self):
         self.look_at(self.live("--tunable"), frames=25)
         self.pause()
         objects = self.frame()["objects"]
@@ -215,7 +215,7 @@ class LivePage(PageTest):
             self.browser.get("about:blank")
             live.end()
 
-    def test_names_from_outside_are_shown_and_not_obeyed(self):
+    def test_external_names_are_escaped(self):
         self.look_at(self.live("--tunable"))
         self.assertEqual(self.find("#title").text, HOSTILE)
         self.assertEqual(self.script("return document.querySelectorAll('#title *').length"), 0)
@@ -243,7 +243,7 @@ class LivePage(PageTest):
         self.find("#reset").click()
         self.wait_until(lambda: "changed" not in self.option("objects.min_confidence").get_attribute("class"), "it is reset")
 
-    def test_a_value_that_is_refused_is_told_and_taken_back(self):
+    def test_a_refused_value_is_reported_and_reset(self):
         self.look_at(self.live("--tunable"))
         self.script("document.querySelector('[data-section=match]').open = true")
         box = self.option("match.num_disparities").find_element("css selector", "input.value")
@@ -305,7 +305,7 @@ class LivePage(PageTest):
         ActionChains(self.browser).send_keys(" ").perform()
         self.wait_until(lambda: self.frame()["frame"] > before + 2, "it goes on")
 
-    def test_what_is_not_seen_is_not_asked_for(self):
+    def test_hidden_panels_are_not_subscribed(self):
         self.look_at(self.live("--tunable"))
         self.find("[data-panel=scene] .enlarge").click()
         time.sleep(1)
@@ -314,7 +314,7 @@ class LivePage(PageTest):
         self.assertLessEqual(self.drawn() - before, 1)
         self.keep("live_enlarged")
         self.find("[data-panel=scene] .enlarge").click()
-        self.wait_until(lambda: self.drawn() > before + 3, "the picture is back")
+        self.wait_until(lambda: self.drawn() > before + 3, "the image is back")
 
     def test_read_only(self):
         self.look_at(self.live())
@@ -323,7 +323,7 @@ class LivePage(PageTest):
         self.assertFalse(self.find("#pause").is_enabled())
         self.keep("live_read_only")
 
-    def test_a_server_that_goes_and_comes_back(self):
+    def test_reconnects_to_a_restarted_server(self):
         self.may_fail_to_connect = True
         live = self.live("--tunable")
         self.look_at(live)

@@ -85,12 +85,12 @@ class Page(PageTest):
 
     # ---- tests ----
 
-    def test_asks_the_network_for_nothing(self):
+    def test_makes_no_network_requests(self):
         for command in self.pages:
             self.open(command)
             self.assertEqual(self.asked_of_the_network(), [])
 
-    def test_has_all_pictures_and_tables(self):
+    def test_has_all_images_and_tables(self):
         self.open("segment")
         panels = [panel.get_attribute("data-panel") for panel in self.find_all(".panel")]
         self.assertEqual(panels, ["left", "disparity", "regions", "objects", "space", "above"])
@@ -107,7 +107,7 @@ class Page(PageTest):
         self.assertEqual(marks, [f"{o['id']}: {o['position_m'][2]:.2f} m" for o in document["objects"]])
         self.keep("segment")
 
-    def test_obstacles_and_floor_are_those_of_the_files(self):
+    def test_obstacles_and_floor_equal_those_of_the_files(self):
         for command in self.pages:
             self.open(command)
             maps, _ = self.result(0)
@@ -129,7 +129,7 @@ class Page(PageTest):
                 "return Array.from({length: d.length / 4}, (_, i) => d[4 * i + 3] > 0);")
             self.assertEqual(drawn, [s == 128 for s in space])
 
-    def test_what_is_no_object_is_listed_and_boxed(self):
+    def test_obstacles_that_are_not_objects_are_listed_and_boxed(self):
         self.open("segment")
         _, document = self.result(0)
         listed = document["left_out"]
@@ -237,12 +237,12 @@ class Page(PageTest):
         for words in ("depth z", "x, y\n", "above the floor"):
             self.assertNotIn(words, text)
 
-    def test_the_right_picture_is_shown_where_there_is_one(self):
+    def test_the_right_image_is_shown_if_available(self):
         self.open("evaluate")
         self.assertEqual(self.find_all("[data-panel=left] select"), [])
         self.open("segment")
         self.two_in_a_row()
-        Select(self.find("[data-panel=left] select")).select_by_visible_text("Right picture")
+        Select(self.find("[data-panel=left] select")).select_by_visible_text("Right image")
         shown = Image.open(io.BytesIO(base64.b64decode(self.find("[data-panel=left] img").get_attribute("src").split(",")[1])))
         with Image.open(self.frames / self.names[0] / "right.png") as image:
             difference = ImageStat.Stat(ImageChops.difference(shown.convert("L"), image.convert("L"))).mean[0]
@@ -333,7 +333,7 @@ class Page(PageTest):
                 self.assertEqual(shown, sorted(values, reverse=way < 0))
         self.assertEqual(self.head("objects", "id").get_attribute("aria-sort"), "none")
 
-    def test_pointing_at_a_pixel_tells_what_the_files_say(self):
+    def test_pointing_at_a_pixel_shows_the_values_of_the_files(self):
         self.open("segment")
         self.two_in_a_row()
         maps, document = self.result(0)
@@ -383,7 +383,7 @@ class Page(PageTest):
         self.assertGreater(seen["two reasons"], 0)
         self.assertEqual(len(self.find_all(".cross")), 4)  # the same pixel in the other panels
 
-    def test_a_click_singles_an_object_out(self):
+    def test_a_click_highlights_an_object(self):
         self.open("segment")
         self.two_in_a_row()
         maps, _ = self.result(0)
