@@ -12,7 +12,7 @@ namespace {
 
 using BadInput = CommandTest;
 
-TEST_F(BadInput, PicturesThatAreNone) {
+TEST_F(BadInput, RefusesInvalidImages) {
   const auto good = pair_in("good");
   const std::string png = content(good[0]);
   write(at("empty.png"), "");
@@ -31,7 +31,7 @@ TEST_F(BadInput, PicturesThatAreNone) {
   refuses({"segment", path("good"), good[1]}, {"good"});  // a folder instead of an image
 }
 
-TEST_F(BadInput, PairsThatAreNone) {
+TEST_F(BadInput, RefusesInvalidPairs) {
   const auto pair = pair_in("pair");
   const auto other = pair_in("other", {90, 72});
   refuses({"segment", pair[0], other[1]}, {"96x72", "90x72"});
@@ -41,12 +41,12 @@ TEST_F(BadInput, PairsThatAreNone) {
   refuses({"segment", path("pair")}, {"pair", "right"});
 }
 
-TEST_F(BadInput, APathThatLeadsNowhere) {
+TEST_F(BadInput, RefusesAMissingPath) {
   for (const char* command : {"segment", "disparity", "doctor"})
     refuses({command, path("nowhere")}, {"nowhere", "no such file or folder"});
 }
 
-TEST_F(BadInput, ImagesThatTheMethodDoesNotFit) {
+TEST_F(BadInput, RefusesImagesTooSmallForTheMethod) {
   const auto one = pair_in("one", {1, 1});
   const auto small = pair_in("small", {8, 8});
   const auto narrow = pair_in("narrow", {40, 40});
@@ -59,7 +59,7 @@ TEST_F(BadInput, ImagesThatTheMethodDoesNotFit) {
           {"match.min_disparity"});
 }
 
-TEST_F(BadInput, OptionsThatAreUnknownOrOutOfRange) {
+TEST_F(BadInput, RefusesUnknownAndOutOfRangeOptions) {
   const auto pair = pair_in("pair");
   const auto refuses_set = [&](const std::string& assignment, const std::vector<std::string>& words) {
     refuses({"config", "--set", assignment}, words);
@@ -92,7 +92,7 @@ TEST_F(BadInput, OptionsThatAreUnknownOrOutOfRange) {
   refuses({"--no-such-option"}, {"--no-such-option"});
 }
 
-TEST_F(BadInput, OptionsWithoutEffect) {
+TEST_F(BadInput, RefusesOptionsWithoutEffect) {
   const auto pair = pair_in("pair");
   const Outcome outcome = run(with("segment", pair, {"--set", "match.cost=sad"}));
   EXPECT_EQ(outcome.code, 2);
@@ -113,7 +113,7 @@ TEST_F(BadInput, OptionsWithoutEffect) {
           {"match.row_band has no effect with match.method=semi_global"});
 }
 
-TEST_F(BadInput, OptionsThatAreGone) {
+TEST_F(BadInput, RefusesRemovedOptions) {
   for (const std::string name : {"points", "height", "pitch", "roll"})
     refuses({"config", "--set", "ground." + name + "=1"},
             {"ground." + name + " was removed", "calibration file"});
@@ -135,7 +135,7 @@ TEST_F(BadInput, TheEnvironmentsTargetIsCheckedLikeTheOption) {
   unsetenv("CAIRN_TARGET");
 }
 
-TEST_F(BadInput, CalibrationsThatAreNone) {
+TEST_F(BadInput, RefusesInvalidCalibrations) {
   const auto pair = pair_in("pair");
   const auto refuses_calib = [&](const std::string& text, const std::vector<std::string>& words) {
     write(at("bad.txt"), text);
@@ -160,7 +160,7 @@ TEST_F(BadInput, CalibrationsThatAreNone) {
   refuses(with("segment", pair, {"--calib", path("pair")}), {"pair"});
 }
 
-TEST_F(BadInput, GroundsFromTooFewPointsOrPointsOnALine) {
+TEST_F(BadInput, RefusesTooFewOrCollinearGroundPoints) {
   const auto pair = pair_in("pair");
   const auto refuses_points = [&](const std::string& points) {
     write(at("points.txt"), "ground_points=" + points + "\n");
@@ -177,7 +177,7 @@ TEST_F(BadInput, GroundsFromTooFewPointsOrPointsOnALine) {
           {"ground.source", "camera_height", "calib"});
 }
 
-TEST_F(BadInput, DisparityMapsThatAreNone) {
+TEST_F(BadInput, RefusesInvalidDisparityMaps) {
   const auto pair = pair_in("pair");
   const Size size{96, 72};
   const auto pixels = static_cast<std::size_t>(size.area());
@@ -202,7 +202,7 @@ TEST_F(BadInput, DisparityMapsThatAreNone) {
   refuses({"segment", pair[0], "--disparity", path("maps")}, {"maps", "frame pair", "pair.png", ".npy"});
 }
 
-TEST_F(BadInput, OutputsThatCannotBe) {
+TEST_F(BadInput, RefusesImpossibleOutputs) {
   const auto pair = pair_in("pair");
   write(at("file"), "mine");
   refuses(with("segment", pair, {"-o", path("file")}), {"file"});
@@ -228,7 +228,7 @@ TEST_F(BadInput, AFullDiskIsReported) {
   EXPECT_EQ(outcome.err, "cairn: standard output: cannot be written\n");
 }
 
-TEST_F(BadInput, ConfigFilesThatAreNone) {
+TEST_F(BadInput, RefusesInvalidConfigFiles) {
   const auto pair = pair_in("pair");
   const auto refuses_config = [&](const std::string& text, const std::vector<std::string>& words) {
     write(at("bad.yaml"), text);
@@ -246,7 +246,7 @@ TEST_F(BadInput, ConfigFilesThatAreNone) {
   refuses(with("segment", pair, {"--config", path("missing.yaml")}), {"missing.yaml"});
 }
 
-TEST_F(BadInput, FoldersWithoutFrames) {
+TEST_F(BadInput, RefusesFoldersWithoutFrames) {
   fs::create_directories(at("none/inside"));
   refuses({"segment", path("none")}, {"none", "left"});
   refuses({"segment", path("none"), "-o", path("out")}, {"none"});
@@ -256,7 +256,7 @@ TEST_F(BadInput, FoldersWithoutFrames) {
   refuses({"disparity", path("many")}, {"many", "2 frames"});
 }
 
-TEST_F(BadInput, EvaluationsOfNothing) {
+TEST_F(BadInput, RefusesEvaluationsWithoutResults) {
   pair_in("frame");
   fs::create_directories(at("none"));
   refuses({"evaluate", path("missing"), path("frame")}, {"missing"});
@@ -282,7 +282,7 @@ TEST_F(BadInput, EvaluationsOfNothing) {
   refuses({"evaluate", path("results"), path("truth")}, {"truth"});
 }
 
-TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndLeftOut) {
+TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndSkipped) {
   pair_in("many/a");
   const auto bad = pair_in("many/b");
   pair_in("many/c");
@@ -299,14 +299,14 @@ TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndLeftOut) {
   EXPECT_TRUE(fs::exists(at("out/segment.html")));
 }
 
-TEST_F(BadInput, WhatIsBadForAllFramesEndsTheRunAtOnce) {
+TEST_F(BadInput, AnErrorCommonToAllFramesEndsTheRunAtOnce) {
   pair_in("many/a");
   pair_in("many/b");
   refuses({"segment", path("many"), "-o", path("out"), "--calib", path("none.txt")}, {"none.txt"});
   refuses({"segment", path("many"), "-o", "/proc/no_such_folder/out"}, {"frame a", "/proc/no_such_folder"});
 }
 
-TEST_F(BadInput, ABadResultOfAFolderIsNamedAndLeftOut) {
+TEST_F(BadInput, ABadResultOfAFolderIsNamedAndSkipped) {
   for (const char* name : {"a", "b", "c"}) pair_in(std::string("many/") + name);
   ASSERT_EQ(run({"segment", path("many"), "-o", path("results")}).code, 0);
   ASSERT_EQ(run({"segment", path("many"), "-o", path("truth")}).code, 0);
@@ -323,7 +323,7 @@ TEST_F(BadInput, ABadResultOfAFolderIsNamedAndLeftOut) {
   EXPECT_FALSE(fs::exists(at("e.json")));
 }
 
-TEST_F(BadInput, AnOlderResultOutlivesAFailedRun) {
+TEST_F(BadInput, AFailedRunKeepsTheOlderResult) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);
   const std::string before = content(at("out/objects.json"));

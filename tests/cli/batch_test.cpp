@@ -91,7 +91,7 @@ class Batch : public CommandTest {
   }
 };
 
-TEST_F(Batch, HasARowOfEachFrameInTheirOrder) {
+TEST_F(Batch, HasOneRowPerFrameInOrder) {
   frames(3);
   const std::vector<Json> rows = parsed(undisturbed());
   ASSERT_EQ(rows.size(), 3U);
@@ -133,7 +133,7 @@ TEST_F(Batch, MergesPartsOfDifferentNumbersOfShards) {
   EXPECT_EQ(merged(), expected);
 }
 
-TEST_F(Batch, NamesTheFramesThatAreMissing) {
+TEST_F(Batch, NamesMissingFrames) {
   frames(5);
   plan();
   work("2/3");  // 02, 03
@@ -149,7 +149,7 @@ TEST_F(Batch, NamesTheFramesThatAreMissing) {
   EXPECT_EQ(parsed(content(at("rows.jsonl"))).size(), 2U);
 }
 
-TEST_F(Batch, GivesABadFrameARowThatSaysWhy) {
+TEST_F(Batch, GivesABadFrameARowWithTheReason) {
   frames(4);
   write(at("in/01/left.png"), "no image");
   fs::remove(at("in/02/right.png"));
@@ -171,7 +171,7 @@ TEST_F(Batch, GivesABadFrameARowThatSaysWhy) {
   EXPECT_NE(run({"batch", "status", path("run")}).out.find("3 errors"), std::string::npos);
 }
 
-TEST_F(Batch, PlansTheSameAgainAndNothingElse) {
+TEST_F(Batch, AcceptsTheSamePlanAgainAndNoOther) {
   frames(2);
   plan();
   const auto before = everything();
@@ -186,7 +186,7 @@ TEST_F(Batch, PlansTheSameAgainAndNothingElse) {
   refuses({"batch", "plan", path("in"), "-o", path("full")}, {path("full"), "mine.txt"});
 }
 
-TEST_F(Batch, RefusesWhatWasChangedSinceThePlan) {
+TEST_F(Batch, RefusesInputsChangedSinceThePlan) {
   frames(2);
   plan();
   const std::string config = content(at("run/config.yaml"));
@@ -210,7 +210,7 @@ TEST_F(Batch, RefusesWhatWasChangedSinceThePlan) {
   EXPECT_NE(outcome.err.find("changed since the run was planned"), std::string::npos) << outcome.err;
 }
 
-TEST_F(Batch, StopsWhereTheImagesAreNotOnThisMachine) {
+TEST_F(Batch, StopsIfTheImagesAreNotOnThisMachine) {
   frames(2);
   plan();
   fs::rename(at("in"), at("elsewhere"));
@@ -347,7 +347,7 @@ TEST_F(Batch, KeepsWholeResultsOnRequest) {
   EXPECT_EQ(merged(), undisturbed());
 }
 
-TEST_F(Batch, TakesItsShardFromASlurmArray) {
+TEST_F(Batch, ReadsItsShardFromASlurmArray) {
   frames(4);
   plan();
   const auto with_task = [&](const char* id, const char* count, const char* first) {
@@ -366,7 +366,7 @@ TEST_F(Batch, TakesItsShardFromASlurmArray) {
   EXPECT_NE(beyond.err.find("SLURM_ARRAY_TASK_ID"), std::string::npos) << beyond.err;
 }
 
-TEST_F(Batch, GoesOnFromWholeRowsOnly) {
+TEST_F(Batch, ResumesAfterTheLastCompleteRow) {
   frames(3);
   const std::string expected = undisturbed();
   plan();
@@ -389,7 +389,7 @@ TEST_F(Batch, GoesOnFromWholeRowsOnly) {
   }
 }
 
-TEST_F(Batch, HasOneResultOfTwoWorkersOnOneShard) {
+TEST_F(Batch, TwoWorkersOnOneShardGiveOneResult) {
   frames(6);
   const std::string expected = undisturbed();
   plan();
@@ -418,7 +418,7 @@ TEST_F(Batch, LosesNothingOnAFullDisk) {
   }
 }
 
-TEST_F(Batch, PacksTheRowsOnRequest) {
+TEST_F(Batch, CompressesTheRowsOnRequest) {
   frames(3);
   const std::string expected = undisturbed();
   const Outcome outcome = run({"batch", "merge", path("alone"), "-o", path("rows.jsonl.zst")});
@@ -433,7 +433,7 @@ TEST_F(Batch, PacksTheRowsOnRequest) {
   EXPECT_EQ(content(at("unpacked")), expected);
 }
 
-TEST_F(Batch, TellsHowFarARunIs) {
+TEST_F(Batch, ReportsTheProgressOfARun) {
   frames(6);
   plan();
   EXPECT_NE(run({"batch", "status", path("run")}).out.find("0 of 6 frames done (0.0 %), 0 errors"),
@@ -444,7 +444,7 @@ TEST_F(Batch, TellsHowFarARunIs) {
   EXPECT_NE(text.find("1 shard done"), std::string::npos) << text;
 }
 
-TEST_F(Batch, RefusesAPartThatNoWorkerWrote) {
+TEST_F(Batch, RefusesAPartNotWrittenByAWorker) {
   frames(2);
   plan();
   work("1/1");

@@ -42,7 +42,7 @@ TEST_F(Bench, RendersAPairIfNoneIsGivenAndSaysSo) {
   EXPECT_EQ(everything(), before);
 }
 
-TEST_F(Bench, JsonHoldsEveryStageInItsOrderWithItsTimes) {
+TEST_F(Bench, JsonListsEveryStageInOrderWithItsTimes) {
   const Json found = measured({"--size", "160x120", "--frames", "4", "--threads", "1", "--no-opencv"});
   EXPECT_EQ(found.at("frames"), 4);
   EXPECT_EQ(found.at("pair").at("drawn"), true);
@@ -76,7 +76,7 @@ TEST_F(Bench, JsonHoldsEveryStageInItsOrderWithItsTimes) {
   EXPECT_EQ(found.at("memory").at("later_allocations"), 0);
 }
 
-TEST_F(Bench, StagesThatOnlyObjectsNeedAreNotCountedAsDisparity) {
+TEST_F(Bench, StagesNeededOnlyForObjectsAreNotCountedAsDisparity) {
   const Json found = measured({"--size", "160x120", "--frames", "1", "--no-opencv", "--preset", "paper"});
   int seen = 0;
   for (const Json& stage : found.at("stages")) {
@@ -89,7 +89,7 @@ TEST_F(Bench, StagesThatOnlyObjectsNeedAreNotCountedAsDisparity) {
   EXPECT_EQ(seen, 4);
 }
 
-TEST_F(Bench, JudgesOursAndOpenCvsMatchersWhereTheTruthIsGiven) {
+TEST_F(Bench, EvaluatesOursAndOpenCvsMatchersGivenTruth) {
   const auto pair = pair_in("pair", {160, 72});
   const Image<float> truth({160, 72}, 6.0F, {});
   io::save_disparity(at("truth.pfm"), truth);
@@ -116,7 +116,7 @@ TEST_F(Bench, JudgesOursAndOpenCvsMatchersWhereTheTruthIsGiven) {
   }
 }
 
-TEST_F(Bench, TakesAFolderWithItsTruthAndLeavesOutWhatIsHidden) {
+TEST_F(Bench, ReadsAFolderWithItsTruthAndExcludesHiddenPixels) {
   pair_in("pair", {160, 72});
   const Image<float> truth({160, 72}, 6.0F, {});
   io::save_disparity(at("pair/disp_left.png"), truth);
@@ -142,7 +142,7 @@ TEST_F(Bench, StopsWhenTheTimeIsUp) {
   EXPECT_EQ(found.at("frames"), 3);
 }
 
-TEST_F(Bench, RefusesWhatDoesNotGoTogether) {
+TEST_F(Bench, RefusesContradictoryArguments) {
   const auto pair = pair_in("pair");
   write(at("small.pfm"), pfm({2, 1}, {1, 2}));
   pair_in("many/a");

@@ -41,7 +41,7 @@ TEST_F(Cameras, RecordTakesTheFirstFramesOfAPipeline) {
   EXPECT_EQ(content(at("out/stamps.txt")), content(at("again/stamps.txt")));
 }
 
-TEST_F(Cameras, ThatAreNotThereAreRefused) {
+TEST_F(Cameras, RefusesMissingCameras) {
   refuses({"live", "v4l2:/dev/video98"}, {"v4l2:/dev/video98", "no such device"});
   refuses({"live", "gst:no_such_element_at_all"}, {"no_such_element_at_all"});
   refuses({"follow", "gst:videotestsrc", "--open-timeout", "0"}, {"--open-timeout", "found 0"});

@@ -70,7 +70,7 @@ TEST_F(Command, ConfigPrintsOnlyWhatThePresetReads) {
   }
 }
 
-TEST_F(Command, TheOrderOfSettingsIsOfNoAccount) {
+TEST_F(Command, TheOrderOfSettingsDoesNotMatter) {
   const std::string cost = "match.cost=sad";
   const std::string method = "match.method=window";
   const std::string one = run({"config", "--set", cost, "--set", method}).out;
@@ -81,7 +81,7 @@ TEST_F(Command, TheOrderOfSettingsIsOfNoAccount) {
   EXPECT_EQ(run({"config", "--preset", "paper", "--config", path("cost.yaml")}).code, 0);
 }
 
-TEST_F(Command, ConfigPrintsWhatIsChangedAlone) {
+TEST_F(Command, ConfigPrintsOnlyChangedOptions) {
   const std::vector<std::string> asked{
       "config", "--changed", "--preset", "paper", "--set", "match.window_size=11", "--set", "match.cost=sad"};
   const std::string changed = run(asked).out;
@@ -102,7 +102,7 @@ TEST_F(Command, SegmentPrintsATableAndWritesNothingWithoutAFolder) {
   EXPECT_EQ(everything(), before);
 }
 
-TEST_F(Command, SegmentTakesPairsThatDifferInTheirNamesAlone) {
+TEST_F(Command, SegmentReadsPairsOfNamesInOneFolder) {
   pair_in("pair");
   fs::create_directories(at("recording"));
   for (const char* number : {"01", "02"}) {
@@ -115,7 +115,7 @@ TEST_F(Command, SegmentTakesPairsThatDifferInTheirNamesAlone) {
   EXPECT_TRUE(fs::exists(at("out/left01/objects.json")) && fs::exists(at("out/left02/objects.json")));
 }
 
-TEST_F(Command, APairOfFilesCalledLeftAndRightHasTheNameOfItsFolder) {
+TEST_F(Command, FilesCalledLeftAndRightAreNamedAfterTheirFolder) {
   const auto pair = pair_in("kitchen");
   EXPECT_EQ(run(with("segment", pair)).out.find("kitchen: "), 0U);
   EXPECT_EQ(run({"segment", "left.png", "right.png"}, {}, "kitchen").out.find("kitchen: "), 0U);
@@ -151,7 +151,7 @@ TEST_F(Command, DisparityWritesItsConfidence) {
             std::string::npos);
 }
 
-TEST_F(Command, DisparityDrawsThePictureThatAResultHasToo) {
+TEST_F(Command, DisparityDrawsTheImageOfAResult) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("disparity", pair, {"--view", path("view.png")})).code, 0);
   ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);
@@ -173,7 +173,7 @@ TEST_F(Command, EveryHelpShowsExamples) {
   }
 }
 
-TEST_F(Command, SegmentTakesAFolderWithAFrameAndAFolderOfFrames) {
+TEST_F(Command, SegmentReadsAFrameAndAFolderOfFrames) {
   pair_in("many/b");
   pair_in("many/a");
   ASSERT_EQ(run({"segment", path("many/a"), "-o", path("one")}).code, 0);
@@ -253,7 +253,7 @@ TEST_F(Command, LaterSettingsWin) {
   EXPECT_EQ(disparities({"--calib", path("other.txt")}), 32);
 }
 
-TEST_F(Command, TheCalibrationOfAnotherFolderIsFoundInItsTruth) {
+TEST_F(Command, FindsTheCalibrationInTheFolderOfTheTruth) {
   const auto pair = pair_in("base/variant");
   fs::create_directories(at("base/gt"));
   write(at("base/gt/calib.txt"), "fx=100\nfy=100\ncx=48\ncy=36\nbaseline=0.1\n");
@@ -263,7 +263,7 @@ TEST_F(Command, TheCalibrationOfAnotherFolderIsFoundInItsTruth) {
   EXPECT_EQ(from_files.at("rig"), from_folder.at("rig"));
 }
 
-TEST_F(Command, SegmentTakesADisparityMapInsteadOfTheRightPicture) {
+TEST_F(Command, SegmentReadsADisparityMapInsteadOfTheRightImage) {
   const auto pair = pair_in("pair");
   fs::remove(pair[1]);
   std::vector<float> values(96 * 72, 4.0F);
@@ -279,7 +279,7 @@ TEST_F(Command, SegmentTakesADisparityMapInsteadOfTheRightPicture) {
   }
 }
 
-TEST_F(Command, SegmentTakesAFolderOfMapsByTheFramesNames) {
+TEST_F(Command, SegmentReadsAFolderOfMapsByTheFramesNames) {
   for (const char* frame : {"a", "b", "c", "d"}) fs::remove(pair_in(std::string("many/") + frame)[1]);
   fs::create_directories(at("maps/c"));
   const auto flat = [](float px) { return pfm({96, 72}, std::vector<float>(96 * 72, px)); };
@@ -300,7 +300,7 @@ TEST_F(Command, SegmentTakesAFolderOfMapsByTheFramesNames) {
   EXPECT_FALSE(fs::exists(at("out/d")));
 }
 
-TEST_F(Command, DisparityWritesTheFormThatTheNameAsksFor) {
+TEST_F(Command, DisparityWritesTheFormatOfTheExtension) {
   const auto pair = pair_in("pair");
   ASSERT_EQ(run(with("disparity", pair, {"-o", path("d.png"), "--set", "match.num_disparities=16"})).code, 0);
   ASSERT_EQ(run(with("disparity", pair, {"-o", path("d.pfm"), "--set", "match.num_disparities=16"})).code, 0);
@@ -318,7 +318,7 @@ TEST_F(Command, DisparityWritesTheFormThatTheNameAsksFor) {
   EXPECT_GT(valid, 96 * 72 / 2);
 }
 
-TEST_F(Command, TablesListTheReasonsInForceAndWhatIsForWantOfTexture) {
+TEST_F(Command, TablesListTheReasonsInForceAndMissingTexture) {
   const auto pair = pair_in("pair");
   for (const char* side : {"pair/left.png", "pair/right.png"}) {  // a plain wall next to the dots
     Image<Gray> image = io::load_picture(at(side)).gray;
@@ -352,7 +352,7 @@ TEST_F(Command, ThreadsAndTargetsChangeNoBitOfAResult) {
 }
 
 /// Two frames with truth, and a third without a result: `evaluate` with results equal to the truth.
-TEST_F(Command, EvaluateFindsNoErrorInTheTruthItself) {
+TEST_F(Command, EvaluateFindsNoErrorInTheTruth) {
   Image<std::uint16_t> ids({96, 72}, 0, {});
   for (int y = 10; y < 40; ++y) std::fill_n(ids.row(y) + 10, 30, std::uint16_t{1});
   for (int y = 10; y < 60; ++y) std::fill_n(ids.row(y) + 50, 30, std::uint16_t{7});
@@ -377,7 +377,7 @@ TEST_F(Command, EvaluateFindsNoErrorInTheTruthItself) {
             std::string::npos);
 }
 
-TEST_F(Command, EvaluateFindsTheTruthOfVariantsInTheFolderBeside) {
+TEST_F(Command, EvaluateFindsTheTruthOfVariantsInTheSiblingFolder) {
   const Image<std::uint16_t> disparity({96, 72}, 6 * 256, {});
   for (const char* name : {"base/gt", "base/dim", "base/noisy", "out/dim", "out/noisy"})
     fs::create_directories(at(name));
@@ -391,7 +391,7 @@ TEST_F(Command, EvaluateFindsTheTruthOfVariantsInTheFolderBeside) {
   EXPECT_EQ(outcome.out.find("no result"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Command, EvaluateTakesTwoHundredFiftyFiveForDontCareInEightBitsOnly) {
+TEST_F(Command, EvaluateReads255AsDontCareInEightBitsOnly) {
   Image<std::uint16_t> ours({96, 72}, 0, {});
   for (int y = 10; y < 40; ++y) std::fill_n(ours.row(y) + 10, 30, std::uint16_t{255});
   Image<std::uint8_t> eight({96, 72}, 0, {});

@@ -87,7 +87,7 @@ TEST_F(DataSets, MiddleburyIsSegmentedAndEvaluated) {
   EXPECT_NE(outcome.out.find("bad-2 0.0 %"), std::string::npos) << outcome.out;
 }
 
-TEST_F(DataSets, WhatIsMissingIsSaidInOneLine) {
+TEST_F(DataSets, ReportsMissingFilesInOneLine) {
   pair_as("training/image_2/000000_10.png", "elsewhere/image_3/000000_10.png");
   fs::copy(at("training/image_2/000000_10.png"), at("training/image_2/000001_10.png"));
   refuses({"segment", path("training")}, {"image_2/000000_10.png", "expected", "image_3/000000_10.png"});
@@ -128,7 +128,7 @@ TEST_F(DataSets, StampsOfAFolderAreInItsResults) {
   EXPECT_EQ(stamp_of("11"), 1'403'715'274'312'143'104);
 }
 
-TEST_F(DataSets, StampsThatDoNotFitAreReportedAndLeftOut) {
+TEST_F(DataSets, StampsThatDoNotFitAreReportedAndIgnored) {
   for (const std::string name : {"a", "b"})
     pair_as("frames/" + name + "/left.png", "frames/" + name + "/right.png");
   for (const auto& [stamps, word] : {std::pair{"1.5\n", "has 1 stamps"},
@@ -145,7 +145,7 @@ TEST_F(DataSets, StampsThatDoNotFitAreReportedAndLeftOut) {
   }
 }
 
-TEST_F(DataSets, StampsThatAreTheImagesNamesAreInTheResults) {
+TEST_F(DataSets, StampsFromImageNamesAreInTheResults) {
   for (const std::string name : {"1403636579763555584", "1403636579813555456"}) {
     pair_as("kitti/image_2/" + name + ".png", "kitti/image_3/" + name + ".png");
     pair_as("folders/left/" + name + ".png", "folders/right/" + name + ".png");

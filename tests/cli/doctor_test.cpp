@@ -39,7 +39,7 @@ TEST_F(Doctor, FindsNothingWrongInTheSamples) {
   EXPECT_EQ(j["pairs"][0]["measured"]["rows_histogram"].size(), 17U);
 }
 
-TEST_F(Doctor, SaysWhatIsWrongAndWhatToDoAndExitsWithOne) {
+TEST_F(Doctor, ReportsTheProblemAndTheRemedyAndExitsWithOne) {
   const fs::path folder = samples::folder("overlap");
   const Outcome outcome =
       run({"doctor", folder / "right.png", folder / "left.png", "--json", path("d.json")});
@@ -67,7 +67,7 @@ TEST_F(Doctor, WarningsAloneExitWithZeroUnlessStrict) {
   EXPECT_NE(outcome.out.find("warning  disparity range too small: "), std::string::npos) << outcome.out;
 }
 
-TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
+TEST_F(Doctor, DetectsImagesOfDifferentSizes) {
   const auto pair = pair_in("pair");
   const auto other = pair_in("other", {64, 48});
   const Outcome outcome = run({"doctor", pair[0], other[1]});
@@ -78,7 +78,7 @@ TEST_F(Doctor, SeesPicturesOfDifferentSizes) {
   EXPECT_EQ(outcome.out.find("measured"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Doctor, SeesPairsOfDifferentSizesInAFolder) {
+TEST_F(Doctor, DetectsPairsOfDifferentSizesInAFolder) {
   pair_in("rig/a");
   pair_in("rig/b", {128, 96});
   const Outcome outcome = run({"doctor", path("rig")});
@@ -87,7 +87,7 @@ TEST_F(Doctor, SeesPairsOfDifferentSizesInAFolder) {
       << outcome.out;
 }
 
-TEST_F(Doctor, SeesANegativeBaselineAndACalibrationOfAnotherSize) {
+TEST_F(Doctor, DetectsANegativeBaselineAndACalibrationOfAnotherSize) {
   write(at("negative.txt"), "fx=300\nfy=300\ncx=160\ncy=120\nbaseline=-0.1\n");
   Outcome outcome = run({"doctor", sample("overlap"), "--calib", path("negative.txt")});
   EXPECT_EQ(outcome.code, 1);
@@ -99,7 +99,7 @@ TEST_F(Doctor, SeesANegativeBaselineAndACalibrationOfAnotherSize) {
   EXPECT_NE(outcome.out.find("the calibration is of 1280x960 images"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Doctor, NamesThePairsOfAFolderThatAreBad) {
+TEST_F(Doctor, NamesTheBadPairsOfAFolder) {
   for (const char* name : {"one", "three", "two"}) {
     const fs::path folder = samples::folder("overlap");
     fs::create_directories(at("rig") / name);
@@ -112,14 +112,14 @@ TEST_F(Doctor, NamesThePairsOfAFolderThatAreBad) {
   EXPECT_NE(outcome.out.find("in 1 of 3 pairs (two)"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Doctor, SeesTheSamePictureTwice) {
+TEST_F(Doctor, DetectsIdenticalImages) {
   const std::string picture = (samples::folder("overlap") / "left.png").string();
   const Outcome outcome = run({"doctor", picture, picture});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("broken   identical images: all pixels"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Doctor, CannotTellTheOrderFromAFewPointsThatAgreeByChance) {
+TEST_F(Doctor, DoesNotJudgeTheOrderByAFewAccidentalMatches) {
   for (const char* name : {"four_in_a_row", "glossy_floor"}) {
     const fs::path folder = samples::folder(name);
     const Image<Gray> right = io::load_picture(folder / "right.png").gray;
@@ -143,7 +143,7 @@ TEST_F(Doctor, CannotTellTheOrderFromAFewPointsThatAgreeByChance) {
   }
 }
 
-TEST_F(Doctor, SaysWhatWasNotMeasured) {
+TEST_F(Doctor, ReportsWhatWasNotMeasured) {
   const auto pair = pair_in("pair", {24, 18});  // too small for 50 points
   const Outcome outcome = run({"doctor", pair[0], pair[1], "--json", path("d.json")});
   const std::size_t gain = outcome.out.find("gain, right to left ");
@@ -185,7 +185,7 @@ void write_sequence(const fs::path& folder, int frames, int lost) {
   }
 }
 
-TEST_F(Doctor, NamesTheFrameFromWhichOnAFolderIsOutOfStep) {
+TEST_F(Doctor, NamesTheFirstFrameOutOfSync) {
   write_sequence(at("rig"), 26, 26);
   Outcome outcome = run({"doctor", path("rig"), "--frames", "2"});
   EXPECT_EQ(outcome.out.find("not synchronised"), std::string::npos) << outcome.out;
@@ -199,7 +199,7 @@ TEST_F(Doctor, NamesTheFrameFromWhichOnAFolderIsOutOfStep) {
   EXPECT_NE(outcome.out.find("from frame " + from + " on"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Doctor, LooksForLostStepFarIntoALongFolder) {
+TEST_F(Doctor, DetectsLateLossOfSyncInALongFolder) {
   write_sequence(at("rig"), 90, 70);
   const Outcome outcome = run({"doctor", path("rig"), "--frames", "1", "--json", path("d.json")});
   EXPECT_EQ(outcome.code, 1);
@@ -208,7 +208,7 @@ TEST_F(Doctor, LooksForLostStepFarIntoALongFolder) {
   EXPECT_TRUE(from == "f169" || from == "f170" || from == "f171") << from;
 }
 
-TEST_F(Doctor, NamesAPairThatCannotBeReadAndLooksAtTheOthers) {
+TEST_F(Doctor, NamesAnUnreadablePairAndProcessesTheOthers) {
   for (const char* name : {"a", "b", "c"}) pair_in(std::string("rig/") + name);
   write(at("rig/a/right.png"), "no picture");
   const Outcome outcome = run({"doctor", path("rig"), "--json", path("d.json")});

@@ -94,7 +94,7 @@ class EvaluateJson : public CommandTest {
   }
 };
 
-TEST_F(EvaluateJson, TellsWhatBecameOfEachObject) {
+TEST_F(EvaluateJson, ReportsTheScoreOfEachObject) {
   const Json frames = evaluated().first.at("frames");
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_EQ(frames[0].at("name"), "a");
@@ -133,7 +133,7 @@ TEST_F(EvaluateJson, TellsWhatBecameOfEachObject) {
   EXPECT_TRUE(b.at("counts").at("phantoms").is_null());
 }
 
-TEST_F(EvaluateJson, TellsTheErrorsOfDisparityAndOfWhichPixels) {
+TEST_F(EvaluateJson, ReportsDisparityErrorsAndTheirPixels) {
   const Json whole = evaluated().first;
   const Json& a = whole.at("frames")[0].at("disparity");
   const Json& all = a.at("all");
@@ -155,7 +155,7 @@ TEST_F(EvaluateJson, TellsTheErrorsOfDisparityAndOfWhichPixels) {
   EXPECT_EQ(whole.at("summary").at("disparity").at("all"), all);
 }
 
-TEST_F(EvaluateJson, TellsTheTimesThatTheResultsCarry) {
+TEST_F(EvaluateJson, ReportsTheTimesInTheResults) {
   const Json whole = evaluated().first;
   EXPECT_EQ(whole.at("frames")[0].at("timings_ms"), Json::parse(R"({"match": 10.0, "check": 2.5})"));
   EXPECT_EQ(whole.at("summary").at("timings_ms"),
@@ -213,7 +213,7 @@ TEST_F(EvaluateJson, AgreesWithTheTable) {
   EXPECT_EQ(confident, Json::parse(R"({"at_least": 0.8, "ours": 2, "right_50": 1, "precision_50": 0.5})"));
 }
 
-TEST_F(EvaluateJson, SaysNullWhereNothingIsKnown) {
+TEST_F(EvaluateJson, WritesNullForUnknownValues) {
   fs::remove_all(at("result/a"));
   const Json s = evaluated().first.at("summary").at("objects");
   for (const char* key : {"ours", "right_50", "precision_50", "phantoms", "phantoms_per_frame", "confident"})
@@ -234,7 +234,7 @@ TEST_F(EvaluateJson, SaysNullWhereNothingIsKnown) {
   EXPECT_TRUE(nothing.at("frames")[0].at("disparity").at("both_cameras").is_null());  // no occlusion.png
 }
 
-TEST_F(EvaluateJson, ReplacesAnOlderFileAndLeavesNoneBeside) {
+TEST_F(EvaluateJson, ReplacesAnOlderFileAndLeavesNoTemporary) {
   write(at("all.json"), "old");
   const auto before = everything();
   const Json first = evaluated().first;
@@ -242,13 +242,13 @@ TEST_F(EvaluateJson, ReplacesAnOlderFileAndLeavesNoneBeside) {
   EXPECT_EQ(evaluated().first, first);
 }
 
-TEST_F(EvaluateJson, IsWrittenForAFolderWhoseNameIsNoText) {
+TEST_F(EvaluateJson, IsWrittenForAFolderWithANonTextName) {
   fs::rename(at("result/a"), at("result/\xff"));
   fs::rename(at("truth/a"), at("truth/\xff"));
   EXPECT_EQ(evaluated().first.at("frames").size(), 2U);
 }
 
-TEST_F(EvaluateJson, NamesTheFramesThatAreLeftOut) {
+TEST_F(EvaluateJson, NamesSkippedFrames) {
   for (const char* json : {"{", R"({"objects": [], "timings_ms": {"match": "soon"}})", "[]"}) {
     write(at("result/b/objects.json"), json);
     const Outcome outcome = run(arguments(path("new.json")));
@@ -282,7 +282,7 @@ std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) 
   return rows;
 }
 
-TEST_F(EvaluateJson, RunsAreARowEachAndTheSameNumbers) {
+TEST_F(EvaluateJson, EachRunIsARowWithTheSameNumbers) {
   fs::create_directories(at("other/b"));
   fs::copy(at("result/b"), at("other/b"));
   const Outcome outcome =
@@ -310,7 +310,7 @@ TEST_F(EvaluateJson, RunsAreARowEachAndTheSameNumbers) {
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
 }
 
-TEST_F(EvaluateJson, OneRunIsARowOfCsvToo) {
+TEST_F(EvaluateJson, ASingleRunIsARowOfCsvToo) {
   fs::rename(at("result"), at("with, comma"));
   const Outcome outcome = run({"evaluate", path("with, comma"), path("truth"), "--csv", path("one.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -160,7 +160,7 @@ TEST_F(DrawnSequence, TracksAndOracleIdsAreScored) {
   EXPECT_NE(text.find("switches                1           0"), std::string::npos) << text;
 }
 
-TEST_F(DrawnSequence, ObjectsPlacesAndMotionAreScored) {
+TEST_F(DrawnSequence, ObjectsPositionsAndMotionAreScored) {
   const auto [json, text] = evaluated();
   const Json& all = json.at("summary");
   EXPECT_EQ(all.at("objects").at("scored"), 24);
@@ -186,7 +186,7 @@ TEST_F(DrawnSequence, ObjectsPlacesAndMotionAreScored) {
   EXPECT_NEAR(all.at("trajectory").at("ate_rmse_m"), 0, 1e-6);
 }
 
-TEST_F(DrawnSequence, WhatCouldNotBeComparedIsNamed) {
+TEST_F(DrawnSequence, UncomparableFramesAreNamed) {
   const auto [json, text] = evaluated();
   EXPECT_EQ(json.at("without_result"), (Json{"f12"}));
   EXPECT_EQ(json.at("without_truth"), (Json{"f13"}));
@@ -196,7 +196,7 @@ TEST_F(DrawnSequence, WhatCouldNotBeComparedIsNamed) {
     EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
-TEST_F(DrawnSequence, RunsAreSetSideBySide) {
+TEST_F(DrawnSequence, RunsAreComparedInATable) {
   const Outcome outcome =
       run({"evaluate", "result", "result/tracks.jsonl", "truth", "--sequence", "--csv", "runs.csv"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -206,7 +206,7 @@ TEST_F(DrawnSequence, RunsAreSetSideBySide) {
   EXPECT_NE(csv.find("\nresult,12,0."), std::string::npos) << csv;
 }
 
-TEST_F(DrawnSequence, WhatIsNoSequenceIsRefused) {
+TEST_F(DrawnSequence, RefusesFoldersThatAreNotSequences) {
   refuses({"evaluate", "truth", "truth", "--sequence"}, {"truth: has no tracks.jsonl"});
   refuses({"evaluate", "nowhere", "truth", "--sequence"}, {"nowhere: no such file or folder"});
   refuses({"evaluate", "result", "result", "--sequence"}, {"no sub-folder with objects.png"});
@@ -216,14 +216,14 @@ TEST_F(DrawnSequence, WhatIsNoSequenceIsRefused) {
   refuses({"evaluate", "result", "truth", "--sequence"}, {"first frame is x", "truth f00"});
 }
 
-TEST_F(EvaluateSequence, TentativeTracksCountWhereAsked) {
+TEST_F(EvaluateSequence, TentativeTracksCountOnRequest) {
   add(0, {{1, 1, {2, 2, 20, 15}, {1, 2, 0.3}, {}, false, 0, "tentative"}});
   write_result();
   EXPECT_EQ(evaluated().first.at("summary").at("tracks").at("CLR_TP"), 0);
   EXPECT_EQ(evaluated({"--tentative"}).first.at("summary").at("tracks").at("CLR_TP"), 1);
 }
 
-TEST_F(EvaluateSequence, InAPartialTruthWhatIsNotLabelledIsNotWrong) {
+TEST_F(EvaluateSequence, UnlabelledObjectsOfAPartialTruthAreNotErrors) {
   add(0, {{1, 1, {2, 2, 20, 15}, {1, 2, 0.3}, {}, false, 0, "confirmed"},
           {0, 2, {30, 10, 16, 16}, {2, 2, 0.3}, {}, false, 0, "confirmed"}});
   write_result();

@@ -73,7 +73,7 @@ class Faults : public CommandTest {
   }
 };
 
-TEST_F(Faults, ARunOverAFolderThatIsKilledLeavesWholeResultsAndTheNextOneGoesOn) {
+TEST_F(Faults, AKilledRunLeavesCompleteResultsAndTheNextOneResumes) {
   for (int i = 0; i < 5; ++i) pair_in("in/" + std::to_string(i), {96 + i, 72});
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run({"segment", path("in"), "-o", path("alone"), "--threads", "1"}).code, 0);
@@ -104,7 +104,7 @@ TEST_F(Faults, ARunOverAFolderThatIsKilledLeavesWholeResultsAndTheNextOneGoesOn)
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which take terabytes of addresses
 
-TEST_F(Faults, ALimitOfMemoryEndsInOneLineAndWholeResults) {
+TEST_F(Faults, AMemoryLimitEndsInOneLineAndCompleteResults) {
   const auto pair = pair_in("pair", {640, 480});
   ASSERT_EQ(run(with("segment", pair, {"-o", path("alone")})).code, 0);
   const auto expected = results_in("alone");
@@ -138,7 +138,7 @@ TEST_F(Faults, ALimitOfMemoryEndsInOneLineAndWholeResults) {
   RecordProperty("not_loaded", not_loaded);
 }
 
-TEST_F(Faults, ClaimsOfGreatSizesAreRefusedInLittleMemory) {
+TEST_F(Faults, ClaimedHugeSizesAreRefusedInLittleMemory) {
   const auto pair = pair_in("pair");
   const rlimit limit{rlim_t{700} << 20, rlim_t{700} << 20};
   const auto refuses_file = [&](const std::string& name, const std::string& bytes,
@@ -167,7 +167,7 @@ TEST_F(Faults, ClaimsOfGreatSizesAreRefusedInLittleMemory) {
 
 #endif
 
-TEST_F(Faults, AClosedOutputIsNoticedAndNoResultTakesItsPlace) {
+TEST_F(Faults, AClosedOutputIsDetectedAndNotReplacedByAResult) {
   const auto pair = pair_in("pair");
   const auto arguments = with("segment", pair, {"-o", path("out")});
   ASSERT_EQ(run(with("segment", pair, {"-o", path("alone")})).code, 0);
@@ -185,7 +185,7 @@ TEST_F(Faults, AClosedOutputIsNoticedAndNoResultTakesItsPlace) {
 }
 
 /// Without stdout, the next file to be opened would become stdout.
-TEST_F(Faults, LinesForAClosedOutputGetIntoNoFile) {
+TEST_F(Faults, OutputForAClosedStdoutIsNotWrittenToAFile) {
   if (run({"follow", "--help"}).code != 0) GTEST_SKIP() << "sequences are not built in";
   for (int i = 0; i < 3; ++i) pair_in("in/" + std::to_string(i));
   const Outcome outcome =
@@ -196,7 +196,7 @@ TEST_F(Faults, LinesForAClosedOutputGetIntoNoFile) {
   EXPECT_EQ(tracks.find("\"frame\":0,"), tracks.rfind("\"frame\":0,")) << tracks;
 }
 
-TEST_F(Faults, AReaderThatStopsLeavesWholeResults) {
+TEST_F(Faults, AClosedPipeLeavesCompleteResults) {
   for (int i = 0; i < 4; ++i) pair_in("in/" + std::to_string(i));
   ASSERT_EQ(run({"segment", path("in"), "-o", path("alone")}).code, 0);
   int ends[2] = {};
@@ -212,7 +212,7 @@ TEST_F(Faults, AReaderThatStopsLeavesWholeResults) {
   for (const auto& [name, bytes] : written) EXPECT_EQ(bytes, expected.at(name)) << name;
 }
 
-TEST_F(Faults, TheTruthBesideTheImagesIsNoOlderResult) {
+TEST_F(Faults, TheTruthNextToTheImagesIsNotAnOlderResult) {
   const auto pair = pair_in("pair");
   fs::copy_file(pair[0], at("pair/objects.png"));
   const std::string truth = content(path("pair/objects.png"));
@@ -223,7 +223,7 @@ TEST_F(Faults, TheTruthBesideTheImagesIsNoOlderResult) {
   for (int i = 0; i < 2; ++i) EXPECT_EQ(run({"segment", path("pair"), "-o", path("pair")}).code, 0);
 }
 
-TEST_F(Faults, WhatIsReadIsNotWritten) {
+TEST_F(Faults, InputsAreNotOverwritten) {
   const auto pair = pair_in("pair");
   const std::string left = content(pair[0]);
   refuses(with("disparity", pair, {"-o", pair[0]}), {"left.png", "is read by this run"});
@@ -252,7 +252,7 @@ TEST_F(Faults, LinksAreFollowedAndLoopsRefused) {
 }
 
 /// Input from a pipe has no known length.
-TEST_F(Faults, AFileThatIsCutOffWhileItIsReadIsRefused) {
+TEST_F(Faults, AFileTruncatedWhileReadingIsRefused) {
   const auto pair = pair_in("pair");
   const std::string whole = content(pair[0]);
   ASSERT_EQ(::mkfifo(path("pipe.png").c_str(), 0600), 0);

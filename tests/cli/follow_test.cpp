@@ -32,7 +32,7 @@ class Follow : public CommandTest {
   }
 };
 
-TEST_F(Follow, KeepsTheIdsOfThingsThatStand) {
+TEST_F(Follow, KeepsTheIdsOfStaticObjects) {
   standing(4);
   write(at("in/stamps.txt"), "0\n0.1\n0.2\n0.35\n");
   const Outcome outcome = run({"follow", path("in"), "-o", path("out"), "--frames-out"});
@@ -99,7 +99,7 @@ TEST_F(Follow, WithoutACalibrationThereAreIdsAndNoMetres) {
   EXPECT_EQ(content(at("out/poses.tum")), "");
 }
 
-TEST_F(Follow, BlackFramesRefuseTheMotionAndEndNothing) {
+TEST_F(Follow, BlackFramesRefuseTheMotionWithoutEndingTheRun) {
   standing(5);
   const Image<Gray> black({320, 240}, Gray{0}, {});
   for (const char* file : {"in/2/left.png", "in/2/right.png"}) io::save_png(at(file), black.view());
@@ -132,14 +132,14 @@ TEST_F(Follow, ReadsOptionsOfFrameAndSequenceFromOneFile) {
   EXPECT_EQ(options["objects.min_confidence"], "0.9");
 }
 
-TEST_F(Follow, FollowsByThePapersMethodToo) {
+TEST_F(Follow, FollowsWithThePresetPaperToo) {
   standing(3);
   const Outcome outcome = run({"follow", path("in"), "--preset", "paper", "-o", path("out")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(lines_of(at("out/tracks.jsonl")).size(), 3U);
 }
 
-TEST_F(Follow, RefusesWhatCannotBeFollowed) {
+TEST_F(Follow, RefusesInvalidSequences) {
   standing(3);
   refuses({"follow", path("nothing")}, {"nothing"});
   refuses({"follow", path("in"), "--set", "tracking.min_hit=2"}, {"did you mean 'tracking.min_hits'?"});
@@ -164,7 +164,7 @@ TEST_F(Follow, RefusesWhatCannotBeFollowed) {
   refuses({"follow", path("in"), "--map", path("room.db")}, {"in"});
 }
 
-TEST_F(Follow, StampsThatFallEndTheRunWithOneLine) {
+TEST_F(Follow, DecreasingStampsEndTheRunWithOneLine) {
   standing(3);
   write(at("in/stamps.txt"), "0\n0.2\n0.1\n");
   const Outcome outcome = run({"follow", path("in"), "-o", path("out")});
@@ -172,7 +172,7 @@ TEST_F(Follow, StampsThatFallEndTheRunWithOneLine) {
   EXPECT_NE(outcome.err.find("stamp"), std::string::npos) << outcome.err;
 }
 
-TEST_F(Follow, KnownPosesAreTakenAsTheyAre) {
+TEST_F(Follow, KnownPosesAreUsedUnchanged) {
   standing(2);
   write(at("p.tum"), "0.0 1 2 3 0 0 0 1\n0.1 1.5 2 3 0 0 0 1\n");
   const Outcome outcome =
@@ -244,7 +244,7 @@ TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
   EXPECT_EQ(content(at("off/events.jsonl")).find("option_better"), std::string::npos);
 }
 
-TEST_F(Follow, AMapKeepsWhatWasSeen) {
+TEST_F(Follow, AMapStoresLandmarks) {
   standing(10);
   write(at("in/stamps.txt"), "5\n5.1\n5.2\n5.3\n5.4\n5.5\n5.6\n5.7\n5.8\n5.9\n");
   const std::vector<std::string> arguments{"follow",        path("in"), "--map",
@@ -264,7 +264,7 @@ TEST_F(Follow, AMapKeepsWhatWasSeen) {
   for (const Json& track : last["tracks"]) EXPECT_TRUE(track.contains("landmark")) << track;
 }
 
-TEST_F(Follow, AnErrorOnTheWayKeepsWhatWasDone) {
+TEST_F(Follow, AnErrorDuringTheRunKeepsEarlierResults) {
   standing(5);
   const Image<Gray> small({160, 120}, Gray{9}, {});
   for (const char* file : {"in/3/left.png", "in/3/right.png"}) io::save_png(at(file), small.view());
@@ -278,13 +278,13 @@ TEST_F(Follow, AnErrorOnTheWayKeepsWhatWasDone) {
   EXPECT_NE(run({"map", "show", path("room.db")}).out.find("aborted"), std::string::npos);
 }
 
-TEST_F(Follow, ResultsDoNotLieAmongTheFrames) {
+TEST_F(Follow, RefusesToWriteResultsAmongTheFrames) {
   standing(2);
   refuses({"follow", path("in"), "-o", path("in")}, {"-o", "inside the source"});
   refuses({"follow", path("in"), "-o", path("in/results")}, {"-o", "inside the source"});
 }
 
-TEST_F(Follow, AReaderThatStopsEndsTheRun) {
+TEST_F(Follow, AClosedPipeEndsTheRun) {
   standing(30);
   const std::string line = std::string(CAIRN_COMMAND) + " follow " + path("in") + " --json-lines -o " +
                            path("out") + " 2>/dev/null | head -n 1 > /dev/null; exit ${PIPESTATUS[0]}";
@@ -294,7 +294,7 @@ TEST_F(Follow, AReaderThatStopsEndsTheRun) {
   EXPECT_EQ(Json::parse(content(at("out/summary.json")))["state"], "interrupted");
 }
 
-TEST_F(Follow, AnInterruptEndsBehindAWholeLine) {
+TEST_F(Follow, AnInterruptEndsAfterACompleteLine) {
   standing(40);
   const std::string out = path("out");
   std::string source = path("in");

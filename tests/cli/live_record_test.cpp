@@ -44,7 +44,7 @@ class LiveRecord : public CommandTest {
   }
 };
 
-TEST_F(LiveRecord, PlayedAgainItGivesTheObjectsOfTheImages) {
+TEST_F(LiveRecord, ReplayGivesTheObjectsOfTheImages) {
   const Outcome recorded = record({"--no-tracks"});
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   EXPECT_NE(recorded.err.find("recorded " + path("run.mcap") + ": 6 frames"), std::string::npos)
@@ -61,7 +61,7 @@ TEST_F(LiveRecord, PlayedAgainItGivesTheObjectsOfTheImages) {
   }
 }
 
-TEST_F(LiveRecord, PlayedAgainItGivesTheTracksOfTheOriginal) {
+TEST_F(LiveRecord, ReplayGivesTheTracksOfTheOriginal) {
   const std::string original = run({"follow", sequence(), "--json-lines"}).out;
   ASSERT_EQ(record().code, 0);
   const Outcome followed = run({"follow", path("run.mcap"), "--json-lines"});
@@ -74,7 +74,7 @@ TEST_F(LiveRecord, PlayedAgainItGivesTheTracksOfTheOriginal) {
   EXPECT_EQ(lines_of(run({"follow", path("folder"), "--json-lines"}).out), lines_of(original));
 }
 
-TEST_F(LiveRecord, KeepsTheOptionsThatItWasMadeWith) {
+TEST_F(LiveRecord, StoresItsOptions) {
   const std::vector<std::string> options{"--set", "superpixels.count=100", "--set", "tracking.min_hits=2"};
   ASSERT_EQ(record(options).code, 0);
   std::vector<std::string> follow{"follow", sequence(), "--json-lines"};
@@ -125,7 +125,7 @@ TEST_F(LiveRecord, TheCamerasFrameOfARecordingIsInTheResults) {
   EXPECT_FALSE(Json::parse(unnamed.at(0)).contains("frame_id"));
 }
 
-TEST_F(LiveRecord, AFileThatMayNotGrowEndsTheRecordingAndNotTheRun) {
+TEST_F(LiveRecord, AFullFileEndsTheRecordingButNotTheRun) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   rlimit small = before;
@@ -142,7 +142,7 @@ TEST_F(LiveRecord, AFileThatMayNotGrowEndsTheRecordingAndNotTheRun) {
   EXPECT_NE(outcome.err.find("; stopped: "), std::string::npos) << outcome.err;
 }
 
-TEST_F(LiveRecord, CutOffItIsReadUpToItsLastChunk) {
+TEST_F(LiveRecord, ATruncatedRecordingIsReadUpToItsLastChunk) {
   ASSERT_EQ(record({"--record-what", "all"}).code, 0);  // enough data for several chunks
   fs::resize_file(at("run.mcap"), fs::file_size(at("run.mcap")) * 3 / 4);
   const Outcome cut = run({"follow", path("run.mcap"), "--json-lines"});

@@ -55,7 +55,7 @@ void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard,
   }
 }
 
-TEST_F(LiveRos2, AnotherProcessHearsWhatIsPrinted) {
+TEST_F(LiveRos2, AnotherProcessReceivesWhatIsPrinted) {
   const dds::Participant participant;
   const std::string prefix = own_topic("run");
   dds::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
@@ -147,7 +147,7 @@ TEST_F(LiveRos2, ACameraOnTopicsIsSegmentedAsItsImagesAre) {
   EXPECT_GE(heard, 1) << live.err;
 }
 
-TEST_F(LiveRos2, RefusesWhatRosHasNot) {
+TEST_F(LiveRos2, RefusesNamesThatRosDoesNotAllow) {
   refuses({"live", sequence(), "--ros2", "a-b"}, {"--ros2", "a-b", "expected a ROS name"});
   refuses({"live", sequence(), "--ros2", "--ros2-holes", "zero"}, {"--ros2-holes", "zero", "nan or ros"});
   refuses({"live", sequence(), "--ros2-holes", "ros"}, {"--ros2-holes", "needs --ros2"});
@@ -190,7 +190,7 @@ int sockets_while(std::vector<std::string> arguments, const std::string& out) {
   return sockets;
 }
 
-TEST_F(LiveRos2, OpensNoSocketUnlessItIsAsked) {
+TEST_F(LiveRos2, OpensNoSocketUnlessRequested) {
   const int own = sockets_of(getpid());  // a child may inherit these
   EXPECT_LE(sockets_while({"live", sequence(), "--json-lines"}, path("without")), own);
   EXPECT_GT(sockets_while({"live", sequence(), "--json-lines", "--ros2"}, path("with")), own);

@@ -11,7 +11,7 @@ class LiveView : public CommandTest {
   const std::string source_ = CAIRN_SOURCE_DIR "/sequences/rolling_ball";
 };
 
-TEST_F(LiveView, PrintsWhereItIs) {
+TEST_F(LiveView, PrintsItsAddress) {
   const Outcome outcome = run({"live", source_, "--frames", "1", "--view", "127.0.0.1:0"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(outcome.err.starts_with("view: http://127.0.0.1:")) << outcome.err;
@@ -20,7 +20,7 @@ TEST_F(LiveView, PrintsWhereItIs) {
       << outcome.err;
 }
 
-TEST_F(LiveView, RefusesWhatIsNotSafeOrSound) {
+TEST_F(LiveView, RefusesUnsafeOrInvalidOptions) {
   refuses({"live", source_, "--tunable"}, {"--tunable", "needs --view"});
   refuses({"live", source_, "--tls-key", "key.pem"}, {"--tls-key", "needs --view"});
   refuses({"live", source_, "--view", "0.0.0.0:0"}, {"0.0.0.0", "--tls-cert", "--insecure"});

@@ -82,7 +82,7 @@ TEST_F(MapCommand, FindsDamage) {
   refuses({"map", "show", "room.db"}, {"room.db", "absentt"});
 }
 
-TEST_F(MapCommand, ExportsInFourForms) {
+TEST_F(MapCommand, ExportsInFourFormats) {
   write_map("room.db");
   const Json geo = Json::parse(run({"map", "export", "room.db"}).out);
   EXPECT_EQ(geo["type"], "FeatureCollection");
@@ -112,7 +112,7 @@ TEST_F(MapCommand, ExportsInFourForms) {
   EXPECT_NE(csv.out.find("\n3,,present,0.0000,3.0000,0.3000,0.0500,"), std::string::npos) << csv.out;
 }
 
-TEST_F(MapCommand, ComparesAndMergesMapsThatBeganElsewhere) {
+TEST_F(MapCommand, ComparesAndMergesMapsWithDifferentOrigins) {
   Pose elsewhere = rotation_about({0, 0, 2});
   elsewhere.translation_m = {5, 1, 0};
   write_map("room.db");
@@ -165,7 +165,7 @@ TEST_F(MapCommand, ForgetsLandmarks) {
   EXPECT_EQ(run({"map", "check", "room.db"}).out, "room.db: valid, 3 landmarks, 1 run\n");
 }
 
-TEST_F(MapCommand, RefusesWhatIsNoMap) {
+TEST_F(MapCommand, RefusesFilesThatAreNotMaps) {
   refuses({"map", "show", "none.db"}, {"none.db", "no such file"});
   write(at("text.db"), std::string(300, 'x'));
   refuses({"map", "show", "text.db"}, {"text.db", "not an SQLite file"});

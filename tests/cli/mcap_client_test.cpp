@@ -34,7 +34,7 @@ Client client(const std::filesystem::path& file) {
   return result;
 }
 
-TEST(McapClient, OthersReadWhatWeWrite) {
+TEST(McapClient, ThirdPartyProgramsReadOurRecordings) {
   const support::TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "all.mcap";
   constexpr Size kSize{6, 2};

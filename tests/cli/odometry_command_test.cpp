@@ -64,7 +64,7 @@ TEST_F(OdometryCommand, WritesATrajectoryThatEvaluateComparesWithTheTruth) {
   EXPECT_LT(errors["end_error_deg"].get<double>(), 0.3);
 }
 
-TEST_F(OdometryCommand, PrintsInEachForm) {
+TEST_F(OdometryCommand, PrintsInEachFormat) {
   const Outcome tum = run({"odometry", path("frames"), "--frames", "0:3"});
   EXPECT_EQ(std::count(tum.out.begin(), tum.out.end(), '\n'), 3) << tum.out << tum.err;
   EXPECT_EQ(tum.out.find("0.000000000 "), 0U) << tum.out;
@@ -74,7 +74,7 @@ TEST_F(OdometryCommand, PrintsInEachForm) {
   EXPECT_NE(euroc.out.find("\n100000000,"), std::string::npos) << euroc.out;
 }
 
-TEST_F(OdometryCommand, DrivesByTheWheelsWhereTheImageIsBlack) {
+TEST_F(OdometryCommand, UsesTheWheelsOnBlackImages) {
   Image<Gray> black(room::kSize);
   black.fill(0);
   for (const char* name : {"left.png", "right.png"})
@@ -95,7 +95,7 @@ TEST_F(OdometryCommand, DrivesByTheWheelsWhereTheImageIsBlack) {
   EXPECT_LT(errors["ate_max_m"].get<double>(), 0.01);
 }
 
-TEST_F(OdometryCommand, RefusesWhatItCannotUse) {
+TEST_F(OdometryCommand, RefusesUnusableInput) {
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& why) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << outcome.err;

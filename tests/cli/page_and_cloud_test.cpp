@@ -59,7 +59,7 @@ std::map<std::int32_t, std::vector<std::string>> points_by_object(const std::str
   return points;
 }
 
-TEST_F(PageAndCloudTest, CloudsOfObjectsAreTogetherTheLabelledPointsOfTheWhole) {
+TEST_F(PageAndCloudTest, CloudsOfObjectsPartitionTheLabelledPointsOfTheWhole) {
   const std::string in = samples::folder("four_in_a_row").string();
   ASSERT_EQ(run({"segment", in, "--ply", "--ply-objects", "-o", path("out")}).code, 0);
   const auto whole = points_by_object(content(at("out/cloud.ply")));
@@ -73,7 +73,7 @@ TEST_F(PageAndCloudTest, CloudsOfObjectsAreTogetherTheLabelledPointsOfTheWhole) 
   EXPECT_EQ(static_cast<std::size_t>(files), io::load_confidences(at("out/objects.json")).size());
 }
 
-TEST_F(PageAndCloudTest, CloudsOfObjectsOfAnOlderResultGoAndOtherFilesStay) {
+TEST_F(PageAndCloudTest, CloudsOfObjectsOfAnOlderResultAreRemovedAndOtherFilesStay) {
   const std::string in = samples::folder("four_in_a_row").string();
   ASSERT_EQ(run({"segment", in, "--ply-objects", "-o", path("out")}).code, 0);
   EXPECT_FALSE(fs::exists(at("out/cloud.ply")));
@@ -104,7 +104,7 @@ TEST_F(PageAndCloudTest, CloudsOfObjectsNeedAFolderOfTheirOwn) {
   EXPECT_EQ(content(at("out/objects")), "a file");
 }
 
-TEST_F(PageAndCloudTest, APageHasTheRightPictureWhereOneWasMatched) {
+TEST_F(PageAndCloudTest, APageHasTheRightImageIfOneWasMatched) {
   pair_in("frame");
   write(at("given.pfm"), pfm({96, 72}, std::vector<float>(96 * 72, 6.0F)));
   ASSERT_EQ(run({"segment", path("frame"), "--html", "-o", path("matched")}).code, 0);
@@ -115,7 +115,7 @@ TEST_F(PageAndCloudTest, APageHasTheRightPictureWhereOneWasMatched) {
   EXPECT_NE(content(at("given/segment.html")).find(R"("right":"")"), std::string::npos);
 }
 
-TEST_F(PageAndCloudTest, ANewResultTakesOlderOnesAway) {
+TEST_F(PageAndCloudTest, ANewResultRemovesOlderOnes) {
   pair_in("frame");
   write(at("frame") / "calib.txt", kCalibration);
   ASSERT_EQ(run({"segment", path("frame"), "--html", "--ply", "-o", path("out")}).code, 0);
@@ -149,7 +149,7 @@ TEST_F(PageAndCloudTest, DisparityWritesACloudWithoutObjects) {
   EXPECT_EQ(cloud.find("object"), std::string::npos);
 }
 
-TEST_F(PageAndCloudTest, EvaluateWritesAPageOfWhatThereIs) {
+TEST_F(PageAndCloudTest, EvaluateWritesAPageOfIncompleteResults) {
   pair_in("frame");
   ASSERT_EQ(
       run({"segment", path("frame"), "--set", "match.num_disparities=16", "-o", path("out/frame")}).code, 0);
@@ -184,7 +184,7 @@ TEST_F(PageAndCloudTest, ReasonsOfEightBitsAreReadAsEarlierVersionsWroteThem) {
   EXPECT_EQ(content(at("earlier/evaluation.html")), content(at("now/evaluation.html")));
 }
 
-TEST_F(PageAndCloudTest, EvaluateWritesNoPageOfMapsThatDiffer) {
+TEST_F(PageAndCloudTest, EvaluateWritesNoPageOfMapsOfDifferentSizes) {
   pair_in("frame");
   ASSERT_EQ(
       run({"segment", path("frame"), "--set", "match.num_disparities=16", "-o", path("out/frame")}).code, 0);

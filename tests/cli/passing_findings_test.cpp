@@ -22,7 +22,7 @@ TEST_F(Passing, IsSilentOnGoodPairs) {
     EXPECT_EQ(run({"segment", samples::folder(name).string()}).err, "") << name;
 }
 
-TEST_F(Passing, SaysSwappedCamerasAsTheDoctorDoes) {
+TEST_F(Passing, ReportsSwappedCamerasLikeTheDoctor) {
   const Outcome outcome = run({"segment", picture("overlap", "right"), picture("overlap", "left")});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err.find("cairn: broken: cameras swapped: 100 % of "), 0U) << outcome.err;
@@ -32,7 +32,7 @@ TEST_F(Passing, SaysSwappedCamerasAsTheDoctorDoes) {
   EXPECT_NE(doctor.find(sentence), std::string::npos) << sentence << "\n" << doctor;
 }
 
-TEST_F(Passing, SaysThatTheRangeIsTooShort) {
+TEST_F(Passing, ReportsATooShortRange) {
   const Outcome outcome =
       run({"segment", samples::folder("overlap").string(), "--set", "match.num_disparities=16"});
   EXPECT_EQ(outcome.err.find("cairn: warning: disparity range too small: "), 0U) << outcome.err;
@@ -41,7 +41,7 @@ TEST_F(Passing, SaysThatTheRangeIsTooShort) {
   EXPECT_EQ(lines(outcome.err), 1) << outcome.err;
 }
 
-TEST_F(Passing, SaysWhyThereIsNoFloorUnlessNobodyAskedForOne) {
+TEST_F(Passing, ReportsWhyThereIsNoFloorUnlessDisabled) {
   const auto pair = pair_in("pair");
   const Outcome outcome = run(with("segment", pair));
   EXPECT_EQ(outcome.err.find("cairn: note: no floor: "), 0U) << outcome.err;
@@ -49,7 +49,7 @@ TEST_F(Passing, SaysWhyThereIsNoFloorUnlessNobodyAskedForOne) {
   EXPECT_EQ(run(with("segment", pair, {"--set", "ground.source=off"})).err, "");
 }
 
-TEST_F(Passing, SaysThatACalibrationIsOfAnotherSizeWhereTheFileDoesNot) {
+TEST_F(Passing, ReportsACalibrationOfAnotherSizeEvenIfTheFileHasNoSize) {
   write(at("large.txt"), "fx=300\nfy=300\ncx=640\ncy=480\nbaseline=0.1\nndisp=32\n");
   const Outcome outcome = run({"segment", samples::folder("overlap").string(), "--calib", path("large.txt")});
   EXPECT_EQ(outcome.err.find("cairn: broken: implausible calibration: the principal point (640"), 0U)
@@ -72,7 +72,7 @@ void toned_frames(const fs::path& folder, const char* names, int least, int most
   }
 }
 
-TEST_F(Passing, SaysOfAFolderOnceWhatIsWrongInManyFrames) {
+TEST_F(Passing, ReportsAProblemOfManyFramesOnce) {
   toned_frames(at("frames"), "abcd", 0, 30);
   toned_frames(at("frames"), "e", 0, 255);
   const Outcome outcome = run({"segment", path("frames"), "--set", "match.num_disparities=32"});
@@ -84,13 +84,13 @@ TEST_F(Passing, SaysOfAFolderOnceWhatIsWrongInManyFrames) {
   EXPECT_EQ(outcome.err.find("low contrast", dark + 30), std::string::npos) << outcome.err;
 }
 
-TEST_F(Passing, SaysThatPicturesAreOverexposed) {
+TEST_F(Passing, ReportsOverexposedImages) {
   toned_frames(at("frames"), "a", 120, 900);
   const Outcome outcome = run({"segment", path("frames/a"), "--set", "match.num_disparities=32"});
   EXPECT_NE(outcome.err.find("clipped exposure: in the left image "), std::string::npos) << outcome.err;
 }
 
-TEST_F(Passing, CountsDoubtfulFramesThatItNoLongerMeasures) {
+TEST_F(Passing, CountsSuspectFramesBeyondTheMeasuredOnes) {
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g"}) {
     fs::create_directories(at("frames") / name);
     fs::copy_file(picture("overlap", "left"), at("frames") / name / "right.png");

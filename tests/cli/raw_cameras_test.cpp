@@ -106,7 +106,7 @@ TEST_F(RawCameras, AreCalibratedRectifiedAndSegmented) {
   EXPECT_TRUE(fs::exists(at("result") / "objects.json"));
 }
 
-TEST_F(RawCameras, RefuseABoardThatIsNotThere) {
+TEST_F(RawCameras, RefuseAMissingBoard) {
   pair_in("boards/a");
   pair_in("boards/b");
   refuses({"calibrate", path("boards"), "--board", "9x6", "--square", "0.025", "-o", path("c.yaml")},
@@ -167,7 +167,7 @@ TEST_F(Rectify, WritesTheDisparitiesDownToTheNearestDistance) {
           {"--nearest"});
 }
 
-TEST_F(Rectify, StampsOfEurocAndOfAFileGoOn) {
+TEST_F(Rectify, KeepsTheStampsOfEurocAndOfAFile) {
   if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
   io::save_raw_calibration(at("raw.yaml"), aligned_cameras(), {});
   const auto pair = pair_in("pair", {160, 96});
@@ -198,7 +198,7 @@ TEST_F(Rectify, StampsOfEurocAndOfAFileGoOn) {
   }
 }
 
-TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {
+TEST(Rectifier, LeavesARectifiedPairUnchanged) {
   if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
   io::RawCalibration raw{{64, 48}, {}, {}, {}, {}};
   raw.left.matrix = raw.right.matrix = {60, 0, 31.5, 0, 60, 23.5, 0, 0, 1};
@@ -224,7 +224,7 @@ TEST(Rectifier, LeavesAPairThatIsRectifiedAsItIs) {
   }
 }
 
-TEST(Calibration, FindsCamerasThatWereDrawn) {
+TEST(Calibration, RecoversSimulatedCameras) {
   if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
   // Corners of a board in eight poses, seen by two cameras without distortion, 0.2 m apart.
   const io::Board board{7, 5, 0.04};

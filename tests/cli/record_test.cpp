@@ -37,7 +37,7 @@ class Record : public CommandTest {
   }
 };
 
-TEST_F(Record, WritesTheVeryPixelsStampsAndCalibration) {
+TEST_F(Record, WritesIdenticalPixelsStampsAndCalibration) {
   frames(3);
   write(at("in/stamps.txt"), "5.0\n5.125\n7.5\n");
   const Outcome outcome = run({"record", path("in"), "-o", path("out")});
@@ -66,7 +66,7 @@ TEST_F(Record, WritesTheVeryPixelsStampsAndCalibration) {
   }
 }
 
-TEST_F(Record, TakesARangeAndARate) {
+TEST_F(Record, HonoursARangeAndARate) {
   frames(5);
   Outcome outcome = run({"record", path("in"), "-o", path("out"), "--frames", "1:5:2", "--rate", "5"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -75,7 +75,7 @@ TEST_F(Record, TakesARangeAndARate) {
   EXPECT_NE(outcome.out.find("recorded 2 frames"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Record, CountsFramesThatCannotBeReadAndKeepsTheOthers) {
+TEST_F(Record, CountsUnreadableFramesAndKeepsTheOthers) {
   frames(4);
   write(at("in/1/left.png"), content(at("in/1/left.png")).substr(0, 70));
   fs::remove(at("in/2/right.png"));
@@ -87,7 +87,7 @@ TEST_F(Record, CountsFramesThatCannotBeReadAndKeepsTheOthers) {
       << outcome.err;
 }
 
-TEST_F(Record, KeepsWholeFramesWhereTheSourceChangesItsSize) {
+TEST_F(Record, KeepsCompleteFramesIfTheSourceChangesItsSize) {
   frames(3);
   const Image<Gray> other(Size{20, 20}, Gray{5}, Pool{});
   io::save_png(at("in/2/left.png"), other.view());

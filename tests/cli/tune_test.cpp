@@ -57,7 +57,7 @@ TEST_F(Tune, WritesAConfigThatIsReadBackAndATableOfBeforeAndAfter) {
       << "would undo what each frame's calibration says";
 }
 
-TEST_F(Tune, MendsAnOptionThatWasSpoilt) {
+TEST_F(Tune, RepairsABadOption) {
   const Outcome outcome = tune(samples(), {"--truth", "--options", "objects.min_area,superpixels.count",
                                            "--evaluations", "12", "--set", "objects.min_area=10"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -67,7 +67,7 @@ TEST_F(Tune, MendsAnOptionThatWasSpoilt) {
   EXPECT_LT(tuned().objects.min_area, 7.0F);
 }
 
-TEST_F(Tune, WhatItSaysIsWhatEvaluateMeasuresWithTheConfigThatItWrote) {
+TEST_F(Tune, ReportsTheLossThatEvaluateMeasuresWithItsConfig) {
   ASSERT_EQ(tune(samples(), {"--truth", "--options", "objects.min_confidence,left_right.max_diff",
                              "--evaluations", "6", "--set", "objects.min_confidence=0.9"})
                 .code,
@@ -95,7 +95,7 @@ TEST_F(Tune, TheSameNumberOfEvaluationsGivesTheSameFileOnAnyNumberOfThreads) {
   EXPECT_EQ(files[0], files[1]);
 }
 
-TEST_F(Tune, OfASequenceItMendsWhatMakesObjectsUnsteadyWithoutTruth) {
+TEST_F(Tune, RepairsUnsteadyObjectsOfASequenceWithoutTruth) {
   for (int i = 0; i < 10; ++i) {
     const fs::path frame = at("in/" + std::to_string(i));
     fs::create_directories(frame);
@@ -117,7 +117,7 @@ TEST_F(Tune, OfASequenceItMendsWhatMakesObjectsUnsteadyWithoutTruth) {
   EXPECT_FALSE(fs::exists(at("new.yaml")));
 }
 
-TEST_F(Tune, HoldsOutTheShareAskedForAndJudgesIt) {
+TEST_F(Tune, HoldsOutTheRequestedShareAndEvaluatesIt) {
   ASSERT_EQ(
       tune(samples(), {"--truth", "--options", "superpixels.count", "--evaluations", "3", "--holdout", "0.5"})
           .code,
@@ -129,7 +129,7 @@ TEST_F(Tune, HoldsOutTheShareAskedForAndJudgesIt) {
   EXPECT_GT(j.at("held_out").at("loss").at("before"), 0);
 }
 
-TEST_F(Tune, HoldsOutAQuarterOfEightFramesAndSaysHowMuchIsLuck) {
+TEST_F(Tune, HoldsOutAQuarterOfEightFramesAndReportsTheUncertainty) {
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) pair_in(std::string("frames/") + name);
   const std::vector<std::string> fast{
       "--options", "left_right.max_diff",      "--evaluations", "2",
@@ -151,7 +151,7 @@ TEST_F(Tune, HoldsOutAQuarterOfEightFramesAndSaysHowMuchIsLuck) {
   EXPECT_NE(none.out.find("no frames held out"), std::string::npos) << none.out;
 }
 
-TEST_F(Tune, WithoutTruthItJudgesDisparitiesByTheirContradictions) {
+TEST_F(Tune, WithoutTruthItScoresDisparitiesByConsistency) {
   pair_in("frames/a");
   pair_in("frames/b");
   const Outcome outcome = tune(path("frames"), {"--evaluations", "10", "--set", "match.num_disparities=16",
@@ -165,7 +165,7 @@ TEST_F(Tune, WithoutTruthItJudgesDisparitiesByTheirContradictions) {
   EXPECT_EQ(tuned().match.num_disparities, 16) << "the user said so";
 }
 
-TEST_F(Tune, WithTrueDisparitiesAloneItJudgesThem) {
+TEST_F(Tune, WithOnlyTrueDisparitiesItScoresDisparities) {
   pair_in("frames/a");
   const Image<float> truth({96, 72}, 6.0F, {});
   io::save_disparity(at("frames/a/disp_left.png"), truth);
@@ -175,14 +175,14 @@ TEST_F(Tune, WithTrueDisparitiesAloneItJudgesThem) {
   EXPECT_LT(found().at("tuned_on").at("loss").at("after"), 0.3);
 }
 
-TEST_F(Tune, ATruthWithoutAnythingToScoreIsRefused) {
+TEST_F(Tune, RefusesATruthWithNothingToScore) {
   pair_in("frames/a");
   const Image<std::uint8_t> no_objects({96, 72}, std::uint8_t{0}, {});
   io::save_png(at("frames/a/objects.png"), no_objects.view());
   refuses({"tune", path("frames"), "--truth", "--set", "match.num_disparities=16"}, {"frames", "scored"});
 }
 
-TEST_F(Tune, ContradictorySettingsAreLeft) {
+TEST_F(Tune, SkipsContradictorySettings) {
   pair_in("frames/a");
   // Windows of 21 and 31 px do not fit 20 rows.
   pair_in("frames/b", {96, 20});
@@ -210,7 +210,7 @@ TEST_F(Tune, CtrlCKeepsTheBestSoFar) {
   EXPECT_NO_THROW((void)tuned());
 }
 
-TEST_F(Tune, EndsWithItsTimeButNotBeforeItKnowsTheStart) {
+TEST_F(Tune, EndsWithItsTimeButNotBeforeTheStartIsMeasured) {
   pair_in("frames/a");
   const Outcome outcome = run({"tune", path("frames"), "--budget", "0.001s", "-o", path("tuned.yaml"),
                                "--set", "match.num_disparities=16"});
@@ -220,7 +220,7 @@ TEST_F(Tune, EndsWithItsTimeButNotBeforeItKnowsTheStart) {
   EXPECT_NE(outcome.out.find("The options are unchanged"), std::string::npos) << outcome.out;
 }
 
-TEST_F(Tune, RefusesWhatDoesNotGoTogether) {
+TEST_F(Tune, RefusesContradictoryArguments) {
   pair_in("frames/a");
   write(at("file"), "");
   const std::string frames = path("frames");

@@ -153,7 +153,7 @@ void all_at_once(int users, const std::function<void(int)>& use) {
   }
 }
 
-TEST(ExecLaw, SegmentersThatWorkAtTheSameTimeChangeNoBitOfEachOther) {
+TEST(ExecLaw, ConcurrentSegmentersChangeNoBitOfEachOther) {
   const samples::Sample sample = samples::load("overlap");
   const std::vector<Config> configs = {sample.suited(), sample.suited(Config::paper())};
   std::vector<Frame> expected;
@@ -173,7 +173,7 @@ TEST(ExecLaw, SegmentersThatWorkAtTheSameTimeChangeNoBitOfEachOther) {
   }
 }
 
-TEST(ExecLaw, OneSegmenterGivesSeveralThreadsWhatItGivesOne) {
+TEST(ExecLaw, OneSegmenterGivesTheSameToSeveralThreads) {
   const std::array different{samples::load("overlap"), samples::load("four_in_a_row")};
   for (const Config& preset : {Config(), Config::paper()}) {
     const Segmenter segmenter(different[0].suited(preset), different[0].calibration.rig,

@@ -48,7 +48,7 @@ TEST(Segmenter, AllocatesNoImageFromTheSecondFrameOnWithSeveralThreads) {
   }
 }
 
-TEST(Segmenter, FindsWhatSegmentFinds) {
+TEST(Segmenter, EqualsSegment) {
   const samples::Sample sample = samples::load("overlap");
   const Segmenter segmenter(sample.suited(), sample.calibration.rig);
   const Frame expected = segment(sample.pair(), sample.calibration.rig, sample.suited(), {});
@@ -62,13 +62,13 @@ TEST(Segmenter, FindsWhatSegmentFinds) {
   }
 }
 
-TEST(Segmenter, RefusesABadConfigurationWhenItIsMade) {
+TEST(Segmenter, RefusesABadConfigurationAtConstruction) {
   Config config;
   config.match.window_size = 4;
   EXPECT_THROW(Segmenter{config}, Error);
 }
 
-TEST(Segmenter, RefusesABadCalibrationWhenItIsMade) {
+TEST(Segmenter, RefusesABadCalibrationAtConstruction) {
   EXPECT_THROW(Segmenter(Config(), StereoRig{.focal_px = 0, .baseline_m = 0.1F}), Error);
 }
 

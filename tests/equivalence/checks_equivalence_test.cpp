@@ -146,7 +146,7 @@ TEST_P(ChecksEquivalence, LeftRight) {
   }
 }
 
-TEST_P(ChecksEquivalence, OfAPixelByItsOwnCosts) {
+TEST_P(ChecksEquivalence, PerPixelChecksOfCosts) {
   for (const Size size : sizes()) {
     const Matches matches = random_matches(size, 0, 12);
     reference::for_each_pixel_check([&](const auto& check) {

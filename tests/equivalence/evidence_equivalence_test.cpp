@@ -84,7 +84,7 @@ std::vector<std::uint32_t> bits(const Image<float>& image) {
   return all;
 }
 
-TEST(NoiseSigma, IsThatOfItsDefinition) {
+TEST(NoiseSigma, EqualsItsDefinition) {
   for (const Size size : sizes()) {
     for (const int highest : {0, 1, 5, 255}) {
       const Image<Gray> image = random_image<Gray>(size, 0, highest, 3);
@@ -96,7 +96,7 @@ TEST(NoiseSigma, IsThatOfItsDefinition) {
   }
 }
 
-TEST(FindEvidence, IsThatOfItsDefinitionOnAnyNumberOfThreads) {
+TEST(FindEvidence, EqualsItsDefinitionOnAnyNumberOfThreads) {
   int found = 0;
   for (const Size size : sizes()) {
     for (const std::uint32_t seed : {1U, 2U}) {
@@ -115,7 +115,7 @@ TEST(FindEvidence, IsThatOfItsDefinitionOnAnyNumberOfThreads) {
   EXPECT_GT(found, 500);  // otherwise nothing would be compared
 }
 
-TEST(EdgeStrength, IsThatOfItsDefinitionWithAndWithoutColour) {
+TEST(EdgeStrength, EqualsItsDefinitionWithAndWithoutColour) {
   for (const Size size : sizes()) {
     const Image<Gray> grey = random_picture(size, 1);
     const Image<Rgb> rgb = random_colours(size, 2);
@@ -185,7 +185,7 @@ void run_and_check(View<const Gray> grey, View<const Rgb> rgb, const DisparityMa
 
 constexpr StereoRig kRig{60, 30, 25, 0.1F, 0};
 
-TEST(WayByHierarchy, PartitionsAnyPictureWithAnyDisparities) {
+TEST(WayByHierarchy, PartitionsAnyImageWithAnyDisparities) {
   for (const Size size : sizes()) {
     for (const int tenths_of_holes : {0, 3, 10}) {
       const Image<Gray> grey = random_picture(size, 8);
@@ -197,7 +197,7 @@ TEST(WayByHierarchy, PartitionsAnyPictureWithAnyDisparities) {
   }
 }
 
-TEST(WayByHierarchy, ManagesNoiseForAPictureAndForDisparities) {
+TEST(WayByHierarchy, AcceptsNoiseAsImageAndDisparities) {
   const Size size{67, 53};
   const Image<Gray> grey = random_image<Gray>(size, 0, 255, 1);
   const Image<int> noise = random_image<int>(size, -200, 2000, 2);
@@ -210,14 +210,14 @@ TEST(WayByHierarchy, ManagesNoiseForAPictureAndForDisparities) {
   run_and_check(grey, {}, map, kRig, by_hierarchy());
 }
 
-TEST(WayByHierarchy, ManagesPlainPicturesWithoutAnyEvidence) {
+TEST(WayByHierarchy, AcceptsPlainImagesWithoutTexturedDisparities) {
   for (const Size size : sizes()) {
     const Image<Gray> grey(size, Gray{128}, {});
     run_and_check(grey, {}, random_map(size, 4, 2), kRig, by_hierarchy());
   }
 }
 
-TEST(WayByHierarchy, ManagesAMissingGround) {
+TEST(WayByHierarchy, AcceptsAMissingGround) {
   const Size size{67, 53};
   Config config = by_hierarchy();
   config.ground.source = GroundSource::off;
@@ -226,7 +226,7 @@ TEST(WayByHierarchy, ManagesAMissingGround) {
   run_and_check(grey, {}, random_map(size, 1), std::nullopt, config);
 }
 
-TEST(WayByHierarchy, ManagesOptionsAtTheEndsOfTheirRanges) {
+TEST(WayByHierarchy, AcceptsOptionsAtTheEndsOfTheirRanges) {
   const Size size{41, 29};
   const Image<Gray> grey = random_picture(size, 2);
   const Image<Rgb> rgb = random_colours(size, 2);
@@ -246,7 +246,7 @@ TEST(WayByHierarchy, ManagesOptionsAtTheEndsOfTheirRanges) {
   }
 }
 
-TEST(WayByHierarchy, GoesAllTheWayFromSmallPairs) {
+TEST(WayByHierarchy, SegmentsSmallPairs) {
   Config config = by_hierarchy();
   config.match.window_size = 3;
   config.texture.window_size = 3;

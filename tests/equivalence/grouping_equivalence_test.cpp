@@ -104,7 +104,7 @@ struct Scene {
 
 // ---- superpixels ----
 
-TEST(CutSuperpixels, IsThatOfItsDefinition) {
+TEST(CutSuperpixels, EqualsItsDefinition) {
   for (const Size size : sizes()) {
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
       const Scene scene(size, seed);
@@ -125,7 +125,7 @@ TEST(CutSuperpixels, IsThatOfItsDefinition) {
   }
 }
 
-TEST(CutSuperpixels, IsThatOfItsDefinitionWhereMostBordersAreEqual) {
+TEST(CutSuperpixels, EqualsItsDefinitionIfMostBordersAreEqual) {
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     const Size size{21, 17};
     const Image<Gray> gray = random_image<Gray>(size, 0, 1, seed);
@@ -216,7 +216,7 @@ void fuse_contacts(Contacts& contacts, std::int32_t part_a, std::int32_t part_b,
   contacts = std::move(fused);
 }
 
-TEST(RegionCues, OfEveryNodeOfATreeAreThoseOfItsPixelsCountedAnew) {
+TEST(RegionCues, OfEveryNodeOfATreeEqualThoseOfItsPixels) {
   int nodes = 0;
   int compared = 0;
   for (const Size size : sizes()) {
@@ -302,7 +302,7 @@ TEST(GatherCues, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(GatherCues, ListsContactsAsTheRowsShowThemFirst) {
+TEST(GatherCues, ListsContactsInRasterOrder) {
   Superpixels superpixels{grids::grid<RegionId>({{0, 0, 1}, {2, 1, 1}, {2, 3, 3}}), 4, {}};
   superpixels.edges = Image<std::uint16_t>(Size{3, 3}, std::uint16_t{0}, {});
   const Scene scene({3, 3}, 1);
@@ -339,7 +339,7 @@ void expect_equal(const MergeTree& found, const MergeTree& expected) {
   }
 }
 
-TEST(GrowMergeTree, IsThatOfItsDefinition) {
+TEST(GrowMergeTree, EqualsItsDefinition) {
   for (const Size size : sizes()) {
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
       const Scene scene(size, seed);
@@ -354,7 +354,7 @@ TEST(GrowMergeTree, IsThatOfItsDefinition) {
   }
 }
 
-TEST(GrowMergeTree, IsThatOfItsDefinitionBesideALargeBackground) {
+TEST(GrowMergeTree, EqualsItsDefinitionNextToALargeBackground) {
   // Much smaller regions merge with the surrounding frame, whose other contacts stay queued.
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const Size size{31, 27};
@@ -403,7 +403,7 @@ MergeTree random_tree(int superpixels, std::mt19937& random) {
   return tree;
 }
 
-TEST(ChooseObjects, GainsMostOfAllThatMayBeChosen) {
+TEST(ChooseObjects, HasTheHighestGainOfAllChoices) {
   Stumps stumps;
   for (int i = 1; i < 8; ++i) stumps.add(0, static_cast<float>(i), -0.4F, 0.4F);
   int objects = 0;

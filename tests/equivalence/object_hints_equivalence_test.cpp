@@ -123,7 +123,7 @@ support::RegionScene random_scene(Size size, std::uint32_t seed) {
   return scene;
 }
 
-TEST(HintInput, IsThatOfTheDefinitionOnEveryTarget) {
+TEST(HintInput, EqualsItsDefinitionOnEveryTarget) {
   std::uint32_t seed = 1;
   for (const Size size : {Size{320, 240}, {97, 61}, {200, 31}, {643, 120}, {40, 300}, {1, 1}}) {
     for (int i = 0; i < 3; ++i, ++seed) {
@@ -144,7 +144,7 @@ TEST(HintInput, IsThatOfTheDefinitionOnEveryTarget) {
   }
 }
 
-TEST(HintObjects, AreThoseOfTheDefinitionOnEveryTarget) {
+TEST(HintObjects, EqualTheirDefinitionOnEveryTarget) {
   for (const Size cells : {Size{8, 8}, {16, 8}, {24, 40}, {56, 24}}) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
       const HintNumbers numbers = random_numbers(seed);
@@ -162,7 +162,7 @@ TEST(HintObjects, AreThoseOfTheDefinitionOnEveryTarget) {
   }
 }
 
-TEST(HintObjects, OfGreatestNumbersDoNotOverflow) {
+TEST(HintObjects, DoNotOverflowWithTheLargestInputs) {
   HintNumbers numbers = random_numbers(5);
   for (std::int8_t& weight : numbers.weights) weight = weight < 0 ? -127 : 127;
   for (float& scale : numbers.scale) scale = 1;
@@ -172,7 +172,7 @@ TEST(HintObjects, OfGreatestNumbersDoNotOverflow) {
     expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
 }
 
-TEST(HintObjects, OfGreatestSumsDoNotOverflow) {
+TEST(HintObjects, DoNotOverflowWithTheLargestSums) {
   HintNumbers numbers = random_numbers(6, 48);
   std::fill(numbers.weights.begin(), numbers.weights.end(), std::int8_t{127});
   std::fill(numbers.scale.begin(), numbers.scale.end(), 1.0F);

@@ -178,7 +178,7 @@ TEST(RegionsEquivalence, WatershedIsItsTwinOnWidePlateaus) {
   }
 }
 
-TEST(RegionsEquivalence, WatershedFollowsAWayThatTurnsWhereABlockOfRowsEnds) {
+TEST(RegionsEquivalence, WatershedFollowsAPathThatTurnsAtTheEndOfABlock) {
   // Rows are processed in blocks of 64. The path climbs in column 1, descends in column 3 to row `turn` and
   // climbs in column 5 past the row where it descended from.
   for (int turn = 60; turn < 70; ++turn) {
@@ -256,7 +256,7 @@ TEST(RegionsEquivalence, GraphIsItsTwin) {
   }
 }
 
-TEST(RegionsEquivalence, GraphOfGreyLevelsIsThatOfTheSameNumbers) {
+TEST(RegionsEquivalence, GraphOfGreyLevelsEqualsThatOfTheSameFloats) {
   for (const Size size : sizes()) {
     const Image<Gray> image = random_image<Gray>(size, 0, 255, 44);
     Image<std::int16_t> wide(size);

@@ -100,7 +100,7 @@ TEST(SemiGlobalEquivalence, HoldsForEverySplitIntoThreads) {
   }
 }
 
-TEST(SemiGlobalEquivalence, HoldsWhereThePicturesAreCutIntoChunksOfRows) {
+TEST(SemiGlobalEquivalence, HoldsIfTheImagesAreSplitIntoChunksOfRows) {
   // Wide and deep enough for blocks of only a few rows.
   expect_equal_to_reference({400, 7}, search(0, 200), {}, {1, 3});
 }
@@ -115,7 +115,7 @@ TEST(SemiGlobalEquivalence, HoldsForEveryPenalty) {
   }
 }
 
-TEST(SemiGlobalEquivalence, HoldsForTheWinnerAlone) {
+TEST(SemiGlobalEquivalence, HoldsForTheWinnerOnly) {
   expect_equal_to_reference({41, 8}, search(0, 19, MatchMaps::winner));
   expect_equal_to_reference({70, 8}, search(0, 64, MatchMaps::winner));
   expect_equal_to_reference({41, 8}, search(-3, 19, MatchMaps::minimum));

@@ -73,7 +73,7 @@ TEST(SpaceEquivalence, HoldsForEverySize) {
   }
 }
 
-TEST(SpaceEquivalence, HoldsForWhateverIsKnown) {
+TEST(SpaceEquivalence, HoldsForAnyKnownInputs) {
   const Scene scene({67, 45}, 3);
   const Image<float> no_confidence;
   const Image<RegionId> no_superpixels;

@@ -111,7 +111,7 @@ void expect_near(const Json& now, const Json& then) {
   }
 }
 
-TEST(Samples, AreSegmentedAsTheStoredResultsSay) {
+TEST(Samples, AreSegmentedAsStored) {
   const Json now = all_summaries();
   if (std::getenv("CAIRN_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(kStored) << now.dump(1) << '\n';

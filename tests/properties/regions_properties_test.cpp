@@ -147,7 +147,7 @@ TEST(RegionsProperties, OnlyTheFloorMayBeInPieces) {
   }
 }
 
-TEST(RegionsProperties, BrighteningThePictureChangesNoIntensityRegion) {
+TEST(RegionsProperties, BrighteningTheImageChangesNoIntensityRegion) {
   World w = world(7);
   const Segmentation before = segment_intensity(w.left, {}, {});
   for (int y = 0; y < kSize.height; ++y) {
@@ -207,7 +207,7 @@ TEST(RegionsProperties, DoublingTheBaselineDoublesDepthAndExtent) {
   }
 }
 
-TEST(RegionsProperties, ObjectsAreThoseOfTheWorldNearestFirst) {
+TEST(RegionsProperties, ObjectsAreThoseOfTheSceneNearestFirst) {
   for (std::uint32_t seed = 20; seed < 24; ++seed) {
     const Objects objects = objects_of(world(seed), 0.1F);
     ASSERT_EQ(objects.list.size(), 3U) << "seed " << seed;

@@ -58,7 +58,7 @@ CostTable random_table(Random& random, int rows, int columns, std::size_t costs,
   return table;
 }
 
-TEST(Assign, FindsTheBestOfAllWays) {
+TEST(Assign, FindsTheBestAssignment) {
   Random random;
   for (int round = 0; round < 3000; ++round) {
     const int rows = static_cast<int>(random.below(6));
@@ -68,7 +68,7 @@ TEST(Assign, FindsTheBestOfAllWays) {
   }
 }
 
-TEST(Assign, FindsTheFirstOfManyThatAreEquallyGood) {
+TEST(Assign, FindsTheFirstOfEquallyGoodAssignments) {
   Random random;
   for (int round = 0; round < 3000; ++round) {
     const CostTable table = random_table(random, 1 + static_cast<int>(random.below(5)),
@@ -77,7 +77,7 @@ TEST(Assign, FindsTheFirstOfManyThatAreEquallyGood) {
   }
 }
 
-TEST(Assign, FindsTheBestOfAllWaysForSevenTracks) {
+TEST(Assign, FindsTheBestAssignmentForSevenTracks) {
   Random random;
   for (int round = 0; round < 20; ++round) {
     const CostTable table = random_table(random, 7, 7, round % 2 == 0 ? 40 : 4, 80);
@@ -85,7 +85,7 @@ TEST(Assign, FindsTheBestOfAllWaysForSevenTracks) {
   }
 }
 
-TEST(Assign, LeavesAloneWhatIsTooDear) {
+TEST(Assign, LeavesTooExpensivePairsUnassigned) {
   EXPECT_EQ(assign({1, 1, {20}, 20}), std::vector{0});  // a tie prefers the pair
   EXPECT_EQ(assign({1, 1, {21}, 20}), std::vector{-1});
 }
@@ -168,14 +168,14 @@ TEST(Associate, NoTrackGetsAnObjectBeyondTheGate) {
   EXPECT_TRUE(associated(tracks, {sighting_at(1, {0.5, 0, 2})}, no_overlaps(tracks, 1)).empty());
 }
 
-TEST(Associate, AMaskThatStaysIsTheSameThingThoughItsMiddleLeaps) {
+TEST(Associate, AStableMaskKeepsItsTrackThoughItsCentroidJumps) {
   const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
   Overlaps overlaps = no_overlaps(tracks, 1);
   common(overlaps, 0, 1) = 70;  // of 100 and 100: IoU 0.54
   EXPECT_EQ(pairs(associated(tracks, {sighting_at(1, {0.5, 0, 2})}, overlaps)), (Pairs{{1, 1}}));
 }
 
-TEST(Associate, OfTwoTracksAtOnePlaceTheColoursDecide) {
+TEST(Associate, ColoursDecideBetweenTracksAtTheSamePosition) {
   Tracks tracks{{track_at(1, {0, 0, 2}), track_at(2, {0, 0, 2})}, 3, {}};
   tracks.list[1].look = {};
   tracks.list[1].look[7] = tracks.list[1].look[70] = 1;
@@ -184,24 +184,24 @@ TEST(Associate, OfTwoTracksAtOnePlaceTheColoursDecide) {
   EXPECT_EQ(pairs(associated(tracks, {seen}, no_overlaps(tracks, 1))), (Pairs{{2, 1}}));
 }
 
-TEST(Associate, WhatIsAlikeGoesToTheLowerTrack) {
+TEST(Associate, TiesGoToTheLowerTrack) {
   const Tracks tracks{{track_at(1, {0, 0, 2}), track_at(2, {0, 0, 2})}, 3, {}};
   EXPECT_EQ(pairs(associated(tracks, {sighting_at(1, {0, 0, 2})}, no_overlaps(tracks, 1))), (Pairs{{1, 1}}));
 }
 
-TEST(Associate, TheSurerObjectsAreMatchedFirst) {
+TEST(Associate, ConfidentObjectsAreMatchedFirst) {
   const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
   const std::vector sightings{sighting_at(1, {0, 0, 2}, 0.2F), sighting_at(2, {0.03, 0, 2}, 0.9F)};
   EXPECT_EQ(pairs(associated(tracks, sightings, no_overlaps(tracks, 2))), (Pairs{{1, 2}}));
 }
 
-TEST(Associate, AnUnsureObjectIsTakenWhereNoSurerOneIs) {
+TEST(Associate, AnUncertainObjectIsMatchedIfThereIsNoBetterOne) {
   const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
   EXPECT_EQ(pairs(associated(tracks, {sighting_at(1, {0, 0, 2}, 0.2F)}, no_overlaps(tracks, 1))),
             (Pairs{{1, 1}}));
 }
 
-TEST(Associate, PiecesOfOneThingAreItsTogether) {
+TEST(Associate, PiecesOfOneObjectShareItsTrack) {
   Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
   std::vector sightings{sighting_at(1, {0, 0, 2}), sighting_at(2, {0.15, 0, 2})};
   for (Sighting& seen : sightings) seen.pixel_count = 40;
@@ -232,7 +232,7 @@ TEST(Associate, AnObjectThatCoversTwoTracksGoesToOneOfThem) {
   EXPECT_EQ(pairs(associated(tracks, {both}, overlaps)), (Pairs{{2, 1}}));
 }
 
-TEST(Associate, WithoutPlacesTheMasksDecide) {
+TEST(Associate, WithoutPositionsMasksDecide) {
   Tracks tracks{{track_at(1, {}), track_at(2, {})}, 3, {}};
   for (Track& track : tracks.list) track.has_place = false;
   std::vector sightings{sighting_at(1, {}), sighting_at(2, {})};

@@ -21,7 +21,7 @@ std::ptrdiff_t entries(const fs::path& folder) {
   return std::distance(fs::directory_iterator(folder), {});
 }
 
-TEST(AtomicFile, WritesAllBytesAndLeavesNothingElse) {
+TEST(AtomicFile, WritesAllBytesAndLeavesNoOtherFile) {
   const TemporaryFolder folder;
   const std::string bytes("a\0b\n\xff", 5);
   io::write_file(folder.path() / "out.bin", bytes);
@@ -37,14 +37,14 @@ TEST(AtomicFile, ReplacesAnOldFile) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(AtomicFile, MakesFilesThatOthersMayReadAsTheUmaskSays) {
+TEST(AtomicFile, CreatesFilesWithThePermissionsOfTheUmask) {
   const TemporaryFolder folder;
   io::write_file(folder.path() / "ours", "");
   const fs::path usual = folder.with("usual", "");
   EXPECT_EQ(fs::status(folder.path() / "ours").permissions(), fs::status(usual).permissions());
 }
 
-TEST(AtomicFile, RefusesAFolderThatIsNotThere) {
+TEST(AtomicFile, RefusesAMissingFolder) {
   const TemporaryFolder folder;
   const std::string message = refusal([&] { io::write_file(folder.path() / "none" / "out.txt", "x"); });
   EXPECT_TRUE(has(message, {"out.txt", "No such file"}));
@@ -85,7 +85,7 @@ TEST(AtomicFile, WritesToADeviceWithoutReplacingIt) {
   }
 }
 
-TEST(AtomicFile, AGrowingFileHasItsNameOnlyWhenItIsWhole) {
+TEST(AtomicFile, AGrowingFileGetsItsNameWhenComplete) {
   const TemporaryFolder folder;
   const fs::path path = folder.with("out.txt", "old");
   {
@@ -101,7 +101,7 @@ TEST(AtomicFile, AGrowingFileHasItsNameOnlyWhenItIsWhole) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(AtomicFile, AGrowingFileThatIsNotFinishedLeavesNoTrace) {
+TEST(AtomicFile, AnUnfinishedFileLeavesNoTrace) {
   const TemporaryFolder folder;
   const fs::path path = folder.with("out.txt", "old");
   {
@@ -114,7 +114,7 @@ TEST(AtomicFile, AGrowingFileThatIsNotFinishedLeavesNoTrace) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(AtomicFile, ManyWritersOfOneFileLeaveOneWholeFile) {
+TEST(AtomicFile, ManyWritersOfOneFileLeaveOneCompleteFile) {
   const TemporaryFolder folder;
   std::vector<std::thread> writers;
   writers.reserve(4);
@@ -130,14 +130,14 @@ TEST(AtomicFile, ManyWritersOfOneFileLeaveOneWholeFile) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(AtomicFile, MakesFoldersWithTheirParentsAndAcceptsThoseThatAreThere) {
+TEST(AtomicFile, CreatesFoldersWithParentsAndAcceptsExistingOnes) {
   const TemporaryFolder folder;
   io::make_folder(folder.path() / "a" / "b" / "c");
   io::make_folder(folder.path() / "a" / "b" / "c");
   EXPECT_TRUE(fs::is_directory(folder.path() / "a" / "b" / "c"));
 }
 
-TEST(ReadFile, ReadsWhatIsThere) {
+TEST(ReadFile, ReadsAFile) {
   const TemporaryFolder folder;
   const std::string bytes = std::string(100000, 'x') + '\0' + "end";
   EXPECT_EQ(io::read_file(folder.with("in", bytes), 1 << 20), bytes);
@@ -145,7 +145,7 @@ TEST(ReadFile, ReadsWhatIsThere) {
   EXPECT_FALSE(io::read_file("/proc/self/status", 1 << 20).empty()) << "a file that tells no length";
 }
 
-TEST(ReadFile, RefusesMissingFoldersAndTheTooLong) {
+TEST(ReadFile, RefusesMissingFilesFoldersAndTooLongFiles) {
   const TemporaryFolder folder;
   EXPECT_TRUE(has(refusal([&] { io::read_file(folder.path() / "none", 10); }), {"none", "No such file"}));
   EXPECT_TRUE(has(refusal([&] { io::read_file(folder.path(), 10); }), {"is a folder"}));

@@ -115,7 +115,7 @@ TEST(Background, HasWallsUprightOnTheFloor) {
   }
 }
 
-TEST(Background, DoesNotTakeABoxInFrontForAWall) {
+TEST(Background, DoesNotMistakeABoxForAWall) {
   const auto box = [](int x, int y, float d) {
     return x >= 110 && x < 200 && y >= 50 && y < 170 ? 32.0F : d;
   };
@@ -125,14 +125,14 @@ TEST(Background, DoesNotTakeABoxInFrontForAWall) {
   EXPECT_LT(largest_difference(found, kRoom), 0.1F);
 }
 
-TEST(Background, IsTheFloorAloneWhereABoxIsAllThatStandsOnIt) {
+TEST(Background, IsOnlyTheFloorIfThereIsJustABoxOnIt) {
   const Background floor{{kFloor}};
   const auto box = [](int x, int y, float d) { return x >= 60 && x < 120 && y >= 60 && y < 160 ? 30.0F : d; };
   const Image<float> evidence = evidence_of(floor, 0.3, 0.1F, box);
   EXPECT_EQ(background_of(evidence, ground_of(kFloor), kRig).planes.size(), 1U);
 }
 
-TEST(Background, HasTheWallsThoughABoxBeforeThemShowsMoreThanTheyDo) {
+TEST(Background, HasTheWallsEvenIfABoxInFrontHasMoreSupport) {
   const auto box = [](int x, int y, float d) { return x >= 40 && x < 280 && y >= 30 && y < 200 ? 32.0F : d; };
   const Image<float> evidence = evidence_of(kRoom, 0.3, 0.1F, box);
   const Background found = background_of(evidence, ground_of(kFloor), kRig);
@@ -190,7 +190,7 @@ struct SideWall {
   }
 };
 
-TEST(Background, HasASideWallOfLittleEvidenceWhereItIsSquareOnTheFirst) {
+TEST(Background, HasASideWallOfLittleSupportIfPerpendicularToTheFirst) {
   const SideWall side(0.03);
   BackgroundConfig config;
   config.min_share = 3;
@@ -204,7 +204,7 @@ TEST(Background, HasASideWallOfLittleEvidenceWhereItIsSquareOnTheFirst) {
   EXPECT_EQ(background_of(side.evidence, ground_of(kFloor), kRig, config).planes.size(), 2U);
 }
 
-TEST(Background, HasNoWallOfLittleEvidenceThatIsNotSquareOnTheFirst) {
+TEST(Background, HasNoWallOfLittleSupportUnlessPerpendicularToTheFirst) {
   SideWall side(0.03);
   const Background skew{{kFloor, side.room.planes[1], wall_at(0.3 - 1.0, 1.9F)}};
   side.room = skew;
@@ -219,7 +219,7 @@ TEST(Background, HasNoWallOfLittleEvidenceThatIsNotSquareOnTheFirst) {
   EXPECT_EQ(background_of(side.evidence, ground_of(kFloor), kRig, config).planes.size(), 2U);
 }
 
-TEST(Background, HasAStrongWallThoughSomeFalseEvidenceLiesBehindIt) {
+TEST(Background, HasAStrongWallDespiteFalseSupportBehindIt) {
   const Background room{{kFloor, wall_at(0, 3)}};
   Noise noise(9);
   const auto mismatched = [&](int, int y, float d) {
@@ -238,7 +238,7 @@ TEST(Background, HasAWallThoughNoFloorIsSeen) {
   EXPECT_LT(largest_difference(found, wall), 0.1F);
 }
 
-TEST(Background, HasAtMostAsManyWallsAsAskedFor) {
+TEST(Background, HasAtMostTheRequestedNumberOfWalls) {
   for (int walls = 0; walls <= 3; ++walls) {
     BackgroundConfig config;
     config.max_walls = walls;
@@ -247,7 +247,7 @@ TEST(Background, HasAtMostAsManyWallsAsAskedFor) {
   }
 }
 
-TEST(Background, IsTheFloorOrNothingWhereThereIsNoEvidence) {
+TEST(Background, IsTheFloorOrNothingWithoutSupport) {
   const Image<float> none(kSize, kNaN, {});
   EXPECT_TRUE(background_of(none, {}, kRig).planes.empty());
   EXPECT_EQ(background_of(none, ground_of(kFloor), kRig).planes.size(), 1U);

@@ -124,7 +124,7 @@ TEST_F(CalibrationFiles, ARigWithoutCentreIsRefused) {
   EXPECT_TRUE(has(refused("fx=100\nbaseline=0.1\ncx=2\n"), {"cy"}));
 }
 
-TEST_F(CalibrationFiles, NumbersThatAreNoneAreRefusedWithTheirKey) {
+TEST_F(CalibrationFiles, InvalidNumbersAreRefusedWithTheirKey) {
   const auto with = [&](std::string_view what, std::string_view other) {
     return refused(replaced(kKeyValue, what, other));
   };
@@ -193,12 +193,12 @@ TEST_F(CalibrationFiles, KittisColourPairComesFirst) {
   EXPECT_EQ(calibration.image_size, (Size{1242, 375}));
 }
 
-TEST_F(CalibrationFiles, KittisGreyPairServesWhereThereIsNoOther) {
+TEST_F(CalibrationFiles, KittisGreyPairIsUsedIfThereIsNoOther) {
   const std::string grey = replaced(kKittiRaw, "P_rect_03", "Q_rect_03");
   EXPECT_FLOAT_EQ(read(grey).rig->baseline_m, 0.5F);
 }
 
-TEST_F(CalibrationFiles, KittisGreyPairIsReadWhereItsPicturesAre) {
+TEST_F(CalibrationFiles, KittisGreyPairIsUsedForGreyImages) {
   const io::Calibration calibration =
       io::load_calibration(folder_.with("calib_cam_to_cam.txt", kKittiRaw), true);
   EXPECT_FLOAT_EQ(calibration.rig->focal_px, 700);
@@ -224,7 +224,7 @@ TEST_F(CalibrationFiles, DamagedKittiIsRefused) {
 
 // ---- OpenCV ----
 
-TEST_F(CalibrationFiles, OpenCvYamlXmlAndJsonSayTheSame) {
+TEST_F(CalibrationFiles, OpenCvYamlXmlAndJsonAreEquivalent) {
   expect_common_rig(read(kOpenCvYaml, "stereo.yml"));
   expect_common_rig(read(kOpenCvXml, "stereo.xml"));
   expect_common_rig(read(R"({"P1": {"type_id": "opencv-matrix", "rows": 3, "cols": 4, "dt": "d",
@@ -276,7 +276,7 @@ TEST_F(CalibrationFiles, ARosPairIsFoundFromEitherOfItsFiles) {
   }
 }
 
-TEST_F(CalibrationFiles, ARosPairMayStandInOneFile) {
+TEST_F(CalibrationFiles, ARosPairMayBeInOneFile) {
   expect_common_rig(read(std::string(kRosLeft) + "---\n" + std::string(kRosRight), "both.yaml"));
   const auto indented = [](std::string_view text) {
     std::string out = "  ";
@@ -287,7 +287,7 @@ TEST_F(CalibrationFiles, ARosPairMayStandInOneFile) {
   expect_common_rig(read("left:\n" + indented(kRosLeft) + "right:\n" + indented(kRosRight), "both.yaml"));
 }
 
-TEST_F(CalibrationFiles, OneRosCameraAloneIsRefusedWithTheNameThatIsMissing) {
+TEST_F(CalibrationFiles, ASingleRosCameraIsRefusedWithTheMissingName) {
   EXPECT_TRUE(has(refused(kRosLeft, "cam_left.yaml"), {"cam_right.yaml"}));
   EXPECT_TRUE(has(refused(kRosLeft, "camera.yaml"), {"left.yaml", "right.yaml"}));
   (void)folder_.with("right.yaml", "a: b\n");
@@ -309,7 +309,7 @@ TEST_F(CalibrationFiles, OurOwnYamlNamesItsUnits) {
   EXPECT_FALSE(read("width: 640\nheight: 480\n", "calib.yaml").rig);
 }
 
-TEST_F(CalibrationFiles, OurOwnYamlRefusesWhatItDoesNotKnow) {
+TEST_F(CalibrationFiles, OurOwnYamlRefusesUnknownKeys) {
   EXPECT_TRUE(has(refused("focal_px: 550\nbaseline: 0.12\n"), {"'baseline'", "baseline_m"}));
   EXPECT_TRUE(has(refused("focal_px: wide\n"), {"focal_px", "'wide'"}));
   EXPECT_TRUE(has(refused("focal_px: [1, 2]\n"), {"focal_px"}));
@@ -318,7 +318,7 @@ TEST_F(CalibrationFiles, OurOwnYamlRefusesWhatItDoesNotKnow) {
 
 // ---- anything ----
 
-TEST_F(CalibrationFiles, RefusesWhatIsNoCalibration) {
+TEST_F(CalibrationFiles, RefusesFilesThatAreNotCalibrations) {
   EXPECT_TRUE(
       has(refusal([&] { io::load_calibration(folder_.path() / "none.txt"); }), {"none.txt", "No such file"}));
   EXPECT_TRUE(has(refusal([&] { io::load_calibration(folder_.path()); }), {"is a folder", "calib.txt"}));
@@ -335,11 +335,11 @@ TEST_F(CalibrationFiles, RefusesWhatIsNoCalibration) {
   EXPECT_TRUE(has(refused("P1: {rows: 3, cols: 4, data: &d [*d]}\n"), {""}));
 }
 
-TEST_F(CalibrationFiles, AByteOrderMarkIsPassedOver) {
+TEST_F(CalibrationFiles, AByteOrderMarkIsSkipped) {
   EXPECT_TRUE(read("\xef\xbb\xbf" + std::string(kKeyValue)).rig);
 }
 
-TEST_F(CalibrationFiles, NoDamagedFileDoesWorseThanAnError) {
+TEST_F(CalibrationFiles, DamagedFilesCauseNothingWorseThanAnError) {
   const auto load = [](const fs::path& path) { io::load_calibration(path); };
   for (const std::string_view text : {kKeyValue, kMiddlebury, kKittiRaw, kOpenCvYaml, kOpenCvXml}) {
     survives_damage(folder_, "calib", std::string(text), load, 3);
@@ -348,7 +348,7 @@ TEST_F(CalibrationFiles, NoDamagedFileDoesWorseThanAnError) {
   survives_damage(folder_, "left.yaml", std::string(kRosLeft), load, 3);
 }
 
-TEST_F(CalibrationFiles, ACalibrationForOtherPicturesIsRefused) {
+TEST_F(CalibrationFiles, ACalibrationForAnotherImageSizeIsRefused) {
   io::Calibration calibration;
   io::check_size(calibration, {320, 240}, "calib.txt");
   calibration.image_size = Size{640, 480};
@@ -361,7 +361,7 @@ TEST_F(CalibrationFiles, ACalibrationForOtherPicturesIsRefused) {
 
 constexpr std::string_view kPoints = "10,200,4,200;300,210,293,210;20,230,12,230;280,190,275,190";
 
-TEST_F(CalibrationFiles, EveryFormMaySayHowTheRigIsMounted) {
+TEST_F(CalibrationFiles, EveryFormatMayContainTheMounting) {
   const std::string lines =
       "ground_points=" + std::string(kPoints) + "\ncamera_height=0.5\ncamera_pitch=12\n";
   const std::string yaml =
@@ -387,7 +387,7 @@ TEST_F(CalibrationFiles, EveryFormMaySayHowTheRigIsMounted) {
   EXPECT_EQ(read(kKeyValue).ground, KnownGround{});
 }
 
-TEST_F(CalibrationFiles, AMountingThatCannotBeIsRefused) {
+TEST_F(CalibrationFiles, AnImpossibleMountingIsRefused) {
   EXPECT_TRUE(has(refused("ground_points=1,2,3\n"), {"ground_points", "3 numbers"}));
   EXPECT_TRUE(has(refused("ground_points=1,2,3,4;5,6,7,8\n"), {"ground_points", "at least 4"}));
   EXPECT_TRUE(has(refused("ground_points=10,60,5,60;20,60,15,60;30,60,25,60;40,60,35,60\n"),

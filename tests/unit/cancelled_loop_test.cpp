@@ -11,7 +11,7 @@
 namespace cairn {
 namespace {
 
-TEST(ParallelFor, IsDoneInWholeInsideAUsersLoopThatIsCancelled) {
+TEST(ParallelFor, CompletesInsideACancelledLoopOfTheCaller) {
   const Exec exec = Exec::with_threads(2);
   std::atomic<int> visits = 0;
   std::atomic<int> beside = 0;

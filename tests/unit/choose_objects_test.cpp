@@ -60,7 +60,7 @@ ChosenObjects chosen(const std::vector<float>& odds, const ChoiceLimits& limits)
   return choose_objects(tree_of(odds), FirstFeature().trees(), limits);
 }
 
-TEST(ChooseObjects, TakesAWholeWhereItGainsMoreThanItsParts) {
+TEST(ChooseObjects, ChoosesAWholeIfItGainsMoreThanItsParts) {
   const ChosenObjects objects = chosen({1, -2, -2, 4, -2}, {0.3F, 0});
   EXPECT_EQ(objects.object_of, (Ids{1, 1, 0}));
   ASSERT_EQ(objects.scores.size(), 2U);
@@ -68,25 +68,25 @@ TEST(ChooseObjects, TakesAWholeWhereItGainsMoreThanItsParts) {
   EXPECT_NEAR(objects.scores[1], 0.982, 0.001);
 }
 
-TEST(ChooseObjects, TakesPartsWhereTheyGainMoreTogetherNumberedFromTheLastNodeDown) {
+TEST(ChooseObjects, ChoosesPartsIfTheyGainMoreNumberedFromTheLastNodeDown) {
   const ChosenObjects objects = chosen({2, 3, 1, 2, 2}, {0.3F, 0});
   EXPECT_EQ(objects.object_of, (Ids{3, 2, 1}));
   EXPECT_GT(objects.scores[2], objects.scores[3]);
   EXPECT_GT(objects.scores[3], objects.scores[1]);
 }
 
-TEST(ChooseObjects, TakesAWholeThatIsAsGoodAsItsParts) {
+TEST(ChooseObjects, ChoosesAWholeThatTiesWithItsParts) {
   EXPECT_EQ(chosen({2, -2, -2, 2, 2}, {0.3F, 0}).object_of, (Ids{1, 1, 1}));
 }
 
-TEST(ChooseObjects, TakesNothingWhereNothingIsLikelyEnough) {
+TEST(ChooseObjects, ChoosesNothingBelowTheThreshold) {
   const ChosenObjects objects = chosen({5, 5, 5, 5, 5}, {1, 0});
   EXPECT_EQ(objects.object_of, (Ids{0, 0, 0}));
   EXPECT_EQ(objects.scores, std::vector<float>{0});
   EXPECT_EQ(chosen({0, 0, 0, 0, 0}, {0.5F, 0}).scores.size(), 1U) << "just as likely is not more likely";
 }
 
-TEST(ChooseObjects, TakesNothingBelowTheLeastArea) {
+TEST(ChooseObjects, ChoosesNothingBelowTheMinimumArea) {
   EXPECT_EQ(chosen({4, 4, 4, -2, -2}, {0.3F, 20}).object_of, (Ids{0, 2, 1}));
   EXPECT_EQ(chosen({4, 4, 4, 3, -2}, {0.3F, 30}).object_of, (Ids{1, 1, 2}));
   EXPECT_EQ(chosen({4, 4, 4, 4, 4}, {0.3F, 61}).object_of, (Ids{0, 0, 0}));
@@ -101,7 +101,7 @@ TEST(ChooseObjects, ScoresAreLikelihoodsInStepsOfOneIn4096) {
   }
 }
 
-TEST(GroupsOf, AreTheObjectsWithTheirDisparitiesAndAllElseIsBackground) {
+TEST(GroupsOf, AreTheObjectsWithTheirDisparitiesOnBackground) {
   Superpixels superpixels{grid<RegionId>({{0, 0, 1}, {2, 2, 1}}), 3, {}};
   const DisparityMap disparity{grid<float, float>({{4, kNaN, 8}, {2, 2, 10}}),
                                Image<Reject>(Size{3, 2}, Reject::none, {})};
@@ -119,7 +119,7 @@ TEST(GroupsOf, AreTheObjectsWithTheirDisparitiesAndAllElseIsBackground) {
   EXPECT_EQ(groups.regions[1].box, (Rect{0, 1, 2, 1}));
 }
 
-TEST(GroupsOf, RegionZeroIsThereEvenWhereAllIsObject) {
+TEST(GroupsOf, RegionZeroExistsEvenIfAllPixelsAreObjects) {
   Superpixels superpixels{grid<RegionId>({{0, 1}}), 2, {}};
   const DisparityMap disparity{Image<float>(Size{2, 1}, kNaN, {}),
                                Image<Reject>(Size{2, 1}, Reject::no_data, {})};

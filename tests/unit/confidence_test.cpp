@@ -40,7 +40,7 @@ TEST(Confidence, IsTheLogisticFunctionOfItsSigns) {
   EXPECT_NEAR(surface(20, 60, 100).confidence(model)(20, 20), 1 / (1 + std::exp(-(0.5 + 0.4 - 0.4))), 1e-6);
 }
 
-TEST(Confidence, IsNoughtWhereThereIsNoDisparity) {
+TEST(Confidence, IsZeroWithoutADisparity) {
   Scene scene = surface();
   scene.disparity.disparity_px(3, 5) = kNaN;
   scene.disparity.reject(3, 5) = Reject::speckle;
@@ -63,7 +63,7 @@ TEST(Confidence, DoesNotDependOnTheUnitOfTheCosts) {
   EXPECT_NEAR(surface(20, 60, 100).confidence()(20, 20), surface(0.2F, 0.6F, 1).confidence()(20, 20), 1e-6);
 }
 
-TEST(Confidence, FallsBesideHolesAsFarAsTheWindowReaches) {
+TEST(Confidence, FallsNextToHolesWithinTheWindow) {
   Scene scene = surface();
   scene.disparity.disparity_px(20, 20) = kNaN;
   scene.disparity.reject(20, 20) = Reject::left_right;
@@ -75,7 +75,7 @@ TEST(Confidence, FallsBesideHolesAsFarAsTheWindowReaches) {
   EXPECT_EQ(confidence(20, 27), whole);
 }
 
-TEST(Confidence, FallsBesideStepsOfTheDisparityButNotOnSlopes) {
+TEST(Confidence, FallsNextToDisparityStepsButNotOnSlopes) {
   Scene step = surface();
   Scene slope = surface();
   for (int y = 0; y < kSize.height; ++y) {
@@ -88,13 +88,13 @@ TEST(Confidence, FallsBesideStepsOfTheDisparityButNotOnSlopes) {
   EXPECT_EQ(first_difference(surface().confidence(), slope.confidence()), "");
 }
 
-TEST(Confidence, CountsSharesSoThatTheBorderAloneMakesNoDifference) {
+TEST(Confidence, CountsSharesSoThatTheImageBorderHasNoEffect) {
   const Image<float> confidence = surface().confidence();
   EXPECT_EQ(confidence(0, 0), confidence(20, 20));
   EXPECT_EQ(confidence(39, 17), confidence(20, 20));
 }
 
-TEST(Confidence, OfCostsThatAreAllNothingIsANumber) {
+TEST(Confidence, IsFiniteIfAllCostsAreZero) {
   const float c = surface(0, 0, 0).confidence()(20, 20);
   EXPECT_GE(c, 0);
   EXPECT_LE(c, 1);
@@ -121,7 +121,7 @@ Config sixteen_disparities(Config config = {}) {
   return config;
 }
 
-TEST(Confidence, TellsMatchesFromAccidentsWithBothPresets) {
+TEST(Confidence, SeparatesCorrectFromWrongMatchesWithBothPresets) {
   const Dots dots;
   for (const Config& preset : {Config(), Config::paper()}) {
     const Config config = sixteen_disparities(preset);
@@ -140,7 +140,7 @@ TEST(Confidence, TellsMatchesFromAccidentsWithBothPresets) {
   }
 }
 
-TEST(Confidence, IsNoughtExactlyWhereTheFramesDisparityHasAHole) {
+TEST(Confidence, IsZeroExactlyAtHolesOfTheFramesDisparity) {
   const Dots dots;
   const Frame frame = segment(dots.pair(), std::nullopt, sixteen_disparities(), {});
   ASSERT_EQ(frame.confidence.size(), dots.left.size());
@@ -152,7 +152,7 @@ TEST(Confidence, IsNoughtExactlyWhereTheFramesDisparityHasAHole) {
   }
 }
 
-TEST(Confidence, IsThereWhateverChecksAreOff) {
+TEST(Confidence, IsComputedWhicheverChecksAreOff) {
   const Dots dots;
   Config config = sixteen_disparities();
   config.left_right.max_diff = -1;
@@ -160,7 +160,7 @@ TEST(Confidence, IsThereWhateverChecksAreOff) {
   EXPECT_EQ(segment(dots.pair(), std::nullopt, config, {}).confidence.size(), dots.left.size());
 }
 
-TEST(Confidence, IsNotKnownOfADisparityFromElsewhere) {
+TEST(Confidence, IsUnknownForExternalDisparities) {
   const Dots dots;
   const Image<float> given({160, 120}, 6.0F, {});
   const Frame frame = segment(dots.left, {}, external_disparity(given, {}), std::nullopt, {}, {});

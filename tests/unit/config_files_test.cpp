@@ -41,13 +41,13 @@ class ConfigFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ConfigFiles, SectionsAndFlatNamesSayTheSame) {
+TEST_F(ConfigFiles, SectionsAndFlatNamesAreEquivalent) {
   EXPECT_EQ(read("match:\n  window_size: 7\n").match.window_size, 7);
   EXPECT_EQ(read("match.window_size: 7\n").match.window_size, 7);
   EXPECT_EQ(read("{\"match\": {\"window_size\": 7}, \"left_right.max_diff\": -1}").match.window_size, 7);
 }
 
-TEST_F(ConfigFiles, WhatTheFileLeavesOutStays) {
+TEST_F(ConfigFiles, OptionsMissingInTheFileKeepTheirValues) {
   Config before;
   before.match.window_size = 13;
   const Config after = read("left_right:\n  max_diff: 2.5\n", before);
@@ -71,13 +71,13 @@ TEST_F(ConfigFiles, APresetIsWhereTheOptionsStart) {
   EXPECT_TRUE(has(refused("preset: [paper]\n"), {"preset"}));
 }
 
-TEST_F(ConfigFiles, WhatMovedToTheCalibrationSaysSo) {
+TEST_F(ConfigFiles, OptionsMovedToTheCalibrationAreReportedAsSuch) {
   EXPECT_TRUE(has(refused("ground:\n  points: [[1, 2, 3, 4], [5.5, 6, 7, 8]]\n"),
                   {"line 2", "ground.points", "ground_points in the calibration"}));
   EXPECT_TRUE(has(refused("ground.height: 2\n"), {"line 1", "camera_height"}));
 }
 
-TEST_F(ConfigFiles, OptionsOfStagesThatAreGoneAreRefusedWithTheirLine) {
+TEST_F(ConfigFiles, OptionsOfRemovedStagesAreRefusedWithTheirLine) {
   EXPECT_TRUE(has(refused("facets:\n  edge_min: 2\n"), {"line 2", "facets.edge_min was removed", "scores"}));
   EXPECT_TRUE(
       has(refused("match.window_size: 9\nfigure.margin: 1\n"), {"line 2", "figure.margin was removed"}));
@@ -90,7 +90,7 @@ std::vector<std::string> active_values_of(const Config& config) {
   return values;
 }
 
-TEST_F(ConfigFiles, EveryPresetIsReadBackAsItWasWritten) {
+TEST_F(ConfigFiles, EveryPresetIsReadBackAsWritten) {
   for (const std::string& name : preset_names()) {
     for (const std::string& other : preset_names()) {
       const Config config = Config::preset(name);
@@ -100,7 +100,7 @@ TEST_F(ConfigFiles, EveryPresetIsReadBackAsItWasWritten) {
   }
 }
 
-TEST_F(ConfigFiles, OnlyWhatIsReadIsWritten) {
+TEST_F(ConfigFiles, OnlyActiveOptionsAreWritten) {
   EXPECT_EQ(io::config_yaml({}).find("window_size"), std::string::npos) << io::config_yaml({});
   EXPECT_NE(io::config_yaml({}).find("penalty_edge"), std::string::npos);
   EXPECT_EQ(io::config_yaml(Config::paper()).find("penalty_edge"), std::string::npos);
@@ -164,7 +164,7 @@ TEST_F(ConfigFiles, RefusesBombs) {
   EXPECT_TRUE(has(refused("match: &m\n  window_size: *m\n"), {""}));
 }
 
-TEST_F(ConfigFiles, AShortFileHoldsWhatDiffersFromThePresetAndReadsBack) {
+TEST_F(ConfigFiles, AShortFileContainsChangesFromThePresetAndReadsBack) {
   for (const std::string& preset : preset_names()) {
     Config config = Config::preset(preset);
     config.left_right.max_diff = 3;
@@ -183,7 +183,7 @@ TEST_F(ConfigFiles, RefusesMissingFilesAndFolders) {
   EXPECT_TRUE(has(refusal([&] { io::load_config(folder_.path(), config); }), {"is a folder"}));
 }
 
-TEST_F(ConfigFiles, NoDamagedFileDoesWorseThanAnError) {
+TEST_F(ConfigFiles, DamagedFilesCauseNothingWorseThanAnError) {
   const auto read = [](const fs::path& path) {
     Config config;
     io::load_config(path, config);

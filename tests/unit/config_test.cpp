@@ -11,7 +11,7 @@
 namespace cairn {
 namespace {
 
-TEST(ReasonsInForce, AreThoseOfTheChecksThatAreSwitchedOn) {
+TEST(ReasonsInForce, AreThoseOfTheEnabledChecks) {
   constexpr Reject kAlways = Reject::border | Reject::left_right | Reject::below_ground;
   EXPECT_EQ(reasons_in_force(Config{}), kAlways | Reject::speckle);
   EXPECT_EQ(reasons_in_force(Config{}, true), Reject::no_data | Reject::below_ground | Reject::speckle);
@@ -73,7 +73,7 @@ TEST(Options, HaveUniqueNamesHelpAndADomain) {
   EXPECT_TRUE(names.contains("left_right.max_diff"));
 }
 
-TEST(Options, RefuseWhatIsOutOfRangeAndNameTheRange) {
+TEST(Options, RefuseValuesOutOfRangeAndNameTheRange) {
   EXPECT_NE(refusal("match.window_size", "8").find("3 … 31, odd"), std::string::npos);
   EXPECT_NE(refusal("match.window_size", "33").find("3 … 31"), std::string::npos);
   EXPECT_NE(refusal("match.num_disparities", "0").find("1 … 1024"), std::string::npos);
@@ -116,7 +116,7 @@ TEST(ActiveOptions, AreAtMostFortyInAtMostTenUnits) {
   }
 }
 
-TEST(ActiveOptions, NeedWhatIsAnOptionAndMayHaveTheValue) {
+TEST(ActiveOptions, DependOnExistingOptionsAndValidValues) {
   for (const OptionInfo& option : options(Config{})) {
     if (option.needs.empty()) continue;
     const std::size_t end = option.needs.find_first_of("!=");
@@ -126,7 +126,7 @@ TEST(ActiveOptions, NeedWhatIsAnOptionAndMayHaveTheValue) {
   }
 }
 
-TEST(ActiveOptions, EachOtherOneIsRefusedInALineThatSaysWhatToSetFirst) {
+TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
   for (const std::string& preset : preset_names()) {
     const Config config = Config::preset(preset);
     const std::vector<OptionInfo> all = options(config);
@@ -158,13 +158,13 @@ TEST(ActiveOptions, EachOtherOneIsRefusedInALineThatSaysWhatToSetFirst) {
             "objects.max_area has no effect with fusion.method=hierarchy; set fusion.method=overlap first");
 }
 
-TEST(ActiveOptions, OfAStageByItselfOnlyItsOwnSectionsCount) {
+TEST(ActiveOptions, OfASingleStageAreThoseOfItsOwnSections) {
   EXPECT_NO_THROW(require_active({}, "intensity.sigma_min", {"intensity"}));
   EXPECT_THROW(require_active({}, "texture.window_size", {"texture"}), Error);
   EXPECT_THROW(require_active({}, "match.cost", {"match", "semi_global"}), Error);
 }
 
-TEST(GoneOptions, SayWhereTheyWent) {
+TEST(GoneOptions, NameTheirReplacement) {
   EXPECT_EQ(refusal("ground.height", "1.5"),
             "option ground.height was removed: it is now camera_height in the calibration file "
             "(docs/formats.md)");
@@ -181,7 +181,7 @@ TEST(Validate, AcceptsThePresets) {
     EXPECT_NO_THROW(validate(Config::preset(preset))) << preset;
 }
 
-TEST(Validate, RefusesValuesThatCodeHasSetOutOfRange) {
+TEST(Validate, RefusesOutOfRangeValuesSetInCode) {
   Config config;
   config.match.window_size = 4;
   EXPECT_THROW(validate(config), Error);
@@ -190,13 +190,13 @@ TEST(Validate, RefusesValuesThatCodeHasSetOutOfRange) {
   EXPECT_THROW(validate(config), Error);
 }
 
-TEST(Validate, RefusesToLeaveOutWhatTheMethodNeeds) {
+TEST(Validate, RefusesToDisableRequiredParts) {
   Config config = Config::paper();
   config.match.maps = MatchMaps::winner;
   EXPECT_NE(message_of([&] { validate(config); }).find("match.maps"), std::string::npos);
 }
 
-TEST(Validate, RefusesWhatDoesNotFitTheImage) {
+TEST(Validate, RefusesOptionsThatDoNotFitTheImage) {
   Config config;
   EXPECT_NO_THROW(validate(config, {320, 240}, false));
   EXPECT_NE(message_of([&] {

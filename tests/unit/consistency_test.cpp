@@ -32,7 +32,7 @@ struct Wall {
   [[nodiscard]] Consistency judged() const { return consistency(left, right, disparity_px, best_right); }
 };
 
-TEST(Consistency, OfTheTruthIsThatOfItsHoles) {
+TEST(Consistency, OfTheTruthIsDeterminedByItsHoles) {
   const Wall wall;
   const Consistency found = wall.judged();
   EXPECT_EQ(found.pixels, kSize.area());
@@ -45,7 +45,7 @@ TEST(Consistency, OfTheTruthIsThatOfItsHoles) {
   EXPECT_EQ(found.agreement(), 1);
 }
 
-TEST(Consistency, ADisparityThatTheRightImageDoesNotConfirmCostsMoreThanAHole) {
+TEST(Consistency, AnUnconfirmedDisparityCostsMoreThanAHole) {
   Wall wall;
   const double before = wall.judged().loss();
   wall.disparity_px(20, 5) = 9;
@@ -66,7 +66,7 @@ TEST(Consistency, AgreementAllowsForTheRoundingOfWinners) {
   EXPECT_LT(wall.judged().agreement(), 1);
 }
 
-TEST(Consistency, WhatLeavesTheRightImageOrHasNoWinnerThereIsNotConfirmed) {
+TEST(Consistency, PixelsOutsideTheRightImageOrWithoutWinnerAreUnconfirmed) {
   Wall wall;
   wall.disparity_px(1, 0) = kDisparity;
   wall.best_right(10, 2) = kNoMatch;
@@ -74,7 +74,7 @@ TEST(Consistency, WhatLeavesTheRightImageOrHasNoWinnerThereIsNotConfirmed) {
   EXPECT_EQ(found.matched - found.confirmed, 2);
 }
 
-TEST(Consistency, GreyLevelsThatAllDifferByAGainAndAnOffsetAreNoDifference) {
+TEST(Consistency, GainAndOffsetOfGreyLevelsAreIgnored) {
   Wall wall;
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
@@ -89,14 +89,14 @@ TEST(Consistency, GreyLevelsThatAllDifferByAGainAndAnOffsetAreNoDifference) {
   EXPECT_NEAR(wall.judged().photometric(), same, 1e-9);
 }
 
-TEST(Consistency, AWrongDisparityThatIsConfirmedCostsByItsGreyLevels) {
+TEST(Consistency, AConfirmedWrongDisparityCostsByItsGreyLevels) {
   Wall wall;
   const double right = wall.judged().photometric();
   wall.disparity_px.fill(static_cast<float>(kDisparity) + 1);
   EXPECT_GT(wall.judged().photometric(), 2 * right);
 }
 
-TEST(Consistency, OfPicturesOfOnePixelIsDefined) {
+TEST(Consistency, IsDefinedForImagesOfOnePixel) {
   const Image<Gray> grey({1, 1}, Gray{7}, {});
   const Image<float> zero({1, 1}, 0.0F, {});
   const Image<std::int16_t> back({1, 1}, std::int16_t{0}, {});
@@ -120,7 +120,7 @@ TEST(Consistency, PrefersTheSceneOfAFittingSearchRange) {
   EXPECT_LT(loss(16), loss(8));  // the box is at 12 px
 }
 
-TEST(Steadiness, CountsJumpsAndFlickerWhereThePictureStandsStill) {
+TEST(Steadiness, CountsJumpsAndFlickerInStaticParts) {
   const Image<Gray> picture = synthetic::random_dots(kSize, 1);
   const Image<float> before(kSize, 4.0F, {});
   Image<float> now(kSize, 4.5F, {});
@@ -133,7 +133,7 @@ TEST(Steadiness, CountsJumpsAndFlickerWhereThePictureStandsStill) {
   EXPECT_TRUE(found.follows());
 }
 
-TEST(Steadiness, LeavesOutWhatMovesAndWhatIsAHoleInBoth) {
+TEST(Steadiness, IgnoresMovingPartsAndCommonHoles) {
   const Image<Gray> before = synthetic::random_dots(kSize, 1);
   Image<Gray> now = before.clone();
   for (int y = 0; y < kSize.height; ++y) {

@@ -32,7 +32,7 @@ TEST(Arms, AreReadByTheirConfigurationAndChangeIt) {
   EXPECT_EQ(arms, arms_of(config, kSize));
 }
 
-TEST(Arms, LeaveOutWhatHasNoEffectOrIsOutOfRange) {
+TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
   Config config;
   config.match.method = MatchMethod::window;
   config.objects.min_area = 80;
@@ -57,11 +57,11 @@ TEST(LeadOfAnArm, IsTheMeanOfPairedDifferencesOverThePresentsMean) {
   EXPECT_EQ(lead_of(score({5}, {1})).mean, -1);  // one frame is no evidence
 }
 
-TEST(LeadOfAnArm, CountsWherePresentSettingsFindNothing) {
+TEST(LeadOfAnArm, IsDefinedIfTheCurrentSettingsFindNothing) {
   EXPECT_GT(lead_of(score({1, 1}, {0, 0})).mean, 100);
 }
 
-TEST(Halving, KeepsTheHalfThatLeadsMostAndNoneThatHardlyLeads) {
+TEST(Halving, KeepsTheLeadingHalfAndNoMarginalLead) {
   const std::vector<ArmScore> round{score({1.3F, 1.3F}, {1, 1}, "1"), score({1.5F, 1.5F}, {1, 1}, "2"),
                                     score({0.9F, 0.9F}, {1, 1}, "3"), score({1.3F, 1.3F}, {1, 1}, "4"),
                                     score({1.1F, 1.1F}, {1, 1}, "5")};
@@ -74,7 +74,7 @@ TEST(Halving, KeepsTheHalfThatLeadsMostAndNoneThatHardlyLeads) {
   EXPECT_EQ(halved({score({1.06F, 1.06F}, {1, 1})}, 10).size(), 1U);
 }
 
-TEST(ABetterArm, LeadsByEnoughOnEnoughFramesForSure) {
+TEST(ABetterArm, LeadsSignificantlyOnEnoughFrames) {
   ControlConfig config;
   config.window = 4;
   EXPECT_TRUE(is_better(score({1.2F, 1.1F, 1.2F, 1.1F}, {1, 1, 1, 1}), config));
@@ -134,7 +134,7 @@ FollowConfig slightly_too_large(const samples::Sample& sample, ControlMethod met
   return config;
 }
 
-TEST(Controller, NamesTheOptionThatBringsObjectsBackAndTheSameOneAgain) {
+TEST(Controller, NamesTheOptionThatRestoresObjectsReproducibly) {
   // Not four_in_a_row: there, other superpixels recover more of its stool, and come first.
   const samples::Sample sample = samples::load("glossy_floor");
   const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
@@ -147,7 +147,7 @@ TEST(Controller, NamesTheOptionThatBringsObjectsBackAndTheSameOneAgain) {
   for (std::size_t i = 0; i < seen.events.size(); ++i) EXPECT_EQ(again.events[i].arm, seen.events[i].arm);
 }
 
-TEST(Controller, OnlyWatchingItChangesNothing) {
+TEST(Controller, WatchingChangesNothing) {
   const samples::Sample sample = samples::load("four_in_a_row");
   const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
   const Seen seen = play(sample, config, 30);

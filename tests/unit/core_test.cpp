@@ -63,7 +63,7 @@ TEST(View, ShowsASubWindowOfItsOwner) {
   EXPECT_EQ(part.stride(), image.view().stride());
 }
 
-TEST(Pool, HandsTheBufferOfADeadImageToTheNextOne) {
+TEST(Pool, ReusesTheBufferOfAFreedImage) {
   const Pool pool = Pool::make();
   for (int frame = 0; frame < 5; ++frame) {
     const Image<float> a(Size{100, 50}, pool);
@@ -82,7 +82,7 @@ TEST(Pool, OutlivesItsHandleAsLongAsAnImageDoes) {
   EXPECT_EQ(survivor(7, 7), 3);
 }
 
-TEST(PoolMemory, GivesAVectorTheBufferOfADeadOne) {
+TEST(PoolMemory, ReusesTheBufferOfAFreedVector) {
   const Pool pool = Pool::make();
   PoolMemory memory(pool);
   const void* first = nullptr;
@@ -96,14 +96,14 @@ TEST(PoolMemory, GivesAVectorTheBufferOfADeadOne) {
   EXPECT_EQ(pool.heap_allocations(), 1);
 }
 
-TEST(PoolMemory, LeavesSmallVectorsToTheHeap) {
+TEST(PoolMemory, AllocatesSmallVectorsOnTheHeap) {
   const Pool pool = Pool::make();
   PoolMemory memory(pool);
   const std::pmr::vector<int> few(100, 7, &memory);
   EXPECT_EQ(pool.heap_allocations(), 0);
 }
 
-TEST(Pool, DoesNotWasteALargeBufferOnASmallImage) {
+TEST(Pool, DoesNotUseALargeBufferForASmallImage) {
   const Pool pool = Pool::make();
   { const Image<float> large(Size{640, 480}, pool); }
   { const Image<float> small(Size{8, 8}, pool); }
@@ -124,7 +124,7 @@ TEST(ParallelFor, VisitsEachElementOnce) {
   }
 }
 
-TEST(SideWork, IsDoneWhenItHasBeenWaitedFor) {
+TEST(SideWork, IsDoneAfterWait) {
   for (const int threads : {1, 2, 4}) {
     const Exec exec = Exec::with_threads(threads);
     std::atomic<int> sum = 0;
@@ -138,14 +138,14 @@ TEST(SideWork, IsDoneWhenItHasBeenWaitedFor) {
   }
 }
 
-TEST(SideWork, HandsOnWhatItThrows) {
+TEST(SideWork, PropagatesExceptions) {
   for (const int threads : {1, 2}) {
     SideWork work(Exec::with_threads(threads), [] { throw Error("no"); });
     EXPECT_THROW(work.wait(), Error) << threads;
   }
 }
 
-TEST(SideWork, IsOverWhenNobodyWaitsForItAnyMore) {
+TEST(SideWork, FinishesBeforeItsDestructorReturns) {
   for (const int threads : {1, 2}) {
     std::atomic<bool> gone = false;
     std::atomic<bool> late = false;
@@ -161,7 +161,7 @@ TEST(SideWork, IsOverWhenNobodyWaitsForItAnyMore) {
   }
 }
 
-TEST(Later, IsWorkedOutBesideWithAPoolOfItsOwn) {
+TEST(Later, IsComputedConcurrentlyWithItsOwnPool) {
   for (const int threads : {1, 2}) {
     Exec exec = Exec::with_threads(threads);
     exec.observe = [](std::string_view, const Artifact&, double) {};
@@ -173,7 +173,7 @@ TEST(Later, IsWorkedOutBesideWithAPoolOfItsOwn) {
   }
 }
 
-TEST(Pool, HasAnotherBesideItThatCountsAsPartOfIt) {
+TEST(Pool, HasASecondPoolThatCountsAsPartOfIt) {
   const Pool pool = Pool::make();
   { const Image<float> image(Size{100, 50}, pool); }
   {
@@ -186,7 +186,7 @@ TEST(Pool, HasAnotherBesideItThatCountsAsPartOfIt) {
   EXPECT_EQ(Pool().beside().heap_allocations(), 0);
 }
 
-TEST(Observed, ReportsEachStageAndHandsItsResultThrough) {
+TEST(Observed, ReportsEachStageAndReturnsItsResult) {
   std::vector<std::string> stages;
   Exec exec;
   exec.observe = [&](std::string_view stage, const Artifact& artifact, double ms) {
@@ -221,7 +221,7 @@ TEST(StereoRig, TurnsDisparityIntoMetres) {
   EXPECT_FALSE((StereoRig{.focal_px = 1e30F, .baseline_m = 1e20F}.point_in_camera_m(0, 0, 10)));
 }
 
-TEST(StereoRig, RefusesNumbersThatAreNoCamera) {
+TEST(StereoRig, RefusesImpossibleCameras) {
   const StereoRig good{.focal_px = 500, .cx_px = 320, .cy_px = 240, .baseline_m = 0.1F, .doffs_px = 0};
   EXPECT_NO_THROW(good.validate());
   for (const float bad : {0.0F, -1.0F, std::nanf(""), std::numeric_limits<float>::infinity()}) {
@@ -234,7 +234,7 @@ TEST(StereoRig, RefusesNumbersThatAreNoCamera) {
   }
 }
 
-TEST(Nearest, FindsTheNameThatWasMeant) {
+TEST(Nearest, FindsTheIntendedName) {
   const std::vector<std::string> names{"match.window_size", "match.row_band", "speckle.size"};
   EXPECT_EQ(nearest("match.windowsize", names), "match.window_size");
   EXPECT_EQ(nearest("spekle.size", names), "speckle.size");

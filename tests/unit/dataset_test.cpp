@@ -16,7 +16,7 @@ using support::has;
 using support::refusal;
 using support::TemporaryFolder;
 
-TEST(Dataset, AFolderWithALeftPictureIsOneFrame) {
+TEST(Dataset, AFolderWithALeftImageIsOneFrame) {
   const TemporaryFolder folder;
   const fs::path left = folder.with("one/left.png", "");
   const fs::path right = folder.with("one/right.png", "");
@@ -30,7 +30,7 @@ TEST(Dataset, AFolderWithALeftPictureIsOneFrame) {
   EXPECT_EQ(frames[0].calib, calib);
 }
 
-TEST(Dataset, TheNameIsTheFoldersHoweverItIsWritten) {
+TEST(Dataset, TheNameIsTheFoldersHoweverThePathIsWritten) {
   const TemporaryFolder folder;
   (void)folder.with("one/left.png", "");
   EXPECT_EQ(io::find_frames(folder.path() / "one/")[0].name, "one");
@@ -53,7 +53,7 @@ TEST(Dataset, OtherwiseEachSubFolderWithOneIsSortedByName) {
   EXPECT_FALSE(frames[1].right);
 }
 
-TEST(Dataset, OtherwisePairsThatDifferInTheirNamesAloneAreWithTheFoldersCalibration) {
+TEST(Dataset, OtherwisePairsOfNamesShareTheFoldersCalibration) {
   const TemporaryFolder folder;
   for (const char* name : {"left01.png", "right01.png", "left02.png", "right02.png", "left03.png",
                            "calib.txt", "disp_left.png", "disp_right.png"}) {
@@ -67,13 +67,13 @@ TEST(Dataset, OtherwisePairsThatDifferInTheirNamesAloneAreWithTheFoldersCalibrat
   EXPECT_EQ(frames[1].folder, folder.path());
 }
 
-TEST(Dataset, TheRightPictureOfTheSameKindIsPreferred) {
+TEST(Dataset, TheRightImageOfTheSameFormatIsPreferred) {
   const TemporaryFolder folder;
   for (const char* name : {"left.ppm", "right.png", "right.ppm"}) (void)folder.with(name, "");
   EXPECT_EQ(io::find_frames(folder.path())[0].right, folder.path() / "right.ppm");
 }
 
-TEST(Dataset, TheCalibrationIsTheFramesOwnThenThatOfTheTruthBesideIt) {
+TEST(Dataset, TheCalibrationIsTheFramesOwnOrThatOfItsTruth) {
   const TemporaryFolder folder;
   (void)folder.with("a/left.png", "");
   (void)folder.with("b/left.png", "");
@@ -93,7 +93,7 @@ TEST(Dataset, RefusesFoldersWithoutFrames) {
   EXPECT_TRUE(has(refusal([&] { io::find_frames(""); }), {"no such folder"}));
 }
 
-TEST(Dataset, TruthIsInTheFrameOrBesideIt) {
+TEST(Dataset, TruthIsInTheFrameOrNextToIt) {
   const TemporaryFolder folder;
   for (const char* name : {"gt/objects.png", "gt/ground.txt", "gt/ground.png", "variant/left.png",
                            "own/disp_left.png", "own/occlusion.png", "own/partial", "own/calib.txt"}) {
@@ -150,7 +150,7 @@ TEST(Dataset, AFolderOfMiddleburyOrEth3dIsOneFrame) {
   EXPECT_EQ(io::find_truth(folder.path() / "delivery").occlusion->filename(), "mask0nocc.png");
 }
 
-TEST(Dataset, TheMissingPictureOfAPairIsNamed) {
+TEST(Dataset, TheMissingImageOfAPairIsNamed) {
   const TemporaryFolder folder;
   (void)folder.with("Art/view1.png", "");
   const auto frames = io::find_frames(folder.path() / "Art");
@@ -195,7 +195,7 @@ TEST(Dataset, KittisFoldersHoldFramesWithTheirOwnCalibrationAndTruth) {
   EXPECT_TRUE(has(refusal([&] { (void)io::find_frames(folder.path()); }), {"2012", "give that folder"}));
 }
 
-TEST(Dataset, EurocsRawPicturesAreForRectifyAlone) {
+TEST(Dataset, EurocsRawImagesAreForRectifyOnly) {
   const TemporaryFolder folder;
   for (const char* name :
        {"MH_01/mav0/cam0/data/140.png", "MH_01/mav0/cam1/data/140.png", "MH_01/mav0/cam0/data/141.png"})
@@ -209,7 +209,7 @@ TEST(Dataset, EurocsRawPicturesAreForRectifyAlone) {
   }
 }
 
-TEST(Dataset, HiddenPixelsAreReadInTheFormOfEachDataSet) {
+TEST(Dataset, HiddenPixelsAreReadInTheFormatOfEachDataSet) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "disp_noc_0");
   const auto hidden = [&](const char* name, auto seen, auto not_seen) {

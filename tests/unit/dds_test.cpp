@@ -70,7 +70,7 @@ StereoRig rig() {
 
 // ---- names and hashes ----
 
-TEST_F(Dds, NamesAreThoseOfRos) {
+TEST_F(Dds, NamesFollowRos) {
   EXPECT_EQ(dds_type_name("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
   EXPECT_EQ(checked_name("cairn", "--ros2"), "/cairn");
   EXPECT_EQ(checked_name("/robot_1/left", "--ros2"), "/robot_1/left");
@@ -86,7 +86,7 @@ void expect_known_hash() {
   EXPECT_EQ(type_hash(M::kType), ros::TypeDescription::hash<M>()) << M::kType;
 }
 
-TEST_F(Dds, TypeHashesAreThoseOfTheMessagesMembers) {
+TEST_F(Dds, TypeHashesFollowFromTheMembers) {
   EXPECT_EQ(io::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   expect_known_hash<ros::String>();
   expect_known_hash<ros::Image>();
@@ -102,7 +102,7 @@ TEST_F(Dds, TypeHashesAreThoseOfTheMessagesMembers) {
   EXPECT_EQ(type_hash("no/msg/Type"), "");
 }
 
-TEST_F(Dds, TheEnvironmentOfRosSaysWhichDomain) {
+TEST_F(Dds, TheDomainComesFromTheEnvironment) {
   const std::string own = std::getenv("ROS_DOMAIN_ID");
   ::setenv("ROS_DOMAIN_ID", "7", 1);
   EXPECT_EQ(domain_of_environment().id, 7U);
@@ -177,7 +177,7 @@ void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t&
   EXPECT_TRUE(sent == *came) << M::kType;
 }
 
-TEST_F(Dds, BytesAreThoseThatCycloneMakes) {
+TEST_F(Dds, BytesEqualThoseOfCyclone) {
   const Step& step = live_frame()->step;
   const ros::Header header = ros::header_of(step.stamp, "camera");
   const StereoRig camera = rig();
@@ -208,7 +208,7 @@ TEST_F(Dds, BytesAreThoseThatCycloneMakes) {
                                                             tf2_msgs_msg_dds__TFMessage__desc);
 }
 
-TEST_F(Dds, WritersSayTheirTypesHash) {
+TEST_F(Dds, WritersAnnounceTheirTypeHash) {
   const Participant participant;
   const std::string topic = own_topic("hash");
   const Writer<ros::Image> writer(participant, topic);
@@ -238,7 +238,7 @@ TEST_F(Dds, WritersSayTheirTypesHash) {
 
 // ---- publishing ----
 
-TEST_F(Dds, WhatIsFoundIsPublished) {
+TEST_F(Dds, ResultsArePublished) {
   const live::LiveFramePtr frame = live_frame();
   live::Ros2Options options;
   options.name_space = own_topic("found");
@@ -296,7 +296,7 @@ TEST_F(Dds, WhatIsFoundIsPublished) {
   EXPECT_NE(sink->summary().find(topic("objects")), std::string::npos) << sink->summary();
 }
 
-TEST_F(Dds, TheCamerasFrameIsTheSourcesUnlessAnotherIsAskedFor) {
+TEST_F(Dds, TheFrameIdIsTheSourcesUnlessSet) {
   const live::LiveFramePtr frame = made_frame("front_left_optical");
   for (const std::string asked : {"", "left_optical"}) {
     live::Ros2Options options;
@@ -316,7 +316,7 @@ TEST_F(Dds, TheCamerasFrameIsTheSourcesUnlessAnotherIsAskedFor) {
   }
 }
 
-TEST_F(Dds, HolesAreAsRosHasThemWhereThatIsAsked) {
+TEST_F(Dds, HolesAreInRosConventionOnRequest) {
   live::Ros2Options options;
   options.name_space = own_topic("holes");
   options.marks_holes_as_ros = true;
@@ -344,7 +344,7 @@ TEST_F(Dds, HolesAreAsRosHasThemWhereThatIsAsked) {
   EXPECT_GT(holes, 100U);
 }
 
-TEST_F(Dds, NothingIsMadeForNobody) {
+TEST_F(Dds, NothingIsEncodedWithoutSubscribers) {
   live::Ros2Options options;
   options.name_space = own_topic("nobody");
   const auto sink = ros2_sink(options, rig());
@@ -356,7 +356,7 @@ TEST_F(Dds, NothingIsMadeForNobody) {
   EXPECT_NE(sink->summary().find("no subscriber"), std::string::npos) << sink->summary();
 }
 
-TEST_F(Dds, AWriterDoesNotWaitForAReaderThatIsStuck) {
+TEST_F(Dds, AWriterDoesNotWaitForAStuckReader) {
   live::Ros2Options options;
   options.name_space = own_topic("stuck");
   const auto sink = ros2_sink(options, rig());
@@ -389,7 +389,7 @@ io::PicturePair pictures(const ros::Image& left, const ros::Image& right, int bi
   return io::pictures_of(left, "/l", right, "/r", bits, {});
 }
 
-TEST(RosPictures, RowsMayBeLongerThanTheImage) {
+TEST(RosImages, RowsMayBeLongerThanTheImage) {
   const ros::Image grey = image("mono8", 2, 4, {1, 2, 9, 9, 3, 4, 9, 9});
   const io::PicturePair pair = pictures(grey, grey);
   EXPECT_EQ(pair.left.gray.size(), (Size{2, 2}));
@@ -398,7 +398,7 @@ TEST(RosPictures, RowsMayBeLongerThanTheImage) {
   EXPECT_TRUE(pair.left.rgb.empty());
 }
 
-TEST(RosPictures, ColoursStandInTheirOrder) {
+TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
   const io::PicturePair pair = pictures(image("bgr8", 1, 3, {10, 20, 30}), image("rgb8", 1, 3, {10, 20, 30}));
   EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{30, 20, 10}));
   EXPECT_EQ(pair.left.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
@@ -406,14 +406,14 @@ TEST(RosPictures, ColoursStandInTheirOrder) {
   EXPECT_TRUE(pair.right.rgb.empty());
 }
 
-TEST(RosPictures, LeaveAlphaOut) {
+TEST(RosImages, DropAlpha) {
   const io::PicturePair pair =
       pictures(image("rgba8", 1, 4, {10, 20, 30, 7}), image("bgra8", 1, 4, {10, 20, 30, 7}));
   EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{10, 20, 30}));
   EXPECT_EQ(pair.right.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
 }
 
-TEST(RosPictures, DeepImagesKeepTheirHighBits) {
+TEST(RosImages, DeepImagesKeepTheirHighBits) {
   ros::Image left = image("mono16", 2, 4, {0x00, 0x01, 0xff, 0x0f});
   const ros::Image right = image("mono16", 2, 4, {0x10, 0x00, 0x20, 0x00});
   const io::PicturePair pair = pictures(left, right);
@@ -427,7 +427,7 @@ TEST(RosPictures, DeepImagesKeepTheirHighBits) {
   EXPECT_EQ(pictures(left, left).bits, 16);
 }
 
-TEST(RosPictures, RefusesWhatIsNoImage) {
+TEST(RosImages, RefusesInvalidImages) {
   const ros::Image sound = image("mono8", 2, 2, {1, 2, 3, 4});
   ros::Image other = sound;
   other.encoding = "bayer_rggb8";
@@ -506,7 +506,7 @@ bool equal(View<const Gray> a, View<const Gray> b) {
   return true;
 }
 
-TEST_F(Dds, ASourceDeliversPairsAsTheyWereSent) {
+TEST_F(Dds, ASourceDeliversPairsUnchanged) {
   const std::string prefix = own_topic("stereo");
   const Camera camera(prefix);
   const auto source = ros2_sequence("ros2:" + prefix, {}, {});
@@ -554,7 +554,7 @@ TEST_F(Dds, ASourceEndsSoonWhenItIsStopped) {
   EXPECT_FALSE(source->next());
 }
 
-TEST_F(Dds, ASourceSaysWhatItWaitsFor) {
+TEST_F(Dds, ASourceReportsWhatItWaitsFor) {
   io::SourceOptions options;
   options.open_timeout_s = 0.5;
   const std::string prefix = own_topic("silent");

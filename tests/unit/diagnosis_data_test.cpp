@@ -31,7 +31,7 @@ std::vector<fs::path> pairs_below(const fs::path& folder) {
 
 class GoodPairs : public testing::TestWithParam<const char*> {};
 
-TEST_P(GoodPairs, AreNothingToComplainAbout) {
+TEST_P(GoodPairs, HaveNoFindings) {
   const auto pairs = pairs_below(collection() / GetParam());
   if (pairs.empty()) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
   for (const fs::path& folder : pairs) {
@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Collections, GoodPairs,
 
 class GoodSequences : public testing::TestWithParam<const char*> {};
 
-TEST_P(GoodSequences, RunTogetherAndAreFoundOutWhereTheyAreMadeNotTo) {
+TEST_P(GoodSequences, AreSynchronousAndAShiftIsDetected) {
   if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   const auto frames = io::find_frames(collection() / GetParam());
   std::vector<io::PicturePair> pictures;
@@ -77,7 +77,7 @@ TEST_P(GoodSequences, RunTogetherAndAreFoundOutWhereTheyAreMadeNotTo) {
   }
 }
 
-TEST_P(GoodSequences, AreFoundOutWhereTheyAreMadeNotToRunTogetherFromTheMiddleOn) {
+TEST_P(GoodSequences, AShiftFromTheMiddleOnIsDetected) {
   if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   const auto frames = io::find_frames(collection() / GetParam());
   std::vector<io::PicturePair> pictures;
@@ -94,7 +94,7 @@ TEST_P(GoodSequences, AreFoundOutWhereTheyAreMadeNotToRunTogetherFromTheMiddleOn
   EXPECT_EQ(measured.change->after, 1);
 }
 
-TEST(SlowSequence, IsNotSaidToRunTogether) {
+TEST(SlowSequence, IsNotJudgedSynchronous) {
   const fs::path folder = collection() / "real/sequences/conveyor_box";
   if (!fs::exists(folder)) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   std::vector<io::PicturePair> pictures;

@@ -127,13 +127,13 @@ TEST_F(Diagnosis, IsSilentOnEverySample) {
   }
 }
 
-TEST_F(Diagnosis, SeesSwappedCameras) {
+TEST_F(Diagnosis, DetectsSwappedCameras) {
   const auto found = findings(right(), left());
   finds(found, FindingKind::swapped, Severity::broken);
   EXPECT_GT(value(found), 90);
 }
 
-TEST_F(Diagnosis, SeesThatOnePictureWasGivenTwice) {
+TEST_F(Diagnosis, DetectsIdenticalImages) {
   finds(findings(left(), left()), FindingKind::same_picture, Severity::broken);
   // After lossy compression the pixels differ, but nothing has moved.
   const auto almost = noisy(left(), 2);
@@ -142,13 +142,13 @@ TEST_F(Diagnosis, SeesThatOnePictureWasGivenTwice) {
   EXPECT_GT(value(found), 95);
 }
 
-TEST_F(Diagnosis, SaysOfCamerasInTheDarkThatTheyAreInTheDark) {
+TEST_F(Diagnosis, ReportsDarkImages) {
   const auto black = toned(left(), 0, 0);
   const auto found = findings(black, black);
   EXPECT_EQ(names(found), "too little texture, clipped exposure, low contrast");
 }
 
-TEST_F(Diagnosis, SeesSwappedCamerasWhereDoffsAllowsNegativeDisparities) {
+TEST_F(Diagnosis, DetectsSwappedCamerasIfDoffsAllowsNegativeDisparities) {
   rig_->doffs_px = 40;
   finds(findings(right(), left()), FindingKind::swapped, Severity::broken);
   range_ = {.min_disparity = -40, .num_disparities = 64};  // negative disparities are expected
@@ -199,7 +199,7 @@ TEST_F(Diagnosis, MeasuresARoll) {
   finds(findings(left(), rolled), FindingKind::rows, Severity::warning);
 }
 
-TEST_F(Diagnosis, SeesThatAPairIsNotRectified) {
+TEST_F(Diagnosis, DetectsAnUnrectifiedPair) {
   // Lens distortion, and different focal lengths.
   const double middle_x = 0.5 * (right().width() - 1);
   const double middle_y = 0.5 * (right().height() - 1);
@@ -220,12 +220,12 @@ TEST_F(Diagnosis, SeesThatAPairIsNotRectified) {
   EXPECT_NE(names(findings(left(), keystone)).find("not rectified"), std::string::npos);
 }
 
-TEST_F(Diagnosis, SeesPicturesOfDifferentScenes) {
+TEST_F(Diagnosis, DetectsImagesOfDifferentScenes) {
   const samples::Sample other = samples::load("overlap");
   finds(findings(left(), other.pictures.right.gray), FindingKind::nothing_in_common, Severity::broken);
 }
 
-TEST_F(Diagnosis, SeesAPictureThatIsUpsideDown) {
+TEST_F(Diagnosis, DetectsAnImageUpsideDown) {
   const auto turned = made_of(
       right(),
       [&](int x, int y) {
@@ -235,13 +235,13 @@ TEST_F(Diagnosis, SeesAPictureThatIsUpsideDown) {
   finds(findings(left(), turned), FindingKind::nothing_in_common, Severity::broken);
 }
 
-TEST_F(Diagnosis, SaysWhenThereIsTooLittleToSee) {
+TEST_F(Diagnosis, ReportsTooFewPoints) {
   const auto plain = support::picture(left().size(), 1, 1, [](int x, int) { return 60 + 0.3 * x; });
   const auto other = support::picture(left().size(), 1, 2, [](int x, int) { return 60 + 0.3 * x; });
   finds(findings(plain, other), FindingKind::few_points, Severity::note);
 }
 
-TEST_F(Diagnosis, SeesARangeThatIsTooSmallAndNamesOneThatSuits) {
+TEST_F(Diagnosis, DetectsATooSmallRangeAndNamesASuitableOne) {
   range_.num_disparities = 14;
   auto found = findings(left(), right());
   finds(found, FindingKind::range_too_small, Severity::warning);
@@ -255,14 +255,14 @@ TEST_F(Diagnosis, SeesARangeThatIsTooSmallAndNamesOneThatSuits) {
   EXPECT_NE(says(found).find("match.min_disparity=3"), std::string::npos) << says(found);
 }
 
-TEST_F(Diagnosis, SeesARangeThatIsTooLarge) {
+TEST_F(Diagnosis, DetectsATooLargeRange) {
   range_.num_disparities = 256;
   const auto found = findings(left(), right());
   finds(found, FindingKind::range_too_large, Severity::note);
   EXPECT_NE(says(found).find("match.num_disparities=32"), std::string::npos) << says(found);
 }
 
-TEST_F(Diagnosis, SeesPointsBehindInfinity) {
+TEST_F(Diagnosis, DetectsPointsBeyondInfinity) {
   rig_->doffs_px = -14;
   finds(findings(left(), right()), FindingKind::behind_infinity, Severity::warning);
   rig_->doffs_px = -50;  // nothing is left before it
@@ -278,7 +278,7 @@ TEST_F(Diagnosis, MeasuresGainAndOffset) {
   finds(findings(left(), darker), FindingKind::brightness, Severity::warning);
 }
 
-TEST_F(Diagnosis, JudgesASegmentedFrameByWhatItsStagesFound) {
+TEST_F(Diagnosis, JudgesASegmentedFrameByTheResultsOfItsStages) {
   Config config = sample_.suited();
   const Frame frame = segment(sample_.pair(), rig_, config, {});
   const auto in_passing = [&](const Frame& f) { return diagnose(f, left(), right(), rig_, config, {}); };
@@ -301,7 +301,7 @@ TEST_F(Diagnosis, JudgesASegmentedFrameByWhatItsStagesFound) {
   EXPECT_NE(says(found).find("match.num_disparities=48"), std::string::npos) << says(found);
 }
 
-TEST_F(Diagnosis, SeesWhichCameraIsBlurred) {
+TEST_F(Diagnosis, DetectsWhichCameraIsBlurred) {
   const auto soft = blurred(right(), 2);
   const auto soft_left = blurred(left(), 2);
   auto found = findings(left(), soft);
@@ -360,7 +360,7 @@ TEST_F(Diagnosis, NamesBothCamerasWhereBothAreAtFault) {
   EXPECT_EQ(of(findings(left(), dim_right), FindingKind::dark).find("the levels of the right image"), 0U);
 }
 
-TEST_F(Diagnosis, SeesClippedExposure) {
+TEST_F(Diagnosis, DetectsClippedExposure) {
   const auto bright = [](View<const Gray> image) { return toned(image, 1.9, 25); };
   auto found = findings_of_both(bright);
   finds(found, FindingKind::exposure, Severity::warning);
@@ -371,13 +371,13 @@ TEST_F(Diagnosis, SeesClippedExposure) {
   EXPECT_NE(found.back().says.find("black"), std::string::npos) << found.back().says;
 }
 
-TEST_F(Diagnosis, SeesTooLittleContrast) {
+TEST_F(Diagnosis, DetectsLowContrast) {
   const auto dim = [](View<const Gray> image) { return toned(image, 0.15, 3); };
   const auto found = findings_of_both(dim);
   EXPECT_NE(names(found).find("low contrast"), std::string::npos) << names(found);
 }
 
-TEST_F(Diagnosis, SeesACalibrationInTheWrongUnits) {
+TEST_F(Diagnosis, DetectsACalibrationInTheWrongUnits) {
   const StereoRig good = *rig_;
   rig_->baseline_m = 1000 * good.baseline_m;
   finds(findings(left(), right()), FindingKind::calibration, Severity::broken);
@@ -400,14 +400,14 @@ TEST_F(Diagnosis, SuspectsABaselineInCentimetres) {
   finds(found, FindingKind::calibration, Severity::warning);
 }
 
-TEST_F(Diagnosis, SeesACalibrationOfPicturesOfAnotherSize) {
+TEST_F(Diagnosis, DetectsACalibrationForAnotherImageSize) {
   rig_->focal_px *= 2;
   rig_->cx_px *= 2;
   rig_->cy_px *= 2;
   finds(findings(left(), right()), FindingKind::calibration, Severity::broken);
 }
 
-TEST_F(Diagnosis, SurvivesTheSmallestPictures) {
+TEST_F(Diagnosis, AcceptsTheSmallestImages) {
   for (const Size size : {Size{1, 1}, Size{3, 200}, Size{200, 2}, Size{9, 9}, Size{17, 12}}) {
     const auto picture = synthetic::random_dots(size, 1);
     const auto measures = measure_pair(StereoPair::from(picture, picture), {});
@@ -433,7 +433,7 @@ TEST(FindingKinds, AreDescribedInTheirOrder) {
   }
 }
 
-TEST(United, KeepsTheWorstOfAKindAndAllFramesThatShowIt) {
+TEST(United, KeepsTheWorstOfAKindAndAllItsFrames) {
   const Finding light{FindingKind::rows, Severity::warning, 1, "light"};
   const Finding heavy{FindingKind::rows, Severity::broken, 9, "heavy"};
   const Finding large{FindingKind::range_too_large, Severity::note, 5, "large"};
@@ -500,7 +500,7 @@ class Sequence {
   std::vector<Image<Gray>> right_;
 };
 
-TEST(SynchronyOfASequence, IsSilentWhereBothCamerasRunTogether) {
+TEST(SynchronyOfASequence, HasNoFindingsForSynchronousCameras) {
   const Sequence sequence(14);
   const Synchrony measured = measure_synchrony(sequence.pairs(0), {});
   EXPECT_EQ(measured.lag(), 0);
@@ -508,7 +508,7 @@ TEST(SynchronyOfASequence, IsSilentWhereBothCamerasRunTogether) {
   EXPECT_FALSE(diagnose(measured));
 }
 
-TEST(SynchronyOfASequence, IsANoteWhereNothingTells) {
+TEST(SynchronyOfASequence, IsANoteIfUndetermined) {
   const Sequence still(14, false);
   for (const int late : {0, 1}) {
     const Synchrony measured = measure_synchrony(still.pairs(late), {});
@@ -569,7 +569,7 @@ TEST(SynchronyOfASequence, IsLostByAsManyFramesAsItSays) {
   }
 }
 
-TEST(SynchronyOfASequence, SeesACameraThatRepeatsItsPicture) {
+TEST(SynchronyOfASequence, DetectsACameraThatRepeatsItsImage) {
   const Sequence sequence(14);
   std::vector<StereoPair> pairs = sequence.pairs(0);
   pairs[5] = StereoPair::from(pairs[5].left(), pairs[4].right());

@@ -77,7 +77,7 @@ TEST(DisparityErrors, OfTwoFramesAddUpToThatOfBothTogether) {
   EXPECT_DOUBLE_EQ(sum.sigma_px(), whole.sigma_px());
 }
 
-TEST(DisparityErrors, OfNothingAreNotANumberRatherThanZero) {
+TEST(DisparityErrors, OfNoPixelsAreNaN) {
   const Image<float> truth = row({kHole});
   const Image<float> ours = row({5});
   const DisparityErrors e = disparity_errors(ours, truth, {}, 0);

@@ -85,7 +85,7 @@ TEST_F(DisparityFiles, PngWritesHolesAs0AndATrue0As1) {
   EXPECT_TRUE(std::isnan(read(3, 0)));
 }
 
-TEST_F(DisparityFiles, PngRefusesWhat16BitsCannotHoldAndNamesTheWayOut) {
+TEST_F(DisparityFiles, PngRefusesWhat16BitsCannotHoldAndSuggestsPfm) {
   const fs::path path = folder_.path() / "d.png";
   for (const float value : {-0.25F, 256.0F, 255.9999F, 1e9F, -1e-6F}) {
     const Image<float> one = map({{1.0F, value}});
@@ -97,7 +97,7 @@ TEST_F(DisparityFiles, PngRefusesWhat16BitsCannotHoldAndNamesTheWayOut) {
   EXPECT_TRUE(io::png_can_hold(fine));
 }
 
-TEST_F(DisparityFiles, TheSearchRangeTellsWhetherPngWillDo) {
+TEST_F(DisparityFiles, TheSearchRangeDecidesWhetherPngSuffices) {
   EXPECT_TRUE(io::png_can_hold(0, 256));
   EXPECT_FALSE(io::png_can_hold(0, 257));
   EXPECT_FALSE(io::png_can_hold(1, 256));
@@ -135,7 +135,7 @@ TEST_F(DisparityFiles, PfmHolesAreReadFromNanAndBothInfinities) {
   for (int x = 0; x < 3; ++x) EXPECT_TRUE(std::isnan(read(x, 0)));
 }
 
-TEST_F(DisparityFiles, RefusesAPfmThatIsNotWhole) {
+TEST_F(DisparityFiles, RefusesATruncatedPfm) {
   const std::string four(16, 'x');
   EXPECT_TRUE(has(refused("d.pfm", ""), {"empty"}));
   EXPECT_TRUE(
@@ -180,7 +180,7 @@ TEST_F(DisparityFiles, AMapOfHolesIsRead) {
   EXPECT_TRUE(std::isnan(io::load_disparity(folder_.path() / "d.png")(1, 0)));
 }
 
-TEST_F(DisparityFiles, NoCutFileIsHalfRead) {
+TEST_F(DisparityFiles, NoTruncatedFileIsReadInPart) {
   save(folder_.path() / "whole.png", {{1.5F, 2.5F, 3.5F}, {4, 5, 6}});
   save(folder_.path() / "whole.pfm", {{1.5F, 2.5F, 3.5F}, {4, 5, 6}});
   const auto read = [](const fs::path& path) { io::load_disparity(path); };

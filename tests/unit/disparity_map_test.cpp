@@ -30,7 +30,7 @@ std::string refusal(const Image<float>& map) {
   return "accepted";
 }
 
-TEST(Reasons, HaveALineEachInTheirPage) {
+TEST(Reasons, HaveALineInTheirPage) {
   std::ifstream page(CAIRN_SOURCE_DIR "/docs/why_is_this_pixel_a_hole.md");
   const std::string all(std::istreambuf_iterator<char>(page), {});
   for (const auto& [name, bit] : kRejects) {
@@ -40,7 +40,7 @@ TEST(Reasons, HaveALineEachInTheirPage) {
   }
 }
 
-TEST(Combine, APixelKeepsEveryBitThatItGot) {
+TEST(Combine, APixelKeepsAllItsReasons) {
   const auto one = grid<Reject>({{2, 0, 2, 0}});
   const auto two = grid<Reject>({{4, 0, 0, 8}});
   const auto map = combine(grid<float, float>({{5, 6, 7, kNaN}}), {one, two}, {});
@@ -55,13 +55,13 @@ TEST(Combine, APixelIsAHoleExactlyWhenItWasRejected) {
   EXPECT_TRUE(std::isnan(map.disparity_px(2, 0)));
 }
 
-TEST(Combine, WithoutVerdictsOnlyTheBorderIsAHole) {
+TEST(Combine, WithoutChecksOnlyTheBorderIsAHole) {
   const auto map = combine(grid<float, float>({{kNaN, -3.5F}}), {}, {});
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{1, 0}}));
   EXPECT_EQ(map.disparity_px(1, 0), -3.5F);
 }
 
-TEST(ExternalDisparity, WhatIsNotFiniteHasNoData) {
+TEST(ExternalDisparity, NonFiniteValuesAreNoData) {
   const auto given = grid<float, float>({{1.5F, kNaN}, {kInfinity, -kInfinity}});
   const auto map = external_disparity(given, {});
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0, 128}, {128, 128}}));
@@ -69,7 +69,7 @@ TEST(ExternalDisparity, WhatIsNotFiniteHasNoData) {
   EXPECT_TRUE(std::isnan(map.disparity_px(0, 1)));
 }
 
-TEST(ExternalDisparity, RefusesAMapThatNobodyCanMeanAndSaysWhy) {
+TEST(ExternalDisparity, RefusesAnImplausibleMapWithAReason) {
   const auto beyond = grid<float, float>({{1, 2, 2048}});
   EXPECT_NE(refusal(beyond).find("2048"), std::string::npos);
   EXPECT_NE(refusal(beyond).find("(2, 0)"), std::string::npos);

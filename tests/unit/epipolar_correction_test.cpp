@@ -85,13 +85,13 @@ TEST(EpipolarOffset, KnowsARollFromAnOffset) {
   }
 }
 
-TEST(EpipolarOffset, OfAPairThatFitsIsAligned) {
+TEST(EpipolarOffset, OfAnAlignedPairIsAligned) {
   const EpipolarOffset offset = found(wall(0));
   EXPECT_EQ(offset.outcome, EpipolarOutcome::aligned);
   EXPECT_NEAR(offset.rows, 0, 0.05);
 }
 
-TEST(EpipolarOffset, IsNotLookedForWhereSwitchedOff) {
+TEST(EpipolarOffset, IsNotEstimatedIfSwitchedOff) {
   const EpipolarOffset offset = found(wall(1), -1);
   EXPECT_EQ(offset.outcome, EpipolarOutcome::off);
   EXPECT_EQ(offset.points, 0);
@@ -109,7 +109,7 @@ TEST(EpipolarOffset, NeedsTexture) {
             EpipolarOutcome::corrected);
 }
 
-TEST(EpipolarOffset, OfPicturesOfDifferentThingsIsRefused) {
+TEST(EpipolarOffset, OfImagesOfDifferentScenesIsRefused) {
   const Image<Gray> left = synthetic::random_dots(kSize, 1);
   for (std::uint32_t seed = 2; seed < 12; ++seed) {
     const Image<Gray> right = synthetic::random_dots(kSize, seed);
@@ -125,7 +125,7 @@ TEST(EpipolarOffset, BeyondTheSearchIsRefused) {
   EXPECT_NE(found(wall(7), 2).outcome, EpipolarOutcome::corrected);
 }
 
-TEST(EpipolarOffset, StandsAQuarterOfThePictureThatSaysOtherwise) {
+TEST(EpipolarOffset, ToleratesAContradictingQuarterOfTheImage) {
   Pair pair = wall(1);
   const Pair other = wall(-2);
   for (int y = 0; y < kSize.height / 4; ++y) {
@@ -146,7 +146,7 @@ TEST(EpipolarOffset, IsTheSameOnEveryNumberOfThreads) {
   }
 }
 
-TEST(EpipolarOffset, IsLookedForInPicturesOfEverySize) {
+TEST(EpipolarOffset, IsEstimatedForImagesOfEverySize) {
   for (int width = 1; width <= 40; ++width) {
     for (int height = 1; height <= 40; ++height) {
       const Image<Gray> dots = synthetic::random_dots({width, height}, 3);
@@ -210,7 +210,7 @@ Quality quality(const Pair& pair, float max_rows) {
   return {valid / static_cast<double>(kSize.area()), right / valid};
 }
 
-TEST(EpipolarCorrection, GivesBackTheDisparitiesThatVibrationTook) {
+TEST(EpipolarCorrection, RestoresTheDisparitiesLostToVibration) {
   const Quality still = quality(wall(0), -1);
   for (const double rows : {0.5, 1.0, 2.0}) {
     const Quality corrected = quality(wall(rows), 4);
@@ -220,7 +220,7 @@ TEST(EpipolarCorrection, GivesBackTheDisparitiesThatVibrationTook) {
   EXPECT_LT(quality(wall(2), -1).density, still.density - 0.2);  // the loss without correction
 }
 
-TEST(EpipolarCorrection, LeavesAPairThatFitsBitForBit) {
+TEST(EpipolarCorrection, LeavesAnAlignedPairBitForBit) {
   const Pair pair = wall(0);
   EXPECT_TRUE(correct_epipolar(pair.get(), {}, {.max_rows = 4}, {}).right.empty());
   Config config;

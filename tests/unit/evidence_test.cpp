@@ -76,21 +76,21 @@ TEST(NoiseSigma, IsNotMovedByStepsAndShading) {
   }
 }
 
-TEST(NoiseSigma, IsNoneWithoutNoise) {
+TEST(NoiseSigma, IsZeroWithoutNoise) {
   const Image<Gray> plain = picture(kSize, 0, 0, [](int, int) { return 77.0; });
   const Image<Gray> ramp = picture(kSize, 0, 0, [](int x, int y) { return x + y * 0.0; });
   EXPECT_EQ(noise_sigma(plain), 0);
   EXPECT_LT(noise_sigma(ramp), 0.2);
 }
 
-TEST(NoiseSigma, IsNoneWherePicturesAreTooSmallToTell) {
+TEST(NoiseSigma, IsZeroForTooSmallImages) {
   for (const Size size : {Size{1, 1}, Size{2, 9}, Size{9, 2}, Size{1, 30}}) {
     const Image<Gray> image = grids::random_image<Gray>(size, 0, 255, 1);
     EXPECT_EQ(noise_sigma(image), 0) << text(size);
   }
 }
 
-TEST(Evidence, IsWhereTextureIsAndNowhereElse) {
+TEST(Evidence, IsFoundOnTextureOnly) {
   const Rect patch{30, 20, 50, 60};
   const Image<float> evidence = evidence_of(textured_patch(patch, 2, 1), everywhere(10));
   int textured = 0;
@@ -105,7 +105,7 @@ TEST(Evidence, IsWhereTextureIsAndNowhereElse) {
   EXPECT_GT(textured, patch.width * patch.height * 6 / 10);
 }
 
-TEST(Evidence, DoesNotBelieveDisparitySmearedOverAPlainSurface) {
+TEST(Evidence, IgnoresDisparitySmearedOverAPlainSurface) {
   const Rect patch{60, 40, 30, 30};
   const DisparityMap smeared =
       map_of(kSize, [&](int x, int y) { return inside(patch, x, y, 8) ? 24.0F : 6.0F; });
@@ -162,7 +162,7 @@ TEST(Evidence, NeedsNeighboursThatAgree) {
   EXPECT_LT(evidence_count(evidence_of(dots, scattered)), evidence_count(undisturbed) / 50);
 }
 
-TEST(Evidence, HasTheMapsOwnValuesAndNoneInItsHoles) {
+TEST(Evidence, HasTheMapsValuesAndNoneInItsHoles) {
   const Rect patch{20, 20, 60, 60};
   const DisparityMap map =
       map_of(kSize, [](int x, int y) { return x % 7 == 0 ? kNaN : 5 + 0.01F * static_cast<float>(x + y); });

@@ -262,7 +262,7 @@ int fail_each_write(const char* name, const std::function<void(const fs::path&)>
                     true});
 }
 
-TEST(WriteWithoutMemory, AFolderOfResultsIsWholeOrNotThere) {
+TEST(WriteWithoutMemory, AFolderOfResultsIsCompleteOrAbsent) {
   EXPECT_GT(fail_each_write("result",
                             [](const fs::path& path) {
                               io::write_result(path, made().left, {}, made().frame, made().provenance,
@@ -271,7 +271,7 @@ TEST(WriteWithoutMemory, AFolderOfResultsIsWholeOrNotThere) {
             100);
 }
 
-TEST(WriteWithoutMemory, DisparitiesCloudsAndPagesAreWholeOrNotThere) {
+TEST(WriteWithoutMemory, DisparitiesCloudsAndPagesAreCompleteOrAbsent) {
   EXPECT_GT(fail_each_write(
                 "d.pfm",
                 [](const fs::path& path) { io::save_disparity(path, made().frame.disparity.disparity_px); }),

@@ -31,7 +31,7 @@ void expect_near(Vec3 found, Vec3 expected) {
   EXPECT_NEAR(found.z, expected.z, 1e-5);
 }
 
-TEST(FloorFrame, SaysThePoseThatThePlaneWasMadeOf) {
+TEST(FloorFrame, RecoversThePoseOfThePlane) {
   for (const float pitch : {-10.0F, 0.0F, 30.0F, 85.0F}) {
     for (const float roll : {-8.0F, 0.0F, 12.0F}) {
       const auto frame = floor_frame(from_pose(1.2F, pitch, roll), kRig);
@@ -50,7 +50,7 @@ TEST(FloorFrame, OfALevelCameraIsTurnedAndLifted) {
   expect_near(frame->to_floor({0.2F, 0.5F, 3}), {3, -0.2F, 0});  // on the floor, to the right of the middle
 }
 
-TEST(FloorFrame, PutsWhatThePlaneShowsOnTheFloor) {
+TEST(FloorFrame, PutsPointsOfThePlaneOnTheFloor) {
   const GroundPlane plane = from_pose(0.9F, 20, 5);
   const auto frame = floor_frame(plane, kRig);
   ASSERT_TRUE(frame);
@@ -62,7 +62,7 @@ TEST(FloorFrame, PutsWhatThePlaneShowsOnTheFloor) {
   }
 }
 
-TEST(FloorFrame, GoesThereAndBackAgain) {
+TEST(FloorFrame, RoundTripsPoints) {
   const auto frame = floor_frame(from_pose(0.9F, 20, 5), kRig);
   ASSERT_TRUE(frame);
   const Vec3 point{0.3F, -0.4F, 2};
@@ -74,7 +74,7 @@ TEST(FloorFrame, GoesThereAndBackAgain) {
   expect_near(by_matrix, frame->to_floor(point));
 }
 
-TEST(FloorFrame, OfACameraThatLooksStraightDownHasThePicturesTopInFront) {
+TEST(FloorFrame, OfADownwardCameraHasTheImagesTopInFront) {
   // d + doffs = 0.1 · 300 / 2 everywhere.
   const auto frame = floor_frame({0, 0.001F, 12}, kRig);
   ASSERT_TRUE(frame);
@@ -83,7 +83,7 @@ TEST(FloorFrame, OfACameraThatLooksStraightDownHasThePicturesTopInFront) {
   EXPECT_NEAR(above_the_middle.x, 0.5, 0.05);
 }
 
-TEST(FloorFrame, ThereIsNoneForAPlaneAboveTheCamera) {
+TEST(FloorFrame, IsUndefinedForAPlaneAboveTheCamera) {
   EXPECT_FALSE(floor_frame({0, -0.1F, 20}, kRig));
   EXPECT_FALSE(floor_frame({0, 0, 5}, kRig));
 }

@@ -84,7 +84,7 @@ FollowPageHead head(const std::string& title = "frames") {
   return {title, kSize, StereoRig{.focal_px = 200, .cx_px = 20, .cy_px = 14, .baseline_m = 0.1F}};
 }
 
-TEST(FollowPage, EachPixelNamesItsTrackByThePlaceInTheList) {
+TEST(FollowPage, EachPixelHasItsTracksIndexInTheList) {
   const Scene scene;
   const EncodedFrame encoded = scene.encoded();
   const Json maps = Json::parse(encoded.maps), facts = Json::parse(encoded.facts);
@@ -99,7 +99,7 @@ TEST(FollowPage, EachPixelNamesItsTrackByThePlaceInTheList) {
   }
 }
 
-TEST(FollowPage, ThePictureIsTheLeftOne) {
+TEST(FollowPage, TheImageIsTheLeftOne) {
   const Scene scene;
   const std::string uri = Json::parse(scene.encoded().maps).at("left");
   const std::string start = "data:image/jpeg;base64,";
@@ -109,7 +109,7 @@ TEST(FollowPage, ThePictureIsTheLeftOne) {
   EXPECT_NEAR(raster.row<std::uint8_t>(5)[5], 90, 3);
 }
 
-TEST(FollowPage, FactsAreTheLineOfTheFileWithoutMasks) {
+TEST(FollowPage, FactsEqualTheLineOfTheFileWithoutMasks) {
   const Json facts = Json::parse(Scene().encoded().facts);
   EXPECT_EQ(facts.at("frame"), 4);
   EXPECT_EQ(facts.at("stamp_ns"), 1'700'000'000'250'000'000);
@@ -123,7 +123,7 @@ TEST(FollowPage, FactsAreTheLineOfTheFileWithoutMasks) {
   EXPECT_EQ(facts.at("tracks").at(2).at("moving"), true);
 }
 
-TEST(FollowPage, ANameIsPlacedInsideOfEachTrackThatIsSeen) {
+TEST(FollowPage, ANameIsPlacedInsideEachVisibleTrack) {
   const Scene scene;
   const Json facts = Json::parse(scene.encoded().facts);
   ASSERT_EQ(facts.at("marks").size(), 2U);
@@ -139,7 +139,7 @@ TEST(FollowPage, OfTwoTracksInOneObjectTheOneWithoutPixelsHasNoName) {
   EXPECT_EQ(Json::parse(scene.encoded().facts).at("marks").size(), 2U);
 }
 
-TEST(FollowPage, TellsWhereTheOdometryLiesInTheMap) {
+TEST(FollowPage, ContainsTheTransformOfTheOdometryInTheMap) {
   const Scene scene;
   Landmarked marked;
   marked.state.located.map_from_odom = rotation_about({0, 0, 0.5});
@@ -152,7 +152,7 @@ TEST(FollowPage, TellsWhereTheOdometryLiesInTheMap) {
   EXPECT_TRUE(place().is_null());
 }
 
-TEST(FollowPage, WhatIsNotKnownIsNull) {
+TEST(FollowPage, UnknownValuesAreNull) {
   Scene scene;
   scene.step.is_lost = true;
   scene.step.tracks.list[0].has_place = false;
@@ -162,7 +162,7 @@ TEST(FollowPage, WhatIsNotKnownIsNull) {
   EXPECT_TRUE(facts.at("tracks").at(2).at("position_m").is_array());
 }
 
-TEST(FollowPage, IsOnePageThatNeedsNothingElse) {
+TEST(FollowPage, IsASelfContainedPage) {
   const support::TemporaryFolder folder;
   const fs::path file = folder.path() / "follow.html";
   const Scene scene;
@@ -200,7 +200,7 @@ TEST(FollowPage, IsOnePageThatNeedsNothingElse) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator{}), 1);
 }
 
-TEST(FollowPage, OneThatIsNotFinishedLeavesTheOldOneAndNoTrace) {
+TEST(FollowPage, AnUnfinishedPageLeavesTheOldOneAndNoTrace) {
   const support::TemporaryFolder folder;
   const fs::path file = folder.with("follow.html", "old");
   {
@@ -211,7 +211,7 @@ TEST(FollowPage, OneThatIsNotFinishedLeavesTheOldOneAndNoTrace) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator{}), 1);
 }
 
-TEST(FollowPage, BearsAnyName) {
+TEST(FollowPage, EscapesAnyName) {
   const support::TemporaryFolder folder;
   for (const std::string& name :
        {std::string("</script><script>alert(1)</script>"), std::string("<!--<script>"),
@@ -235,7 +235,7 @@ TEST(FollowPage, WithoutARigThereIsNoneInThePage) {
   EXPECT_TRUE(Json::parse(block(bytes_of(folder.path() / "follow.html"), "run")).at("rig").is_null());
 }
 
-TEST(FollowPage, AFolderThatIsNotThereIsNamed) {
+TEST(FollowPage, AMissingFolderIsNamed) {
   const support::TemporaryFolder folder;
   const std::string message =
       support::refusal([&] { FollowPage(folder.path() / "none" / "follow.html", head()); });

@@ -30,7 +30,7 @@ std::string refused(Follower& follower, const StereoPair& pair, Stamp stamp) {
   return "";
 }
 
-TEST(Follower, AStandingCameraSeesStandingThingsWithSteadyIds) {
+TEST(Follower, AStaticCameraGivesStaticObjectsStableIds) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
   const Step first = follower.next(sample.pair(), frame_stamp(1));
@@ -59,7 +59,7 @@ TEST(Follower, AStandingCameraSeesStandingThingsWithSteadyIds) {
   }
 }
 
-TEST(Follower, TakesAGivenPoseAsItIs) {
+TEST(Follower, UsesAGivenPoseUnchanged) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
   Pose pose;
@@ -73,7 +73,7 @@ TEST(Follower, TakesAGivenPoseAsItIs) {
   EXPECT_FALSE(step.is_lost);
 }
 
-TEST(Follower, GoesOnByItselfFromTheLastGivenPose) {
+TEST(Follower, ContinuesFromTheLastGivenPose) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
   Pose pose;
@@ -99,7 +99,7 @@ TEST(Follower, FindsItsTracksAgainAfterAPause) {
     EXPECT_EQ(after.tracks.list[i].id, before.tracks.list[i].id);
 }
 
-TEST(Follower, DoesNotKnowItsPlaceAfterAPauseThatEndsInTheDark) {
+TEST(Follower, IsLostAfterAPauseThatEndsInTheDark) {
   const samples::Sample sample = samples::load("four_in_a_row");
   const Image<Gray> black(sample.pair().size(), Gray{0}, {});
   for (const bool has_gap : {false, true}) {
@@ -112,7 +112,7 @@ TEST(Follower, DoesNotKnowItsPlaceAfterAPauseThatEndsInTheDark) {
   }
 }
 
-TEST(Follower, RefusesStampsThatDoNotRise) {
+TEST(Follower, RefusesStampsThatDoNotIncrease) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
   follower.next(sample.pair(), frame_stamp(2));
@@ -122,7 +122,7 @@ TEST(Follower, RefusesStampsThatDoNotRise) {
   EXPECT_EQ(follower.next(sample.pair(), frame_stamp(3)).index, 1);  // and continues
 }
 
-TEST(Follower, RefusesAPictureOfAnotherSize) {
+TEST(Follower, RefusesAnImageOfAnotherSize) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
   follower.next(sample.pair(), frame_stamp(1));
@@ -131,14 +131,14 @@ TEST(Follower, RefusesAPictureOfAnotherSize) {
             std::string::npos);
 }
 
-TEST(Follower, RefusesARigThatCannotBe) {
+TEST(Follower, RefusesAnImpossibleRig) {
   EXPECT_THROW(Follower({}, StereoRig{}), Error);
   FollowConfig config;
   config.tracking.low_confidence = 0.9F;
   EXPECT_THROW(Follower{config}, Error);
 }
 
-TEST(Follower, FollowsACameraThatSeesNoObjects) {
+TEST(Follower, FollowsACameraWithoutObjects) {
   const samples::Sample sample = samples::load("four_in_a_row");
   FollowConfig config = config_for(sample);
   config.segmentation.objects.min_area = 100;  // % of the image
@@ -151,7 +151,7 @@ TEST(Follower, FollowsACameraThatSeesNoObjects) {
   }
 }
 
-TEST(Follower, WithoutARigThereAreIdsButNoPlaces) {
+TEST(Follower, WithoutARigThereAreIdsButNoPositions) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample));
   std::vector<TrackId> first;

@@ -27,7 +27,7 @@ double mean_difference(const DrawnPair& drawn, float shift_px) {
   return sum / count;
 }
 
-TEST(DrawnPair, ShowsTheSamePointWhereItsDisparitySays) {
+TEST(DrawnPair, HasCorrespondingPointsAtTheTrueDisparity) {
   const DrawnPair drawn = draw_pair({320, 240}, 40);
   EXPECT_LT(mean_difference(drawn, 0), 0.6 * mean_difference(drawn, 2));
   EXPECT_LT(mean_difference(drawn, 0), 0.6 * mean_difference(drawn, -2));
@@ -48,7 +48,7 @@ TEST(DrawnPair, HidesTheWallOnOneSideOfABoxOnly) {
   EXPECT_GT(left_of_a_step, hidden * 95 / 100);
 }
 
-TEST(DrawnPair, DisparitiesEndWhereTheyAreAskedTo) {
+TEST(DrawnPair, DisparitiesSpanTheRequestedRange) {
   const DrawnPair drawn = draw_pair({160, 120}, 24);
   float most = 0;
   for (int y = 0; y < 120; ++y) {
@@ -78,7 +78,7 @@ TEST(FrameTimes, CountsFramesAndAddsUpStages) {
   }
 }
 
-TEST(FrameTimes, OneFrameIsEnoughWhereOneIsAskedFor) {
+TEST(FrameTimes, OneFrameIsEnoughIfOneIsRequested) {
   const DrawnPair drawn = draw_pair({96, 72}, 10);
   Config config;
   config.match.num_disparities = 16;

@@ -48,7 +48,7 @@ TEST(Fuse, GivesAnEvenOverlapToTheNearerRegion) {
   EXPECT_EQ(fuse(by_intensity, segmentation({{0, 1}}, {5, 5}), {}).disparity_region, (Ids{0_id}));
 }
 
-TEST(Fuse, LeavesOutDisparityRegionsThatNobodyChose) {
+TEST(Fuse, IgnoresDisparityRegionsWithoutPartners) {
   const Segmentation by_intensity = segmentation({{0, 0, 0, 1}}, {0, 0});
   const Segmentation by_disparity = segmentation({{0, 0, 1, 2}}, {4, 9, 7});
   const Fusion fusion = fuse(by_intensity, by_disparity, {});
@@ -56,14 +56,14 @@ TEST(Fuse, LeavesOutDisparityRegionsThatNobodyChose) {
   EXPECT_EQ(numbers(fusion.labels), (Rows{{0, 0, 0, 1}}));
 }
 
-TEST(Fuse, SaysWhichFusedRegionIsTheFloor) {
+TEST(Fuse, MarksTheFusedRegionThatIsTheFloor) {
   const Segmentation by_intensity = segmentation({{0, 0, 0, 1}}, {0, 0});
   Segmentation by_disparity = segmentation({{0, 0, 1, 2}}, {4, 9, 7});
   by_disparity.regions[2].is_floor = true;
   EXPECT_EQ(fuse(by_intensity, by_disparity, {}).is_floor, (std::vector<bool>{false, true}));
 }
 
-TEST(Fuse, AddsUpAnOverlapThatComesInPieces) {
+TEST(Fuse, SumsAnOverlapInPieces) {
   const Segmentation by_intensity = segmentation({{0, 0, 0, 0, 0}}, {0});
   const Segmentation by_disparity = segmentation({{0, 1, 0, 1, 0}}, {4, 9});
   EXPECT_EQ(fuse(by_intensity, by_disparity, {}).disparity_region, (Ids{0_id}));

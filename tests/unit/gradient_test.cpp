@@ -19,12 +19,12 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kHole = kHole16;
 constexpr int kTop = kHoleGradient;
 
-TEST(Gradient, IsTheDifferenceOfTheTwoNeighboursBesideAStep) {
+TEST(Gradient, IsTheDifferenceOfTheNeighboursAtAStep) {
   const Image<Gray> image = grid<Gray>({{10, 10, 30, 30}, {10, 10, 30, 30}});
   EXPECT_EQ(numbers(gradient(image, 0, {})), (Rows{{0, 20, 20, 0}, {0, 20, 20, 0}}));
 }
 
-TEST(Gradient, JoinsBothDirectionsAsALength) {
+TEST(Gradient, IsTheLengthOverBothDirections) {
   const Image<Gray> image = grid<Gray>({{0, 0, 0}, {0, 0, 30}, {0, 40, 0}});
   EXPECT_EQ(gradient(image, 0, {})(1, 1), 50);
 }
@@ -68,17 +68,17 @@ TEST(Quantised, KeepsHolesAsHoles) {
   EXPECT_EQ(numbers(quantised(map, {})), (Rows{{16, kHole}}));
 }
 
-TEST(DisparityGradient, DoesNotSeeAStepAcrossAHole) {
+TEST(DisparityGradient, IgnoresAStepAcrossAHole) {
   const Image<std::int16_t> map = grid<std::int16_t>({{100, kHole, 300, 300, 340}});
   EXPECT_EQ(numbers(gradient(map, 0, {})), (Rows{{0, kTop, 0, 40, 40}}));
 }
 
-TEST(DisparityGradient, TellsNoSlopeSteeperThanItsCap) {
+TEST(DisparityGradient, IsLimitedByItsCap) {
   const Image<std::int16_t> map = grid<std::int16_t>({{-32752, 0, 32752}});
   EXPECT_EQ(numbers(gradient(map, 0, {})), (Rows{{kSteepest16, kSteepest16, kSteepest16}}));
 }
 
-TEST(DisparityGradient, SmoothingDoesNotMixHolesIn) {
+TEST(DisparityGradient, SmoothingIgnoresHoles) {
   Image<std::int16_t> map(Size{15, 9}, std::int16_t{800}, {});
   map(7, 4) = kHole16;
   map(0, 0) = kHole16;

@@ -25,12 +25,12 @@ Image<std::uint16_t> levelled(double threshold) {
   return gradient;
 }
 
-TEST(GradientThreshold, WhatIsBelowItCountsAsNothing) {
+TEST(GradientThreshold, GradientsBelowItAreZero) {
   EXPECT_EQ(numbers(levelled(2)),
             (Rows{{0, 0, 0, 9, 0, 0, 0}, {0, 0, 0, 9, 0, 0, 0}, {0, 0, 0, 8, 0, 2, 0}}));
 }
 
-TEST(GradientThreshold, MayLieBetweenTwoGradients) {
+TEST(GradientThreshold, MayBeBetweenTwoGradients) {
   EXPECT_EQ(numbers(levelled(1.5)), numbers(levelled(2)));
   EXPECT_EQ(numbers(levelled(8.1)),
             (Rows{{0, 0, 0, 9, 0, 0, 0}, {0, 0, 0, 9, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0}}));

@@ -84,7 +84,7 @@ TEST_P(GroundFrames, AreWithinHalfAPixelButForTwo) {
 }
 
 /// Floors of which a hundredth to a fifth of the pixels have a disparity of their own.
-TEST(MirrorFloors, AreFoundByWhatTheyMirror) {
+TEST(MirrorFloors, AreFoundByTheirReflections) {
   for (const char* frame : {"train_s17", "train_s84", "train_s116"}) {
     const auto folder = rendered().parent_path() / "train" / "320x240" / frame;
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;

@@ -59,7 +59,7 @@ TEST(GroundFromPoints, ManyPairsAverageTheirErrors) {
   expect_floor(ground_from_points(list), 4e-3);
 }
 
-TEST(GroundFromPoints, WrongPairsAreLeftOut) {
+TEST(GroundFromPoints, WrongPairsAreRejected) {
   for (const int count : {6, 8, 12}) {
     auto list = pairs(count);
     list[1].x_right += 40;
@@ -68,14 +68,14 @@ TEST(GroundFromPoints, WrongPairsAreLeftOut) {
   }
 }
 
-TEST(GroundFromPoints, WrongPairsOfManyAreLeftOut) {
+TEST(GroundFromPoints, WrongPairsOfManyAreRejected) {
   std::vector<PointPair> list;
   for (int i = 0; i < 40; ++i) list.push_back(pair_at(20 + 37 * i % 280, 120 + 53 * i % 110));
   for (std::size_t i = 0; i < list.size(); i += 3) list[i].x_right += i % 2 == 0 ? 30.0F : -20.0F;
   expect_floor(ground_from_points(list), 1e-5);
 }
 
-TEST(GroundFromPoints, OfFivePairsTheOneThatLiesOnNoCommonPlaneIsLeftOut) {
+TEST(GroundFromPoints, OfFivePairsTheOutlierIsRejected) {
   for (std::size_t wrong = 0; wrong < 5; ++wrong) {
     auto list = pairs(5);
     list[wrong].x_right += 15;
@@ -83,7 +83,7 @@ TEST(GroundFromPoints, OfFivePairsTheOneThatLiesOnNoCommonPlaneIsLeftOut) {
   }
 }
 
-TEST(GroundFromPoints, APairThatIsNotInOneRowIsLeftOut) {
+TEST(GroundFromPoints, APairNotInOneRowIsRejected) {
   auto list = pairs(8);
   list[2].y_right += 5;
   list[2].x_right += 1;
@@ -103,7 +103,7 @@ TEST(GroundFromPoints, ExactPairsGiveThePlane) {
   }
 }
 
-TEST(GroundFromPoints, TheResidualTellsHowWellThePairsAgree) {
+TEST(GroundFromPoints, TheResidualMeasuresTheAgreementOfThePairs) {
   auto list = pairs(12);
   for (std::size_t i = 0; i < list.size(); ++i) list[i].x_right += i % 3 == 0 ? 0.6F : -0.3F;
   const Ground ground = ground_from_points(list);
@@ -111,7 +111,7 @@ TEST(GroundFromPoints, TheResidualTellsHowWellThePairsAgree) {
   EXPECT_LT(ground.residual_px, 0.7F);
 }
 
-TEST(GroundFromPoints, RefusesWhatDeterminesNoPlaneAndSaysWhy) {
+TEST(GroundFromPoints, RefusesDegeneratePointsWithAReason) {
   EXPECT_NE(complaint(pairs(3)).find("found 3"), std::string::npos);
   EXPECT_NE(complaint({}).find("ground_points"), std::string::npos);
 

@@ -143,11 +143,11 @@ TEST(GroundAutomatic, FindsAFloorThatShowsMoreMirrorImagesThanItself) {
   for (std::uint32_t seed = 1; seed <= 5; ++seed) EXPECT_FINDS(of_mirror_images(1, seed), 0.25F);
 }
 
-TEST(GroundAutomatic, FindsAFloorThatMirrorsInALargePictureToo) {
+TEST(GroundAutomatic, FindsAMirroringFloorInALargeImageToo) {
   EXPECT_FINDS(of_mirror_images(3, 1), 0.25F);
 }
 
-TEST(GroundAutomatic, TakesWhatIsBelowAPlaneForNoMirrorImageOfSomethingUnseen) {
+TEST(GroundAutomatic, DoesNotExplainPointsBelowAPlaneByReflectionsOfUnseenObjects) {
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     Room room = of_mirror_images(1, seed);
     room.shown = false;
@@ -155,7 +155,7 @@ TEST(GroundAutomatic, TakesWhatIsBelowAPlaneForNoMirrorImageOfSomethingUnseen) {
   }
 }
 
-TEST(GroundAutomatic, FindsAFloorWithFewMatchesBesideALargeWall) {
+TEST(GroundAutomatic, FindsAFloorWithFewMatchesNextToALargeWall) {
   // Most hypotheses are on the wall; if it were tried repeatedly, none would be left for the floor.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Room room{.wall_px = 5, .floor_density = 0.2, .wrong = 0.02, .seed = seed};
@@ -169,7 +169,7 @@ TEST(GroundAutomatic, FindsAFloorWithFewMatches) {
   EXPECT_FINDS(room, 0.75F);
 }
 
-TEST(GroundAutomatic, FindsAFloorWhereAThirdOfTheMatchesIsWrong) {
+TEST(GroundAutomatic, FindsAFloorIfAThirdOfTheMatchesIsWrong) {
   const Room room{.wrong = 0.33};
   EXPECT_FINDS(room, 0.3F);
 }
@@ -204,7 +204,7 @@ TEST(GroundAutomatic, ABoxsLidIsNoFloorWhenThereIsOneBelow) {
   EXPECT_LT(error(ground, {.floor = floor}), 0.5F);
 }
 
-TEST(GroundAutomatic, ASlantedBoardWithMoreBehindItThanOnItIsNoFloor) {
+TEST(GroundAutomatic, ASlantedBoardWithMorePointsBehindThanOnItIsNoFloor) {
   DisparityMap map = matches_of({.floor = {}, .wall_px = 2, .wrong = 0.02});
   for (int y = 70; y < 200; ++y) {
     for (int x = 60; x < 270; ++x) map.disparity_px(x, y) += 6 + 0.08F * static_cast<float>(y);
@@ -239,7 +239,7 @@ TEST(GroundAutomatic, AWallIsNoFloor) {
   }
 }
 
-TEST(GroundAutomatic, FurnitureBeforeAWallIsNoFloor) {
+TEST(GroundAutomatic, FurnitureInFrontOfAWallIsNoFloor) {
   // Nearer objects are lower in the image, so a slanted plane fits across them.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Room room{
@@ -268,7 +268,7 @@ TEST(GroundAutomatic, AnyImageSizeIsSafe) {
   }
 }
 
-TEST(GroundAutomatic, TheSameForAnyNumberOfThreads) {
+TEST(GroundAutomatic, IsTheSameForAnyNumberOfThreads) {
   const Room room{.boxes = kFurniture, .mirror = true, .seed = 7};
   const Ground one = found_in(room, 1);
   for (const int threads : {2, 3}) {
@@ -281,7 +281,7 @@ TEST(GroundAutomatic, TheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(GroundAutomatic, DisparitiesMayBeCountedFromAnotherOrigin) {
+TEST(GroundAutomatic, DisparitiesMayHaveAnotherOrigin) {
   // With doffs, infinity has disparity −doffs: the same room with every disparity 20 px smaller.
   const Room room{.boxes = kFurniture};
   DisparityMap map = matches_of(room);
@@ -380,7 +380,7 @@ TEST(GroundFromPose, AgreesWithARenderedCamera) {
   }
 }
 
-TEST(LikelyGround, IsTheGroundWhereThereIsOne) {
+TEST(LikelyGround, IsTheFittedGroundIfThereIsOne) {
   const DisparityMap map = matches_of({.boxes = kFurniture});
   const Ground given{GroundPlane{0.1F, 0.2F, 3}, 0.4F, 0.5F, Refusal::none};
   for (const GroundSource source : {GroundSource::automatic, GroundSource::points}) {
@@ -393,7 +393,7 @@ TEST(LikelyGround, IsTheGroundWhereThereIsOne) {
   }
 }
 
-TEST(LikelyGround, IsThatOfAllDisparitiesWhereEvidenceIsWanting) {
+TEST(LikelyGround, UsesAllDisparitiesIfTooFewAreTextured) {
   const Room room{.boxes = kFurniture};
   const DisparityMap map = matches_of(room);
   const Image<float> nothing(room.size, kNaN, {});
@@ -404,7 +404,7 @@ TEST(LikelyGround, IsThatOfAllDisparitiesWhereEvidenceIsWanting) {
   EXPECT_LT(error(likely, room), 0.25F);
 }
 
-TEST(LikelyGround, IsNoneWhereNoneIsWantedOrNoneIsSeen) {
+TEST(LikelyGround, IsNoneIfDisabledOrInvisible) {
   const DisparityMap floor = matches_of({.boxes = kFurniture});
   const Ground off{{}, 0, 0, Refusal::off};
   GroundConfig config;
@@ -440,14 +440,14 @@ DisparityMap column(std::initializer_list<std::initializer_list<float>> rows) {
   return map;
 }
 
-TEST(BelowGround, RejectsWhatIsFartherThanTheFloorByMoreThanTheMargin) {
+TEST(BelowGround, RejectsMatchesBeyondTheFloorByMoreThanTheMargin) {
   const auto map = reject_below_ground(column({{-9}, {-9}, {-9}, {1}, {2.9F}}), kFloorFromRow2, {}, {}, {});
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0}, {0}, {0}, {0}, {32}}));
   EXPECT_TRUE(std::isnan(map.disparity_px(0, 4)));
   EXPECT_EQ(map.disparity_px(0, 3), 1.0F);
 }
 
-TEST(BelowGround, TheHorizonLiesWhereTheFloorIsAtInfinity) {
+TEST(BelowGround, TheHorizonIsWhereTheFloorIsAtInfinity) {
   const StereoRig rig{100, 0, 0, 0.1F,
                       3};  // infinity has disparity −3: the horizon moves up by more than a row
   const auto map = reject_below_ground(column({{-9}, {-9}, {-9}, {1}, {4}}), kFloorFromRow2, rig, {}, {});
@@ -485,11 +485,11 @@ TEST(BelowGround, KeepsASurfaceSeenPastTheEdge) {
   EXPECT_EQ(below_ground(table_before_a_floor(40, 0.05F)), 0);
 }
 
-TEST(BelowGround, RejectsWhatIsTooRoughForASurface) {
+TEST(BelowGround, RejectsTooRoughSurfaces) {
   EXPECT_EQ(below_ground(table_before_a_floor(40, 0.15F)), 40 * 160);
 }
 
-TEST(BelowGround, RejectsWhatIsTooSmallForASurface) {
+TEST(BelowGround, RejectsTooSmallSurfaces) {
   EXPECT_EQ(below_ground(table_before_a_floor(2, 0)), 2 * 160);  // of the 384 px that 2 % are
   EXPECT_EQ(below_ground(table_before_a_floor(3, 0)), 0);
 }
@@ -499,7 +499,7 @@ TEST(BelowGround, WithoutGroundNothingHappens) {
   EXPECT_EQ(numbers(map.reject), (std::vector<std::vector<std::int64_t>>{{0}, {0}}));
 }
 
-TEST(FloorUnderReflections, IsWhatIsSeenWhereAMatchWasBelow) {
+TEST(FloorUnderReflections, IsTheFloorWhereMatchesWereBelowIt) {
   const auto map = reject_below_ground(column({{-9}, {-9}, {-9}, {1}, {2.9F}}), kFloorFromRow2, {}, {}, {});
   const Image<float> seen = floor_under_reflections(map, kFloorFromRow2, {});
   for (int y = 0; y < 5; ++y) {

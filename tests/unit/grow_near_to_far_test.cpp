@@ -28,7 +28,7 @@ TEST(GrowNearToFar, TriesTheCheapestArcFirst) {
   EXPECT_EQ(grow_near_to_far(given, criteria, {}), (Merges{1, 1, 1}));
 }
 
-TEST(GrowNearToFar, DoesNotTryARefusedNeighbourAgain) {
+TEST(GrowNearToFar, DoesNotRetryARefusedNeighbour) {
   // 200 refuses 175, absorbs 170, and would then admit 175 (its mean would move by 9.7, half a deviation is
   // 10.8). But it does not try again; and 175, when visited itself, refuses (its mean would move by 6.8, half
   // a deviation is 5).
@@ -38,7 +38,7 @@ TEST(GrowNearToFar, DoesNotTryARefusedNeighbourAgain) {
   EXPECT_EQ(grow_near_to_far(given, criteria, {}), (Merges{0, 1, 1}));
 }
 
-TEST(GrowNearToFar, TriesTheEarlierOfTwoArcsThatAreEqual) {
+TEST(GrowNearToFar, TriesTheEarlierOfTwoEqualArcs) {
   // 60 is visited first and refuses 50, which would move its mean by 8. Then 50 has 60 and 40 as neighbours,
   // both 10 away; absorbing one moves its mean away from the other.
   const GrowCriteria criteria{.mean_difference_max = 10, .deviation_max = 4, .sigma_min = 1};
@@ -49,7 +49,7 @@ TEST(GrowNearToFar, TriesTheEarlierOfTwoArcsThatAreEqual) {
   EXPECT_EQ(grow_near_to_far(graph({far, visited, near}), criteria, {}), (Merges{1, 1, 2}));
 }
 
-TEST(GrowNearToFar, GoesOnWithTheNeighboursOfWhatItAbsorbed) {
+TEST(GrowNearToFar, ContinuesWithTheNeighboursOfAbsorbedRegions) {
   const RegionGraph given = graph({{.mean = 30}, {.mean = 29}, {.mean = 28}, {.mean = 27}});
   EXPECT_EQ(grow_near_to_far(given, kWithinFive, {}), (Merges{0, 0, 0, 0}));
 }
@@ -66,7 +66,7 @@ TEST(GrowNearToFar, KeepsTheFloorApart) {
   EXPECT_EQ(grow_near_to_far(given, kWithinFive, {}), (Merges{0, 1, 2}));
 }
 
-TEST(GrowNearToFar, GivesUnseenRegionsToTheBackground) {
+TEST(GrowNearToFar, MergesRegionsWithoutDisparityIntoTheBackground) {
   const RegionGraph given = graph({{.mean = 90}, {.is_valid = false}, {.mean = 20}});
   EXPECT_EQ(grow_near_to_far(given, kWithinFive, {}), (Merges{0, 2, 2}));
 }

@@ -15,7 +15,7 @@ RegionGraph::Node node(int mean, int pixels, int spread = 0) {
   return graph({{.mean = mean, .pixels = pixels, .spread = spread}}).nodes[0];
 }
 
-TEST(MayFuse, RefusesMeansFurtherApartThanEquationOneAllows) {
+TEST(MayFuse, RefusesMeansFurtherApartThanEquationOne) {
   const GrowCriteria criteria{.mean_difference_max = 10, .deviation_max = 100, .sigma_min = 1};
   EXPECT_TRUE(may_fuse(node(50, 10), node(60, 10), criteria));
   EXPECT_FALSE(may_fuse(node(50, 10), node(61, 10), criteria));
@@ -43,20 +43,20 @@ TEST(MayFuse, NeverAdmitsFloorOrRegionsWithoutValue) {
   EXPECT_FALSE(may_fuse(given.nodes[2], given.nodes[0], criteria));
 }
 
-TEST(GrowStatistical, FusesLikeNeighboursOnly) {
+TEST(GrowStatistical, FusesSimilarNeighboursOnly) {
   const RegionGraph given = graph({{.mean = 10}, {.mean = 11}, {.mean = 90}, {.mean = 91}, {.mean = 10}});
   const Merges merges =
       grow_statistical(given, {.mean_difference_max = 3, .deviation_max = 1, .sigma_min = 2}, {});
   EXPECT_EQ(merges, (Merges{0, 0, 2, 2, 4}));
 }
 
-TEST(GrowStatistical, ReachesNeighboursThatCameWithAFusion) {
+TEST(GrowStatistical, ReachesNeighboursGainedByAFusion) {
   const RegionGraph given = graph({{.mean = 10}, {.mean = 10}, {.mean = 10}, {.mean = 10}});
   EXPECT_EQ(grow_statistical(given, {.mean_difference_max = 1, .deviation_max = 1, .sigma_min = 1}, {}),
             (Merges{0, 0, 0, 0}));
 }
 
-TEST(GrowStatistical, ComparesWithTheMeanOfAllThatWasFused) {
+TEST(GrowStatistical, ComparesWithTheMeanOfTheFusedRegion) {
   // Each is similar to its neighbour, but the last is too far from the mean of the earlier ones.
   const RegionGraph given = graph({{.mean = 10}, {.mean = 14}, {.mean = 18}});
   EXPECT_EQ(grow_statistical(given, {.mean_difference_max = 4, .deviation_max = 100, .sigma_min = 1}, {}),
@@ -83,7 +83,7 @@ TEST(FuseSmallRegions, DecidesEqualDistancesInRasterOrder) {
   EXPECT_EQ(fuse_small_regions(given, {0, 1, 2}, 10, {}), (Merges{0, 0, 2}));
 }
 
-TEST(FuseSmallRegions, TakesTheSmallestFirstAndCountsWhatItHasBecome) {
+TEST(FuseSmallRegions, MergesTheSmallestFirstByItsCurrentSize) {
   // 2 (1 px) joins 1; together they are large enough to stay.
   const RegionGraph given =
       graph({{.mean = 30, .pixels = 50}, {.mean = 50, .pixels = 4}, {.mean = 55, .pixels = 1}});
@@ -91,7 +91,7 @@ TEST(FuseSmallRegions, TakesTheSmallestFirstAndCountsWhatItHasBecome) {
   EXPECT_EQ(fuse_small_regions(given, {0, 1, 2}, 6, {}), (Merges{0, 0, 0}));
 }
 
-TEST(FuseSmallRegions, SendsWhatNobodySawToTheFurthestNeighbour) {
+TEST(FuseSmallRegions, MergesRegionsWithoutDisparityIntoTheFarthestNeighbour) {
   const RegionGraph given =
       graph({{.mean = 90, .pixels = 50}, {.pixels = 40, .is_valid = false}, {.mean = 20, .pixels = 50}});
   EXPECT_EQ(fuse_small_regions(given, {0, 1, 2}, 0, {}), (Merges{0, 2, 2}));

@@ -68,7 +68,7 @@ int differing(View<const Gray> a, View<const Gray> b) {
   return count;
 }
 
-TEST_F(Pipelines, GiveTheVeryGreyOfTheFilesThatTheyShow) {
+TEST_F(Pipelines, GiveTheGreyLevelsOfTheirFiles) {
   for (const bool colour : {false, true}) {
     save_pair({160, 120}, colour);
     const std::string half = " ! pngdec ! imagefreeze num-buffers=3";
@@ -87,7 +87,7 @@ TEST_F(Pipelines, GiveTheVeryGreyOfTheFilesThatTheyShow) {
   }
 }
 
-TEST_F(Pipelines, AreTakenInTheFormThatTheyHave) {
+TEST_F(Pipelines, AreReadInTheirNativeFormat) {
   // The same image in every format, as far as grey is concerned: white, grey, black.
   for (const char* form : {"GRAY8", "NV12", "I420", "YV12", "NV21", "YUY2", "UYVY", "YVYU", "Y42B", "Y444",
                            "RGB",   "BGR",  "RGBx", "BGRx", "xRGB", "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"}) {
@@ -116,7 +116,7 @@ TEST_F(Pipelines, AreTakenInTheFormThatTheyHave) {
   }
 }
 
-TEST_F(Pipelines, EndWithAWordAndHaveRisingStamps) {
+TEST_F(Pipelines, EndWithAMessageAndHaveIncreasingStamps) {
   const auto source = open_sequence(
       "gst:videotestsrc is-live=true num-buffers=12 pattern=snow ! "
       "video/x-raw,format=GRAY8,width=64,height=64,framerate=60/1",
@@ -145,7 +145,7 @@ TEST_F(Pipelines, EndWithAWordAndHaveRisingStamps) {
   EXPECT_TRUE(has(source->remarks().back().what, {"the pipeline ended: after"}));
 }
 
-TEST_F(Pipelines, OfFilesGoAtThePaceOfTheirStamps) {
+TEST_F(Pipelines, OfFilesPlayAtThePaceOfTheirStamps) {
   const auto began = Clock::now();
   const auto source = open_sequence(
       "gst:videotestsrc num-buffers=10 ! video/x-raw,format=GRAY8,width=64,height=32,framerate=20/1", soon());
@@ -155,7 +155,7 @@ TEST_F(Pipelines, OfFilesGoAtThePaceOfTheirStamps) {
   EXPECT_GE(Clock::now() - began, 400ms);
 }
 
-TEST_F(Pipelines, FramesThatTheSourceNumbersAndAreMissingAreCounted) {
+TEST_F(Pipelines, CountMissingFramesByTheSourcesNumbers) {
   if (!support::has_elements({"identity"})) GTEST_SKIP() << "install gstreamer1.0-plugins-base";
   const auto source = open_sequence(
       "gst:videotestsrc is-live=true num-buffers=40 ! "
@@ -169,7 +169,7 @@ TEST_F(Pipelines, FramesThatTheSourceNumbersAndAreMissingAreCounted) {
   EXPECT_GT(source->status().dropped, 5U);
 }
 
-TEST_F(Pipelines, TwoArePairedByStamps) {
+TEST_F(Pipelines, PairTwoByStamps) {
   const char* half =
       "videotestsrc is-live=true pattern=snow ! video/x-raw,format=YUY2,width=64,height=32,framerate=30/1";
   SourceOptions options = soon();
@@ -191,7 +191,7 @@ TEST_F(Pipelines, TwoArePairedByStamps) {
   EXPECT_TRUE(has(refused(std::string("gst:") + half + " !! " + half, options), {"--layout", "found two"}));
 }
 
-TEST_F(Pipelines, ThatDoNotWorkAreRefusedInOneLine) {
+TEST_F(Pipelines, RefuseInvalidOnesInOneLine) {
   EXPECT_TRUE(has(refused("gst:"), {"empty pipeline"}));
   EXPECT_TRUE(has(refused("gst:a !! b !! c"), {"3 pipelines"}));
   EXPECT_TRUE(has(refused("gst:videotestsrc ! !"), {"cannot be created", "syntax error"}));
@@ -211,7 +211,7 @@ TEST_F(Pipelines, ThatDoNotWorkAreRefusedInOneLine) {
   EXPECT_TRUE(has(refused("http://10.0.0.1/cam"), {"souphttpsrc"}));
 }
 
-TEST_F(Pipelines, AreStoppedFromAnotherThread) {
+TEST_F(Pipelines, CanBeStoppedFromAnotherThread) {
   const auto source = open_sequence(
       "gst:videotestsrc is-live=true ! video/x-raw,format=GRAY8,width=64,height=32,framerate=1/5", soon());
   ASSERT_TRUE(source->next());
@@ -223,7 +223,7 @@ TEST_F(Pipelines, AreStoppedFromAnotherThread) {
   EXPECT_LT(Clock::now() - stopped, 200ms);
 }
 
-TEST_F(Pipelines, ThatFailAreMadeAgain) {
+TEST_F(Pipelines, AreReopenedAfterAFailure) {
   if (!support::has_elements({"identity"})) GTEST_SKIP() << "install gstreamer1.0-plugins-base";
   const auto source = open_sequence(
       "gst:videotestsrc is-live=true ! video/x-raw,format=GRAY8,width=64,height=32,framerate=100/1 ! "

@@ -132,7 +132,7 @@ TEST(HtmlPage, KeepsDisparitiesToHalfOf64thOfAPixelAndHolesAsHoles) {
               1 - holes / static_cast<double>(kSize.area()), 1e-9);
 }
 
-TEST(HtmlPage, ShowsThePicturesNearlyAsTheyAre) {
+TEST(HtmlPage, ShowsTheImagesWithSmallCodingErrors) {
   const auto grey = filled<Gray>([](int x, int y) { return static_cast<Gray>(4 * x + 3 * y); });
   const auto colour = filled<Rgb>([](int x, int y) {
     return Rgb{static_cast<std::uint8_t>(5 * x), static_cast<std::uint8_t>(6 * y), 128};
@@ -152,14 +152,14 @@ TEST(HtmlPage, ShowsThePicturesNearlyAsTheyAre) {
   }
 }
 
-TEST(HtmlPage, HasNoRightPictureWhereThereIsNone) {
+TEST(HtmlPage, HasNoRightImageIfThereIsNone) {
   const Image<Gray> grey(kSize, Gray{80}, {});
   PageFrame frame;
   frame.left = grey;
   EXPECT_EQ(Json::parse(encode_frame(frame).maps).at("right"), "");
 }
 
-TEST(HtmlPage, PutsALabelInsideOfEachObject) {
+TEST(HtmlPage, PutsALabelInsideEachObject) {
   Image<ObjectId> objects(kSize, ObjectId::none, {});
   // A ring, the middle of whose box is outside of it, and a column at the border.
   for (int y = 2; y < 20; ++y) {
@@ -177,14 +177,14 @@ TEST(HtmlPage, PutsALabelInsideOfEachObject) {
   }
 }
 
-TEST(HtmlPage, LeavesTheMasksOfObjectsJsonOut) {
+TEST(HtmlPage, OmitsTheMasksOfObjectsJson) {
   PageFrame frame;
   frame.objects_json = R"({"objects": [{"id": 1, "segmentation": {"counts": "many"}, "confidence": 0.5}]})";
   const Json facts = Json::parse(encode_frame(frame).facts);
   EXPECT_EQ(facts.at("result").at("objects").at(0), (Json{{"id", 1}, {"confidence", 0.5}}));
 }
 
-TEST(HtmlPage, IsOnePageThatNeedsNothingElse) {
+TEST(HtmlPage, IsASelfContainedPage) {
   const Image<Gray> grey(kSize, Gray{80}, {});
   PageFrame frame;
   frame.name = "one";
@@ -205,7 +205,7 @@ TEST(HtmlPage, IsOnePageThatNeedsNothingElse) {
   EXPECT_TRUE(Json::parse(support::block(page, "maps-1")).at("left").is_string());
 }
 
-TEST(HtmlPage, BearsAnyName) {
+TEST(HtmlPage, EscapesAnyName) {
   PageFrame frame;
   for (const std::string& name :
        {std::string("</script><script>alert(1)</script>"), std::string("<!--<script>"),
@@ -220,7 +220,7 @@ TEST(HtmlPage, BearsAnyName) {
   }
 }
 
-TEST(HtmlPage, TakesAFrameOfNothingAndOneOfASinglePixel) {
+TEST(HtmlPage, AcceptsAnEmptyFrameAndASinglePixel) {
   EXPECT_EQ(Json::parse(encode_frame({}).facts).at("width"), 0);
   const Image<Gray> left({1, 1}, Gray{7}, {});
   const Image<float> disparity({1, 1}, kHole, {});

@@ -58,7 +58,7 @@ class ImageFiles : public testing::Test {
 
 // ---- reading ----
 
-TEST_F(ImageFiles, GreyIsTheWeightedSumOfTheHouse) {
+TEST_F(ImageFiles, GreyIsTheLibrarysWeightedSum) {
   const io::Picture read = pnm(std::string("P6 2 1 255\n") + "\x0a\x14\x1e\xff\xff\xff");
   EXPECT_EQ(read.gray(0, 0), grey(10, 20, 30));
   EXPECT_EQ(read.gray(1, 0), 255);
@@ -109,7 +109,7 @@ TEST_F(ImageFiles, ReadsJpegGreyAndProgressiveColour) {
   EXPECT_NEAR(colour.rgb(8, 6).b, 50, 4);
 }
 
-TEST_F(ImageFiles, TheContentCountsNotTheExtension) {
+TEST_F(ImageFiles, TheFormatIsDetectedFromTheContent) {
   EXPECT_EQ(io::load_picture(folder_.with("really_a.jpg", decoded(support::kInterlacedPng))).gray.width(), 5);
 }
 
@@ -130,7 +130,7 @@ fs::path deep(const TemporaryFolder& folder, const std::string& name, const std:
   return folder.path() / name;
 }
 
-TEST_F(ImageFiles, SixteenBitsLoseTheLowOnesWhereverTheSignalStands) {
+TEST_F(ImageFiles, SixteenBitsLoseTheUnusedLowBits) {
   const auto read = [&](const std::vector<int>& values) {
     return pixels(io::load_picture(deep(folder_, "p", values)).gray);
   };
@@ -179,7 +179,7 @@ TEST_F(ImageFiles, LabelsInColourAreRefused) {
 
 // ---- writing ----
 
-TEST_F(ImageFiles, WhatIsWrittenIsReadBack) {
+TEST_F(ImageFiles, WrittenFilesAreReadBack) {
   const fs::path path = folder_.path() / "out.png";
   Image<std::uint8_t> narrow({3, 2});
   Image<std::uint16_t> wide({3, 2});
@@ -222,7 +222,7 @@ TEST_F(ImageFiles, AnEmptyImageIsNotWritten) {
 
 // ---- refusals ----
 
-TEST_F(ImageFiles, RefusesWhatIsNoPicture) {
+TEST_F(ImageFiles, RefusesFilesThatAreNotImages) {
   EXPECT_TRUE(
       has(refusal([&] { io::load_picture(folder_.path() / "none.png"); }), {"none.png", "No such file"}));
   EXPECT_TRUE(has(refusal([&] { io::load_picture(folder_.path()); }), {"is a folder"}));
@@ -267,7 +267,7 @@ TEST_F(ImageFiles, RefusesOtherKindsOfSamples) {
   EXPECT_TRUE(has(refused(std::string("MM\0*", 4)), {"is a TIFF, expected PNG", "convert"}));
 }
 
-TEST_F(ImageFiles, NoCutOrAlteredFileIsHalfReadOrPrinted) {
+TEST_F(ImageFiles, NoTruncatedOrAlteredFileIsReadInPart) {
   const auto read = [](const fs::path& path) { io::load_picture(path); };
   const auto cut = [&](std::string_view base64) {
     return survives_damage(folder_, "picture", decoded(base64), read);
@@ -282,7 +282,7 @@ TEST_F(ImageFiles, NoCutOrAlteredFileIsHalfReadOrPrinted) {
   EXPECT_EQ(survives_damage(folder_, "picture", "P6 1 2 4000\naabbccddeeff", read), 0);
 }
 
-TEST_F(ImageFiles, NoAlteredPngByteGoesUnnoticed) {
+TEST_F(ImageFiles, EveryAlteredPngByteIsDetected) {
   const std::string whole = decoded(support::kInterlacedPng);
   for (std::size_t at = 0; at < whole.size(); ++at) {
     std::string altered = whole;

@@ -56,7 +56,7 @@ TEST(LabelKernels, SumColoursUpToEachPixel) {
   }
 }
 
-TEST(LabelKernels, KeepWhatIsKnownOfAnyStretchOfARow) {
+TEST(LabelKernels, KeepThePrefixSumsOfAnyPartOfARow) {
   const std::vector<float> row = floats_with_holes();
   std::vector<float> other(row.size());
   std::iota(other.begin(), other.end(), 0.0F);

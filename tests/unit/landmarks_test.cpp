@@ -169,7 +169,7 @@ class Excursion {
   std::mt19937 random_{11};
 };
 
-TEST(Landmarks, AreTheStaticThingsOfARoomAndTheSameOnesWhenSeenAgain) {
+TEST(Landmarks, AreTheStaticObjectsOfARoomAndRecognisedLater) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const DrawnRoom room = DrawnRoom::random(seed, 10);
     Excursion run;
@@ -188,7 +188,7 @@ TEST(Landmarks, AreTheStaticThingsOfARoomAndTheSameOnesWhenSeenAgain) {
   }
 }
 
-TEST(Landmarks, AreNotMadeOfWhatWasSeenTooLittleOrFromOnePlace) {
+TEST(Landmarks, AreNotCreatedFromFewSightingsOrOneViewpoint) {
   const DrawnRoom room = DrawnRoom::random(3, 10);
   Excursion run;
   run.config.min_frames = 8;
@@ -205,7 +205,7 @@ TEST(Landmarks, AreNotMadeOfWhatWasSeenTooLittleOrFromOnePlace) {
   EXPECT_GT(sure.refusals[LandmarkRefusal::uncertain], 0);
 }
 
-TEST(Landmarks, AreReportedMovedFromWhereToWhere) {
+TEST(Landmarks, AreReportedMovedWithBothPositions) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const DrawnRoom before = DrawnRoom::random(seed, 8);
     Excursion run;
@@ -238,7 +238,7 @@ TEST(Landmarks, AreReportedMovedFromWhereToWhere) {
   }
 }
 
-TEST(Landmarks, AreReportedGoneWhenTheirPlaceIsSeenThroughAndBackWhenTheyAre) {
+TEST(Landmarks, AreReportedGoneOnceTheirPositionIsSeenEmptyAndBackLater) {
   const DrawnRoom before = DrawnRoom::random(2, 8);
   Excursion run;
   run.lap(before);
@@ -259,7 +259,7 @@ TEST(Landmarks, AreReportedGoneWhenTheirPlaceIsSeenThroughAndBackWhenTheyAre) {
   EXPECT_TRUE(changes_of(run.events).empty());
 }
 
-TEST(Landmarks, AreNeverGoneForNotBeingLookedAtNorInHoles) {
+TEST(Landmarks, AreNeverGoneOutOfViewOrInHoles) {
   const DrawnRoom before = DrawnRoom::random(2, 8);
   DrawnRoom empty;
   Excursion away;
@@ -278,7 +278,7 @@ TEST(Landmarks, AreNeverGoneForNotBeingLookedAtNorInHoles) {
   EXPECT_GE(sees.of_kind(LandmarkEventKind::gone).size(), before.things.size() - 1);
 }
 
-TEST(Landmarks, AreNeverGoneNorNewInFramesWhosePoseIsAGuess) {
+TEST(Landmarks, AreNeverGoneOrNewInFramesWithAGuessedPose) {
   const DrawnRoom before = DrawnRoom::random(2, 8);
   const auto after_darkness = [&](MotionRefusal refusal, bool suspect) {
     Excursion run;
@@ -312,7 +312,7 @@ TEST(Landmarks, AreNeverGoneNorNewInFramesWhosePoseIsAGuess) {
   EXPECT_GE(after_darkness(MotionRefusal::none, false), before.things.size() - 1);
 }
 
-TEST(Landmarks, AreNewWhereFloorHadBeenSeen) {
+TEST(Landmarks, AreNewIfTheirPositionWasSeenAsFloor) {
   DrawnRoom room = DrawnRoom::random(4, 5);
   Excursion run;
   run.lap(room);
@@ -392,7 +392,7 @@ TEST(Landmarks, CorrectAPathThatDrifts) {
   EXPECT_LT(with, 0.7 * without);
 }
 
-TEST(Landmarks, TellWhereASegmentOfOdometryLiesAndHoldItApartUntilThen) {
+TEST(Landmarks, LocaliseASegmentOfOdometryAndKeepItSeparateUntilThen) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const DrawnRoom room = DrawnRoom::random(seed, 12);
     for (const double side : {-1.0, 1.0}) {
@@ -427,7 +427,7 @@ TEST(Landmarks, TellWhereASegmentOfOdometryLiesAndHoldItApartUntilThen) {
   }
 }
 
-TEST(Landmarks, OfOnePlaceAreLeftAloneByASegmentInAnother) {
+TEST(Landmarks, OfOneRoomAreUnaffectedByASegmentInAnother) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     Excursion run;
     run.lap(DrawnRoom::random(seed, 12));
@@ -447,7 +447,7 @@ TEST(Landmarks, OfOnePlaceAreLeftAloneByASegmentInAnother) {
   }
 }
 
-TEST(Landmarks, TooFewToTellAPlaceAreGivenUpByANewSegment) {
+TEST(Landmarks, TooFewForLocalisationAreDroppedByANewSegment) {
   const DrawnRoom room = DrawnRoom::random(2, 12);
   Excursion run;
   int i = 0;
@@ -474,7 +474,7 @@ TEST(Landmarks, TooFewToTellAPlaceAreGivenUpByANewSegment) {
   EXPECT_EQ(second.state.map.list.size(), 1U);
 }
 
-TEST(Landmarks, AreAsUnsureAsThePathAfterAFewDarkFramesAndNoLonger) {
+TEST(Landmarks, HaveThePathsUncertaintyAfterAFewDarkFramesOnly) {
   const DrawnRoom room = DrawnRoom::random(1, 10);
   Excursion run;
   run.config.min_pairs = 20;  // no corrections
@@ -488,7 +488,7 @@ TEST(Landmarks, AreAsUnsureAsThePathAfterAFewDarkFramesAndNoLonger) {
   EXPECT_LT(run.state.located.covariance[0], before + 0.001);
 }
 
-TEST(Landmarks, TellWhereARunBeginsThatDoesNotKnow) {
+TEST(Landmarks, LocaliseTheStartOfARun) {
   int right = 0;
   int wrong = 0;
   int unknown = 0;
@@ -516,7 +516,7 @@ TEST(Landmarks, TellWhereARunBeginsThatDoesNotKnow) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(Landmarks, SayNotKnownWhereInAnotherRoom) {
+TEST(Landmarks, DoNotLocaliseInAnotherRoom) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Excursion first;
     first.lap(DrawnRoom::random(seed, 14));
@@ -529,7 +529,7 @@ TEST(Landmarks, SayNotKnownWhereInAnotherRoom) {
   }
 }
 
-TEST(Maps, OfOneRoomAreMergedWhereverTheyBegan) {
+TEST(Maps, OfOneRoomAreMergedWhateverTheirOrigins) {
   const DrawnRoom room = DrawnRoom::random(5, 12);
   Excursion first;
   first.lap(room);

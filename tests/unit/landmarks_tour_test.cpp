@@ -295,7 +295,7 @@ void expect_the_one_change(const Outcome& o) {
   EXPECT_GE(changes[0].frames.size(), 5U);
 }
 
-TEST_F(TourTest, ThingsSeenAgainFromElsewhereAreRecognisedAndTheOneThatWasCarriedIsMoved) {
+TEST_F(TourTest, ObjectsAreRecognisedFromElsewhereAndTheCarriedOneIsMoved) {
   double with = 0;
   double without = 0;
   for (const auto& [drift, turn] : {std::pair{0.0, 0.0}, {0.01, 1.0}, {-0.01, -1.0}}) {
@@ -312,7 +312,7 @@ TEST_F(TourTest, ThingsSeenAgainFromElsewhereAreRecognisedAndTheOneThatWasCarrie
   EXPECT_LT(with, 0.8 * without);
 }
 
-TEST_F(TourTest, FoundAndFollowedByOurselvesTheSameIsReported) {
+TEST_F(TourTest, OurOwnObjectsAndTracksGiveTheSameReport) {
   const Outcome o = follow();
   EXPECT_GE(o.map.list.size(), 7U);
   EXPECT_EQ(o.wrong, 0);
@@ -321,7 +321,7 @@ TEST_F(TourTest, FoundAndFollowedByOurselvesTheSameIsReported) {
             << o.ms_per_frame << " ms a frame\n";
 }
 
-TEST_F(TourTest, ASecondRunFindsItsPlaceWhereverItBegins) {
+TEST_F(TourTest, ASecondRunLocalisesItselfWhereverItBegins) {
   const Outcome first = drive(0, 0, {}, 0, std::nullopt, {});
   int right = 0;
   int wrong = 0;

@@ -30,7 +30,7 @@ TEST(LeftRight, RejectsPixelsHiddenFromTheRightCamera) {
             (std::vector<std::vector<std::int64_t>>{{0, kRejected, kRejected, 0, 0, 0, 0, 0}}));
 }
 
-TEST(LeftRight, VotesComeToTheSame) {
+TEST(LeftRight, VotingGivesTheSame) {
   const auto rejected = reject_inconsistent(box_before_wall(), {1.0F, LeftRightMethod::vote}, {});
   EXPECT_EQ(numbers(rejected),
             (std::vector<std::vector<std::int64_t>>{{0, kRejected, kRejected, 0, 0, 0, 0, 0}}));
@@ -44,7 +44,7 @@ TEST(LeftRight, OfEquallyCheapVotesTheSmallestDisparityCounts) {
   EXPECT_EQ(numbers(rejected), (std::vector<std::vector<std::int64_t>>{{0, 0, kRejected}}));
 }
 
-TEST(LeftRight, AllowsTheGivenDisagreementAndNoMore) {
+TEST(LeftRight, AllowsTheGivenDifferenceAndNoMore) {
   Matches matches;
   matches.best = grid<std::int16_t>({{0, 0, 0}});
   matches.best_right = grid<std::int16_t>({{-1, 2, 0}});

@@ -100,7 +100,7 @@ LiveSummary run(Camera& camera, const LiveOptions& options, Notebook& notebook) 
   return runner.run();
 }
 
-TEST(NewestSlot, GivesWhatIsLatestAndCountsWhatWasReplaced) {
+TEST(NewestSlot, GivesTheLatestAndCountsReplacedOnes) {
   NewestSlot<int> slot;
   EXPECT_EQ(slot.take(0ms), std::nullopt);
   slot.put(1);
@@ -117,7 +117,7 @@ TEST(NewestSlot, GivesWhatIsLatestAndCountsWhatWasReplaced) {
   EXPECT_TRUE(slot.is_closed());
 }
 
-TEST(NewestSlot, WhatIsReplacedMayLeaveSomethingToTheNext) {
+TEST(NewestSlot, AReplacedOneMayPassStateToTheNext) {
   NewestSlot<int> slot;
   const auto add = [](int& fresh, const int& old) { fresh += old; };
   slot.put(1, add);
@@ -126,7 +126,7 @@ TEST(NewestSlot, WhatIsReplacedMayLeaveSomethingToTheNext) {
   EXPECT_EQ(slot.take(0ms), 111);
 }
 
-TEST(Latencies, ArePercentilesOfWhatWasAdded) {
+TEST(Latencies, ArePercentilesOfTheAddedTimes) {
   Latencies all;
   EXPECT_EQ(all.percentile(0.5), 0);
   for (int ms = 1; ms <= 100; ++ms) all.add(ms);
@@ -137,7 +137,7 @@ TEST(Latencies, ArePercentilesOfWhatWasAdded) {
   EXPECT_EQ(all.max_ms(), 1e9) << "beyond the last step, but not lost";
 }
 
-TEST(Runner, EveryFrameIsWorkedOnWhereNoneMayBeDropped) {
+TEST(Runner, ProcessesEveryFrameIfNoneMayBeDropped) {
   Camera camera(12, 0ms, false);
   Notebook notebook;
   LiveOptions options;
@@ -153,7 +153,7 @@ TEST(Runner, EveryFrameIsWorkedOnWhereNoneMayBeDropped) {
   EXPECT_EQ(notebook.frames.back()->drops.at_source, 7U);
 }
 
-TEST(Runner, ANewerPairReplacesTheOneThatWaits) {
+TEST(Runner, ANewerPairReplacesTheWaitingOne) {
   Camera camera(60, 1ms, true);
   Notebook notebook;
   notebook.then = [](const LiveFrame&) { std::this_thread::sleep_for(20ms); };  // a slow robot
@@ -185,7 +185,7 @@ struct Gapped : Camera {
   }
 };
 
-TEST(Runner, AGapBeforeAPairThatIsDroppedIsOneBeforeTheNext) {
+TEST(Runner, AGapBeforeADroppedPairCountsForTheNext) {
   Gapped camera(40, 1ms, true);
   Notebook notebook;
   notebook.then = [](const LiveFrame&) { std::this_thread::sleep_for(30ms); };
@@ -228,7 +228,7 @@ TEST(Runner, FilesArePlayedAtThePaceOfTheirStamps) {
   EXPECT_GE(summary.seconds, 0.2);
 }
 
-TEST(Runner, ItEndsWithItsTimeAndWhenItIsTold) {
+TEST(Runner, EndsAfterItsTimeAndOnRequest) {
   Camera endless(1'000'000, 1ms, true);
   Notebook notebook;
   LiveOptions options;
@@ -240,7 +240,7 @@ TEST(Runner, ItEndsWithItsTimeAndWhenItIsTold) {
   EXPECT_LT(run(other, told, notebook).seconds, 5);
 }
 
-TEST(Runner, OptionsHoldFromTheNextFrameOnAndAreRefusedWhole) {
+TEST(Runner, OptionsApplyFromTheNextFrameAndAreRefusedAsAWhole) {
   Camera camera(9, 0ms, false);
   Notebook notebook;
   LiveOptions options;
@@ -268,7 +268,7 @@ TEST(Runner, OptionsHoldFromTheNextFrameOnAndAreRefusedWhole) {
   EXPECT_EQ(notebook.frames[8]->revision, 2U);
 }
 
-TEST(Runner, AFaultOfTheSourceIsThrownAfterAllSinksAreDone) {
+TEST(Runner, AnErrorOfTheSourceIsThrownAfterAllSinksAreDone) {
   struct Broken : Camera {
     using Camera::Camera;
     std::optional<io::SequenceFrame> next() override {
@@ -289,7 +289,7 @@ TEST(Runner, AFaultOfTheSourceIsThrownAfterAllSinksAreDone) {
   }
 }
 
-TEST(Looped, GoesOnWithRisingStampsAndAGapBetweenTheRounds) {
+TEST(Looped, ContinuesWithIncreasingStampsAndAGapBetweenRounds) {
   const auto source = looped([] { return std::make_unique<Camera>(3, 0ms, false); });
   Stamp before{-1};
   for (std::size_t k = 0; k < 10; ++k) {

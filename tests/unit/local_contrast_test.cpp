@@ -49,7 +49,7 @@ TEST(LocalContrast, IsItsFormulaAtAnySizeAndForAnyThreads) {
   }
 }
 
-TEST(LocalContrast, IsNoneOfAPlainImage) {
+TEST(LocalContrast, IsZeroOnAPlainImage) {
   const Image<Gray> plain({20, 20}, 200, {});
   const Image<float> contrast = local_contrast(plain, {});
   EXPECT_EQ(contrast(10, 10), 0.0F);

@@ -51,7 +51,7 @@ struct Scene {
   }
 };
 
-TEST(Locate, PlacesAnObjectInMetresWhereARigIsKnown) {
+TEST(Locate, PositionsAnObjectInMetresIfARigIsKnown) {
   // Z = 100 · 0.1 / 5 = 2 m; a pixel is 2 cm wide there. The board's middle is at (24.5, 9.5).
   const Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   EXPECT_FALSE(scene.located({}).list[0].position_in_camera_m);
@@ -95,7 +95,7 @@ TEST(Locate, FarMismatchesDoNotPullTheDistance) {
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
 }
 
-TEST(Locate, AFewWildMatchesOfOneSurfaceDoNotStretchTheExtent) {
+TEST(Locate, AFewOutliersOfOneSurfaceDoNotStretchTheExtent) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   scene.disparity.disparity_px(22, 7) = 4.5F;  // 2.22 m, connected to the rest
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, 0, 1e-5);
@@ -115,7 +115,7 @@ TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
   EXPECT_NEAR(object.position_in_camera_m->x, 2.5 * 0.02, 1e-5);
 }
 
-TEST(Locate, KeepsWhatAHoleCutsOffAtTheSameDepth) {
+TEST(Locate, KeepsPartsSeparatedByAHoleAtTheSameDepth) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   for (int y = 5; y < 15; ++y) scene.disparity.disparity_px(26, y) = kNan;
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->x, 9 * 0.02 * 10 / 9, 1e-5);
@@ -146,14 +146,14 @@ TEST(Locate, TheIntervalOfDepthIsThatOfTheDisparity) {
   EXPECT_NEAR(object.depth_interval_m->high, 10 / (5 - off), 1e-5);
 }
 
-TEST(Locate, WhatMayBeInfinitelyFarSaysSo) {
+TEST(Locate, APossiblyInfiniteDepthIsReported) {
   const Object object = Scene({60, 20}, {{{20, 5, 10, 10}, 0.05F}}).located(kRig).list[0];
   ASSERT_TRUE(object.depth_interval_m);
   EXPECT_TRUE(std::isinf(object.depth_interval_m->high));
   EXPECT_LT(object.depth_interval_m->low, object.position_in_camera_m->z);
 }
 
-TEST(Locate, IsLessSureOfWhatIsScatteredOrHardlySeen) {
+TEST(Locate, IsLessCertainOfScatteredOrSparseDisparities) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}, {{35, 5, 10, 10}, 5}, {{48, 5, 10, 10}, 5}});
   for (int y = 5; y < 15; ++y) {
     for (int x = 35; x < 45; ++x) scene.disparity.disparity_px(x, y) += 0.2F * static_cast<float>(x % 5);
@@ -364,7 +364,7 @@ Scene wall_of(int width, int height, double yaw) {
   return scene;
 }
 
-TEST(Locate, ABoxIsTurnedAsItsWallWhateverItsWidthInPixels) {
+TEST(Locate, ABoxIsAlignedWithItsFaceWhateverItsWidthInPixels) {
   for (const auto& [width, height] : {std::pair{60, 171}, {64, 128}, {64, 127}, {32, 160}}) {
     const double yaw = -1.1;
     const Object object = wall_of(width, height, yaw).located(kLarge, level_floor(1)).list[0];
@@ -374,7 +374,7 @@ TEST(Locate, ABoxIsTurnedAsItsWallWhateverItsWidthInPixels) {
   }
 }
 
-TEST(Locate, DisparitiesNearInfinityEndNoProgramAndHaveNoPlace) {
+TEST(Locate, DisparitiesNearInfinityAreHarmlessAndHaveNoPosition) {
   std::mt19937 bits(1);
   for (int round = 0; round < 30; ++round) {
     Scene scene({320, 240}, {{{100, 60, 90, 90}, 0.5F}});
@@ -409,7 +409,7 @@ TEST(Locate, AnObjectWhoseMeansAreBeyondInfinityHasNoBox) {
   EXPECT_FALSE(object.box_on_floor);
 }
 
-TEST(Locate, SaysNothingOfAnEarlierFrame) {
+TEST(Locate, KeepsNothingOfAnEarlierFrame) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   scene.objects = scene.located(kLarge, level_floor(1));
   ASSERT_TRUE(scene.objects.list[0].box_on_floor);
@@ -420,7 +420,7 @@ TEST(Locate, SaysNothingOfAnEarlierFrame) {
   EXPECT_FALSE(again.box_on_floor);
 }
 
-TEST(Locate, ABoxIsKnownBestAcrossTheView) {
+TEST(Locate, ABoxIsMostCertainAcrossTheView) {
   const Object object = scene_of({-0.6, 0.9, 0.5, 0.6}, {2.5, -0.5}).located(kLarge, level_floor(1)).list[0];
   ASSERT_TRUE(object.box_on_floor);
   const auto& [xx, xy, xz, yy, yz, zz] = object.box_on_floor->centre_covariance_m2;

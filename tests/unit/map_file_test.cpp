@@ -120,7 +120,7 @@ std::pair<int, std::string> in_a_child(const std::function<void()>& work) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), says};
 }
 
-TEST(MapFile, KeepsAllThatARunLearned) {
+TEST(MapFile, StoresEverythingThatARunLearned) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   LandmarkMap written;
@@ -250,7 +250,7 @@ TEST(MapFile, StaysSmallOverAHundredThousandFrames) {
   EXPECT_LE(fs::file_size(path), 20U << 20U);
 }
 
-TEST(MapFile, ThatIsAbsentIsRefusedForReadingAndMadeForWriting) {
+TEST(MapFile, IsRefusedForReadingIfMissingAndCreatedForWriting) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   EXPECT_TRUE(
@@ -263,7 +263,7 @@ TEST(MapFile, ThatIsAbsentIsRefusedForReadingAndMadeForWriting) {
   EXPECT_TRUE(MapFile::open(path, MapMode::read_only).load().list.empty());
 }
 
-TEST(MapFile, ThatIsReadOnlyIsRefusedForWritingAndReadAllTheSame) {
+TEST(MapFile, IsRefusedForWritingIfReadOnlyButReadable) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   {
@@ -288,7 +288,7 @@ TEST(MapFile, ThatIsReadOnlyIsRefusedForWritingAndReadAllTheSame) {
   ::chmod(folder.path().c_str(), 0755);
 }
 
-TEST(MapFile, ThatIsBeingWrittenIsRefusedToASecondWriterButNotToReaders) {
+TEST(MapFile, IsRefusedToASecondWriterButNotToReaders) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   MapFile writer = MapFile::open(path, MapMode::update);
@@ -301,7 +301,7 @@ TEST(MapFile, ThatIsBeingWrittenIsRefusedToASecondWriterButNotToReaders) {
   EXPECT_EQ(reader.load().list.size(), 2U);
 }
 
-TEST(MapFile, OnAFullDiskSaysSoAndKeepsWhatWasCommitted) {
+TEST(MapFile, ReportsAFullDiskAndKeepsCommittedData) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   {
@@ -340,7 +340,7 @@ TEST(MapFile, OfANewerCairnIsRefused) {
   EXPECT_EQ(support::bytes_of(path), bytes);
 }
 
-TEST(MapFile, ThatIsNoMapIsRefusedAndLeftAlone) {
+TEST(MapFile, IsRefusedAndUnchangedIfItIsNotAMap) {
   const TemporaryFolder folder;
   const fs::path text = folder.with("notes.db",
                                     "these are my notes, long enough to be no header of a database. "
@@ -355,7 +355,7 @@ TEST(MapFile, ThatIsNoMapIsRefusedAndLeftAlone) {
   EXPECT_TRUE(has(refusal([&] { (void)MapFile::open(path, MapMode::update); }), {"another program"}));
 }
 
-TEST(MapFile, KilledInTheMiddleOfARunIsWholeAndTheRunAborted) {
+TEST(MapFile, IsConsistentAfterAKillAndTheRunIsMarkedAborted) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   std::array<int, 2> ends{};
@@ -423,7 +423,7 @@ TEST(MapFile, SurvivesDamage) {
       kStep);
 }
 
-TEST(MapFile, ForgetsALandmarkWithAllThatWasSaidOfIt) {
+TEST(MapFile, DeletesALandmarkWithAllItsRecords) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
   MapFile file = MapFile::open(path, MapMode::update);

@@ -49,7 +49,7 @@ TEST(Match, CutsTheWindowAtTheBorder) {
   }
 }
 
-TEST(Match, SaysWhereThereIsNoCandidate) {
+TEST(Match, MarksPixelsWithoutCandidates) {
   const auto dots = synthetic::random_dots({8, 4}, 1);
   const Matches matches =
       match_windows(StereoPair::from(dots, dots),
@@ -79,7 +79,7 @@ TEST(Match, GivesTiesToTheSmallestDisparity) {
   }
 }
 
-TEST(Match, TakesNoVarianceForNoLikenessAndNoEnergyForTheWorst) {
+TEST(Match, ZeroVarianceIsNoSimilarityAndZeroEnergyTheWorst) {
   Image<Gray> black({9, 9}, Gray{0}, Pool{});
   const auto pair = StereoPair::from(black, black);
   const MatchConfig config{.window_size = 3, .num_disparities = 3};
@@ -89,7 +89,7 @@ TEST(Match, TakesNoVarianceForNoLikenessAndNoEnergyForTheWorst) {
   EXPECT_EQ(match_windows(pair, nssd, {}).cost(4, 4), 65536.0F);
 }
 
-TEST(Match, PaysOnlyForTheEvidenceThatIsAskedFor) {
+TEST(Match, ComputesOnlyTheRequestedMaps) {
   const auto dots = synthetic::random_dots({12, 5}, 1);
   const Matches matches = match_windows(StereoPair::from(dots, dots), {.maps = MatchMaps::winner}, {});
   EXPECT_EQ(matches.best.size(), (Size{12, 5}));
@@ -102,7 +102,7 @@ TEST(Match, PaysOnlyForTheEvidenceThatIsAskedFor) {
   EXPECT_TRUE(matches.cost_after.empty());
 }
 
-TEST(Match, FindsTheRowWhenTheRightCameraShook) {
+TEST(Match, FindsTheRowIfTheRightImageIsShifted) {
   const auto dots = synthetic::random_dots({60, 40}, 3);
   Image<Gray> shaken({60, 40});
   for (int y = 0; y < 40; ++y) std::copy_n(dots.row(std::max(0, y - 2)), 60, shaken.row(y));
@@ -129,7 +129,7 @@ TEST(Match, SurvivesTheSmallestImages) {
   }
 }
 
-TEST(Targets, ScalarIsAlwaysThereAndNamesGoBothWays) {
+TEST(Targets, ScalarIsAlwaysAvailableAndNamesRoundTrip) {
   const auto supported = supported_targets();
   ASSERT_FALSE(supported.empty());
   EXPECT_EQ(supported.front(), Target::scalar);

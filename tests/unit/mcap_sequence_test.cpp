@@ -93,7 +93,7 @@ TEST_F(McapSequence, PairsImagesByTheirStamps) {
   EXPECT_NE(refusal(strict).find("left image without a right one"), std::string::npos) << refusal(strict);
 }
 
-TEST_F(McapSequence, AsManyFramesAsAreAskedFor) {
+TEST_F(McapSequence, DeliversTheRequestedNumberOfFrames) {
   {
     CameraFile camera(file());
     const auto left = camera.topic<ros::Image>("/left/image_raw");
@@ -178,7 +178,7 @@ TEST_F(McapSequence, ReadsCompressedImages) {
   EXPECT_TRUE(sequence->remarks()[0].is_unusable);
 }
 
-TEST_F(McapSequence, TheGreyOfColoursThatWereRectifiedIsItsOwn) {
+TEST_F(McapSequence, RectifiedColourImagesAreConvertedAfterwards) {
   {
     CameraFile camera(file());
     const auto left = camera.topic<ros::Image>("/stereo/left/image_rect");
@@ -201,7 +201,7 @@ TEST_F(McapSequence, TheGreyOfColoursThatWereRectifiedIsItsOwn) {
   }
 }
 
-TEST_F(McapSequence, SaysWhichTopicsThereAreWhereItCannotChoose) {
+TEST_F(McapSequence, ListsTheTopicsIfAmbiguous) {
   {
     CameraFile camera(file());
     for (const char* name : {"/a/left/image_rect", "/a/right/image_rect", "/b/left/image_rect",
@@ -221,7 +221,7 @@ TEST_F(McapSequence, SaysWhichTopicsThereAreWhereItCannotChoose) {
             std::string::npos);
 }
 
-TEST_F(McapSequence, RawImagesAskToBeRectified) {
+TEST_F(McapSequence, RawImagesAreMarkedForRectification) {
   ros::CameraInfo left = info(ros::Side::left);
   left.d = {0.1, 0, 0, 0, 0};
   {
@@ -272,7 +272,7 @@ TEST_F(McapSequence, OtherRecordingsAreRefusedInOneLine) {
   EXPECT_NE(refusal().find("claims 40x1000000 pixels"), std::string::npos) << refusal();
 }
 
-TEST_F(McapSequence, AFolderOfRos2BagIsItsRecording) {
+TEST_F(McapSequence, AFolderOfRos2BagIsARecording) {
   const fs::path folder = file().parent_path();
   {
     CameraFile camera(file());
@@ -298,7 +298,7 @@ TEST_F(McapSequence, AFolderOfRos2BagIsItsRecording) {
   EXPECT_NE(refusal_of_folder().find("is not in MCAP"), std::string::npos);
 }
 
-TEST_F(McapSequence, ACutOffRecordingSaysSoAtItsEnd) {
+TEST_F(McapSequence, ATruncatedRecordingReportsSoAtItsEnd) {
   {
     CameraFile camera(file(), {.chunk_bytes = 3000, .sync = false});
     const auto left = camera.topic<ros::Image>("/left/image");

@@ -79,7 +79,7 @@ class Mcap : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Mcap, ComesBackInOrderWithAllThatIsBesideIt) {
+TEST_F(Mcap, IsReadBackInOrderWithItsMetadata) {
   for (const bool compress : {false, true}) {
     const fs::path path = numbers(100, {.chunk_bytes = 1000, .compress = compress});
     McapReader reader(path);
@@ -97,7 +97,7 @@ TEST_F(Mcap, ComesBackInOrderWithAllThatIsBesideIt) {
   }
 }
 
-TEST_F(Mcap, GivesOnlyTheChannelsThatAreAskedFor) {
+TEST_F(Mcap, GivesOnlyTheRequestedChannels) {
   McapReader reader(numbers(10, {.chunk_bytes = 300}));
   reader.only({2});
   EXPECT_EQ(read(reader), (std::vector<int>{1, 3, 5, 7, 9}));
@@ -106,14 +106,14 @@ TEST_F(Mcap, GivesOnlyTheChannelsThatAreAskedFor) {
   EXPECT_EQ(read(reader), up_to(10));
 }
 
-TEST_F(Mcap, AnEmptyRecordingIsOne) {
+TEST_F(Mcap, AnEmptyRecordingIsValid) {
   McapWriter(at("empty.mcap"), {.sync = false}).close();
   McapReader reader(at("empty.mcap"));
   EXPECT_TRUE(reader.is_whole());
   EXPECT_FALSE(reader.next());
 }
 
-TEST_F(Mcap, CutOffAnywhereItGivesAllWholeChunks) {
+TEST_F(Mcap, TruncatedAnywhereItGivesAllCompleteChunks) {
   for (const bool compress : {false, true}) {
     const std::string bytes = content(numbers(100, {.chunk_bytes = 1000, .compress = compress}));
     const auto ends = chunk_ends(bytes);
@@ -139,7 +139,7 @@ TEST_F(Mcap, CutOffAnywhereItGivesAllWholeChunks) {
   }
 }
 
-TEST_F(Mcap, DamageAnywhereIsLeftOutOrRefused) {
+TEST_F(Mcap, DamageAnywhereIsSkippedOrRefused) {
   const std::string bytes = content(numbers(60, {.chunk_bytes = 1000}));
   std::mt19937 random(3);
   for (int i = 0; i < 500; ++i) {
@@ -185,7 +185,7 @@ std::string foreign(const std::string& compression, std::uint64_t claimed, const
   return {file.bytes().begin(), file.bytes().end()};
 }
 
-TEST_F(Mcap, ClaimsBeyondReasonAreRefusedBeforeAnythingIsAllocated) {
+TEST_F(Mcap, ImplausibleSizesAreRefusedBeforeAllocation) {
   write(at("bomb.mcap"), foreign("zstd", std::uint64_t{1} << 60, Bytes(100)));
   McapReader reader(at("bomb.mcap"));
   EXPECT_FALSE(reader.next());
@@ -194,7 +194,7 @@ TEST_F(Mcap, ClaimsBeyondReasonAreRefusedBeforeAnythingIsAllocated) {
 }
 
 /// Records that refer to the same place repeatedly would take unlimited memory.
-TEST_F(Mcap, WhatIsNamedManyTimesIsReadOnce) {
+TEST_F(Mcap, AChunkIndexedRepeatedlyIsReadOnce) {
   mcap::Writer file;
   file.raw(mcap::kMagic);
   mcap::Writer header;
@@ -304,7 +304,7 @@ TEST_F(Mcap, MessagesOutsideOfChunksAreRead) {
   EXPECT_EQ(read(at("bare.mcap")), up_to(3));
 }
 
-TEST_F(Mcap, AFullDiskIsSaid) {
+TEST_F(Mcap, AFullDiskIsReported) {
   try {
     McapWriter file("/dev/full");
     FAIL();
@@ -314,7 +314,7 @@ TEST_F(Mcap, AFullDiskIsSaid) {
   EXPECT_THROW(McapWriter(at("no/such/folder/a.mcap")), Error);
 }
 
-TEST_F(Mcap, WhatFitsOnAFullDiskIsAWholeRecording) {
+TEST_F(Mcap, TheDataOnAFullDiskIsACompleteRecording) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   rlimit small = before;
@@ -334,7 +334,7 @@ TEST_F(Mcap, WhatFitsOnAFullDiskIsAWholeRecording) {
   EXPECT_EQ(reader.damaged_chunks(), 0U);
 }
 
-TEST_F(Mcap, OtherFilesAreNone) {
+TEST_F(Mcap, RefusesOtherFiles) {
   write(at("text"), "some text that is no recording");
   EXPECT_FALSE(is_mcap(at("text")));
   EXPECT_FALSE(is_mcap(at("missing")));

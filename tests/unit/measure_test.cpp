@@ -77,25 +77,25 @@ TEST(Measure, TheBackgroundIsNoObject) {
   EXPECT_EQ(objects.list[0].box_px.x, 10);
 }
 
-TEST(Measure, WhatTouchesThreeBordersIsBackground) {
+TEST(Measure, ARegionAtThreeBordersIsBackground) {
   const Scene scene({40, 20}, {{{0, 15, 40, 5}, 8}, {{0, 0, 10, 10}, 9}});
   const Objects objects = scene.measured();
   ASSERT_EQ(objects.list.size(), 1U);  // the corner touches two
   EXPECT_EQ(objects.list[0].disparity_px, 9);
 }
 
-TEST(Measure, WhatIsLargerOrSmallerThanAllowedIsNoObject) {
+TEST(Measure, ARegionOutsideTheAreaLimitsIsNoObject) {
   const Scene scene({40, 20}, {{{2, 2, 20, 12}, 8}, {{30, 2, 4, 2}, 9}});  // 30 % and 1 %
   EXPECT_EQ(scene.measured({.min_area = 1, .max_area = 30}).list.size(), 2U);
   EXPECT_EQ(scene.measured({.min_area = 1, .max_area = 29.9F}).list.size(), 1U);
   EXPECT_EQ(scene.measured({.min_area = 1.1F, .max_area = 30}).list.size(), 1U);
 }
 
-TEST(Measure, WhatHasNoDisparityIsNoObject) {
+TEST(Measure, ARegionWithoutDisparityIsNoObject) {
   EXPECT_TRUE(Scene({40, 20}, {{{2, 2, 5, 5}, kNan}}).measured().list.empty());
 }
 
-TEST(Measure, TakesTheMedianOverValidPixels) {
+TEST(Measure, UsesTheMedianOverValidPixels) {
   Scene scene({40, 20}, {{{2, 2, 2, 2}, 8}});
   scene.disparity.disparity_px(2, 2) = 100;
   scene.disparity.disparity_px(3, 2) = kNan;
@@ -127,13 +127,13 @@ TEST(Measure, FindsAnEdgeInColourThatGreyDoesNotShow) {
   EXPECT_EQ(objects.list[0].edge_share, 1);
 }
 
-TEST(Measure, SaysHowMuchOfAnOutlineThePictureCutsOff) {
+TEST(Measure, ReportsTheShareOfTheOutlineAtTheImageBorder) {
   const Objects objects = Scene({40, 20}, {{{0, 5, 4, 4}, 8}, {{10, 5, 4, 4}, 9}}).measured();
   EXPECT_EQ(objects.list[0].cut_share, 0);
   EXPECT_EQ(objects.list[1].cut_share, 0.25F);
 }
 
-TEST(Measure, IsMoreConfidentOfWhatIsLargeOutlinedAndWhole) {
+TEST(Measure, IsMoreConfidentOfLargeOutlinedCompleteObjects) {
   const auto confidence = [](Rect box, bool outlined, int holes = 0) {
     Scene scene({40, 20}, {{box, 8}});
     scene.left = Image<Gray>(Size{40, 20}, 100, {});
@@ -152,7 +152,7 @@ TEST(Measure, IsMoreConfidentOfWhatIsLargeOutlinedAndWhole) {
   EXPECT_FLOAT_EQ(confidence({10, 5, 4, 4}, true, 12), whole / 2);
 }
 
-TEST(Measure, WhatIsLessLikelyThanAskedForIsNoObjectAndTakesNoNumber) {
+TEST(Measure, ARegionBelowTheConfidenceThresholdGetsNoNumber) {
   Scene scene({40, 20}, {{{2, 2, 5, 5}, 16}, {{10, 2, 5, 5}, 8}, {{20, 2, 5, 5}, 12}, {{30, 2, 5, 5}, 4}});
   for (int y = 0; y < 20; ++y) {  // the first and the third have no outline
     for (const int x : {2, 20}) std::fill_n(scene.left.row(y) + x, 5, Gray{10});
@@ -170,14 +170,14 @@ TEST(Measure, WhatIsLessLikelyThanAskedForIsNoObjectAndTakesNoNumber) {
   EXPECT_EQ(objects.labels(32, 4), ObjectId{2});
 }
 
-TEST(Measure, WhatIsJustAsLikelyAsAskedForIsAnObject) {
+TEST(Measure, ARegionAtTheConfidenceThresholdIsAnObject) {
   const Scene scene({40, 20}, {{{2, 2, 5, 5}, 8}});
   const float confidence = scene.measured().list.at(0).confidence;
   EXPECT_EQ(scene.measured({.min_confidence = confidence}).list.size(), 1U);
   EXPECT_TRUE(scene.measured({.min_confidence = std::nextafter(confidence, 1.0F)}).list.empty());
 }
 
-TEST(Measure, TakesTheMeanColourOfTheMask) {
+TEST(Measure, UsesTheMeanColourOfTheMask) {
   Scene scene({40, 20}, {{{2, 2, 2, 1}, 8}});
   EXPECT_EQ(scene.measured().list[0].mean_colour, (Rgb{101, 101, 101}));
   Image<Rgb> rgb(Size{40, 20}, Rgb{1, 2, 3}, {});
@@ -187,7 +187,7 @@ TEST(Measure, TakesTheMeanColourOfTheMask) {
   EXPECT_EQ(objects.list[0].mean_colour, (Rgb{15, 30, 46}));
 }
 
-TEST(MeasureChosen, TakesTheScoresForConfidences) {
+TEST(MeasureChosen, UsesTheScoresAsConfidences) {
   const Objects objects =
       Scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, 16}}).measured_as_chosen({0, 0.25F, 0.5F});
   ASSERT_EQ(objects.list.size(), 2U);
@@ -199,7 +199,7 @@ TEST(MeasureChosen, TakesTheScoresForConfidences) {
   EXPECT_EQ(objects.labels(0, 0), ObjectId::none);
 }
 
-TEST(MeasureChosen, WhatScoresNothingOrHasNoDisparityIsNoObject) {
+TEST(MeasureChosen, ARegionWithoutScoreOrDisparityIsNoObject) {
   const Objects objects = Scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{10, 2, 5, 5}, kNan}, {{20, 2, 5, 5}, 4}})
                               .measured_as_chosen({0, 0, 0.9F, 0.1F});
   ASSERT_EQ(objects.list.size(), 1U);
@@ -216,7 +216,7 @@ TEST(MeasureChosen, SizeAndBordersDoNotMatter) {
   EXPECT_EQ(objects.list[1].pixel_count, 40 * 15);
 }
 
-TEST(MeasureChosen, MeasuresAllElseAsOfCandidates) {
+TEST(MeasureChosen, MeasuresEverythingElseAsForCandidates) {
   const Scene scene({40, 20}, {{{2, 2, 5, 5}, 8}, {{0, 8, 5, 9}, 16}, {{20, 2, 5, 5}, 8}});
   const Objects candidates = scene.measured({.min_area = 0, .max_area = 50});
   for (const int threads : {1, 3}) {

@@ -54,7 +54,7 @@ TEST(MergeTree, OfOneSuperpixelIsThatOne) {
   EXPECT_EQ(tree.nodes[0].area, 4);
 }
 
-TEST(MergeTree, FusesWhatIsMostAlikeFirst) {
+TEST(MergeTree, FusesTheMostSimilarFirst) {
   RegionScene scene(grid<RegionId>({{0, 1, 2, 3}, {0, 1, 2, 3}}));
   scene.paint({50, 200, 203, 40});  // only 1 and 2 are similar; merged, they differ from both others
   EXPECT_EQ(parts_of(grown(scene)), (Parts{{1, 2}, {0, 4}, {3, 5}}));
@@ -62,12 +62,12 @@ TEST(MergeTree, FusesWhatIsMostAlikeFirst) {
   EXPECT_EQ(parts_of(grown(scene)), (Parts{{2, 3}, {0, 1}, {4, 5}}));
 }
 
-TEST(MergeTree, OfEquallyLikelyContactsThatWhichTheRowsShowFirstIsNext) {
+TEST(MergeTree, EquallyLikelyContactsFollowInRasterOrder) {
   const RegionScene scene(grid<RegionId>({{0, 1, 2}, {0, 4, 4}, {3, 3, 3}}));
   EXPECT_EQ(parts_of(grown(scene)), (Parts{{0, 1}, {2, 5}, {4, 6}, {3, 7}}));
 }
 
-TEST(MergeTree, JudgesAFusedRegionByAllOfIt) {
+TEST(MergeTree, JudgesAFusedRegionAsAWhole) {
   // At first 2 is equally similar to 1 and 3, but not to the union of 0 and 1.
   RegionScene scene(grid<RegionId>({{0, 1, 2, 3}}));
   scene.paint({50, 54, 103, 152});
@@ -78,7 +78,7 @@ TEST(MergeTree, JudgesAFusedRegionByAllOfIt) {
   EXPECT_EQ(tree.nodes[6].origin.same_thing, -1);
 }
 
-TEST(MergeTree, KnowsHowItsNodesCameToBe) {
+TEST(MergeTree, RecordsTheOriginOfItsNodes) {
   RegionScene scene(grid<RegionId>({{0, 0, 0, 1, 2, 2}}));
   scene.paint({50, 54, 203});
   const MergeTree tree = grown(scene);
@@ -95,7 +95,7 @@ TEST(MergeTree, KnowsHowItsNodesCameToBe) {
   EXPECT_EQ(tree.nodes[4].features[kObjectFeatures - 2], kUnknown);
 }
 
-TEST(MergeTree, HasEveryNodeBehindItsPartsUpToTheWholeImage) {
+TEST(MergeTree, HasEveryNodeAfterItsPartsUpToTheWholeImage) {
   RegionScene scene(grids::random_image<RegionId>({13, 11}, 0, 19, 5));
   scene.gray = grids::random_image<Gray>({13, 11}, 0, 255, 6);
   ASSERT_EQ(scene.superpixels.count, 20);
@@ -118,7 +118,7 @@ TEST(MergeTree, HasEveryNodeBehindItsPartsUpToTheWholeImage) {
   EXPECT_EQ(tree.nodes.back().area, 13 * 11);
 }
 
-TEST(MergeTree, TellsWhatItJudges) {
+TEST(MergeTree, ReportsTheJudgedPairs) {
   RegionScene scene(grid<RegionId>({{0, 1, 2}, {0, 1, 2}}));
   scene.paint({50, 54, 203});
   Parts told;

@@ -69,7 +69,7 @@ TEST(ObjectErrors, AgreeWithEquationFiveOnCountedAreas) {
   EXPECT_DOUBLE_EQ(errors.truth[0].error(), 1.5);
 }
 
-TEST(ObjectErrors, ATrueObjectIsComparedWithOursOfGreatestIouNotOfGreatestOverlap) {
+TEST(ObjectErrors, ATrueObjectIsComparedByIouNotByOverlap) {
   Scene scene;
   scene.real(1, {10, 10, 20, 20});
   scene.found(1, {10, 10, 20, 12});  // 240 of its 400 px and no others
@@ -88,7 +88,7 @@ TEST(ObjectErrors, AMissedObjectHasInfiniteErrorThatCountsTwoHundredPercent) {
   EXPECT_DOUBLE_EQ(errors.truth[0].boundary_f, 0.0);
 }
 
-TEST(ObjectErrors, DoNotScoreTrueObjectsBelowTheLeastArea) {
+TEST(ObjectErrors, DoNotScoreTrueObjectsBelowTheMinimumArea) {
   Scene scene;
   scene.real(1, {0, 0, 10, 20});   // 200 px
   scene.real(2, {50, 0, 10, 19});  // 190 px
@@ -97,7 +97,7 @@ TEST(ObjectErrors, DoNotScoreTrueObjectsBelowTheLeastArea) {
   EXPECT_EQ(scene.score({.min_area = 190}).truth.size(), 2U);
 }
 
-TEST(ObjectErrors, CountDontCarePixelsInNoArea) {
+TEST(ObjectErrors, ExcludeDontCarePixelsFromAreas) {
   Scene scene;
   scene.real(1, {10, 10, 20, 20});
   scene.truth(10, 10) = TruthId::none;
@@ -140,7 +140,7 @@ TEST(ObjectErrors, APhantomHasTwoHundredPixelsAndLessThanAQuarterOfThemOnTrueObj
   EXPECT_TRUE(errors.ours[3].phantom);
 }
 
-TEST(ObjectErrors, TwoHalvesOverSegmentAnObjectAndACommonObjectUnderSegmentsTwo) {
+TEST(ObjectErrors, HalvesOverSegmentAndACommonObjectUnderSegments) {
   Scene scene;
   scene.real(1, {0, 0, 40, 40});
   scene.real(2, {50, 0, 20, 40});
@@ -194,14 +194,14 @@ TEST(BoundaryF, IsTheHarmonicMeanOfPrecisionAndRecall) {
   EXPECT_DOUBLE_EQ(boundary_f(two, one, {}, 2), boundary_f(one, two, {}, 2));
 }
 
-TEST(BoundaryF, MeasuresDistanceAsTheCrowFlies) {
+TEST(BoundaryF, UsesEuclideanDistance) {
   const Image<std::uint8_t> a = mask({20, 20, 1, 1});
   const Image<std::uint8_t> b = mask({23, 24, 1, 1});  // 5 px away
   EXPECT_DOUBLE_EQ(boundary_f(a, b, {}, 5), 1.0);
   EXPECT_DOUBLE_EQ(boundary_f(a, b, {}, 4), 0.0);
 }
 
-TEST(BoundaryF, TakesNeitherTheImagesBorderNorDontCareForABoundary) {
+TEST(BoundaryF, DoesNotCountTheImageBorderOrDontCareAsBoundary) {
   const Image<std::uint8_t> all = mask({0, 0, kSize.width, kSize.height});
   const Image<std::uint8_t> none = mask({});
   EXPECT_DOUBLE_EQ(boundary_f(all, none, {}, 2), 1.0);  // neither has a boundary
@@ -249,7 +249,7 @@ TEST(Summary, OfAFrameWithPartialTruthJudgesNoneOfOurs) {
   EXPECT_TRUE(std::isnan(sum.phantoms_per_frame()));
 }
 
-TEST(Summary, OfNothingIsNotANumberRatherThanZero) {
+TEST(Summary, OfNoObjectsIsNaN) {
   const ObjectSummary sum = summarise({});
   EXPECT_TRUE(std::isnan(sum.mean_error));
   EXPECT_TRUE(std::isnan(sum.median_error));

@@ -82,7 +82,7 @@ TEST(HintInput, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-TEST(HintObjects, TakeAnImageOfAnySize) {
+TEST(HintObjects, AcceptAnImageOfAnySize) {
   for (const Size size : {Size{1, 1}, {3, 200}, {200, 3}, {97, 61}}) {
     const RegionScene scene(Image<RegionId>(size, RegionId{0}, {}));
     const Image<ObjectHint> hints = hint_objects(scene.superpixels.edges, scene.cues(), {});
@@ -127,7 +127,7 @@ float named(const std::vector<std::string_view>& names, const Features& features
   return features.at(static_cast<std::size_t>(at - names.begin()));
 }
 
-TEST(HintFeatures, SayThatTwoObjectsTouch) {
+TEST(HintFeatures, IndicateThatTwoObjectsTouch) {
   const HintedScene scene;
   MergeFeatures pair{};
   const MergeTree tree =

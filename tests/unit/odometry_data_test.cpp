@@ -146,7 +146,7 @@ TEST_F(OdometryData, DriftsByAtMostOnePointTwoPercentOnTheStreet) {
   EXPECT_LE(m.error.end_drift, 0.012);
 }
 
-TEST_F(OdometryData, StandsStillWhereTheRigDoes) {
+TEST_F(OdometryData, StandsStillIfTheRigDoes) {
   const Measured m = measure(
       {.folder = "real/sequences/euroc_V1_01_standstill", .truth = "groundtruth_left_camera_tum.txt"});
   EXPECT_LE(m.error.end_error_m, 0.002);

@@ -77,7 +77,7 @@ TEST(Odometry, RecoversAKnownMotion) {
   EXPECT_GT(sum_of_diagonal(state.covariance), 0);
 }
 
-TEST(Odometry, BeginsWhereItIsTold) {
+TEST(Odometry, BeginsAtTheGivenPose) {
   Pose map_from_camera = rotation_about({-std::numbers::pi / 2, 0, 0});  // z of the map is up
   map_from_camera.translation_m = {3, -2, 0.8};
   OdometryState state = step(begin_odometry(map_from_camera), look({})).state;
@@ -87,7 +87,7 @@ TEST(Odometry, BeginsWhereItIsTold) {
   EXPECT_LT(length(moved.state.map_from_camera.translation_m - Point3{3, -1.9, 0.8}), 0.005);
 }
 
-TEST(Odometry, FindsATurnThatCameWithoutWarning) {
+TEST(Odometry, FindsASuddenTurn) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   for (const double degrees : {-14.0, -9.0, 9.0, 14.0}) {
     const Pose truth = at(0.03, 0.05, degrees);
@@ -98,7 +98,7 @@ TEST(Odometry, FindsATurnThatCameWithoutWarning) {
   }
 }
 
-TEST(Odometry, IgnoresWhatMovesByItself) {
+TEST(Odometry, IgnoresMovingObjects) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   int outliers = 0;
   for (int k = 1; k <= 5; ++k) {
@@ -112,7 +112,7 @@ TEST(Odometry, IgnoresWhatMovesByItself) {
   EXPECT_GT(outliers, 10) << "the panel's corners were followed, and went elsewhere";
 }
 
-TEST(Odometry, TakesNoCornersFromWhatIsKnownToMove) {
+TEST(Odometry, UsesNoCornersOfMovingObjects) {
   const Seen first = look({});
   Image<std::uint8_t> moving(room::kSize);
   moving.fill(255);
@@ -122,7 +122,7 @@ TEST(Odometry, TakesNoCornersFromWhatIsKnownToMove) {
   EXPECT_FALSE(none.motion.is_new_keyframe);
 }
 
-TEST(Odometry, TakesNoCornersWhoseDisparityIsUnsure) {
+TEST(Odometry, UsesNoCornersOfUncertainDisparity) {
   const Seen first = look({});
   Image<float> confidence(room::kSize);
   confidence.fill(0.1F);
@@ -137,7 +137,7 @@ TEST(Odometry, TakesNoCornersWhoseDisparityIsUnsure) {
       MotionRefusal::none);
 }
 
-TEST(Odometry, SaysWhyAFrameHasNoMotion) {
+TEST(Odometry, ReportsWhyAFrameHasNoMotion) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   EXPECT_EQ(step(state, all_of(0)).motion.refusal, MotionRefusal::few_points);
   EXPECT_EQ(step(state, all_of(255)).motion.refusal, MotionRefusal::few_points);
@@ -158,7 +158,7 @@ TEST(Odometry, SaysWhyAFrameHasNoMotion) {
   EXPECT_EQ(step(dense, look(at(0.6, 0, 25)), {}, strict).motion.refusal, MotionRefusal::few_points);
 }
 
-TEST(Odometry, RefusesNoiseATornImageAndAStamp) {
+TEST(Odometry, RefusesNoiseATornImageAndABadStamp) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   Seen noise = look({});
   for (int y = 0; y < room::kSize.height; ++y)
@@ -192,14 +192,14 @@ TEST(Odometry, RefusesNoiseATornImageAndAStamp) {
             MotionRefusal::few_points);
 }
 
-TEST(Odometry, DoesNotBelieveATranslationThatOnlyFarPointsTell) {
+TEST(Odometry, RejectsATranslationFromFarPointsOnly) {
   constexpr double kHall = 12;  // the nearest wall is more than 40 baselines away
   const OdometryState state = step(begin_odometry({}), look({}, 0, kHall)).state;
   const OdometryStep moved = step(state, look(at(0, 0, 2), 0, kHall));
   EXPECT_EQ(moved.motion.refusal, MotionRefusal::degenerate);
 }
 
-TEST(Odometry, GoesOnAsBeforeWhileItSeesNothingAndIsLostAfterFiveFrames) {
+TEST(Odometry, ExtrapolatesOverBlankFramesAndIsLostAfterFive) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   state = step(state, look(at(0, 0.03, 0))).state;
   double before = sum_of_diagonal(state.covariance);
@@ -233,7 +233,7 @@ TEST(Odometry, KeepsItsKeyframeThroughADarkFrame) {
   EXPECT_LT(metres_apart(after.state.map_from_camera, truth), 0.01);
 }
 
-TEST(Odometry, AfterAGapNobodyKnowsHowTheCameraWentOn) {
+TEST(Odometry, DoesNotExtrapolateOverAGap) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   state = step(state, look(at(0, 0.03, 0))).state;
   const OdometryStep found = step(after_gap(state), look(at(0, 0.04, 0)));
@@ -252,7 +252,7 @@ TEST(Odometry, AfterAGapNobodyKnowsHowTheCameraWentOn) {
       << "wheels go on through a gap";
 }
 
-TEST(Odometry, GoesOnInANewSegmentWhereItSeesAnotherPlaceWhileLost) {
+TEST(Odometry, BeginsANewSegmentIfItSeesAnotherPlaceWhileLost) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   for (int k = 0; k < 8; ++k) state = step(state, all_of(0)).state;
   ASSERT_TRUE(state.lost);
@@ -278,7 +278,7 @@ TEST(Odometry, GoesOnInANewSegmentWhereItSeesAnotherPlaceWhileLost) {
   EXPECT_GE(on.state.covariance[0], 1);
 }
 
-TEST(Odometry, TiesEachKeyframeToTheOneBefore) {
+TEST(Odometry, LinksEachKeyframeToThePreviousOne) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   bool has_changed = false;
   for (int k = 1; k <= 12; ++k) {
@@ -294,7 +294,7 @@ TEST(Odometry, TiesEachKeyframeToTheOneBefore) {
   EXPECT_TRUE(has_changed);
 }
 
-TEST(Odometry, OverTheFloorANewSegmentIsUnsureOfItsPlaceAndHeadingAlone) {
+TEST(Odometry, WithAFloorANewSegmentIsUncertainInPositionAndHeadingOnly) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   for (int k = 0; k < 8; ++k) state = step(state, all_of(0)).state;
   OdometryStep begun;
@@ -318,7 +318,7 @@ TEST(Odometry, OverTheFloorANewSegmentIsUnsureOfItsPlaceAndHeadingAlone) {
   EXPECT_NEAR(on.state.map_from_camera.translation_m.z, 0.8, 0.05);
 }
 
-TEST(Odometry, StaysLostWhileNoTwoFramesShowTheSame) {
+TEST(Odometry, StaysLostWhileFramesHaveNothingInCommon) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   for (int k = 0; k < 20; ++k) {
     const OdometryStep shown = step(state, k < 8 ? all_of(0) : look(at(0, 0, 120 * (k % 3) + 60)));
@@ -328,7 +328,7 @@ TEST(Odometry, StaysLostWhileNoTwoFramesShowTheSame) {
   EXPECT_TRUE(state.lost);
 }
 
-TEST(Odometry, AJumpToAnotherPlaceBeginsANewSegmentOfUnsurePlace) {
+TEST(Odometry, AJumpBeginsANewSegmentOfUncertainPosition) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   state = step(state, look(at(0, 0.03, 0))).state;
   const Pose elsewhere = at(0, 0, 180);
@@ -348,7 +348,7 @@ TEST(Odometry, AJumpToAnotherPlaceBeginsANewSegmentOfUnsurePlace) {
   EXPECT_LT(on.state.covariance[0], 0.1);
 }
 
-TEST(Odometry, DrivesByItsWheelsInTheDark) {
+TEST(Odometry, UsesTheWheelsInTheDark) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   const Pose one = at(0, 0.05, 3);
   Pose truth;
@@ -362,7 +362,7 @@ TEST(Odometry, DrivesByItsWheelsInTheDark) {
   }
 }
 
-TEST(Odometry, AnAgreeingPriorMakesItSurer) {
+TEST(Odometry, AnAgreeingPriorReducesTheUncertainty) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   const Pose truth = at(0.01, 0.05, 2);
   const OdometryStep alone = step(state, look(truth));
@@ -372,7 +372,7 @@ TEST(Odometry, AnAgreeingPriorMakesItSurer) {
   EXPECT_LT(metres_apart(helped.state.map_from_camera, truth), 0.005);
 }
 
-TEST(Odometry, TakesThePriorWhereTheTwoDisagree) {
+TEST(Odometry, UsesThePriorIfTheTwoDisagree) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   const Pose said = at(0, 0.10, 0);
   const OdometryStep moved = step(state, look(at(0, 0.02, 0)), wheels(inverse(said)));
@@ -381,7 +381,7 @@ TEST(Odometry, TakesThePriorWhereTheTwoDisagree) {
   EXPECT_TRUE(moved.motion.is_new_keyframe) << "what comes is measured from where the wheels say";
 }
 
-TEST(Odometry, BelievesItsEyesWhenTheWheelsSlip) {
+TEST(Odometry, TrustsTheImagesIfTheWheelsSlip) {
   OdometryState state = step(begin_odometry({}), look({})).state;
   const Pose said = at(0, 0.10, 0);
   std::vector<MotionRefusal> refusals;
@@ -395,7 +395,7 @@ TEST(Odometry, BelievesItsEyesWhenTheWheelsSlip) {
   EXPECT_NEAR(state.map_from_camera.translation_m.z, 0.2, 0.01) << "it went on for two frames only";
 }
 
-TEST(Odometry, AGyroscopeTellsOfTheTurnAlone) {
+TEST(Odometry, AGyroscopeProvidesRotationOnly) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   const Pose truth = at(0.02, 0.05, 8);
   MotionPrior turned = wheels(inverse(at(7, 7, 8)), 0, 0.05);  // its translation must not matter
@@ -414,7 +414,7 @@ TEST(Odometry, AGyroscopeTellsOfTheTurnAlone) {
   EXPECT_EQ(step(state, look(truth), broken).motion.refusal, MotionRefusal::none) << "as if there were none";
 }
 
-TEST(Odometry, MakesAKeyframeOfEachFrameWhereItIsToldTo) {
+TEST(Odometry, MakesEachFrameAKeyframeOnRequest) {
   OdometryConfig config;
   config.method = OdometryMethod::frame;
   OdometryState state = step(begin_odometry({}), look({}), {}, config).state;
@@ -441,7 +441,7 @@ std::vector<Pose> run_with(int threads) {
   return poses;
 }
 
-TEST(Odometry, GivesTheSameBitsAgainAndForAnyNumberOfThreads) {
+TEST(Odometry, IsReproducibleBitForBitForAnyNumberOfThreads) {
   const std::vector<Pose> once = run_with(1);
   for (const int threads : {1, 2, 4}) {
     const std::vector<Pose> again = run_with(threads);

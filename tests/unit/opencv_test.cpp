@@ -132,7 +132,7 @@ TEST(OpenCv, RefusesWrongTypesByName) {
       "convertTo with CV_32F and 1.0 / 16");
 }
 
-TEST(OpenCv, RefusesWhatNoViewCanShow) {
+TEST(OpenCv, RefusesMatricesThatNoViewCanRepresent) {
   const int sizes[] = {2, 3, 4};
   EXPECT_EQ(error_of([&] { view_of<Gray>(cv::Mat(3, sizes, CV_8UC1), "left"); }),
             "left: found 3 dimensions, expected 2");
@@ -143,7 +143,7 @@ TEST(OpenCv, RefusesWhatNoViewCanShow) {
   EXPECT_NE(error_of([] { stereo_pair(cv::Mat(), cv::Mat()); }), "no error");
 }
 
-TEST(OpenCv, MakesNoMatrixOfAnImageThatIsGone) {
+TEST(OpenCv, DoesNotCompileForATemporaryImage) {
   EXPECT_TRUE(GivesMat<Image<float>&>);
   EXPECT_TRUE(GivesMat<const Image<float>&>);
   EXPECT_FALSE(GivesMat<Image<float>>);

@@ -29,7 +29,7 @@ Tried search(const Values& start, int rounds, const std::function<double(int, in
   return tried;
 }
 
-TEST(SearchKnobs, KeepsWhatScoresHigherAtOnceAndEndsAfterARoundWithoutGain) {
+TEST(SearchKnobs, KeepsHigherScoresAtOnceAndEndsAfterARoundWithoutGain) {
   const Tried tried = search({"1", "1"}, 9, [](int a, int b) { return 10 * a + b; });
   EXPECT_EQ(tried.settings, (std::vector<std::string>{"21+", "31+", "32+", "33+", "13", "23", "31", "32"}));
   EXPECT_EQ(tried.best, (Values{"3", "3"}));
@@ -48,7 +48,7 @@ TEST(SearchKnobs, EndsAfterItsRounds) {
   EXPECT_EQ(search({"1", "1"}, 2, score).best, (Values{"3", "3"}));
 }
 
-TEST(SearchKnobs, LeavesAStartThatItDoesNotKnow) {
+TEST(SearchKnobs, AcceptsAStartOutsideTheValues) {
   const Tried tried = search({"7", "1"}, 9, [](int a, int b) { return a - b; });
   EXPECT_EQ(tried.settings, (std::vector<std::string>{"11", "21", "31", "72", "73"}));
   EXPECT_EQ(tried.best, (Values{"7", "1"}));

@@ -30,7 +30,7 @@ int distance(Rgb a, Rgb b) {
   return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
 }
 
-TEST(ObjectPicture, IsTheLeftPictureEnlargedByAWholeFactorWhereItIsSmall) {
+TEST(ObjectOverlay, IsTheLeftImageEnlargedByAnIntegerFactorIfSmall) {
   const Image<Gray> small({160, 120}, Gray{100}, {});
   const Image<Gray> large({1280, 960}, Gray{100}, {});
   EXPECT_EQ(draw_objects(small, {}, one_object({160, 120}, {10, 10, 60, 60}), {}).size(),
@@ -38,7 +38,7 @@ TEST(ObjectPicture, IsTheLeftPictureEnlargedByAWholeFactorWhereItIsSmall) {
   EXPECT_EQ(draw_objects(large, {}, one_object({1280, 960}, {10, 10, 60, 60}), {}).size(), (Size{1280, 984}));
 }
 
-TEST(ObjectPicture, TintsObjectsAndFloorAndLeavesTheRestGrey) {
+TEST(ObjectOverlay, TintsObjectsAndFloorOnGrey) {
   const Size size{640, 480};
   const Image<Gray> left(size, Gray{120}, {});
   Image<std::uint8_t> floor(size, 0, {});
@@ -52,7 +52,7 @@ TEST(ObjectPicture, TintsObjectsAndFloorAndLeavesTheRestGrey) {
   EXPECT_LT(distance(picture(10, 450), background), distance(picture(120, 120), background));
 }
 
-TEST(ObjectPicture, BrightensADimSceneAndNoOther) {
+TEST(ObjectOverlay, BrightensADimSceneAndNoOther) {
   const Size size{640, 480};
   const auto background = [&](Gray level) {
     const Image<Gray> left(size, level, {});
@@ -64,7 +64,7 @@ TEST(ObjectPicture, BrightensADimSceneAndNoOther) {
   EXPECT_EQ(background(0), 0);
 }
 
-TEST(ObjectPicture, SaysBelowWhatItsColoursMean) {
+TEST(ObjectOverlay, HasALegendBelow) {
   const Size size{640, 480};
   const Objects objects = one_object(size, {100, 100, 200, 200});
   const Image<std::uint8_t> floor(size, 255, {});
@@ -84,7 +84,7 @@ TEST(ObjectPicture, SaysBelowWhatItsColoursMean) {
   EXPECT_EQ(chips(draw_objects(left, {}, objects, {})).count({90, 150, 190}), 0U);
 }
 
-TEST(ObjectPicture, LabelsEachObject) {
+TEST(ObjectOverlay, LabelsEachObject) {
   const Size size{640, 480};
   const Image<Gray> left(size, Gray{120}, {});
   const Image<Rgb> picture = draw_objects(left, {}, one_object(size, {100, 100, 200, 200}), {});
@@ -99,7 +99,7 @@ bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-TEST(LabelPlaces, OfObjectsSideBySideDoNotCoverEachOther) {
+TEST(LabelPlaces, OfAdjacentObjectsDoNotOverlap) {
   const Size picture{640, 480};
   std::vector<Rect> wanted;
   for (int i = 0; i < 6; ++i) wanted.push_back({300 + 12 * i, 200 + 2 * (i % 2), 60, 14});  // poles
@@ -117,7 +117,7 @@ TEST(LabelPlaces, OfObjectsSideBySideDoNotCoverEachOther) {
   }
 }
 
-TEST(LabelPlaces, AreTheWantedOnesWhereNothingCollidesOrNothingIsFree) {
+TEST(LabelPlaces, ArePreferredIfNothingCollidesOrNothingIsFree) {
   const std::vector<Rect> apart{{10, 10, 50, 14}, {10, 100, 50, 14}};
   const auto same = place_labels(apart, {640, 480});
   for (std::size_t i = 0; i < apart.size(); ++i) EXPECT_EQ(same[i].y, apart[i].y);
@@ -126,7 +126,7 @@ TEST(LabelPlaces, AreTheWantedOnesWhereNothingCollidesOrNothingIsFree) {
   EXPECT_EQ(crowded[1].y, 0);
 }
 
-TEST(ObjectPicture, KnowsObjectsAtTheBorderAndPicturesOfOnePixel) {
+TEST(ObjectOverlay, AcceptsObjectsAtTheBorderAndImagesOfOnePixel) {
   const Image<Gray> left({1, 1}, Gray{0}, {});
   const Image<std::uint8_t> floor({1, 1}, 255, {});
   EXPECT_FALSE(draw_objects(left, {}, one_object({1, 1}, {0, 0, 1, 1}), floor).empty());
@@ -145,7 +145,7 @@ DisparityMap map_of(Size size, float disparity) {
   return {Image<float>(size, disparity, {}), Image<Reject>(size, Reject::none, {})};
 }
 
-TEST(DisparityPicture, ShowsEveryReasonInAColourOfItsOwn) {
+TEST(DisparityView, ShowsEveryReasonInItsOwnColour) {
   DisparityMap map = map_of({640, 480}, 20);
   int x = 0;
   std::set<std::array<std::uint8_t, 3>> colours;
@@ -159,7 +159,7 @@ TEST(DisparityPicture, ShowsEveryReasonInAColourOfItsOwn) {
   EXPECT_EQ(colours.size(), kRejects.size() + 1);  // and that of a disparity
 }
 
-TEST(DisparityPicture, HasALegendBesideThePicture) {
+TEST(DisparityView, HasALegendNextToTheImage) {
   const DisparityMap map = map_of({640, 480}, 20);
   const Image<Rgb> picture = draw_disparity(map, StereoRig{500, 320, 240, 0.1F, 0});
   ASSERT_GT(picture.width(), 640);
@@ -171,7 +171,7 @@ TEST(DisparityPicture, HasALegendBesideThePicture) {
   EXPECT_GT(bright, 200);
 }
 
-TEST(DisparityPicture, ListsOnlyTheReasonsInForce) {
+TEST(DisparityView, ListsOnlyTheReasonsInForce) {
   DisparityMap map = map_of({640, 480}, 20);
   const auto has_colour = [&](Rgb colour, Reject in_force) {
     const Image<Rgb> picture = draw_disparity(map, std::nullopt, in_force);
@@ -189,7 +189,7 @@ TEST(DisparityPicture, ListsOnlyTheReasonsInForce) {
   EXPECT_TRUE(has_colour(flat->colour, Reject::speckle));
 }
 
-TEST(DisparityPicture, IsDrawnOfNothingButHolesAndOfOnePixel) {
+TEST(DisparityView, AcceptsOnlyHolesAndOnePixel) {
   DisparityMap map = map_of({1, 1}, std::numeric_limits<float>::quiet_NaN());
   map.reject(0, 0) = Reject::border | Reject::no_texture;
   EXPECT_FALSE(draw_disparity(map, std::nullopt).empty());

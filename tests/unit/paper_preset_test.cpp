@@ -24,7 +24,7 @@ double share_without_texture(double noise_sigma, const Config& config) {
   return count / static_cast<double>(size.area());
 }
 
-TEST(PaperPreset, RefusesAPlainPictureWithTheNoiseOfACamera) {
+TEST(PaperPreset, RefusesAPlainImageWithCameraNoise) {
   Config config = Config::paper();
   config.match.num_disparities = 16;
   EXPECT_GT(share_without_texture(0.9, config), 0.9);
@@ -32,7 +32,7 @@ TEST(PaperPreset, RefusesAPlainPictureWithTheNoiseOfACamera) {
   EXPECT_LT(share_without_texture(0.9, config), 0.1);
 }
 
-TEST(PaperPreset, KeepsToThePublishedMethod) {
+TEST(PaperPreset, IsThePublishedMethod) {
   const Config config = Config::paper();
   EXPECT_EQ(config.match.method, MatchMethod::window);
   EXPECT_EQ(config.fusion.method, FusionMethod::overlap);

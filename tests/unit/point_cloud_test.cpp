@@ -134,7 +134,7 @@ TEST_F(PointCloud, LeavesOutRefusedPixelsAndThoseAtInfinity) {
   }
 }
 
-TEST_F(PointCloud, OfEachObjectHasThePointsThatTheWholeGivesIt) {
+TEST_F(PointCloud, OfEachObjectEqualsItsPartOfTheWhole) {
   disparity_(0, 0) = std::numeric_limits<float>::quiet_NaN();
   Objects objects;
   objects.labels = Image<ObjectId>(kSize);
@@ -176,7 +176,7 @@ TEST_F(PointCloud, MayBeEmpty) {
   EXPECT_TRUE(read_ply(path_).vertices.empty());
 }
 
-TEST_F(PointCloud, NamesTheFileThatItCannotWrite) {
+TEST_F(PointCloud, NamesAFileThatCannotBeWritten) {
   try {
     save_ply("/no/such/folder/cloud.ply", left_, {}, disparity_, {}, kRig);
     FAIL();

@@ -74,7 +74,7 @@ TEST(PointKernels, PlaceAPixelAsTheRigDoes) {
   }
 }
 
-TEST(PointKernels, SeePointsFromTheFloorAsItsFrameDoes) {
+TEST(PointKernels, TransformPointsAsTheFloorFrameDoes) {
   const FloorFrame floor{{0.1F, 0.2F, 0.97F}, {-0.99F, 0.1F, 0.08F}, {0.08F, -0.97F, 0.2F}, 1.25F};
   Lists points{drawn(2, 5), drawn(3, 5), drawn(4, 5)};
   points.x[9] = points.y[9] = points.z[9] = -0.0F;

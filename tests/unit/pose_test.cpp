@@ -33,7 +33,7 @@ TEST(Pose, TurnsAboutTheAxisByTheRightHand) {
   expect_near(rotation_about({0, kPi / 2, 0})({0, 0, 1}), {1, 0, 0});
 }
 
-TEST(Pose, DoesTheRightOneFirst) {
+TEST(Pose, AppliesTheRightOperandFirst) {
   const Pose a = some_pose();
   Pose b = rotation_about({0, 0.2, 0});
   b.translation_m = {0, 0, 5};
@@ -41,17 +41,17 @@ TEST(Pose, DoesTheRightOneFirst) {
   expect_near((a * b)(p), a(b(p)));
 }
 
-TEST(Pose, GoesBackByItsInverse) {
+TEST(Pose, IsUndoneByItsInverse) {
   expect_near(some_pose() * inverse(some_pose()), Pose{});
   expect_near(inverse(some_pose()) * some_pose(), Pose{});
 }
 
-TEST(Pose, KeepsDirectionsFreeOfTheTranslation) {
+TEST(Pose, DoesNotTranslateDirections) {
   EXPECT_NEAR(length(some_pose().rotated({3, 4, 12})), 13, 1e-12);
   expect_near(Pose{some_pose().rotation, {}}({1, 2, 3}), some_pose().rotated({1, 2, 3}));
 }
 
-TEST(Pose, IsTheSameThroughItsQuaternion) {
+TEST(Pose, RoundTripsThroughItsQuaternion) {
   expect_near(pose_of({1, -2, 3}, quaternion(some_pose())), some_pose());
   EXPECT_EQ(quaternion({}), (std::array<double, 4>{0, 0, 0, 1}));
   for (const double angle : {0.1, 1.5, 3.1, 3.2, 4.0, 6.0})

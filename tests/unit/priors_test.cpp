@@ -49,7 +49,7 @@ TEST(PriorOfWheels, StraightAheadIsAlongTheCamerasView) {
   EXPECT_TRUE(has(priors->description(), {"wheels", "3 rows at 10 Hz"}));
 }
 
-TEST(PriorOfWheels, TurningLeftMovesWhatIsAheadToTheRight) {
+TEST(PriorOfWheels, TurningLeftMovesPointsAheadToTheRight) {
   const TemporaryFolder folder;
   const auto priors = load_odometry(folder.with("o.csv", kHeader + "0,0,0,0\n1,0.1,0,1\n"));
   const Point3 now = priors->between(at_s(0), at_s(0.1))->now_from_before({0, 0, 1});
@@ -58,7 +58,7 @@ TEST(PriorOfWheels, TurningLeftMovesWhatIsAheadToTheRight) {
   EXPECT_NEAR(now.z, std::cos(0.1), 1e-12);
 }
 
-TEST(PriorOfWheels, ACircleIsOneInHoweverManyRows) {
+TEST(PriorOfWheels, ACircleDoesNotDependOnTheNumberOfRows) {
   const TemporaryFolder folder;
   std::string rows = kHeader;
   for (int i = 0; i <= 20; ++i)
@@ -100,7 +100,7 @@ TEST(PriorOfWheels, ACameraThatLooksDownMovesAlongTheFloor) {
   EXPECT_NEAR(down.z, std::sin(10 * kDegree), 1e-12);
 }
 
-TEST(PriorOfWheels, IsNoneOutsideOverGapsAndWhereNumbersAreNone) {
+TEST(PriorOfWheels, IsNoneOutsideOverGapsAndAtNaN) {
   const TemporaryFolder folder;
   const auto priors = load_odometry(
       folder.with("o.csv", kHeader + "0,1.0,0,0\n1,1.1,1,0\n2,1.5,1,0\n3,1.6,1,0\n4,1.7,nan,0\n5,1.8,1,0\n6,"
@@ -139,7 +139,7 @@ TEST(PriorOfWheels, RefusesOtherUnitsAndOtherFiles) {
   EXPECT_TRUE(has(refusal([&] { (void)load_odometry(folder.path() / "none.csv"); }), {"none.csv"}));
 }
 
-TEST(PriorOfPoses, IsTheWayBetweenTwoMoments) {
+TEST(PriorOfPoses, IsTheMotionBetweenTwoStamps) {
   const TemporaryFolder folder;
   // A camera that looks along the world's z, and turns about its y.
   const std::string half = std::to_string(std::sqrt(0.5));
@@ -153,7 +153,7 @@ TEST(PriorOfPoses, IsTheWayBetweenTwoMoments) {
   EXPECT_TRUE(has(priors->description(), {"poses of the camera"}));
 }
 
-TEST(PriorOfPoses, OfARobotAreTurnedToTheCamera) {
+TEST(PriorOfPoses, OfARobotAreTransformedToTheCamera) {
   const TemporaryFolder folder;
   // The robot moves along its x and turns left about its z.
   const std::string rows = "0.0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 " + std::to_string(std::sin(0.1)) + " " +
@@ -168,7 +168,7 @@ TEST(PriorOfPoses, OfARobotAreTurnedToTheCamera) {
   }
 }
 
-TEST(PriorOfPoses, OfKittiTakesItsStampsFromTheSource) {
+TEST(PriorOfPoses, OfKittiUsesTheSourcesStamps) {
   const TemporaryFolder folder;
   const fs::path poses = folder.with("poses/04.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1.25\n");
   EXPECT_TRUE(
@@ -214,14 +214,14 @@ TEST(PriorOfAGyroscope, IsARotationWithoutItsBias) {
   EXPECT_EQ(turn->kind, PriorKind::gyroscope);
 }
 
-TEST(PriorOfAGyroscope, ThatIsNotAtRestHasAnUnknownBias) {
+TEST(PriorOfAGyroscope, OfAMovingStartHasAnUnknownBias) {
   const TemporaryFolder folder;
   const auto priors = load_imu(folder.with("imu.csv", imu_rows(0.08, 0.5, "0.4")));
   EXPECT_TRUE(has(priors->description(), {"bias unknown"}));
   EXPECT_GT(sigma(*priors->between(at_s(1.2), at_s(1.9)), 3), 0.05);
 }
 
-TEST(PriorOfAGyroscope, IsTurnedToTheCamera) {
+TEST(PriorOfAGyroscope, IsRotatedToTheCamera) {
   const TemporaryFolder folder;
   // The IMU's y is the camera's x: pitch.
   const Pose camera_from_imu{{0, 1, 0, -1, 0, 0, 0, 0, 1}, {}};
@@ -231,7 +231,7 @@ TEST(PriorOfAGyroscope, IsTurnedToTheCamera) {
   EXPECT_NEAR(turn.y, 0, 1e-6);
 }
 
-TEST(PriorOfAGyroscope, IsNoneOverGapsAndWhereRatesAreNone) {
+TEST(PriorOfAGyroscope, IsNoneOverGapsAndAtNaN) {
   const TemporaryFolder folder;
   const auto priors = load_imu(folder.with("imu.csv",
                                            "1000000000,0,0,0\n1100000000,0,0,0\n1400000000,0,0,0\n1500000000,"

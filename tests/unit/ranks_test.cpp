@@ -42,7 +42,7 @@ TEST(Ranks, AreThoseOfTheSortedValues) {
   }
 }
 
-TEST(Ranks, AreRightWhereMostValuesAreEqual) {
+TEST(Ranks, AreCorrectIfMostValuesAreEqual) {
   std::vector<float> values(1000, 7.0F);
   expect_sorted_order(values);
   values[3] = -2;
@@ -50,7 +50,7 @@ TEST(Ranks, AreRightWhereMostValuesAreEqual) {
   expect_sorted_order(values);
 }
 
-TEST(Ranks, AreRightBesideWildValues) {
+TEST(Ranks, AreCorrectWithExtremeValues) {
   std::vector<float> values = drawn(1000, 1);
   values[10] = std::numeric_limits<float>::max();
   values[20] = std::numeric_limits<float>::lowest();

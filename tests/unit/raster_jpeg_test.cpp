@@ -26,7 +26,7 @@ PixelRows rows_of(const Image<Gray>& image) {
   return {image.size(), 1, 1, image.row(0), static_cast<std::ptrdiff_t>(image.view().stride())};
 }
 
-TEST(EncodeJpeg, FilesBeyondTheFirstBufferAreWhole) {
+TEST(EncodeJpeg, FilesBeyondTheFirstBufferAreComplete) {
   const Image<Gray> image = noise({900, 700});
   const std::string file = encode_jpeg(rows_of(image));
   EXPECT_GT(file.size(), 300'000U);
@@ -40,7 +40,7 @@ TEST(EncodeJpeg, FilesBeyondTheFirstBufferAreWhole) {
   EXPECT_LT(sum / (900 * 700), 20);
 }
 
-TEST(DecodeJpeg, AShortFileWithAGreatClaimIsRefusedBeforeItCostsMemory) {
+TEST(DecodeJpeg, AShortFileClaimingAHugeSizeIsRefusedBeforeAllocation) {
   std::string file = encode_jpeg(rows_of(noise({16, 16})));
   const std::size_t frame = file.find("\xff\xc0");
   ASSERT_NE(frame, std::string::npos);

@@ -29,7 +29,7 @@ io::RawCalibration example() {
   return raw;
 }
 
-TEST(RawCalibration, IsReadAsItWasWritten) {
+TEST(RawCalibration, IsReadBackAsWritten) {
   const TemporaryFolder folder;
   io::RawCalibration raw = example();
   raw.left.rotation = raw.right.rotation = raw.rotation;
@@ -83,7 +83,7 @@ std::string ros(const std::string& fourth, const std::string& model = "plumb_bob
          fourth + ", 0, 550, 240, 0, 0, 0, 1, 0]\n";
 }
 
-TEST(RawCalibration, IsReadFromARosPairWhicheverIsNamed) {
+TEST(RawCalibration, IsReadFromEitherFileOfARosPair) {
   const TemporaryFolder folder;
   const auto left = folder.with("left.yaml", ros("0"));
   const auto right = folder.with("right.yaml", ros("-66"));
@@ -130,7 +130,7 @@ TEST(RawCalibration, IsReadFromEurocsTwoSensors) {
   EXPECT_TRUE(has(refusal([&] { (void)io::load_raw_calibration(left); }), {"cam1/sensor.yaml"}));
 }
 
-TEST(RawCalibration, RefusesWhatCannotRectify) {
+TEST(RawCalibration, RefusesCalibrationsThatCannotRectify) {
   const TemporaryFolder folder;
   const auto refuses = [&](const std::string& text, const std::vector<std::string>& words) {
     const auto file = folder.with("calib.yaml", text);

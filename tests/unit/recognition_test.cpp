@@ -30,7 +30,7 @@ Candidate seen(std::int64_t id, Point3 at, std::size_t bin) {
   return {TrackId{id}, at, l.covariance_m2, l.size, l.height_over_floor_m, l.looks[0].colours};
 }
 
-TEST(Recognition, IsVetoedByPlaceSizeAndHeightAndDecidedByColours) {
+TEST(Recognition, IsVetoedByPositionSizeAndHeightAndDecidedByColours) {
   LandmarkMap map;
   map.list = {known(1, {1, 0, 0.25}, 5)};
   const LandmarksConfig config;
@@ -58,7 +58,7 @@ TEST(Recognition, IsVetoedByPlaceSizeAndHeightAndDecidedByColours) {
   EXPECT_EQ(recognise(map, {seen(7, {1.5, 0, 0.25}, 5)}, unsure, {}, config).pairs.size(), 1U);
 }
 
-TEST(Recognition, PairsEachThingOnce) {
+TEST(Recognition, PairsEachObjectOnce) {
   LandmarkMap map;
   map.list = {known(1, {1, 0, 0.25}, 5), known(2, {1.2, 0, 0.25}, 5)};
   const auto found = recognise(map, {seen(7, {0.98, 0, 0.25}, 5), seen(8, {1.22, 0, 0.25}, 5)}, {}, {}, {});
@@ -90,7 +90,7 @@ TEST(Relocation, FindsThePoseOfAConstellation) {
   EXPECT_EQ(relocate(map, candidates, {}).refusal, RecognitionRefusal::too_few_pairs);
 }
 
-TEST(Relocation, NeedsTwoPairsWhereAGuessSaysNearWhere) {
+TEST(Relocation, NeedsTwoPairsGivenAGuess) {
   LandmarkMap map;
   map.list = {known(1, {1, 0, 0.25}, 1), known(2, {2.5, 1, 0.25}, 2)};
   Pose truth = rotation_about({0, 0, 0.3});
@@ -112,7 +112,7 @@ TEST(Relocation, NeedsTwoPairsWhereAGuessSaysNearWhere) {
       << "not near there";
 }
 
-TEST(Relocation, SaysAmbiguousInARoomThatRepeatsItself) {
+TEST(Relocation, IsAmbiguousInARepetitiveRoom) {
   LandmarkMap map;
   std::vector<Candidate> candidates;
   for (std::int64_t i = 0; i < 4; ++i) {
@@ -125,7 +125,7 @@ TEST(Relocation, SaysAmbiguousInARoomThatRepeatsItself) {
   EXPECT_EQ(found.refusal, RecognitionRefusal::ambiguous);
 }
 
-TEST(Maps, ThatAreCopiesAreMergedWithoutCountingWhatTheyShareTwice) {
+TEST(Maps, CopiesAreMergedWithoutDoubleCounting) {
   LandmarkMap room;
   const std::array places{Point3{0, 0, 0.25}, Point3{2, 0, 0.25}, Point3{0, 3, 0.25}, Point3{3, 3, 0.25}};
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -168,7 +168,7 @@ TEST(Maps, ThatAreCopiesAreMergedWithoutCountingWhatTheyShareTwice) {
   EXPECT_EQ(same.map.list[3].seen, 20);
 }
 
-TEST(Changes, AreTheLastWordAboutEachLandmark) {
+TEST(Changes, AreTheLastChangeOfEachLandmark) {
   const auto event = [](LandmarkEventKind kind, std::int64_t id, double by = 0) {
     LandmarkEvent e;
     e.kind = kind;

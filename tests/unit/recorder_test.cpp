@@ -59,7 +59,7 @@ std::map<std::string, int> counts_of(const fs::path& path) {
   return counts;
 }
 
-TEST(Recorder, WritesWhatIsAskedForOfEachFrame) {
+TEST(Recorder, WritesTheRequestedPartsOfEachFrame) {
   const TemporaryFolder folder;
   RecorderOptions options;
   options.what = parse_record_what("all");
@@ -84,7 +84,7 @@ TEST(Recorder, WritesWhatIsAskedForOfEachFrame) {
   EXPECT_TRUE(recorder.summary().starts_with("recorded ")) << recorder.summary();
 }
 
-TEST(Recorder, NamesTheCamerasFrameAsTheSourceDoes) {
+TEST(Recorder, UsesTheFrameIdOfTheSource) {
   for (const std::string camera : {"", "front_left_optical"}) {
     const TemporaryFolder folder;
     RecorderOptions options;
@@ -132,7 +132,7 @@ TEST(Recorder, NamesTheCamerasFrameAsTheSourceDoes) {
   }
 }
 
-TEST(Recorder, BeginsAndEndsWhileFramesCome) {
+TEST(Recorder, StartsAndStopsBetweenFrames) {
   const TemporaryFolder folder;
   Recorder recorder(some_run(), {});
   EXPECT_EQ(recorder.summary(), "");
@@ -150,7 +150,7 @@ TEST(Recorder, BeginsAndEndsWhileFramesCome) {
   EXPECT_FALSE(fs::exists(folder.path() / "c.mcap"));
 }
 
-TEST(Recorder, ChangesOfTheOptionsAreRecordedInTheirPlace) {
+TEST(Recorder, OptionChangesAreRecordedInOrder) {
   const TemporaryFolder folder;
   Recorder recorder(some_run(), {});
   recorder.start(folder.path() / "a.mcap");
@@ -169,7 +169,7 @@ TEST(Recorder, ChangesOfTheOptionsAreRecordedInTheirPlace) {
   EXPECT_NE(changes[0].find("num_disparities: 33 "), std::string::npos);
 }
 
-TEST(Recorder, SkipsFramesRatherThanDelayTheRunAndSaysSo) {
+TEST(Recorder, SkipsFramesInsteadOfDelayingTheRunAndReportsIt) {
   const TemporaryFolder folder;
   RecorderOptions options;
   options.most_waiting = 1;
@@ -196,7 +196,7 @@ TEST(Recorder, SkipsFramesRatherThanDelayTheRunAndSaysSo) {
   EXPECT_NE(recorder.summary().find("skipped"), std::string::npos);
 }
 
-TEST(Recorder, WaitsWhereNoFrameMayBeMissing) {
+TEST(Recorder, WaitsIfNoFrameMayBeMissing) {
   const TemporaryFolder folder;
   RecorderOptions options;
   options.most_waiting = 1;
@@ -209,7 +209,7 @@ TEST(Recorder, WaitsWhereNoFrameMayBeMissing) {
   EXPECT_EQ(recorder.status().skipped, 0U);
 }
 
-TEST(Recorder, StampsThatNoMessageHoldsEndTheRecordingAndNotTheRun) {
+TEST(Recorder, UnrepresentableStampsEndTheRecordingButNotTheRun) {
   const TemporaryFolder folder;
   std::vector<std::string> lines;
   RecorderOptions options;
@@ -228,7 +228,7 @@ TEST(Recorder, StampsThatNoMessageHoldsEndTheRecordingAndNotTheRun) {
   EXPECT_NE(recorder.summary().find("stopped: "), std::string::npos);
 }
 
-TEST(Recorder, RefusesWhatItDoesNotKnow) {
+TEST(Recorder, RefusesUnknownParts) {
   EXPECT_TRUE(parse_record_what("all").grid);
   EXPECT_TRUE(parse_record_what("input,grid").input);
   EXPECT_FALSE(parse_record_what("input,grid").objects);

@@ -68,12 +68,12 @@ TEST(RefineObjects, FindsTheShiftThatMakesTheImagesAgree) {
   }
 }
 
-TEST(RefineObjects, IgnoresHowBrightTheCamerasAre) {
+TEST(RefineObjects, IgnoresGainAndOffset) {
   const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.1F}}, true, 20);
   EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.3, 0.03);
 }
 
-TEST(RefineObjects, KeepsWhatTheImagesDoNotTell) {
+TEST(RefineObjects, KeepsTheDisparityWithoutTexture) {
   const Scene scene({{{40, 10, 40, 40}, 12, 12.5F}}, false);
   EXPECT_FLOAT_EQ(scene.refined().list[0].disparity_px, 12.5F);
 }

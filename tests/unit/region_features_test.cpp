@@ -49,7 +49,7 @@ TEST(FitPlane, FindsTheSlopeOfALargeRegion) {
   EXPECT_LT(std::sqrt(plane.squares / pixels), 0.5) << "its slopes cost something";
 }
 
-TEST(FitPlane, SaysHowFarDisparitiesLieFromIt) {
+TEST(FitPlane, MeasuresTheResidual) {
   PlaneMoments m;
   for (int i = 0; i < 400; ++i)
     m.add(of_pixel(i % 20 - 10, i / 20 - 10, (i % 2 == i / 20 % 2 ? 7 : 9) * kDisparitySteps));
@@ -58,14 +58,14 @@ TEST(FitPlane, SaysHowFarDisparitiesLieFromIt) {
   EXPECT_NEAR(std::sqrt(plane.squares / 400), 1, 1e-3);
 }
 
-TEST(FitPlane, IsLevelWhereARegionIsSmall) {
+TEST(FitPlane, IsLevelForASmallRegion) {
   const FittedPlane plane = fit_plane(moments({10, 10, 3, 3}, 0.5, 0), 640);
   EXPECT_LT(std::abs(plane.a), 0.01);
   EXPECT_EQ(plane.b, 0);
   EXPECT_NEAR(plane.d, 25.5, 0.01);
 }
 
-TEST(FitPlane, OfNothingIsNone) {
+TEST(FitPlane, IsNoneWithoutPixels) {
   const FittedPlane plane = fit_plane({}, 640);
   EXPECT_FALSE(plane.any);
   EXPECT_EQ(plane.at(3, 4), 0);
@@ -111,7 +111,7 @@ RegionScene box_on_a_wall() {
   return scene;
 }
 
-TEST(FeatureNames, AreOneOfItsOwnForEachFeature) {
+TEST(FeatureNames, AreUnique) {
   const auto merge = merge_feature_names();
   const auto object = object_feature_names();
   EXPECT_EQ(merge.size(), kMergeFeatures);
@@ -120,7 +120,7 @@ TEST(FeatureNames, AreOneOfItsOwnForEachFeature) {
   EXPECT_EQ(std::set(object.begin(), object.end()).size(), object.size());
 }
 
-TEST(MergeFeatures, SayHowABoxDiffersFromItsWall) {
+TEST(MergeFeatures, DescribeABoxAndItsWall) {
   RegionScene scene = box_on_a_wall();
   scene.for_each_pixel([&](int x, int y, std::size_t) {
     const bool at_outline =
@@ -145,7 +145,7 @@ TEST(MergeFeatures, SayHowABoxDiffersFromItsWall) {
   EXPECT_EQ(features.contact("fill of the union's box"), 1);
 }
 
-TEST(MergeFeatures, DoNotDependOnWhichOfTheTwoIsFirst) {
+TEST(MergeFeatures, AreSymmetric) {
   RegionScene scene = box_on_a_wall();
   const Features features(scene);
   scene.for_each_pixel([&](int x, int y, std::size_t region) {
@@ -155,7 +155,7 @@ TEST(MergeFeatures, DoNotDependOnWhichOfTheTwoIsFirst) {
   EXPECT_EQ(turned.of_contact, features.of_contact);
 }
 
-TEST(ObjectFeatures, SayHowARegionStands) {
+TEST(ObjectFeatures, DescribeARegion) {
   RegionScene scene = box_on_a_wall();
   scene.ground.plane = GroundPlane{0, 0.5F, 2};
   scene.background.planes = {{0.05F, 0, 5}};
@@ -181,7 +181,7 @@ TEST(ObjectFeatures, SayHowARegionStands) {
   EXPECT_EQ(features.region(1, "its colours beside the floor's"), kUnknown) << "nothing lies on the floor";
 }
 
-TEST(Features, AreUnknownWhereNothingIsKnown) {
+TEST(Features, AreUnknownWithoutData) {
   RegionScene scene(grid<RegionId>({{0, 0, 1, 1}, {0, 0, 1, 1}}));
   const Features features(scene);
   for (const char* name :
@@ -203,7 +203,7 @@ TEST(Features, AreUnknownWhereNothingIsKnown) {
   EXPECT_EQ(features.region(0, "ground known"), 0);
 }
 
-TEST(Features, AllThatIsUnknownIsSaidOfARegionThatIsTheWholeImage) {
+TEST(Features, OfTheWholeImageAreUnknownWithoutSurroundings) {
   const Features features(RegionScene(Image<RegionId>(Size{3, 2}, RegionId{0}, {})));
   for (const char* name : {"mean edge around it, grey levels", "same-object score, highest of the neighbours",
                            "same-object score, mean over the outline", "its share of its parent",
@@ -256,7 +256,7 @@ void expect_same_but_px(const Values& large, const Values& small,
   }
 }
 
-TEST(Features, StayWhenAPictureAndItsDisparitiesAreDoubled) {
+TEST(Features, AreInvariantToDoublingTheResolution) {
   RegionScene scene = box_on_a_wall();
   scene.for_each_pixel([&](int x, int y, std::size_t) {
     scene.superpixels.edges(x, y) = static_cast<std::uint16_t>(10 * ((3 * x + 5 * y) % 7));
@@ -270,7 +270,7 @@ TEST(Features, StayWhenAPictureAndItsDisparitiesAreDoubled) {
 
 // ---- trees ----
 
-TEST(FittedTrees, GoBelowWhereAFeatureIsLessAndElseToTheNodeAfter) {
+TEST(FittedTrees, BranchByTheThreshold) {
   const std::vector<FittedTrees::Node> nodes{{1, 1, 2.5F}, {-1, 0, 10}, {0, 3, -1}, {-1, 0, 20}, {-1, 0, 30}};
   const std::vector<std::int16_t> roots{0};
   const FittedTrees trees{0.5F, roots, nodes};
@@ -333,7 +333,7 @@ TEST(FittedTrees, MayBeDeepAndOneSided) {
   }
 }
 
-TEST(FittedTrees, SumUpAsTheyDoOneByOne) {
+TEST(FittedTrees, EqualTheSumOfSingleTrees) {
   std::mt19937 random(7);
   const auto value = [&] { return static_cast<float>(static_cast<int>(random() % 2000) - 1000) / 300; };
   std::set<float> sums;

@@ -63,7 +63,7 @@ TEST(RegionGraph, DoesNotLinkRegionsThatMeetAtACorner) {
   EXPECT_EQ(neighbours(build_graph(labels, 4, values, {}, {}), 0), (std::vector<std::int32_t>{1, 2}));
 }
 
-TEST(RegionGraph, CallsFloorWhatHasAFloorPixel) {
+TEST(RegionGraph, ARegionWithAFloorPixelIsFloor) {
   const Example in;
   const Image<std::uint8_t> floor = grid<std::uint8_t>({{0, 0, 0, 0}, {0, 0, 0, 0}, {255, 255, 0, 0}});
   const RegionGraph graph = build_graph(in.labels, 4, in.values, floor, {});

@@ -31,7 +31,7 @@ Reliability last_of(const samples::Sample& sample, const StereoPair& pair, int f
   return step.reliability;
 }
 
-TEST(Reliability, AGoodPairOfAStandingCameraIsTrusted) {
+TEST(Reliability, AGoodPairOfAStaticCameraIsReliable) {
   const samples::Sample sample = samples::load("four_in_a_row");
   const Reliability judged = last_of(sample, sample.pair());
   ASSERT_TRUE(judged.value);
@@ -45,7 +45,7 @@ TEST(Reliability, AGoodPairOfAStandingCameraIsTrusted) {
   EXPECT_GT(judged.steadiness, 0.5F);
 }
 
-TEST(Reliability, ABlackRightPictureIsFoundOutAndAfterTenFramesSaid) {
+TEST(Reliability, ABlackRightImageIsDetectedAndReportedAfterTenFrames) {
   const samples::Sample sample = samples::load("four_in_a_row");
   const Image<Gray> black(sample.pair().size(), Gray{0}, {});
   const StereoPair pair = StereoPair::from(sample.pictures.left.gray, black);
@@ -57,7 +57,7 @@ TEST(Reliability, ABlackRightPictureIsFoundOutAndAfterTenFramesSaid) {
   EXPECT_TRUE(last_of(sample, pair, 10).is_unreliable);
 }
 
-TEST(Reliability, ARightPictureOfAnotherMomentIsLessAlike) {
+TEST(Reliability, ARightImageOfAnotherMomentLowersThePhotometricWitness) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Image<Gray> moved(sample.pair().size(), Gray{0}, {});
   for (int y = 0; y < moved.height(); ++y)
@@ -110,13 +110,13 @@ struct OneObject {
   }
 };
 
-TEST(TemporalWitness, IsTheOverlapOfWhatWasExpectedWithWhatIsThere) {
+TEST(TemporalWitness, IsTheOverlapOfExpectedAndFoundObjects) {
   EXPECT_NEAR(OneObject(5).judged().witnesses.temporal.value(), 1, 1e-6);
   EXPECT_NEAR(OneObject(10).judged().witnesses.temporal.value(), 5.0 / 15, 1e-6);
   EXPECT_NEAR(OneObject(20).judged().witnesses.temporal.value(), 0, 1e-6);
 }
 
-TEST(TemporalWitness, AnObjectThatNobodyExpectedHalvesIt) {
+TEST(TemporalWitness, AnUnexpectedObjectHalvesIt) {
   OneObject one;
   Object second = one.step.frame.objects.list[0];
   second.id = ObjectId{2};
@@ -131,7 +131,7 @@ TEST(TemporalWitness, AnObjectThatNobodyExpectedHalvesIt) {
   EXPECT_NEAR(one.judged().witnesses.temporal.value(), 0.5, 1e-6);
 }
 
-TEST(TemporalWitness, WhatWasNotSeenBeforeIsNotExpected) {
+TEST(TemporalWitness, AnUnseenTrackIsNotExpected) {
   OneObject one;
   one.step.tracks.list[0].recent = 0b101;
   EXPECT_NEAR(one.judged().witnesses.temporal.value(), 0, 1e-6);  // the object is unexpected
@@ -141,7 +141,7 @@ TEST(TemporalWitness, WhatWasNotSeenBeforeIsNotExpected) {
   EXPECT_FALSE(one.judged().witnesses.temporal);  // nothing seen, nothing expected
 }
 
-TEST(OdometryWitness, IsTheInliersShareAndNothingWhereTheMotionWasRefused) {
+TEST(OdometryWitness, IsTheInlierShareAndZeroIfTheMotionWasRefused) {
   OneObject one;
   EXPECT_FLOAT_EQ(one.judged().witnesses.odometry.value(), 0.9F);
   one.step.motion.refusal = MotionRefusal::disagrees_with_prior;
@@ -151,7 +151,7 @@ TEST(OdometryWitness, IsTheInliersShareAndNothingWhereTheMotionWasRefused) {
   EXPECT_FALSE(one.judged().witnesses.odometry);
 }
 
-TEST(FloorWitness, FallsWhereTheFloorIsGoneOrTilted) {
+TEST(FloorWitness, FallsIfTheFloorIsMissingOrTilted) {
   OneObject one;
   EXPECT_FALSE(one.judged({}, nullptr, true).witnesses.floor);  // there may be none
   // Level camera 1 m over the floor: d = f·B·(v/f)/h = B·(y − cy)/h.
@@ -179,7 +179,7 @@ TEST(ScanWitness, IsTheShareOfBeamsThatTheDisparitiesConfirm) {
   EXPECT_FALSE(one.judged({}, &scan).witnesses.scan);  // too few beams
 }
 
-TEST(Reliability, OneWitnessThatDeniesEverythingIsEnough) {
+TEST(Reliability, OneWitnessNearZeroIsDecisive) {
   Reliability before;
   before.weak_frames = kUnreliableFrames - 1;
   OneObject one;
@@ -191,7 +191,7 @@ TEST(Reliability, OneWitnessThatDeniesEverythingIsEnough) {
   EXPECT_EQ(one.judged(judged).weak_frames, 0);
 }
 
-TEST(SteadinessOfObjects, ALargePlaneCountsNothingAndABulgeDoes) {
+TEST(SteadinessOfObjects, ALargePlaneDoesNotCountButABulgeDoes) {
   OneObject one;  // a plane, 100 of 800 px
   one.step.tracks.list[0].state = TrackState::confirmed;
   EXPECT_EQ(steadiness(one.step, 1), 0);
@@ -221,7 +221,7 @@ TEST(LaserScans, AreReadWithTheirMounting) {
   EXPECT_EQ(io::scan_at(scans, {40'000'000}), nullptr);
 }
 
-TEST(LaserScans, EachRefusalSaysWhatIsWrong) {
+TEST(LaserScans, EachRefusalHasAReason) {
   const TemporaryFolder folder;
   const std::string head = "t_s,angle_min,angle_increment,r0,r1\n";
   const auto refused = [&](const std::string& text) {

@@ -54,7 +54,7 @@ struct Row {
 
 const std::vector<float> kPartsRatherThanWhole{0.4F, 0.4F, 0, 0, 0.6F, 0, 0};
 
-TEST(Repair, AThingThatFallsApartIsPutTogether) {
+TEST(Repair, ASplitObjectIsMerged) {
   Row row;
   const std::vector<float> shattered{0.5F, 0.5F, 0, 0, 0.4F, 0, 0};
   EXPECT_EQ(row.objects(shattered), (std::vector<std::int32_t>{2, 1, 0, 0}));
@@ -62,7 +62,7 @@ TEST(Repair, AThingThatFallsApartIsPutTogether) {
   EXPECT_EQ(row.objects(row.repaired(shattered)), (std::vector<std::int32_t>{1, 1, 0, 0}));
 }
 
-TEST(Repair, TwoThingsThatRunTogetherAreParted) {
+TEST(Repair, TwoMergedObjectsAreSplit) {
   Row row;
   const std::vector<float> merged{0, 0, 0, 0, 0.3F, 0.3F, 0.7F};
   EXPECT_EQ(row.objects(merged), (std::vector<std::int32_t>{1, 1, 1, 1}));
@@ -71,7 +71,7 @@ TEST(Repair, TwoThingsThatRunTogetherAreParted) {
   EXPECT_EQ(row.objects(row.repaired(merged)), (std::vector<std::int32_t>{2, 2, 1, 1}));
 }
 
-TEST(Repair, AThingInDoubtIsFoundAgain) {
+TEST(Repair, AnUncertainObjectIsConfirmed) {
   Row row;
   const std::vector<float> doubtful{0, 0, 0, 0, 0.2F, 0, 0};
   EXPECT_EQ(row.objects(doubtful), (std::vector<std::int32_t>{0, 0, 0, 0}));
@@ -79,14 +79,14 @@ TEST(Repair, AThingInDoubtIsFoundAgain) {
   EXPECT_EQ(row.objects(row.repaired(doubtful)), (std::vector<std::int32_t>{1, 1, 0, 0}));
 }
 
-TEST(Repair, WhatNoTrackTouchesStaysAsItIs) {
+TEST(Repair, ObjectsWithoutTracksAreUnchanged) {
   Row row;
   row.expect(1, 0.9F, 0, 20);
   const std::vector<float> scores{0, 0, 0, 0, 0.5F, 0.44F, 0};
   EXPECT_EQ(row.repaired(scores)[5], 0.44F);
 }
 
-TEST(Repair, ScoresAreTheFormula) {
+TEST(Repair, ScoresFollowTheFormula) {
   Row row;
   row.expect(1, 0.8F, 0, 16);  // of node 4's 20 pixels
   // t = 16/20 · 0.8 = 0.64, λ = 0.32; IoU = 16/20 = 0.8: fits wholly.
@@ -95,7 +95,7 @@ TEST(Repair, ScoresAreTheFormula) {
   EXPECT_NEAR(row.repaired(kPartsRatherThanWhole)[1], 0.76 * 0.4, 1e-6);
 }
 
-TEST(Repair, WhatTheFrameDeniesForLongIsGivenUp) {
+TEST(Repair, AnObjectMissingForLongIsDropped) {
   // The track's confidence follows the repaired score as in tracking: it must decay.
   float confidence = 1;
   for (int frame = 0; frame < 60; ++frame) {
@@ -116,7 +116,7 @@ TEST(Repair, OffChangesNothing) {
   EXPECT_EQ(row.repaired(kPartsRatherThanWhole, 0), kPartsRatherThanWhole);
 }
 
-TEST(Candidates, StandBehindObjectsAndTouchNone) {
+TEST(Candidates, FollowObjectsAndOverlapNone) {
   const Row row;
   const std::vector<float> scores{0.2F, 0, 0, 0.2F, 0.5F, 0.15F, 0};
   const ChosenObjects chosen = choose_candidates(row.tree, scores, {0.3F, 1}, 0.1F);

@@ -113,7 +113,7 @@ void write(const fs::path& folder, const Frame& frame, const Provenance& provena
   write_result(folder, left, {}, frame, provenance);
 }
 
-TEST(ObjectsJson, SaysWhatStandsInTheWayAndWhyItIsNoObject) {
+TEST(ObjectsJson, ListsObstaclesAndWhyTheyAreNoObjects) {
   Frame frame = frame_with_one_object(true);
   EXPECT_TRUE(Json::parse(objects_json(frame, some_provenance())).at("obstacle_scan").is_null());
   add_space(frame);
@@ -131,7 +131,7 @@ TEST(ObjectsJson, SaysWhatStandsInTheWayAndWhyItIsNoObject) {
   EXPECT_TRUE(Json::parse(objects_json(frame, without_rig)).at("floor_frame").is_null());
 }
 
-TEST(ObjectsJson, SaysWhereAnObjectStands) {
+TEST(ObjectsJson, HasThePositionAndBoxOfAnObject) {
   Frame frame = frame_with_one_object(true);
   Object& object = frame.objects.list[0];
   object.disparity_sigma_px = 0.25F;
@@ -145,7 +145,7 @@ TEST(ObjectsJson, SaysWhereAnObjectStands) {
   EXPECT_EQ(j.at("box_on_floor").at("centre_covariance_m2"), (Json{1, 2, 3, 4, 5, 6}));
 }
 
-TEST(ObjectsJson, SaysWhatWasFoundAndHow) {
+TEST(ObjectsJson, HasObjectsAndProvenance) {
   const Frame frame = frame_with_one_object(true);
   const Json j = Json::parse(objects_json(frame, some_provenance()));
   EXPECT_EQ(j.at("image"), (Json{{"width", 60}, {"height", 40}}));
@@ -173,7 +173,7 @@ TEST(ObjectsJson, SaysWhatWasFoundAndHow) {
   EXPECT_EQ(object.at("confidence"), 0.9);
 }
 
-TEST(ObjectsJson, NamesEveryOptionThatIsReadOnce) {
+TEST(ObjectsJson, ListsEveryActiveOptionOnce) {
   const Provenance provenance = some_provenance();
   const Json config = Json::parse(objects_json(frame_with_one_object(false), provenance)).at("config");
   std::size_t count = 0;
@@ -185,7 +185,7 @@ TEST(ObjectsJson, NamesEveryOptionThatIsReadOnce) {
   EXPECT_EQ(count, active_options(provenance.config).size());
 }
 
-TEST(ObjectsJson, HoldsTheMaskAsCocoWritesIt) {
+TEST(ObjectsJson, HasTheMaskInCocoFormat) {
   const Json object =
       Json::parse(objects_json(frame_with_one_object(false), some_provenance())).at("objects").at(0);
   EXPECT_EQ(object.at("segmentation").at("size"), (Json{40, 60}));  // height first
@@ -196,7 +196,7 @@ TEST(ObjectsJson, HoldsTheMaskAsCocoWritesIt) {
   EXPECT_EQ(mask(20, 9), 0);
 }
 
-TEST(ObjectsJson, WritesWhatIsNotKnownAsNull) {
+TEST(ObjectsJson, WritesUnknownValuesAsNull) {
   Provenance provenance = some_provenance();
   provenance.rig = std::nullopt;
   const Json j = Json::parse(objects_json(frame_with_one_object(false), provenance));
@@ -205,7 +205,7 @@ TEST(ObjectsJson, WritesWhatIsNotKnownAsNull) {
   EXPECT_EQ(j.at("ground").at("refusal"), "no plane has enough support");
 }
 
-TEST_F(ResultFolder, HoldsAllFilesOfAResultAndNoTemporaryOnes) {
+TEST_F(ResultFolder, HasAllFilesOfAResultAndNoTemporaryOnes) {
   write(root_ / "out", frame_with_one_object(true), some_provenance());
   EXPECT_EQ(names(root_), std::set<std::string>{"out"});
   EXPECT_EQ(names(root_ / "out"),
@@ -213,7 +213,7 @@ TEST_F(ResultFolder, HoldsAllFilesOfAResultAndNoTemporaryOnes) {
                                    "floor.png", "overlay.png", "disparity_view.png", "objects.json"}));
 }
 
-TEST_F(ResultFolder, ComesBackAsItWasWritten) {
+TEST_F(ResultFolder, IsReadBackAsWritten) {
   const Frame frame = frame_with_one_object(true);
   write(root_ / "out", frame, some_provenance());
   const Image<float> disparity = load_disparity(root_ / "out" / "disparity.png");
@@ -237,7 +237,7 @@ TEST_F(ResultFolder, ComesBackAsItWasWritten) {
   EXPECT_DOUBLE_EQ(confidences[0].confidence, 0.9);
 }
 
-TEST_F(ResultFolder, GetsAPfmWhereSixteenBitsCannotHoldTheSearchRange) {
+TEST_F(ResultFolder, HasAPfmIfSixteenBitsCannotHoldTheSearchRange) {
   Provenance provenance = some_provenance();
   provenance.config.match.min_disparity = -16;
   write(root_ / "out", frame_with_one_object(false), provenance);
@@ -246,7 +246,7 @@ TEST_F(ResultFolder, GetsAPfmWhereSixteenBitsCannotHoldTheSearchRange) {
   EXPECT_FLOAT_EQ(load_disparity(root_ / "out" / "disparity.pfm")(1, 0), 0.0F);
 }
 
-TEST_F(ResultFolder, ReplacesAnOlderResultWhollyAndLeavesForeignFilesAlone) {
+TEST_F(ResultFolder, ReplacesAnOlderResultAndKeepsOtherFiles) {
   Provenance provenance = some_provenance();
   write(root_ / "out", frame_with_one_object(true), provenance);
   std::ofstream(root_ / "out" / "notes.txt") << "mine";
@@ -257,7 +257,7 @@ TEST_F(ResultFolder, ReplacesAnOlderResultWhollyAndLeavesForeignFilesAlone) {
                                    "overlay.png", "disparity_view.png", "objects.json", "notes.txt"}));
 }
 
-TEST_F(ResultFolder, OfASecondRunHoldsNothingOfTheFirst) {
+TEST_F(ResultFolder, OfASecondRunHasNoFileOfTheFirst) {
   const Provenance plenty = some_provenance();
   const Image<Gray> left(kSize, Gray{90}, {});
   write_result(root_ / "out", left, {}, frame_with_one_object(true), plenty, {.point_cloud = true});
@@ -272,7 +272,7 @@ TEST_F(ResultFolder, OfASecondRunHoldsNothingOfTheFirst) {
   EXPECT_EQ(names(root_ / "out"), names(root_ / "alone"));
 }
 
-TEST_F(ResultFolder, HasNoConfidenceWhereThereIsNoneNotEvenAnOlderOne) {
+TEST_F(ResultFolder, HasNoConfidenceIfThereIsNoneNotEvenAnOlderOne) {
   write(root_ / "out", frame_with_one_object(true), some_provenance());
   Frame frame = frame_with_one_object(true);
   frame.confidence = {};
@@ -280,7 +280,7 @@ TEST_F(ResultFolder, HasNoConfidenceWhereThereIsNoneNotEvenAnOlderOne) {
   EXPECT_FALSE(fs::exists(root_ / "out" / "confidence.png"));
 }
 
-TEST_F(ResultFolder, MakesMissingParentsAndTakesASlashAtTheEnd) {
+TEST_F(ResultFolder, CreatesMissingParentsAndAcceptsATrailingSlash) {
   write(root_ / "a" / "b" / "out/", frame_with_one_object(false), some_provenance());
   EXPECT_TRUE(fs::exists(root_ / "a" / "b" / "out" / "objects.json"));
 }
@@ -291,7 +291,7 @@ TEST_F(ResultFolder, IsReadableForOthers) {
   EXPECT_EQ(fs::status(root_ / "out").permissions(), fs::status(root_ / "usual").permissions());
 }
 
-TEST_F(ResultFolder, BelowAFileIsRefusedAndLeavesNothing) {
+TEST_F(ResultFolder, IsRefusedBelowAFileWithoutLeavingAnything) {
   std::ofstream(root_ / "file") << "x";
   EXPECT_THROW(write(root_ / "file", frame_with_one_object(false), some_provenance()), Error);
   EXPECT_THROW(write(root_ / "file" / "out", frame_with_one_object(false), some_provenance()), Error);
@@ -300,14 +300,14 @@ TEST_F(ResultFolder, BelowAFileIsRefusedAndLeavesNothing) {
   EXPECT_EQ(names(root_), std::set<std::string>{"file"});
 }
 
-TEST_F(ResultFolder, OfAFailedWritingIsNotThereNorAreItsParents) {
+TEST_F(ResultFolder, DoesNotExistAfterAFailedWriteNorDoItsParents) {
   Frame frame = frame_with_one_object(false);
   frame.objects.labels(0, 0) = ObjectId{70000};  // does not fit into 16 bits
   EXPECT_THROW(write(root_ / "a" / "out", frame, some_provenance()), Error);
   EXPECT_TRUE(names(root_).empty());
 }
 
-TEST_F(ResultFolder, KeepsTheOlderResultWhereTheNewOneFails) {
+TEST_F(ResultFolder, KeepsTheOlderResultIfTheNewOneFails) {
   write(root_ / "out", frame_with_one_object(true), some_provenance());
   const auto before = names(root_ / "out");
   Frame frame = frame_with_one_object(false);
@@ -317,14 +317,14 @@ TEST_F(ResultFolder, KeepsTheOlderResultWhereTheNewOneFails) {
   EXPECT_EQ(load_labels(root_ / "out" / "objects.png").ids(20, 10), 1);
 }
 
-TEST_F(ResultFolder, ObjectsJsonOfAnotherKindIsRefused) {
+TEST_F(ResultFolder, RefusesOtherObjectsJson) {
   std::ofstream(root_ / "objects.json") << R"({"objects": [{"id": "one"}]})";
   EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
   std::ofstream(root_ / "objects.json") << "{";
   EXPECT_THROW((void)load_confidences(root_ / "objects.json"), Error);
 }
 
-TEST_F(ResultFolder, AnIdThatIsNoIdIsRefusedBeforeItBecomesANumber) {
+TEST_F(ResultFolder, AnInvalidIdIsRefusedBeforeConversion) {
   for (const char* id : {"2e128", "-1", "0", "1.5", "65536", "18446744073709551615", "[[1]]", "null"}) {
     const fs::path path = root_ / "objects.json";
     std::ofstream(path) << R"({"objects": [{"id": )" << id << R"(, "confidence": 0.5}]})";
@@ -333,7 +333,7 @@ TEST_F(ResultFolder, AnIdThatIsNoIdIsRefusedBeforeItBecomesANumber) {
   }
 }
 
-TEST_F(ResultFolder, HoldsDepthAndGridOnRequest) {
+TEST_F(ResultFolder, HasDepthAndGridOnRequest) {
   Frame frame = frame_with_one_object(true);
   add_space(frame);
   const Image<Gray> left(kSize, Gray{90}, {});

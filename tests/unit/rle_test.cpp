@@ -13,7 +13,7 @@ using Counts = std::vector<std::int64_t>;
 
 /// COCO's text form worked out by hand: groups of five bits from the lowest, +32 where more follow, all from
 /// '0' (48) on.
-TEST(RunLengthText, IsCocosForNumbersWorkedOutByHand) {
+TEST(RunLengthText, EqualsCocosForNumbersWorkedOutByHand) {
   EXPECT_EQ(counts_to_text({0}), "0");
   EXPECT_EQ(counts_to_text({15}), "?");          // 15 + 48
   EXPECT_EQ(counts_to_text({16}), "`0");         // 16 has the sign bit set: one more group of 0
@@ -27,7 +27,7 @@ TEST(RunLengthText, WritesDifferencesToTheNumberTwoBeforeFromTheFourthOn) {
   EXPECT_EQ(counts_to_text({10, 3, 7, 3, 7, 1}), ":3700N");
 }
 
-TEST(RunLengthText, ComesBackFromItsText) {
+TEST(RunLengthText, RoundTrips) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 200; ++trial) {
     Counts counts;
@@ -38,7 +38,7 @@ TEST(RunLengthText, ComesBackFromItsText) {
   }
 }
 
-TEST(RunLengthText, RefusesWhatIsNone) {
+TEST(RunLengthText, RefusesInvalidInput) {
   EXPECT_THROW(text_to_counts("T"), Error);                // ends inside a number
   EXPECT_THROW(text_to_counts("!"), Error);                // below the alphabet
   EXPECT_THROW(text_to_counts("p"), Error);                // above it
@@ -65,7 +65,7 @@ TEST(RunLengthMask, OfAWholeImageStartsWithNoZeros) {
   EXPECT_EQ(encode_rle(labels, ObjectId{1}, {0, 0, 10, 10}).counts, "0T3");
 }
 
-TEST(RunLengthMask, OfNothingIsOneRunOfZeros) {
+TEST(RunLengthMask, OfAnEmptyMaskIsOneRunOfZeros) {
   const Image<ObjectId> labels = empty({10, 10});
   EXPECT_EQ(encode_rle(labels, ObjectId{1}, {}).counts, "T3");
 }
@@ -103,7 +103,7 @@ Rect box_of(View<const ObjectId> labels, ObjectId id) {
   return box;
 }
 
-TEST(RunLengthMask, AgreesWithItsDefinitionAndComesBackForMasksOfEveryKind) {
+TEST(RunLengthMask, EqualsItsDefinitionAndRoundTrips) {
   std::mt19937 random(11);
   for (int trial = 0; trial < 400; ++trial) {
     const Size size{static_cast<int>(random() % 12) + 1, static_cast<int>(random() % 12) + 1};

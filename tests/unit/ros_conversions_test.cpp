@@ -57,21 +57,21 @@ Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step
   return message;
 }
 
-TEST(RosPicture, RowsMayBeLongerThanTheImage) {
+TEST(RosImages, RowsMayBeLongerThanTheImage) {
   const Picture picture = picture_from(image("mono8", 2, 3, {1, 2, 0, 3, 4, 0}));
   EXPECT_EQ(picture.gray.size(), (cairn::Size{2, 2}));
   EXPECT_EQ(picture.gray(1, 1), 4);
   EXPECT_TRUE(picture.rgb.empty());
 }
 
-TEST(RosPicture, ColoursStandInTheirOrder) {
+TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
   EXPECT_EQ(picture_from(image("rgb8", 1, 3, {10, 20, 30})).rgb(0, 0), (cairn::Rgb{10, 20, 30}));
   const Picture picture = picture_from(image("bgr8", 1, 3, {10, 20, 30}));
   EXPECT_EQ(picture.rgb(0, 0), (cairn::Rgb{30, 20, 10}));
   EXPECT_EQ(picture.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
 }
 
-TEST(RosPicture, RefusesWhatIsNoImage) {
+TEST(RosImages, RefusesInvalidImages) {
   EXPECT_THROW(picture_from(image("16UC1", 1, 2, {1, 2})), cairn::Error);
   EXPECT_THROW(picture_from(image("mono8", 3, 2, {1, 2})), cairn::Error);
   Image cut = image("mono8", 2, 2, {1, 2, 3, 4});
@@ -79,7 +79,7 @@ TEST(RosPicture, RefusesWhatIsNoImage) {
   EXPECT_THROW(picture_from(cut), cairn::Error);
 }
 
-TEST(RosPicture, CameraInfoKeepsWhatTheRigNeeds) {
+TEST(RosImages, CameraInfoKeepsTheRig) {
   CameraInfo info;
   info.width = 640;
   info.p[3] = -30;

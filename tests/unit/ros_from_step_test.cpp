@@ -59,7 +59,7 @@ TEST(RosFromStep, ImagesHaveNoGapsBetweenRows) {
   EXPECT_EQ(image_of(kHeader, colour).step, 6U);
 }
 
-TEST(RosFromStep, TheRigComesBackFromBothCameras) {
+TEST(RosFromStep, TheRigIsRecoveredFromBothCameras) {
   const StereoRig rig{517.3F, 318.6F, 255.3F, 0.1203F, 12.5F};
   const CameraInfo left = camera_info_of(kHeader, rig, {640, 480}, Side::left);
   const CameraInfo right = camera_info_of(kHeader, rig, {640, 480}, Side::right);
@@ -126,7 +126,7 @@ TEST(RosFromStep, DetectionsAreTheObjectsWithTheirTracks) {
   EXPECT_TRUE(detections_of(kHeader, s.step, std::nullopt).detections.empty());
 }
 
-TEST(RosFromStep, LabelsAndReasonsAreThoseOfTheFrame) {
+TEST(RosFromStep, LabelsAndReasonsEqualThoseOfTheFrame) {
   const Sample& s = sample();
   const Image labels = labels_of(kHeader, s.step);
   const Image reject = reject_of(kHeader, s.step.frame);
@@ -141,7 +141,7 @@ TEST(RosFromStep, LabelsAndReasonsAreThoseOfTheFrame) {
   }
 }
 
-TEST(RosFromStep, CloudsHoldThePixelsOfTheirKind) {
+TEST(RosFromStep, CloudsContainThePixelsOfTheirClass) {
   const Sample& s = sample();
   const auto& pictures = s.pictures.left;
   const auto cloud = [&](Space space, int stride) {
@@ -157,7 +157,7 @@ TEST(RosFromStep, CloudsHoldThePixelsOfTheirKind) {
   EXPECT_EQ(cloud_of(kHeader, s.step.frame, Space::floor, std::nullopt, pictures.gray, {}).width, 0U);
 }
 
-TEST(RosFromStep, TheFloorLiesBelowTheCamera) {
+TEST(RosFromStep, TheFloorIsBelowTheCamera) {
   const Sample& s = sample();
   const TFMessage message = transforms_of({}, s.step, s.calibration.rig);
   ASSERT_EQ(message.transforms.size(), 2U);
@@ -183,7 +183,7 @@ TEST(RosFromStep, TheFloorLiesBelowTheCamera) {
   EXPECT_NEAR(ahead.z, expected.z, 1e-5);
 }
 
-TEST(RosFromStep, TheGridIsThatOfTheLibrary) {
+TEST(RosFromStep, TheGridEqualsThatOfTheLibrary) {
   const Sample& s = sample();
   const auto grid = grid_of(kHeader, s.step.frame, s.calibration.rig, s.config.space);
   ASSERT_TRUE(grid);

@@ -93,7 +93,7 @@ void for_each_message(Visit visit) {
   visit(some_transforms());
 }
 
-TEST(RosMessages, BytesAreThoseCountedByHand) {
+TEST(RosMessages, BytesEqualThoseCountedByHand) {
   const Bytes header{0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 4, 0, 0, 0, 'c', 'a', 'm', 0};
   EXPECT_EQ(encode(Header{{1, 2}, "cam"}), header);
   const Bytes text{0, 1, 0, 0, 1, 0, 0, 0, 0};
@@ -104,14 +104,14 @@ TEST(RosMessages, BytesAreThoseCountedByHand) {
   EXPECT_EQ(encode(Image{{{1, 2}, "l"}, 1, 3, "mono8", 0, 3, {7, 8, 9}}), image);
 }
 
-TEST(RosMessages, DoublesLieAtMultiplesOfEightBehindTheHeader) {
+TEST(RosMessages, DoublesAreAlignedToEightAfterTheHeader) {
   const Bytes bytes = encode(ObjectHypothesis{"object", 0.5});
   ASSERT_EQ(bytes.size(), 4U + 16 + 8);  // 4 + 7 of text, then padding to 16
   EXPECT_EQ(bytes[4 + 16 + 6], 0xe0);    // 0.5 is 0x3fe0000000000000
   EXPECT_EQ(bytes[4 + 16 + 7], 0x3f);
 }
 
-TEST(RosMessages, ComeBackAsTheyWere) {
+TEST(RosMessages, RoundTrip) {
   for_each_message([](const auto& message) {
     using M = std::remove_cvref_t<decltype(message)>;
     const Bytes bytes = encode(message);
@@ -125,7 +125,7 @@ TEST(RosMessages, ComeBackAsTheyWere) {
   EXPECT_EQ(decode<Detection3DArray>(encode(some_detections())).detections[1].id, "8");
 }
 
-TEST(RosMessages, WhatIsCutOffIsRefused) {
+TEST(RosMessages, RefuseTruncatedBytes) {
   for_each_message([](const auto& message) {
     using M = std::remove_cvref_t<decltype(message)>;
     const Bytes bytes = encode(message);
@@ -136,7 +136,7 @@ TEST(RosMessages, WhatIsCutOffIsRefused) {
   });
 }
 
-TEST(RosMessages, DamagedBytesAreReadOrRefusedAndNothingElse) {
+TEST(RosMessages, DamagedBytesAreReadOrRefused) {
   std::mt19937 random(1);
   for_each_message([&](const auto& message) {
     using M = std::remove_cvref_t<decltype(message)>;
@@ -152,7 +152,7 @@ TEST(RosMessages, DamagedBytesAreReadOrRefusedAndNothingElse) {
   });
 }
 
-TEST(RosMessages, CountsBeyondTheBytesAllocateNothing) {
+TEST(RosMessages, CountsBeyondTheDataAllocateNothing) {
   Bytes bytes = encode(some_cloud());
   for (std::size_t i = 4; i + 4 <= bytes.size(); i += 4) {
     Bytes damaged = bytes;
@@ -165,7 +165,7 @@ TEST(RosMessages, CountsBeyondTheBytesAllocateNothing) {
   }
 }
 
-TEST(RosMessages, OtherEncodingsAreRefusedWithAWord) {
+TEST(RosMessages, OtherEncodingsAreRefusedWithAMessage) {
   try {
     decode<String>(Bytes{0, 0, 0, 0, 0, 0, 0, 1, 0});
     FAIL();
@@ -187,7 +187,7 @@ TEST(RosMessages, DefinitionsNameEachMessageOnce) {
   EXPECT_EQ(text.find("MSG: std_msgs/Header\n", first + 1), std::string::npos);
 }
 
-TEST(RosMessages, StampsComeBack) {
+TEST(RosMessages, StampsRoundTrip) {
   for (const std::int64_t ns : {0LL, 1LL, -1LL, 1'700'000'000'123'456'789LL, -5'000'000'000LL})
     EXPECT_EQ(stamp_of(time_of({ns})).ns, ns);
   EXPECT_EQ(time_of({-1}).sec, -1);

@@ -59,7 +59,7 @@ class Server {
   int port_ = 0;
 };
 
-TEST(Rtsp, ComesBackAfterTheServerWasKilled) {
+TEST(Rtsp, ReconnectsAfterTheServerWasKilled) {
   if (!support::has_elements({"rtspsrc", "rtph264depay", "avdec_h264", "x264enc", "decodebin"})) {
     GTEST_SKIP() << "install gstreamer1.0-plugins-good gstreamer1.0-plugins-ugly gstreamer1.0-libav";
   }
@@ -102,7 +102,7 @@ TEST(Rtsp, ComesBackAfterTheServerWasKilled) {
   EXPECT_LT(Clock::now() - stopped, 200ms);
 }
 
-TEST(Rtsp, WithoutAServerIsRefusedWithoutItsPassword) {
+TEST(Rtsp, RefusesAMissingServerWithoutPrintingThePassword) {
   if (!support::has_elements({"rtspsrc", "decodebin"})) GTEST_SKIP() << "install gstreamer1.0-plugins-good";
   const std::string words = refusal([] { (void)open_sequence("rtsp://me:secret@127.0.0.1:1/pair", {}); });
   EXPECT_TRUE(has(words, {"rtsp://***@127.0.0.1:1/pair", "pipeline fails"}));

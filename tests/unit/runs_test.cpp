@@ -22,7 +22,7 @@ TEST(Runs, EndWithTheLabelAndWithTheRow) {
   EXPECT_EQ(numbers, (std::vector<int>{0, 1, 1}));
 }
 
-TEST(Runs, HaveTheExtentOfAllOfThem) {
+TEST(Runs, HaveTheExtentOfTheirUnion) {
   Extent extent;
   EXPECT_EQ(extent.box(), Rect{});
   extent.add({RegionId{3}, 2, 5, 9});

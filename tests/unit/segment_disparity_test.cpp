@@ -28,7 +28,7 @@ DisparityMap scene(Size size, float wall_px, const std::vector<Board>& boards) {
   return map;
 }
 
-TEST(SegmentDisparity, PartsBoardsFromTheWallWithMeansInPixels) {
+TEST(SegmentDisparity, SeparatesBoardsFromTheWallWithMeansInPixels) {
   const Segmentation result =
       segment_disparity(scene({60, 40}, 4, {{{5, 5, 12, 20}, 20.5F}, {{30, 8, 15, 15}, 11}}), {}, {}, {});
   ASSERT_EQ(result.regions.size(), 3U);
@@ -55,7 +55,7 @@ TEST(SegmentDisparity, AMapOfHolesIsOneRegionWithoutValue) {
   EXPECT_EQ(result.regions[0].valid_count, 0);
 }
 
-TEST(SegmentDisparity, FloorIsOneRegionAndCutsABoardThatLiesOnIt) {
+TEST(SegmentDisparity, FloorIsOneRegionAndSplitsABoardOnIt) {
   // Floor at the disparity of the board on it: only the mask separates them.
   const DisparityMap map = scene({60, 40}, 4, {{{0, 20, 60, 20}, 10}, {{20, 12, 15, 14}, 10}});
   Image<std::uint8_t> floor(Size{60, 40}, std::uint8_t{0}, {});

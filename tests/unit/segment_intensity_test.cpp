@@ -19,7 +19,7 @@ Image<Gray> picture(Size size, Rect bright, int noise) {
   return image;
 }
 
-TEST(SegmentIntensity, PartsARectangleFromItsGround) {
+TEST(SegmentIntensity, SeparatesARectangleFromItsBackground) {
   const Rect bright{12, 8, 20, 15};
   const Image<Gray> image = picture({60, 40}, bright, 0);
   const Segmentation result = segment_intensity(image, {.smoothing_sigma = 0}, {});
@@ -52,13 +52,13 @@ TEST(SegmentIntensity, AGradientBelowItsThresholdMakesNoBasins) {
   EXPECT_LE(basins(10), 6U);
 }
 
-TEST(SegmentIntensity, LeavesNoRegionBelowTheLeastArea) {
+TEST(SegmentIntensity, LeavesNoRegionBelowTheMinimumArea) {
   const Image<Gray> image = grids::random_image<Gray>({50, 40}, 0, 255, 3);
   const Segmentation result = segment_intensity(image, {.min_region_area = 1.0F}, {});
   for (const Region& region : result.regions) EXPECT_GE(region.pixel_count, 20);
 }
 
-TEST(SegmentIntensity, TakesAnyImageSize) {
+TEST(SegmentIntensity, AcceptsAnyImageSize) {
   for (const Size size : {Size{1, 1}, Size{2, 1}, Size{1, 3}, Size{200, 1}, Size{1, 200}}) {
     const Image<Gray> image = grids::random_image<Gray>(size, 0, 255, 1);
     const Segmentation result = segment_intensity(image, {}, {});

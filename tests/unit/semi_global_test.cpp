@@ -26,7 +26,7 @@ std::vector<std::vector<std::vector<std::int64_t>>> costs_and_winners(const Matc
   return {numbers(m.best), numbers(m.best_right), numbers(m.cost), numbers(m.mean_cost)};
 }
 
-TEST(SemiGlobal, AddsUpFourPathsAsOneCanByHand) {
+TEST(SemiGlobal, SumsFourPathsAsComputedByHand) {
   // Two identical pixels; candidates 0 and 1. The partner of (0, d = 1) is outside: 12 bits. So C(0, 1) =
   // (3·12 + 3·12 + 0 + 2) / 4 = 18, C(1, 1) = (3·12 + 2) / 4 = 9, C(·, 0) = 0; P1 = 54·0.6 = 32. S(1, 1) = 9
   // down + 9 up + 9 leftward + 9 + min(18, P1) rightward.
@@ -47,7 +47,7 @@ TEST(SemiGlobal, AddsUpFourPathsAsOneCanByHand) {
   EXPECT_EQ(cheap.cost_after(1, 0), 41.0F);
 }
 
-TEST(SemiGlobal, RecoversBoardsBeforeAWall) {
+TEST(SemiGlobal, RecoversBoardsInFrontOfAWall) {
   const auto scene =
       synthetic::make_scene({.size = {120, 60}, .background_px = 4, .boxes = {{{50, 15, 40, 30}, 14}}});
   const Matches m = matched(scene.pair(), 24);
@@ -76,7 +76,7 @@ struct PlainPatch {
   }
 };
 
-TEST(SemiGlobal, AnswersFromTheSurroundingsWhereThereIsNoTexture) {
+TEST(SemiGlobal, FillsTexturelessAreasFromTheirSurroundings) {
   const PlainPatch scene;
   const auto pair = StereoPair::from(scene.left, scene.right);
   const Matches paths = matched(pair, 16);
@@ -90,7 +90,7 @@ TEST(SemiGlobal, AnswersFromTheSurroundingsWhereThereIsNoTexture) {
   }
 }
 
-TEST(SemiGlobal, CostsNothingWhereEverythingFits) {
+TEST(SemiGlobal, CostsAreZeroForIdenticalImages) {
   const PlainPatch scene;
   const Matches m = matched(StereoPair::from(scene.left, scene.right), 16);
   EXPECT_EQ(m.best(30, 20), 5);
@@ -98,7 +98,7 @@ TEST(SemiGlobal, CostsNothingWhereEverythingFits) {
   EXPECT_GE(m.runner_up(30, 20), 40.0F);
 }
 
-TEST(SemiGlobal, IsBlindToTheRightCamerasGainAndOffset) {
+TEST(SemiGlobal, IsInvariantToTheRightCamerasGainAndOffset) {
   const auto scene = synthetic::make_scene({.size = {60, 30}, .boxes = {{{25, 8, 20, 15}, 11}}});
   Image<Gray> left = scene.left.clone();
   Image<Gray> right = scene.right.clone();
@@ -114,7 +114,7 @@ TEST(SemiGlobal, IsBlindToTheRightCamerasGainAndOffset) {
             costs_and_winners(matched(StereoPair::from(left, right), 16)));
 }
 
-TEST(SemiGlobal, KeepsLargeStepsToWhereTheIntensityChanges) {
+TEST(SemiGlobal, RestrictsLargeStepsToIntensityEdges) {
   // The larger the penalty, the fewer steps.
   const auto scene = synthetic::make_scene({.size = {90, 40}, .boxes = {{{40, 10, 25, 20}, 12}}, .seed = 9});
   const auto steps = [&](const SemiGlobalConfig& penalties) {
@@ -131,7 +131,7 @@ TEST(SemiGlobal, KeepsLargeStepsToWhereTheIntensityChanges) {
             steps({.penalty_small = 0.1F, .penalty_large = 0}));
 }
 
-TEST(SemiGlobal, SaysWhereThereIsNoCandidate) {
+TEST(SemiGlobal, MarksPixelsWithoutCandidates) {
   const auto dots = synthetic::random_dots({12, 4}, 1);
   const Matches m = match_semi_global(StereoPair::from(dots, dots), search(5, 3), {}, {});
   for (const int x : {0, 4}) {
@@ -147,7 +147,7 @@ TEST(SemiGlobal, SaysWhereThereIsNoCandidate) {
   EXPECT_NE(m.best_right(6, 1), kNoMatch);
 }
 
-TEST(SemiGlobal, MatchesTowardBothSides) {
+TEST(SemiGlobal, MatchesNegativeDisparitiesToo) {
   const auto dots = synthetic::random_dots({60, 20}, 6);
   Image<Gray> moved = synthetic::random_dots({60, 20}, 7);
   for (int y = 0; y < 20; ++y) std::copy_n(dots.row(y), 57, moved.row(y) + 3);  // d = −3
@@ -156,7 +156,7 @@ TEST(SemiGlobal, MatchesTowardBothSides) {
   for (int x = 12; x < 50; ++x) EXPECT_EQ(m.best_right(x, 10), -3);
 }
 
-TEST(SemiGlobal, KeepsOnlyTheWinnerIfThatIsWanted) {
+TEST(SemiGlobal, KeepsOnlyTheWinnerOnRequest) {
   const auto scene = synthetic::make_scene({.size = {50, 20}});
   auto config = search(0, 12);
   config.maps = MatchMaps::winner;
@@ -168,7 +168,7 @@ TEST(SemiGlobal, KeepsOnlyTheWinnerIfThatIsWanted) {
               winner.cost_before.empty() && winner.cost_after.empty() && full.row_offset.empty());
 }
 
-TEST(SemiGlobal, IsWhatMatchDoesByThatMethod) {
+TEST(SemiGlobal, IsUsedByMatch) {
   const auto scene = synthetic::make_scene({.size = {50, 20}});
   auto config = search(0, 12);
   const SemiGlobalConfig penalties{.penalty_small = 0.2F, .penalty_large = 1.0F};

@@ -101,7 +101,7 @@ TEST(Stamps, AreReadUnderDamageOrRefused) {
                            [](const fs::path& path) { (void)load_frame_stamps(path); });
 }
 
-TEST(Stamps, PairWhatIsEachOthersNearest) {
+TEST(Stamps, PairMutualNearestNeighbours) {
   const auto stamps = [](std::initializer_list<std::int64_t> ms) {
     std::vector<Stamp> list;
     for (const std::int64_t one : ms) list.push_back(Stamp{one * 1'000'000});
@@ -132,7 +132,7 @@ class LivePairs {
   StampPairing<int> pairing_;
 };
 
-TEST(StampPairing, PutsTogetherWhatIsOfOneMoment) {
+TEST(StampPairing, PairsSimultaneousFrames) {
   LivePairs pairs(5);
   EXPECT_FALSE(pairs.push(0, 0, 1));
   EXPECT_EQ(pairs.push(1, 0, 10), (std::pair{1, 10}));
@@ -151,7 +151,7 @@ TEST(StampPairing, PutsTogetherWhatIsOfOneMoment) {
   EXPECT_EQ(pairs.alone, 8);
 }
 
-TEST(StampPairing, BeginsAgainWhereTheClockWasSetBack) {
+TEST(StampPairing, RestartsIfTheClockWasSetBack) {
   LivePairs pairs(0);
   EXPECT_FALSE(pairs.push(0, 1000, 1));
   EXPECT_FALSE(pairs.push(0, 500, 2));
@@ -207,7 +207,7 @@ TEST(SequenceOfFolders, DeliversItsFramesInOrderWithTheirCalibration) {
   EXPECT_FALSE(sequence->next());
 }
 
-TEST(SequenceOfFolders, TakesStampsFromAFileATableOrTheRate) {
+TEST(SequenceOfFolders, ReadsStampsFromAFileATableOrTheRate) {
   const TemporaryFolder folder;
   save_frames(folder, 3);
   SourceOptions options;
@@ -223,7 +223,7 @@ TEST(SequenceOfFolders, TakesStampsFromAFileATableOrTheRate) {
   EXPECT_TRUE(frames[2].after_gap);
 }
 
-TEST(SequenceOfFolders, NamedByTheirStampsHasThem) {
+TEST(SequenceOfFolders, ReadsStampsFromFolderNames) {
   const TemporaryFolder folder;
   save_frame(folder, "1403636579763555584", 0);
   save_frame(folder, "1403636579813555456", 1);
@@ -246,7 +246,7 @@ TEST(SequenceOfFolders, DeliversTheFramesOfARangeOnly) {
   EXPECT_TRUE(has(refusal([&] { (void)open(folder, options); }), {"has 6 frames", "--frames"}));
 }
 
-TEST(SequenceOfFolders, RefusesStampsThatDoNotRise) {
+TEST(SequenceOfFolders, RefusesStampsThatDoNotIncrease) {
   const TemporaryFolder folder;
   save_frames(folder, 3);
   (void)folder.with("stamps.txt", "1000000000\n2000000000\n2000000000\n");
@@ -264,7 +264,7 @@ TEST(SequenceOfFolders, RefusesStampsInAnotherUnit) {
   EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"less than 1 us"}));
 }
 
-TEST(SequenceOfFolders, RefusesMissingStampsAndWhatIsNone) {
+TEST(SequenceOfFolders, RefusesMissingAndInvalidStamps) {
   const TemporaryFolder folder;
   save_frames(folder, 3);
   (void)folder.with("stamps.txt", "0\n100000000\n");
@@ -273,7 +273,7 @@ TEST(SequenceOfFolders, RefusesMissingStampsAndWhatIsNone) {
   EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"stamps.txt:2", "'soon'"}));
 }
 
-TEST(SequenceOfFolders, RefusesAnotherSizeInMidSequence) {
+TEST(SequenceOfFolders, RefusesAChangeOfSize) {
   const TemporaryFolder folder;
   save_frames(folder, 3);
   save(folder, "001/left.png", 1, {20, 16});
@@ -292,7 +292,7 @@ TEST(SequenceOfFolders, RefusesAPairOfTwoSizes) {
   EXPECT_TRUE(has(refusal([&] { (void)sequence->next(); }), {"001/right.png", "20x16", "24x16"}));
 }
 
-TEST(SequenceOfFolders, RefusesAnotherCalibrationInMidSequence) {
+TEST(SequenceOfFolders, RefusesAChangeOfCalibration) {
   const TemporaryFolder folder;
   save_frames(folder, 3);
   (void)folder.with("001/calib.txt", "# the same\n" + kCalib);
@@ -307,7 +307,7 @@ TEST(SequenceOfFolders, RefusesAnotherCalibrationInMidSequence) {
   EXPECT_EQ(all_of(*open(folder, options)).size(), 3U);
 }
 
-TEST(SequenceOfFolders, TakesTheFoldersCalibrationWhereFramesHaveNone) {
+TEST(SequenceOfFolders, UsesTheFoldersCalibrationIfFramesHaveNone) {
   const TemporaryFolder folder;
   save_frames(folder, 2);
   for (const char* name : {"000/calib.txt", "001/calib.txt"}) fs::remove(folder.path() / name);
@@ -318,7 +318,7 @@ TEST(SequenceOfFolders, TakesTheFoldersCalibrationWhereFramesHaveNone) {
   EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"calib.txt", "640x480", "24x16"}));
 }
 
-TEST(SequenceOfFolders, LeavesOutFramesWithoutARightImageAndDamagedOnesAndCountsThem) {
+TEST(SequenceOfFolders, SkipsAndCountsIncompleteAndDamagedFrames) {
   const TemporaryFolder folder;
   save_frames(folder, 6);
   fs::remove(folder.path() / "001/right.png");
@@ -336,7 +336,7 @@ TEST(SequenceOfFolders, LeavesOutFramesWithoutARightImageAndDamagedOnesAndCounts
   EXPECT_TRUE(has(sequence->remarks()[1].first, {"004", "left.png"}));
 }
 
-TEST(SequenceOfFolders, SaysThatOneCameraIsFrozen) {
+TEST(SequenceOfFolders, ReportsAFrozenCamera) {
   const TemporaryFolder folder;
   save_frames(folder, 4);
   for (const char* name : {"002", "003"})
@@ -372,7 +372,7 @@ TEST(SequenceOfFolders, OfOneFrameIsASequence) {
   EXPECT_EQ(all_of(*open(folder)).size(), 1U);
 }
 
-TEST(Sources, ThatAreNoneAreRefused) {
+TEST(Sources, RefuseInvalidOnes) {
   const TemporaryFolder folder;
   const std::string at = folder.path().string();
   const auto refused = [](const std::string& source, const SourceOptions& options = {}) {

@@ -76,7 +76,7 @@ TEST(LabelSpace, TheFloorIsFreeAndWallsAreObstacles) {
   EXPECT_EQ(space(40, 22), Space::obstacle);
 }
 
-TEST(LabelSpace, WhatStandsOnTheFloorIsAnObstacleThoughNoObject) {
+TEST(LabelSpace, PixelsAboveTheFloorAreObstaclesEvenIfNoObject) {
   Room room;
   room.board({30, 35, 8, 12}, 8);
   const Image<Space> space = room.space();
@@ -95,7 +95,7 @@ TEST(LabelSpace, HolesAreUnknownUnlessTheFloorIsAroundThem) {
   EXPECT_EQ(room.space()(45, 55), Space::unknown);
 }
 
-TEST(LabelSpace, APieceIsFloorByThreeFifthsOfWhatIsKnown) {
+TEST(LabelSpace, ASuperpixelIsFloorByThreeFifthsOfItsKnownPixels) {
   Room room;
   room.board({0, 50, 4, 10}, 20);  // two fifths of a square of 10 px
   EXPECT_EQ(room.space()(8, 55), Space::floor);
@@ -104,7 +104,7 @@ TEST(LabelSpace, APieceIsFloorByThreeFifthsOfWhatIsKnown) {
   EXPECT_EQ(room.space()(8, 55), Space::unknown);
 }
 
-TEST(LabelSpace, WhatIsRatherWrongIsNoObstacle) {
+TEST(LabelSpace, UnreliableDisparitiesAreNoObstacle) {
   Room room;
   room.board({30, 35, 8, 12}, 8);
   room.confidence(33, 38) = 0.4F;
@@ -120,7 +120,7 @@ TEST(LabelSpace, AnObjectIsAnObstacleWithItsHoles) {
   EXPECT_EQ(room.space()(45, 55), Space::obstacle);
 }
 
-TEST(LabelSpace, WithoutAnyPlaneOnlyObjectsAreKnownToStandInTheWay) {
+TEST(LabelSpace, WithoutAnyPlaneOnlyObjectsAreObstacles) {
   Room room;
   room.ground = {};
   room.background = {};
@@ -131,7 +131,7 @@ TEST(LabelSpace, WithoutAnyPlaneOnlyObjectsAreKnownToStandInTheWay) {
   EXPECT_EQ(space(40, 5), Space::unknown);
 }
 
-TEST(LabelSpace, WithoutAFloorObstaclesStandBeforeTheWalls) {
+TEST(LabelSpace, WithoutAFloorObstaclesAreInFrontOfTheWalls) {
   Room room;
   room.ground = {};
   room.background = {{kWall}, false};
@@ -161,7 +161,7 @@ TEST(FloorOf, IsTheFloorOfTheSpace) {
 
 // ---- scan and grid ----
 
-TEST(ScanObstacles, SaysTheNearestInEachDirection) {
+TEST(ScanObstacles, HasTheNearestInEachDirection) {
   Room room;
   room.board({60, 30, 10, 20}, 10);  // 2 m ahead and (65 − 40)·2/100 = 0.5 m to the right
   const ObstacleScan scan = room.scan({.max_height = 3, .range = 20, .cell_size = 0.05F});
@@ -174,7 +174,7 @@ TEST(ScanObstacles, SaysTheNearestInEachDirection) {
   EXPECT_NEAR(range_at(10, 1), 10, 0.2);  // the wall
 }
 
-TEST(ScanObstacles, WhatIsAboveTheHeightOrBeyondTheRangeIsNotInTheWay) {
+TEST(ScanObstacles, IgnoresPointsAboveTheHeightOrBeyondTheRange) {
   Room room;
   room.board({60, 5, 10, 10}, 10);  // 0.1 to 0.3 m above the camera, which is 1 m above the floor
   const auto scan = [&](float height, float range) {
@@ -188,7 +188,7 @@ TEST(ScanObstacles, WhatIsAboveTheHeightOrBeyondTheRangeIsNotInTheWay) {
   EXPECT_EQ(seen(scan(2, 1)), 0);
 }
 
-TEST(ScanObstacles, IsAsWideAsThePictureIsOnTheFloor) {
+TEST(ScanObstacles, IsAsWideAsTheImageOnTheFloor) {
   // With a pitch of 30 degrees, the lower corner sees farther to the side than the middle row.
   GroundConfig config;
   config.source = GroundSource::pose;
@@ -249,7 +249,7 @@ TEST(MapObstacles, KnowsFreeOccupiedAndUnknown) {
 
 // ---- obstacles left out ----
 
-TEST(LeftOutOf, SaysWhyEachObstacleIsNoObject) {
+TEST(LeftOutOf, HasAReasonForEachObstacle) {
   Room room;
   room.board({30, 32, 12, 14}, 12);  // an obstacle: 168 px
   room.board({60, 40, 4, 3}, 14);    // a small one: 12 px
@@ -270,7 +270,7 @@ TEST(LeftOutOf, SaysWhyEachObstacleIsNoObject) {
   EXPECT_EQ(left[2].disparity_px, 2);
 }
 
-TEST(LeftOutOf, SpecksAreNoRegions) {
+TEST(LeftOutOf, IgnoresSpecks) {
   Room room;
   room.board({60, 40, 2, 1}, 14);  // 2 of 4800 px: less than 0.05 %
   const auto left = room.left_out({}, {});
@@ -279,7 +279,7 @@ TEST(LeftOutOf, SpecksAreNoRegions) {
   EXPECT_FALSE(left[0].position_in_camera_m);  // no rig
 }
 
-TEST(LeftOutOf, AnObjectBesideAnObstacleOfItsDisparityDividesThem) {
+TEST(LeftOutOf, AnObjectSplitsAnObstacleOfItsDisparity) {
   Room room;
   room.board({30, 32, 12, 14}, 12);
   for (int y = 32; y < 46; ++y) room.objects(36, y) = ObjectId{1};  // through the centre

@@ -39,12 +39,12 @@ TEST(Speckle, RejectsIslandsOfUpToTheGivenSize) {
   EXPECT_EQ(verdict(map, {1, 1.0F}), (Rows{{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}}));
 }
 
-TEST(Speckle, DiagonalNeighboursAreStrangers) {
+TEST(Speckle, DiagonalNeighboursAreNotConnected) {
   const auto map = grid<float>({{9, 1}, {1, 9}});
   EXPECT_EQ(verdict(map, {1, 1.0F}), (Rows{{64, 64}, {64, 64}}));
 }
 
-TEST(Speckle, ASlopeIsOneIslandWhereEachStepIsSmall) {
+TEST(Speckle, ASlopeWithSmallStepsIsOneIsland) {
   const auto map = grid<float>({{1, 2, 3, 4, 5, 6}});
   EXPECT_EQ(verdict(map, {5, 1.0F}), (Rows{{0, 0, 0, 0, 0, 0}}));
   EXPECT_EQ(verdict(map, {5, 0.9F}), (Rows{{64, 64, 64, 64, 64, 64}}));

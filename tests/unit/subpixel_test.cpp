@@ -47,7 +47,7 @@ TEST(Subpixel, FindsTheTipOfTwoLinesOfOppositeSlope) {
   EXPECT_EQ(refined_by_lines(pixel(1, 1, 9)), 6.5F);
 }
 
-TEST(Subpixel, KeepsTheWholePixelWhereNoLinesCanBeLaid) {
+TEST(Subpixel, KeepsTheIntegerDisparityIfNoLinesFit) {
   EXPECT_EQ(refined_by_lines(pixel(5, 5, 5)), 7.0F);
   EXPECT_EQ(refined_by_lines(pixel(kNoCost, 1, 9)), 7.0F);
   EXPECT_EQ(refined_by_lines(pixel(9, 1, kNoCost)), 7.0F);

@@ -35,7 +35,7 @@ std::vector<std::int64_t> first_row(const Superpixels& superpixels) {
   return numbers(superpixels.labels).front();
 }
 
-TEST(Superpixels, APlainPictureIsOne) {
+TEST(Superpixels, APlainImageIsOneSuperpixel) {
   const Superpixels superpixels = cut(Image<Gray>(Size{9, 7}, Gray{80}, {}), 500);
   EXPECT_EQ(superpixels.count, 1);
   EXPECT_EQ(numbers(superpixels.labels), Rows(7, std::vector<std::int64_t>(9, 0)));
@@ -56,7 +56,7 @@ TEST(Superpixels, AnEdgeOfColourCutsWhereBrightnessIsTheSame) {
             (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1}));
 }
 
-TEST(Superpixels, AStepOfDisparityCutsWhereThePictureIsPlainAndHolesDoNot) {
+TEST(Superpixels, ADisparityStepCutsAPlainImageAndHolesDoNot) {
   const Image<Gray> gray(Size{8, 3}, Gray{100}, {});
   Image<float> disparity(gray.size(), 5.0F, {});
   for (int y = 0; y < 3; ++y) std::fill_n(disparity.row(y) + 4, 4, 9.0F);
@@ -67,13 +67,13 @@ TEST(Superpixels, AStepOfDisparityCutsWhereThePictureIsPlainAndHolesDoNot) {
   EXPECT_EQ(cut_superpixels(gray, {}, disparity, 0, {}, {}).count, 1);
 }
 
-TEST(Superpixels, AreFewerThanCountWhereAPictureIsSmall) {
+TEST(Superpixels, AreFewerThanCountInASmallImage) {
   EXPECT_EQ(cut(stripes({50, 200, 90}), 500).count, 3);
   EXPECT_EQ(cut(stripes({50}, 1), 500).count, 1);
   EXPECT_EQ(cut(Image<Gray>(Size{1, 1}, Gray{0}, {}), 1).count, 1);
 }
 
-TEST(Superpixels, WhatIsMostAlikeFusesFirst) {
+TEST(Superpixels, TheMostSimilarFuseFirst) {
   const Image<Gray> gray = stripes({50, 60, 200, 120});
   EXPECT_EQ(first_row(cut(gray, 4)),
             (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3}));
@@ -84,7 +84,7 @@ TEST(Superpixels, WhatIsMostAlikeFusesFirst) {
   EXPECT_EQ(cut(gray, 1).count, 1);
 }
 
-TEST(Superpixels, OfEqualBordersTheFirstGoes) {
+TEST(Superpixels, OfEqualBordersTheFirstFuses) {
   // All equally similar and of equal size: the border that comes first in raster order.
   EXPECT_EQ(first_row(cut(stripes({50, 90, 50, 90}), 3)),
             (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
@@ -119,7 +119,7 @@ TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
   }
 }
 
-TEST(Superpixels, AsASegmentationHaveTheirGreyLevels) {
+TEST(Superpixels, AsASegmentationHaveMeanGreyLevels) {
   const Image<Gray> gray = stripes({50, 200});
   const Segmentation segmentation = segmentation_of(cut(gray, 500), gray, {});
   ASSERT_EQ(segmentation.regions.size(), 2U);

@@ -67,7 +67,7 @@ TEST(Texture, ComparesTheMeanSquaredDifferenceExactly) {
   EXPECT_EQ(at(static_cast<float>(least * 1.001)), Reject::no_texture);
 }
 
-TEST(Texture, AnImageOfOnePixelHasNone) {
+TEST(Texture, AnImageOfOnePixelIsPlain) {
   EXPECT_EQ(count_rejected(picture({1, 1}, [](int, int) { return 5; }), {3, 0.0F}), 1);
 }
 TEST(Texture, ThresholdZeroKeepsEverythingElse) {

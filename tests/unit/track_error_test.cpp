@@ -26,7 +26,7 @@ std::vector<ScoredFrame> one_object(const Ids& ours, double similarity = 1) {
   return frames;
 }
 
-TEST(TrackError, EverythingRightIsOne) {
+TEST(TrackError, APerfectResultScoresOne) {
   const TrackErrors e = track_errors(one_object({5, 5, 5, 5}));
   for (const double share : {e.hota, e.det_a, e.det_re, e.det_pr, e.ass_a, e.ass_re, e.ass_pr, e.loc_a,
                              e.mota, e.motp, e.id_f1, e.id_precision, e.id_recall})
@@ -36,7 +36,7 @@ TEST(TrackError, EverythingRightIsOne) {
   EXPECT_EQ(e.switches + e.fragments + e.missed + e.wrong, 0);
 }
 
-TEST(TrackError, AnotherIdHalfwayCostsHalfOfTheAssociation) {
+TEST(TrackError, AnIdSwitchHalfwayHalvesTheAssociation) {
   const TrackErrors e = track_errors(one_object({5, 5, 8, 8}));
   EXPECT_NEAR(e.det_a, 1, 1e-12);
   EXPECT_NEAR(e.ass_a, 0.5, 1e-12);  // each track covers 2 of 4 frames
@@ -70,7 +70,7 @@ TEST(TrackError, ASwitchCountsAlsoAfterAGap) {
   EXPECT_EQ(track_errors(one_object({5, 0, 0, 8})).switches, 1);
 }
 
-TEST(TrackError, HowWellMasksFitDecidesAtWhichThresholdsTheyCount) {
+TEST(TrackError, IouDecidesAtWhichThresholdsMasksCount) {
   const TrackErrors e = track_errors(one_object({5, 5}, 0.6));
   EXPECT_NEAR(e.det_a, 12.0 / 19, 1e-12);  // .05 … .60
   EXPECT_NEAR(e.motp, 0.6, 1e-12);
@@ -82,7 +82,7 @@ TEST(TrackError, HowWellMasksFitDecidesAtWhichThresholdsTheyCount) {
   EXPECT_EQ(below.id_right, 0);
 }
 
-TEST(TrackError, WithoutAnythingOnOneSideNothingIsRight) {
+TEST(TrackError, AnEmptySideScoresZero) {
   const TrackErrors none = track_errors({{{1, 2}, {}, {}}});
   EXPECT_EQ(none.missed, 2);
   EXPECT_EQ(none.mostly_lost, 2);
@@ -95,7 +95,7 @@ TEST(TrackError, WithoutAnythingOnOneSideNothingIsRight) {
   EXPECT_EQ(track_errors({}).hota, 0);
 }
 
-TEST(TrackError, AMatchIsKeptAgainstABetterFit) {
+TEST(TrackError, AnExistingMatchIsKeptOverABetterFit) {
   // In the second frame another one fits better, but the first one still fits well enough.
   const std::vector<ScoredFrame> frames{{{1}, {5, 6}, {0.9, 0.0}}, {{1}, {5, 6}, {0.6, 0.8}}};
   EXPECT_EQ(clear_matches(frames), (std::vector<std::vector<int>>{{0}, {0}}));
@@ -115,7 +115,7 @@ double best_sum(const std::vector<std::vector<double>>& scores, std::size_t row,
   return best;
 }
 
-TEST(TrackError, TheAssignmentIsTheBestOfAll) {
+TEST(TrackError, TheAssignmentIsOptimal) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> similarity(0.5, 1);
   for (int round = 0; round < 200; ++round) {
@@ -137,14 +137,14 @@ TEST(TrackError, TheAssignmentIsTheBestOfAll) {
   }
 }
 
-TEST(OracleIds, TheBestOnATrueObjectHasItsIdAndTheOthersTheirOwn) {
+TEST(OracleIds, TheBestMatchGetsTheTrueIdAndOthersNewOnes) {
   const std::vector<ScoredFrame> frames =
       oracle_ids({{{7, 8}, {1, 2, 3}, {0.3, 0.6, 0.0, 0.1, 0.0, 0.0}}, {{7}, {1}, {0.9}}});
   EXPECT_EQ(frames[0].ours, (Ids{-1, 7, -2}));  // the first one overlaps 7, too, but less
   EXPECT_EQ(frames[1].ours, (Ids{7}));
 }
 
-TEST(OracleIds, NoSwitchIsLeft) {
+TEST(OracleIds, LeaveNoSwitch) {
   EXPECT_EQ(track_errors(oracle_ids(one_object({5, 8, 9, 5}))).switches, 0);
   EXPECT_NEAR(track_errors(oracle_ids(one_object({5, 8, 9, 5}))).ass_a, 1, 1e-12);
 }
@@ -166,7 +166,7 @@ TEST(ScoredFrame, CountsPixelsOutsideDontCare) {
   EXPECT_EQ(frame.similarity, (std::vector<double>{0.75, 0, 0, 0.25}));
 }
 
-TEST(ScoredFrame, LeavesOutWhatLiesMostlyWhereItIsNeitherRightNorWrong) {
+TEST(ScoredFrame, IgnoresObjectsMostlyOnDontCare) {
   const auto ours = row<TrackId>({4, 4, 4, 5, 5, 6, 6, 6, 0, 0});
   // 4: two thirds on a small object; 5: half on don't-care; 6: on unlabelled pixels.
   const auto truth = row<TruthId>({1, 1, 0, -1, 3, 0, 0, 3, 3, 3});
@@ -175,7 +175,7 @@ TEST(ScoredFrame, LeavesOutWhatLiesMostlyWhereItIsNeitherRightNorWrong) {
   EXPECT_EQ(scored_frame(ours, truth, {3, true}).truth, (Ids{3}));
 }
 
-TEST(Steadiness, CountsWhatIsLostAndFoundAgainWhileInView) {
+TEST(Steadiness, CountsFragmentsWhileInView) {
   std::vector<ScoredFrame> frames = one_object({5, 0, 5, 0});  // lost at the end: not found again
   frames.push_back({{}, {}, {}});                              // out of view
   for (const ScoredFrame& frame : one_object({0, 5, 5}, 0.8)) frames.push_back(frame);
@@ -225,7 +225,7 @@ std::map<std::string, double> figures(const TrackErrors& e) {
           {"IDP", e.id_precision},  {"IDTP", e.id_right},  {"IDFN", e.id_missed}, {"IDFP", e.id_wrong}};
 }
 
-TEST(TrackError, IsWhatTrackEvalComputes) {
+TEST(TrackError, EqualsTrackEval) {
   if (!std::filesystem::exists(golden())) GTEST_SKIP() << "no scores at " << golden() << " (CAIRN_DATA)";
   const Json cases = Json::parse(std::ifstream(golden()));
   EXPECT_EQ(cases.size(), 4U);

@@ -40,7 +40,7 @@ std::string frame(int index, const std::string& tracks, const std::string& more 
               tracks + "]" + more + "}");
 }
 
-TEST(TrackFiles, AFrameHasWhatItsLineSays) {
+TEST(TrackFiles, AFrameEqualsItsLine) {
   const TemporaryFolder folder;
   const TrackFile file =
       load_tracks(folder.with("tracks.jsonl", frame(0, track(R"(, "rle": )" + kMask + R"(, "landmark": 8)")) +
@@ -67,7 +67,7 @@ TEST(TrackFiles, AFrameHasWhatItsLineSays) {
   EXPECT_EQ(number(labels(2, 0)), 0);
 }
 
-TEST(TrackFiles, WhatIsNotKnownIsMissing) {
+TEST(TrackFiles, UnknownValuesAreMissing) {
   const TemporaryFolder folder;
   const TrackFile file = load_tracks(
       folder.with("tracks.jsonl", flat(R"({"frame": 0, "name": "a", "stamp_ns": -5, "pose": null, "tracks":
@@ -78,7 +78,7 @@ TEST(TrackFiles, WhatIsNotKnownIsMissing) {
   EXPECT_FALSE(file.frames[0].tracks[0].mask);
 }
 
-TEST(TrackFiles, ALastLineThatIsCutOffIsLeftOut) {
+TEST(TrackFiles, ATruncatedLastLineIsIgnored) {
   const TemporaryFolder folder;
   const std::string text = frame(0, track("")) + "\n" + frame(1, track(""));
   const TrackFile whole = load_tracks(folder.with("whole.jsonl", text));  // without its newline
@@ -191,7 +191,7 @@ void write_truth(const TemporaryFolder& folder, const std::string& pose, const s
   if (!scene.empty()) (void)folder.with("000/scene.json", scene);
 }
 
-TEST(TrueFrames, AFolderHasLabelsPosesAndPlaces) {
+TEST(TrueFrames, AFolderHasLabelsPosesAndPositions) {
   const TemporaryFolder folder;
   write_truth(folder, "# camera to world\n0 -1 0 5\n1 0 0 6\n0 0 1 7\n0 0 0 1\n",
               R"({"objects": [{"id": 9, "centroid_visible_cam": [1, 2, 3], "centroid_world": null}]})");
@@ -212,7 +212,7 @@ TEST(TrueFrames, AFolderHasLabelsPosesAndPlaces) {
   EXPECT_EQ(labels(0, 0), TruthId::dont_care);
 }
 
-TEST(TrueFrames, WhatIsMalformedIsRefusedByName) {
+TEST(TrueFrames, MalformedInputIsRefusedByName) {
   const std::string good = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
   const auto says = [&](const std::string& pose, const std::string& scene,
                         std::initializer_list<std::string_view> words) {
@@ -232,7 +232,7 @@ TEST(TrueFrames, WhatIsMalformedIsRefusedByName) {
   EXPECT_TRUE(has(refusal([&] { load_truth(empty.path() / "x"); }), {"no such file or folder"}));
 }
 
-TEST(TrueFrames, MotsTextIsATruthToo) {
+TEST(TrueFrames, MotsTextIsAccepted) {
   const TemporaryFolder folder;
   const TrueSequence truth = load_truth(folder.with("gt.txt", "0 5 1 3 4 066\n0 6 10 3 4 66\n"));
   EXPECT_TRUE(truth.is_numbered);
@@ -241,7 +241,7 @@ TEST(TrueFrames, MotsTextIsATruthToo) {
   EXPECT_EQ(labels(3, 0), TruthId::dont_care);
 }
 
-TEST(TrajectoryFiles, TumAndKittiAreToldApart) {
+TEST(TrajectoryFiles, TumAndKittiAreDistinguished) {
   const TemporaryFolder folder;
   const Trajectory tum = load_trajectory(
       folder.with("a.tum", "# t x y z qx qy qz qw\n2.5 4 5 6 0 0 1 0\n1403715273.262142976 1 2 3 0 0 0 1\n"));
@@ -255,7 +255,7 @@ TEST(TrajectoryFiles, TumAndKittiAreToldApart) {
   EXPECT_EQ(kitti.poses[1].map_from_camera.translation_m, (Point3{4, 5, 6}));
 }
 
-TEST(TrajectoryFiles, WhatIsMalformedIsRefusedByName) {
+TEST(TrajectoryFiles, MalformedInputIsRefusedByName) {
   const TemporaryFolder folder;
   for (const char* text : {"# nothing\n", "0 1 2 3\n", "0 1 2 x 0 0 0 1\n", "0 1 2 inf 0 0 0 1\n",
                            "1e300 1 2 3 0 0 0 1\n", "0 1 2 3 0 0 0 0\n", "0 1 2 3 0 0 0 1\n0 1 2 3 0 0 0 1\n",

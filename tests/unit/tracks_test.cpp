@@ -38,7 +38,7 @@ Track standing(Point3 at_m) {
   return track;
 }
 
-TEST(Tracks, AreAsUnsureAgainstANewKeyframeAsItIsTied) {
+TEST(Tracks, HaveTheUncertaintyOfTheLinkToANewKeyframe) {
   Covariance6 key{};
   key[0] = 0.04;   // x
   key[35] = 0.01;  // about z
@@ -70,7 +70,7 @@ TEST(Tracks, HaveThePosesUncertaintyInTheMapOnly) {
 
 // ---- the filters ----
 
-TEST(Filter3, WandersWithTimeAndMeetsAMeasurementHalfWay) {
+TEST(Filter3, IsARandomWalkAndAveragesEqualUncertainties) {
   const Filter3 before{{1, 2, 3}, variances(1)};
   const Filter3 later = predicted(before, 4, 0.5);
   EXPECT_EQ(later.position_m, before.position_m);
@@ -82,7 +82,7 @@ TEST(Filter3, WandersWithTimeAndMeetsAMeasurementHalfWay) {
   EXPECT_NEAR(after.covariance_m2[1], 0, 1e-12);
 }
 
-TEST(Filter6, GoesByItsVelocityAndGetsLessSure) {
+TEST(Filter6, MovesWithItsVelocityAndLosesCertainty) {
   Filter6 before{{1, 0, 0}, {2, 0, -1}, variances(1, 4)};
   const Filter6 later = predicted(before, 0.5, 2);
   EXPECT_EQ(later.position_m, (Point3{2, 0, -0.5}));
@@ -93,7 +93,7 @@ TEST(Filter6, GoesByItsVelocityAndGetsLessSure) {
   EXPECT_NEAR(of_position(later)[0], later.covariance[0], 0);
 }
 
-TEST(Filter6, LearnsItsVelocityFromPlaces) {
+TEST(Filter6, EstimatesItsVelocityFromPositions) {
   Filter6 filter{{0, 0, 0}, {}, variances(0.01, 1)};
   for (int k = 1; k <= 40; ++k)
     filter = updated(predicted(filter, 0.1, 0.5), {0.03 * k, -0.01 * k, 0}, variances(1e-4));
@@ -109,7 +109,7 @@ TEST(Innovation, IsTheGaussiansExponentAndVolume) {
   EXPECT_NEAR(found.log_likelihood, -0.5 * (4 + std::log(64.0) + 3 * std::log(6.283185307179586)), 1e-9);
 }
 
-TEST(InMap, TurnsTheCovarianceAndAddsThePoses) {
+TEST(InMap, RotatesTheCovarianceAndAddsThePoses) {
   const Pose quarter = rotation_about({0, 0, 1.5707963267948966});
   Covariance3 wide_in_x = variances(1);
   wide_in_x[0] = 9;
@@ -125,7 +125,7 @@ TEST(InMap, TurnsTheCovarianceAndAddsThePoses) {
   EXPECT_NEAR(found[8], 0, 1e-12);
 }
 
-TEST(SeenAnew, AnotherSideMayLieAQuarterOfTheExtentElsewhere) {
+TEST(SeenAnew, AnotherSideMayBeOffsetByAQuarterOfTheExtent) {
   const Vec3 extent{0.6F, 0.2F, 0};  // a quarter of the mean: 0.1 m
   const Covariance3 before = variances(0.01);
   EXPECT_EQ(seen_anew(before, extent, {0, 0, 0}, {2, 0, 0}, {3, 0, 0}),
@@ -145,7 +145,7 @@ TEST(DriftOf, IsTheSlopeOfTheStraightLine) {
   EXPECT_NEAR(drift.sigma_m_s, 0.2, 1e-12);  // √(0.08 / (1 + 0 + 1))
 }
 
-TEST(Likeness, IsOneOfTheSameAndNoughtOfOtherColours) {
+TEST(Likeness, IsOneForEqualAndZeroForDisjointColours) {
   ColourHistogram a{};
   a[0] = a[8] = 1;
   ColourHistogram b{};
@@ -213,7 +213,7 @@ struct Story {
   }
 };
 
-TEST(Tracks, AreConfirmedAtTheThirdSightOfFive) {
+TEST(Tracks, AreConfirmedByThreeSightingsOfFive) {
   Story story;
   story.step({sighting_at(1, {0, 0, 2}, 0.45F)});
   EXPECT_EQ(story.only().state, TrackState::tentative);
@@ -228,7 +228,7 @@ TEST(Tracks, AreConfirmedAtTheThirdSightOfFive) {
   EXPECT_EQ(story.only().last, seconds(0.5));
 }
 
-TEST(Tracks, AreConfirmedAtOnceWhereOneSightIsSureEnough) {
+TEST(Tracks, AreConfirmedAtOnceByAConfidentSighting) {
   Story story;
   story.step({sighting_at(1, {0, 0, 2}, 0.8F)});  // 1 − 0.8 ≤ (1 − 0.4)³
   EXPECT_EQ(story.only().state, TrackState::confirmed);
@@ -239,7 +239,7 @@ TEST(Tracks, AreConfirmedAtOnceWhereOneSightIsSureEnough) {
   EXPECT_EQ(two.only().state, TrackState::confirmed);
 }
 
-TEST(Tracks, OnlySureObjectsFoundOnes) {
+TEST(Tracks, AreCreatedByConfidentObjectsOnly) {
   Story story;
   story.step({sighting_at(1, {0, 0, 2}, 0.3F)});
   EXPECT_TRUE(story.tracks.list.empty());
@@ -282,7 +282,7 @@ TEST(Tracks, EndAfterMissesInViewOnly) {
   EXPECT_TRUE(story.tracks.list.empty());
 }
 
-TEST(Tracks, EndWhenTheyAreHiddenForLong) {
+TEST(Tracks, EndAfterLongOcclusion) {
   Story story;
   story.config.max_hidden = 1.0F;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2})});
@@ -294,7 +294,7 @@ TEST(Tracks, EndWhenTheyAreHiddenForLong) {
   EXPECT_TRUE(story.tracks.list.empty());
 }
 
-TEST(Tracks, AThingThatComesBackKeepsItsId) {
+TEST(Tracks, AReappearingObjectKeepsItsId) {
   Story story;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2})});
   for (int k = 0; k < 10; ++k) story.step({});
@@ -305,7 +305,7 @@ TEST(Tracks, AThingThatComesBackKeepsItsId) {
   EXPECT_EQ(story.only().misses, 0);
 }
 
-TEST(Tracks, AverageWhereAStandingThingIs) {
+TEST(Tracks, AverageThePositionOfAStaticObject) {
   Story story;
   for (int k = 0; k < 40; ++k) story.step({sighting_at(1, {k % 2 == 0 ? 0.03 : -0.03, 0, 2})});
   EXPECT_FALSE(story.only().is_moving);
@@ -316,7 +316,7 @@ TEST(Tracks, AverageWhereAStandingThingIs) {
   EXPECT_LT(story.only().covariance_m2[0], 4e-4);
 }
 
-TEST(Tracks, ARollingThingIsFoundToMoveAndToStandAgain) {
+TEST(Tracks, ARollingObjectIsDetectedAsMovingAndStoppedLater) {
   Story story;
   int moving_at = -1;
   for (int k = 0; k < 20; ++k) {
@@ -336,7 +336,7 @@ TEST(Tracks, ARollingThingIsFoundToMoveAndToStandAgain) {
   EXPECT_EQ(story.only().id, TrackId{1});
 }
 
-TEST(Tracks, AThingThatStoodForLongIsFoundToMoveAsSoon) {
+TEST(Tracks, ALongStaticObjectIsDetectedAsMovingAsSoon) {
   Story story;
   for (int k = 0; k < 100; ++k) story.step({sighting_at(1, {0, 0, 2})});
   int moving_at = -1;
@@ -348,7 +348,7 @@ TEST(Tracks, AThingThatStoodForLongIsFoundToMoveAsSoon) {
   EXPECT_LE(moving_at, 6);
 }
 
-TEST(Tracks, AMaskThatLeapsOnceDoesNotMove) {
+TEST(Tracks, AMaskThatJumpsOnceIsNotMotion) {
   Story story;
   for (int k = 0; k < 10; ++k) story.step({sighting_at(1, {0, 0, 2})});
   for (int k = 0; k < 10; ++k) {
@@ -357,7 +357,7 @@ TEST(Tracks, AMaskThatLeapsOnceDoesNotMove) {
   }
 }
 
-TEST(Tracks, WhatTheBorderCutsOrNobodyIsSureOfDoesNotMove) {
+TEST(Tracks, ClippedOrUncertainObjectsAreNotMoving) {
   for (const bool is_cut : {true, false}) {
     Story story;
     for (int k = 0; k < 15; ++k) {
@@ -370,7 +370,7 @@ TEST(Tracks, WhatTheBorderCutsOrNobodyIsSureOfDoesNotMove) {
   }
 }
 
-TEST(Tracks, WhenMostThingsMoveAtOnceTheCameraIsSuspected) {
+TEST(Tracks, IfMostObjectsMoveAtOnceTheCameraIsSuspected) {
   Story story;
   bool was_suspect = false;
   for (int k = 0; k < 12; ++k) {
@@ -383,7 +383,7 @@ TEST(Tracks, WhenMostThingsMoveAtOnceTheCameraIsSuspected) {
   EXPECT_TRUE(was_suspect);
 }
 
-TEST(Tracks, OneOfThreeThatMovesIsNoReasonToSuspectTheCamera) {
+TEST(Tracks, OneMovingOfThreeDoesNotBlameTheCamera) {
   Story story;
   for (int k = 0; k < 12; ++k) {
     story.step({sighting_at(1, {0.04 * k, 0, 2}), sighting_at(2, {1, 0, 2}), sighting_at(3, {2, 0, 2})});
@@ -393,7 +393,7 @@ TEST(Tracks, OneOfThreeThatMovesIsNoReasonToSuspectTheCamera) {
   EXPECT_FALSE(story.tracks.list[1].is_moving);
 }
 
-TEST(Tracks, ACameraThatMovesDoesNotMoveThings) {
+TEST(Tracks, AMovingCameraDoesNotMoveObjects) {
   Story story;
   for (int k = 0; k < 15; ++k) {
     Pose pose = rotation_about({0, 0.02 * k, 0});
@@ -406,7 +406,7 @@ TEST(Tracks, ACameraThatMovesDoesNotMoveThings) {
   EXPECT_NEAR(story.only().position_m.z, 3, 1e-9);
 }
 
-TEST(Tracks, JoinedOnesLiveOnAndKeepTheirPlaces) {
+TEST(Tracks, JoinedOnesSurviveAndKeepTheirPositions) {
   Story story;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2}), sighting_at(2, {0.3, 0, 2})});
   for (int k = 0; k < 30; ++k) {
@@ -429,7 +429,7 @@ TEST(Tracks, JoinedOnesLiveOnAndKeepTheirPlaces) {
   EXPECT_FALSE(story.tracks.list[0].is_joined);
 }
 
-TEST(Tracks, AnObjectThatIsTwoOfThemFoundsNone) {
+TEST(Tracks, AnObjectThatCoversTwoOfThemCreatesNone) {
   Story story;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2}), sighting_at(2, {0.3, 0, 2})});
   Overlaps overlaps = story.plain(1);
@@ -444,7 +444,7 @@ TEST(Tracks, AnObjectThatIsTwoOfThemFoundsNone) {
   EXPECT_EQ(story.tracks.list[1].misses, 0);
 }
 
-TEST(Tracks, PiecesFoundNoTracksOfTheirOwnAtFirst) {
+TEST(Tracks, PiecesCreateNoTracksAtFirst) {
   Story story;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2})});
   const auto in_pieces = [&] {
@@ -466,7 +466,7 @@ TEST(Tracks, PiecesFoundNoTracksOfTheirOwnAtFirst) {
   EXPECT_TRUE(story.tracks.list[0].parts.empty());
 }
 
-TEST(Tracks, AreFrozenWhileTheCamerasPlaceIsNotKnown) {
+TEST(Tracks, AreFrozenWhileTheCameraIsLost) {
   Story story;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2})});
   for (int k = 0; k < 20; ++k) story.step({sighting_at(1, {5, 0, 2})}, story.plain(1), true);
@@ -480,7 +480,7 @@ TEST(Tracks, AreFrozenWhileTheCamerasPlaceIsNotKnown) {
   EXPECT_EQ(story.only().id, TrackId{1});
 }
 
-TEST(Tracks, MoveOnWhileTheCamerasPlaceIsNotKnown) {
+TEST(Tracks, KeepMovingWhileTheCameraIsLost) {
   Story story;
   const auto rolling = [&] { return sighting_at(1, {0.05 * story.frame, 0, 2}); };  // 0.5 m/s
   for (int k = 0; k < 30; ++k) story.step({rolling()});
@@ -494,7 +494,7 @@ TEST(Tracks, MoveOnWhileTheCamerasPlaceIsNotKnown) {
   EXPECT_EQ(story.only().id, TrackId{1});
 }
 
-TEST(Tracks, EndWhenTheCamerasPlaceIsNotKnownForLong) {
+TEST(Tracks, EndIfTheCameraIsLostForLong) {
   Story story;
   story.config.max_hidden = 1.0F;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2})});
@@ -504,7 +504,7 @@ TEST(Tracks, EndWhenTheCamerasPlaceIsNotKnownForLong) {
   EXPECT_TRUE(story.tracks.list.empty());
 }
 
-TEST(Tracks, WithoutPlacesAreFollowedByTheirMasks) {
+TEST(Tracks, WithoutPositionsAreFollowedByTheirMasks) {
   Story story;
   Sighting seen = sighting_at(1, {});
   seen.has_place = false;
@@ -546,7 +546,7 @@ struct Picture {
   }
 };
 
-TEST(Sight, ReportsAPlaceWithItsUncertainty) {
+TEST(Sight, ReportsAPositionWithItsUncertainty) {
   const Sighting seen = Picture({10, 10, 12, 8}, 1).sighted().at(0);
   EXPECT_TRUE(seen.has_place);
   EXPECT_FALSE(seen.is_cut);
@@ -557,7 +557,7 @@ TEST(Sight, ReportsAPlaceWithItsUncertainty) {
   EXPECT_NEAR(seen.covariance_in_camera_m2[8], 0.01, 1e-8);
 }
 
-TEST(Sight, AnUnsureOrCutMaskTellsLessOfItsMiddle) {
+TEST(Sight, AnUncertainOrClippedMaskHasAMoreUncertainCentre) {
   const double sure = Picture({10, 10, 12, 8}, 1).sighted().at(0).covariance_in_camera_m2[0];
   EXPECT_GT(Picture({10, 10, 12, 8}, 0.5F).sighted().at(0).covariance_in_camera_m2[0], 2 * sure);
   const Sighting cut = Picture({0, 10, 12, 8}, 1).sighted().at(0);
@@ -566,12 +566,12 @@ TEST(Sight, AnUnsureOrCutMaskTellsLessOfItsMiddle) {
   EXPECT_LT(cut.covariance_in_camera_m2[4], sure);  // clipped at left and right, not at top and bottom
 }
 
-TEST(Sight, LeavesOutWhatIsLessSureThanAsked) {
+TEST(Sight, OmitsObjectsBelowTheConfidenceThreshold) {
   EXPECT_TRUE(Picture({10, 10, 12, 8}, 0.05F).sighted().empty());
   EXPECT_EQ(Picture({10, 10, 12, 8}, 0.1F).sighted().size(), 1U);
 }
 
-TEST(Sight, HasColoursButNoPlaceWithoutARig) {
+TEST(Sight, HasColoursButNoPositionWithoutARig) {
   const Sighting seen = Picture({10, 10, 12, 8}).sighted(false).at(0);
   EXPECT_FALSE(seen.has_place);
   float lightness = 0;
@@ -581,7 +581,7 @@ TEST(Sight, HasColoursButNoPlaceWithoutARig) {
   EXPECT_FLOAT_EQ(chroma, 1);
 }
 
-TEST(Sight, LooksAtColoursWellInsideTheMask) {
+TEST(Sight, UsesColoursWellInsideTheMask) {
   Picture clean({10, 10, 12, 8});
   Picture framed({10, 10, 12, 8});
   for (int y = 10; y < 18; ++y) {

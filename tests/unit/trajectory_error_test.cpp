@@ -39,7 +39,7 @@ std::vector<TimedPose> circle(int count) {
   return poses;
 }
 
-TEST(TrajectoryError, IsNothingWhereTheMapIsOnlyAnotherOne) {
+TEST(TrajectoryError, IsZeroForAnotherMapOrigin) {
   const std::vector<TimedPose> truth = circle(60);
   Pose elsewhere = rotation_about({0.4, 0.2, -2});
   elsewhere.translation_m = {10, -5, 2};
@@ -79,7 +79,7 @@ TEST(TrajectoryError, OfAHeadingThatDrifts) {
   EXPECT_NEAR(e.r_rel_rad_per_m / kDegrees, 1, 0.11);
 }
 
-TEST(TrajectoryError, DoesNotKnowWhatTheTrajectoriesAreTooShortFor) {
+TEST(TrajectoryError, IsUnknownForTooShortTrajectories) {
   const TrajectoryError none = trajectory_error({}, straight(5, 0.1));
   EXPECT_EQ(none.compared, 0);
   EXPECT_TRUE(std::isnan(none.ate_rmse_m));
@@ -94,7 +94,7 @@ TEST(TrajectoryError, DoesNotKnowWhatTheTrajectoriesAreTooShortFor) {
   EXPECT_TRUE(std::isnan(still.t_rel));
 }
 
-TEST(TrajectoryError, ComparesWhatIsNearInTime) {
+TEST(TrajectoryError, ComparesPosesNearInTime) {
   std::vector<TimedPose> ours = straight(10, 0.1);
   for (TimedPose& pose : ours) pose.stamp.ns += 4'000'000;
   ours.erase(ours.begin() + 3, ours.begin() + 5);
@@ -119,7 +119,7 @@ TEST(NormalisedError, CountsStandardDeviations) {
   EXPECT_TRUE(std::isnan(normalised_error(off, {}, {}))) << "no covariance at all";
 }
 
-TEST(TrajectoryError, IsKittisOfTwoKnownSystems) {
+TEST(TrajectoryError, EqualsKittisForTwoKnownSystems) {
   const fs::path folder = collection() / "real/sequences/anchors/kitti00";
   if (!fs::exists(folder)) GTEST_SKIP() << "no collection of sequences here (CAIRN_DATA)";
   const io::Trajectory truth = io::load_trajectory(folder / "KITTI_00_gt.txt");

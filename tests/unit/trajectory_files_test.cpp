@@ -51,7 +51,7 @@ std::vector<TimedPose> some_poses() {
   return poses;
 }
 
-TEST_F(TrajectoryFiles, AreReadAsTheyWereWritten) {
+TEST_F(TrajectoryFiles, AreReadBackAsWritten) {
   for (const auto& form : kTrajectoryForms) {
     const std::vector<TimedPose> poses = some_poses();
     const Trajectory back =
@@ -69,7 +69,7 @@ TEST_F(TrajectoryFiles, AreReadAsTheyWereWritten) {
   }
 }
 
-TEST_F(TrajectoryFiles, OfKittiTakeTheStampsBesideThem) {
+TEST_F(TrajectoryFiles, OfKittiReadTheStampsNextToThem) {
   const std::string text = trajectory_text(some_poses(), TrajectoryForm::kitti);
   EXPECT_EQ(load_trajectory(with("poses.txt", text)).poses[2].stamp.ns, 200'000'000);
   with("times.txt", "0.0\n1.036e-01\n0.21\n0.31\n0.42\n");
@@ -99,7 +99,7 @@ TEST_F(TrajectoryFiles, FramesOfAFolderAreInTheOrderOfTheirNumbers) {
   EXPECT_EQ(order, (std::vector<double>{1, 2, 9, 10, 11}));
 }
 
-TEST_F(TrajectoryFiles, AFolderOfFramesHoldsAPoseEach) {
+TEST_F(TrajectoryFiles, AFolderOfFramesHasOnePoseEach) {
   with("seq/000/pose.txt", "# camera-to-world\n1 0 0 0.5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   with("seq/001/pose.txt", "1 0 0 0.6\n0 1 0 0\n0 0 1 0\n");
   const Trajectory bare = load_trajectory(folder() / "seq");
@@ -114,7 +114,7 @@ TEST_F(TrajectoryFiles, AFolderOfFramesHoldsAPoseEach) {
   EXPECT_THROW((void)load_trajectory(folder() / "other"), Error);
 }
 
-TEST_F(TrajectoryFiles, AreRefusedInOneLineThatNamesThePlace) {
+TEST_F(TrajectoryFiles, AreRefusedInOneLineThatNamesThePosition) {
   const std::string good = "0.1 1 2 3 0 0 0 1\n";
   EXPECT_EQ(refusal(good), "none");
   EXPECT_NE(refusal("").find("contains no pose"), std::string::npos);

@@ -74,13 +74,13 @@ TEST_F(Tuned, StoppedItKeepsTheBestSoFarOrHasNone) {
   EXPECT_TRUE(none.before.empty());
 }
 
-TEST_F(Tuned, WhatAHookThrowsGoesOnToTheCaller) {
+TEST_F(Tuned, ExceptionsOfAHookReachTheCaller) {
   struct Own {};
   EXPECT_THROW(tune(frames(), {}, Exec{}, {{}, [](const TuneProgress&) { throw Own(); }}), Own);
   EXPECT_THROW(tune(frames(), {}, Exec{}, {[]() -> bool { throw Own(); }, {}}), Own);
 }
 
-TEST_F(Tuned, WhatCannotBeTunedIsRefused) {
+TEST_F(Tuned, RefusesInvalidRequests) {
   EXPECT_THROW(tune({}, {}, Exec{}), Error);
   EXPECT_THROW(tune(frames(), {.budget_s = 0}, Exec{}), Error);
   EXPECT_THROW(tune(frames(), {.budget_s = std::nan("")}, Exec{}), Error);

@@ -13,7 +13,7 @@
 namespace cairn {
 namespace {
 
-TEST(GainOfAChange, IsTheDifferenceOfTheMeansWithWhatOtherFramesMayGain) {
+TEST(GainOfAChange, IsTheMeanDifferenceWithItsConfidenceInterval) {
   // Frames gain 1, 2, 3 and 2 of 10 each: 0.2 in the mean; s = 0.0816, t(3) = 3.182, / sqrt(4).
   const std::vector<Loss> before{{5, 10}, {6, 10}, {7, 10}, {8, 10}};
   const std::vector<Loss> after{{4, 10}, {4, 10}, {4, 10}, {6, 10}};
@@ -71,7 +71,7 @@ TEST(Tunable, EveryOptionIsOne) {
   for (const OptionInfo& option : options(Config{})) EXPECT_TRUE(has(names, option.name)) << option.name;
 }
 
-TEST(Tunable, OnlyWhatTheConfigReadsIsVaried) {
+TEST(Tunable, OnlyActiveOptionsAreVaried) {
   for (const std::string& preset : preset_names()) {
     const Config config = Config::preset(preset);
     for (const std::string& name : names_of(tunables(usual_tunables(config, true), config)))
@@ -82,7 +82,7 @@ TEST(Tunable, OnlyWhatTheConfigReadsIsVaried) {
                                "semi_global.penalty_large", "semi_global.penalty_edge"}));
 }
 
-TEST(Tunable, WhatHasNoEffectIsVariedOnlyBesideWhatMayGiveItOne) {
+TEST(Tunable, InactiveOptionsAreVariedOnlyWithTheOptionThatActivatesThem) {
   EXPECT_FALSE(has(names_of(tunables({"texture.*"}, Config::paper())), "match.cost"));
   const Strings all = names_of(tunables({"match.*"}, Config{}));
   EXPECT_TRUE(has(all, "match.cost"));           // active with match.method=window, which is tunable
@@ -104,7 +104,7 @@ TEST(Tunable, PatternsChooseEachOptionOnceAndInOrder) {
   EXPECT_EQ(tunables({"*"}).size(), tunables().size());
 }
 
-TEST(Tunable, APatternThatNamesNothingIsRefusedWithTheNearestName) {
+TEST(Tunable, APatternWithoutMatchIsRefusedWithTheNearestName) {
   try {
     (void)tunables({"match.*", "superpixels.cuont"});
     FAIL() << "accepted";
@@ -147,7 +147,7 @@ TEST(Neighbours, StayWithinTheLimitsAndOdd) {
   EXPECT_EQ(neighbours(named("semi_global.penalty_large"), "2.3", 1.6), (Strings{"1.44"}));
 }
 
-TEST(Neighbours, FromOffOrNothingWhatThePresetsGiveIsTried) {
+TEST(Neighbours, FromOffOrZeroThePresetsValuesAreTried) {
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"10"}));
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "5", 2), (Strings{"10", "2.5", "-1"}));
   EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.3"}));
@@ -212,7 +212,7 @@ SearchResult search_bowl(const SearchConfig& config) {
   return search(all, settings_of(Config{}, all), bowl, config);
 }
 
-TEST(Search, FindsTheLeastOfABowlAndAChoice) {
+TEST(Search, FindsTheMinimumOfABowlAndAChoice) {
   const SearchResult found = search_bowl({});
   EXPECT_EQ(found.end, SearchEnd::converged);
   EXPECT_NEAR(value_of(found.best, "evidence.gradient_min"), 4, 0.6);
@@ -224,7 +224,7 @@ TEST(Search, FindsTheLeastOfABowlAndAChoice) {
   EXPECT_EQ(value_of(found.best, "ground.margin"), value_of(found.start, "ground.margin"));
 }
 
-TEST(Search, TheSameNumberOfEvaluationsGivesTheSameResultAndAnotherSeedAnotherWay) {
+TEST(Search, IsReproducibleForASeedAndANumberOfEvaluations) {
   std::vector<std::vector<Setting>> ways;
   for (const std::uint32_t seed : {1U, 1U, 2U}) {
     const auto& all = bowl_tunables();
@@ -294,7 +294,7 @@ TEST(Search, StoppedAtAnyTimeItReturnsTheBestSoFar) {
   }
 }
 
-TEST(Search, KeepsNothingThatHasMoreFaultsThanTheStart) {
+TEST(Search, KeepsNothingWithMoreFaultsThanTheStart) {
   const auto all = tunables({"evidence.gradient_min"});
   const SearchResult found = search(all, settings_of(Config{}, all),
                                     [](const std::vector<Setting>& settings) -> std::vector<Loss> {
@@ -306,7 +306,7 @@ TEST(Search, KeepsNothingThatHasMoreFaultsThanTheStart) {
   EXPECT_LE(value_of(found.best, "evidence.gradient_min"), 3);
 }
 
-TEST(Search, LeavesSettingsThatContradictEachOther) {
+TEST(Search, SkipsContradictorySettings) {
   const auto all = tunables({"evidence.gradient_min"});
   const SearchResult found =
       search(all, settings_of(Config{}, all),
@@ -319,7 +319,7 @@ TEST(Search, LeavesSettingsThatContradictEachOther) {
   EXPECT_NEAR(value_of(found.best, "evidence.gradient_min"), 1, 0.1);
 }
 
-TEST(ClearlyBetter, AsksForMoreThanTheGainOfOneFrame) {
+TEST(ClearlyBetter, RequiresMoreThanTheGainOfOneFrame) {
   const std::vector<Loss> before{{1, 1}, {1, 1}, {1, 1}, {1, 1}};
   EXPECT_FALSE(clearly_better(before, {{0, 1}, {1, 1}, {1, 1}, {1, 1}}, {}));
   EXPECT_TRUE(clearly_better(before, {{0.5, 1}, {0.5, 1}, {1, 1}, {1, 1}}, {}));
@@ -331,7 +331,7 @@ TEST(ClearlyBetter, AsksForMoreThanTheGainOfOneFrame) {
   EXPECT_FALSE(clearly_better({{1, 1}}, {{0.95, 1}}, {.least_share = 0.1}));
 }
 
-TEST(MeanLoss, IsThatOfThingsNotOfFrames) {
+TEST(MeanLoss, IsTheMeanOverObjectsNotFrames) {
   EXPECT_EQ(mean_loss({{1, 1}, {0, 3}}), 0.25);
   EXPECT_TRUE(std::isinf(mean_loss({})));
   EXPECT_TRUE(std::isinf(mean_loss({{1, 0}})));
@@ -363,7 +363,7 @@ TEST(FrameLoss, AHoleCostsHalfOfAWrongDisparity) {
   EXPECT_DOUBLE_EQ(mean_loss({loss_of(errors)}), 0.2);
 }
 
-TEST(FrameLoss, AddsUnsteadinessWhereThereIsAFrameBefore) {
+TEST(FrameLoss, AddsUnsteadinessGivenAPreviousFrame) {
   Consistency pixels;
   pixels.pixels = 10;
   pixels.matched = 6;
@@ -378,7 +378,7 @@ TEST(FrameLoss, AddsUnsteadinessWhereThereIsAFrameBefore) {
   EXPECT_DOUBLE_EQ(mean_loss({loss_of(pixels, steady)}), alone + kUnsteadyWeight * 0.4);
 }
 
-TEST(HeldOut, IsTheShareAskedForDrawnOrTheEndOfASequence) {
+TEST(HeldOut, IsTheRequestedShareDrawnOrTheEndOfASequence) {
   const auto count = [](const std::vector<bool>& out) { return std::count(out.begin(), out.end(), true); };
   EXPECT_EQ(count(held_out(10, 0.3, false, 1)), 3);
   EXPECT_EQ(held_out(10, 0.3, false, 1), held_out(10, 0.3, false, 1));

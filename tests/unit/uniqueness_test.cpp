@@ -33,7 +33,7 @@ TEST(Uniqueness, KeepsAWinnerThatBeatsItsRunnerUpByExactlyTheRatio) {
 TEST(Uniqueness, RatioZeroKeepsTies) {
   EXPECT_FALSE(rejected(7, 7, 0));
 }
-TEST(Uniqueness, ALoneCandidateIsUniqueWhateverTheRatio) {
+TEST(Uniqueness, ASingleCandidateIsUniqueWhateverTheRatio) {
   EXPECT_FALSE(rejected(5, kNoCost, 10));
   EXPECT_FALSE(rejected(5, kNoCost, 100));
 }

@@ -214,7 +214,7 @@ TEST_F(V4l2, ShortAndDamagedFramesAreCountedAndNotDelivered) {
   EXPECT_EQ(image->dropped, 3U);
 }
 
-TEST_F(V4l2, FramesWithEioAreCountedAndManyAreALoss) {
+TEST_F(V4l2, FramesWithEioAreCountedAndManyAreADisconnection) {
   fake_.devices[kDevice] = yuyv_device();
   auto& events = fake_.devices[kDevice].events;
   events = {error(EIO), error(EIO), frame(2, 1)};
@@ -227,14 +227,14 @@ TEST_F(V4l2, FramesWithEioAreCountedAndManyAreALoss) {
   EXPECT_TRUE(has(refusal([&] { (void)camera->next(1ms); }), {"EIO"}));
 }
 
-TEST_F(V4l2, ThatIsUnpluggedSaysSo) {
+TEST_F(V4l2, ReportsThatItWasUnplugged) {
   fake_.devices[kDevice] = yuyv_device();
   fake_.devices[kDevice].events = {error(ENODEV)};
   const auto camera = open();
   EXPECT_TRUE(has(refusal([&] { (void)camera->next(1ms); }), {"unplugged"}));
 }
 
-TEST_F(V4l2, StampsOfAnotherClockAreNotTaken) {
+TEST_F(V4l2, StampsOfAnotherClockAreIgnored) {
   fake_.devices[kDevice] = yuyv_device();
   fake_.devices[kDevice].events = {frame(0, 5)};
   fake_.devices[kDevice].events[0].flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN;
@@ -243,7 +243,7 @@ TEST_F(V4l2, StampsOfAnotherClockAreNotTaken) {
   EXPECT_EQ(image->stamp.ns, std::chrono::nanoseconds(image->arrived.time_since_epoch()).count());
 }
 
-TEST_F(V4l2, WhatCannotBeHadIsRefusedInOneLine) {
+TEST_F(V4l2, UnavailableModesAreRefusedInOneLine) {
   EXPECT_TRUE(has(refused(), {"no such device"}));
   FakeDevice& device = fake_.devices[kDevice];
   device = yuyv_device();
@@ -293,7 +293,7 @@ TEST_F(V4l2, WhatCannotBeHadIsRefusedInOneLine) {
   EXPECT_TRUE(has(refused(), {"gives 1 buffers"}));
 }
 
-TEST_F(V4l2, ARateThatIsNotHadIsNoted) {
+TEST_F(V4l2, AnUnavailableRateIsNoted) {
   fake_.devices[kDevice] = yuyv_device();
   V4l2Request request;
   request.fps = 30;
@@ -322,7 +322,7 @@ TEST(V4l2Names, AreReadWithEveryKey) {
   EXPECT_FALSE(two[1].with_colour);
 }
 
-TEST(V4l2Names, ThatAreWrongAreRefused) {
+TEST(V4l2Names, RefuseInvalidOnes) {
   const auto refused = [](const std::string& source, const char* layout = "") {
     SourceOptions options;
     options.layout = layout;
@@ -395,7 +395,7 @@ TEST_F(V4l2Sequence, DeliversFramesWithStampsAndNames) {
   EXPECT_EQ(status.clock, "monotonic");
 }
 
-TEST_F(V4l2Sequence, WhatIsNotTakenIsReplacedAndCounted) {
+TEST_F(V4l2Sequence, UnreadFramesAreReplacedAndCounted) {
   steady();
   const auto source = sequence();
   (void)source->next();
@@ -409,7 +409,7 @@ TEST_F(V4l2Sequence, WhatIsNotTakenIsReplacedAndCounted) {
   EXPECT_TRUE(has(source->remarks()[0].what, {"dropped unread"}));
 }
 
-TEST_F(V4l2Sequence, ThatIsUnpluggedComesBackAfterAGap) {
+TEST_F(V4l2Sequence, ReconnectsAfterBeingUnpluggedWithAGap) {
   FakeDevice& device = steady();
   device.events = {frame(0, 1000), frame(1, 2000), error(ENODEV), frame(0, 900'000)};
   device.open_errors = {0, ENOENT, ENOENT};  // present at first
@@ -432,7 +432,7 @@ TEST_F(V4l2Sequence, ThatIsUnpluggedComesBackAfterAGap) {
   EXPECT_TRUE(is_remarked);
 }
 
-TEST_F(V4l2Sequence, SaysWhyItIsNotConnected) {
+TEST_F(V4l2Sequence, ReportsWhyItIsNotConnected) {
   FakeDevice& device = steady();
   device.repeats = false;
   device.events = {frame(0, 1000), error(ENODEV)};
@@ -450,7 +450,7 @@ TEST_F(V4l2Sequence, SaysWhyItIsNotConnected) {
   EXPECT_EQ(status.reconnects, 0U);
 }
 
-TEST_F(V4l2Sequence, SilenceIsALoss) {
+TEST_F(V4l2Sequence, SilenceIsADisconnection) {
   FakeDevice& device = steady();
   device.events = {frame(0, 1000)};
   device.events.insert(device.events.end(), 6, silence());  // of 50 ms each
@@ -464,7 +464,7 @@ TEST_F(V4l2Sequence, SilenceIsALoss) {
   EXPECT_GE(fake_.opened, 2);
 }
 
-TEST_F(V4l2Sequence, ThatComesBackInAnotherSizeIsWaitedFor) {
+TEST_F(V4l2Sequence, WaitsIfItReturnsInAnotherSize) {
   FakeDevice& device = steady();
   device.events = {frame(0, 1000), error(ENODEV), frame(0, 2000)};
   device.shrinks = true;
@@ -496,7 +496,7 @@ TEST_F(V4l2Sequence, WithoutAFrameIsNotOpened) {
   EXPECT_TRUE(has(refusal([&] { (void)sequence(options); }), {"--rate"}));
 }
 
-TEST_F(V4l2Sequence, IsStoppedFromAnotherThreadWhateverItWaitsFor) {
+TEST_F(V4l2Sequence, CanBeStoppedFromAnotherThreadWhileWaiting) {
   for (const bool is_lost : {false, true}) {
     FakeDevice& device = steady();
     device.repeats = false;
@@ -514,7 +514,7 @@ TEST_F(V4l2Sequence, IsStoppedFromAnotherThreadWhateverItWaitsFor) {
   }
 }
 
-TEST_F(V4l2Sequence, TakesTheCalibrationThatIsGivenAndRectifiesRawImages) {
+TEST_F(V4l2Sequence, UsesTheGivenCalibrationAndRectifiesRawImages) {
   const support::TemporaryFolder folder;
   RawCalibration raw{{32, 24}, {}, {}, {}, {}};
   raw.left.matrix = {40, 0, 16, 0, 40, 12, 0, 0, 1};
@@ -600,7 +600,7 @@ TEST_F(TwoDevices, ArePairedByStampsAndTheRestIsCounted) {
                         "wrong disparities"}));
 }
 
-TEST_F(TwoDevices, ThatAreNeverTogetherSayHowFarTheyAreApart) {
+TEST_F(TwoDevices, ReportTheTimeDifferenceIfNeverSynchronous) {
   steady("/dev/video0");
   FakeDevice& right = steady("/dev/video2");
   right.events = {frame(0, 12'000'000)};
@@ -626,7 +626,7 @@ CameraImage image_at(double ms) {
   return image;
 }
 
-TEST(StampPairer, TakesEachOnesNearestAndEstimatesTheDrift) {
+TEST(StampPairer, PairsTheNearestAndEstimatesTheDrift) {
   StampPairer pairer(6);
   constexpr double kDrift = 40e-6;
   int pairs = 0;
@@ -644,7 +644,7 @@ TEST(StampPairer, TakesEachOnesNearestAndEstimatesTheDrift) {
   EXPECT_NEAR(pairer.skew().most_ms, 5, 0.5);
 }
 
-TEST(StampPairer, LeavesWhatIsTooFarApart) {
+TEST(StampPairer, SkipsFramesTooFarApart) {
   StampPairer pairer(2);
   EXPECT_FALSE(pairer.push(0, image_at(0)));
   EXPECT_FALSE(pairer.push(1, image_at(7)));

@@ -53,7 +53,7 @@ SourceOptions laid_out(const char* layout) {
   return options;
 }
 
-TEST_F(Video, SideBySideGivesTheVeryPixelsAndStamps) {
+TEST_F(Video, SideBySideGivesIdenticalPixelsAndStamps) {
   const auto written = noise(5, {48, 16}, true);
   const std::string path = write("v.mkv", written);
   if (path.empty()) GTEST_SKIP() << "no encoder for FFV1";
@@ -99,7 +99,7 @@ TEST_F(Video, OfGreyIsGreyAndTopBottomIsHalved) {
   }
 }
 
-TEST_F(Video, ThatIsCutOffEndsEarlyWithAWord) {
+TEST_F(Video, TruncatedEndsEarlyWithAMessage) {
   const std::string path = write("v.mkv", noise(12, {64, 24}, true));
   if (path.empty()) GTEST_SKIP() << "no encoder for FFV1";
   const std::string whole = support::bytes_of(path);
@@ -132,7 +132,7 @@ TEST_F(Video, OfEachCameraArePairedByStamps) {
   EXPECT_EQ(sequence->remarks()[1].count, 1U);
 }
 
-TEST_F(Video, RefusesWhatIsNone) {
+TEST_F(Video, RefusesInvalidInput) {
   const auto refused = [](const std::string& source, const SourceOptions& options) {
     return refusal([&] { (void)open_sequence(source, options); });
   };

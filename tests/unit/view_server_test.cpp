@@ -156,7 +156,7 @@ bool has(const std::string& text, const std::string& words) {
 
 // ---- access ----
 
-TEST(ViewServer, LetsInWhoHasTheToken) {
+TEST(ViewServer, AcceptsClientsWithTheToken) {
   const Served served;
   EXPECT_EQ(served.server.url(), "http://127.0.0.1:" + std::to_string(served.port) + "/?token=" + kToken);
   EXPECT_EQ(ask(served.port, request("/", served.host())).status, 403);
@@ -175,7 +175,7 @@ TEST(ViewServer, LetsInWhoHasTheToken) {
   EXPECT_FALSE(has(page.body, kToken));
 }
 
-TEST(ViewServer, SendsThePageWithAPolicyAndANonceOfItsOwn) {
+TEST(ViewServer, SendsThePageWithAPolicyAndAFreshNonce) {
   const Served served;
   const auto nonce_of = [&] {
     const Answer page = ask(served.port, request("/", served.host() + served.cookie()));
@@ -254,7 +254,7 @@ TEST(ViewServer, RefusesUnsafeOptions) {
             "no refusal");
 }
 
-TEST(ViewServer, MakesUpATokenOf128Bits) {
+TEST(ViewServer, GeneratesATokenOf128Bits) {
   ViewOptions options = options_of_test();
   options.token.clear();
   const ViewServer a(options, run_of_test());
@@ -280,7 +280,7 @@ TEST(ViewServer, ReadsAddresses) {
     EXPECT_TRUE(has(refusal_of([&] { read(wrong); }), wrong)) << wrong;
 }
 
-TEST(ViewServer, HasRoomForSoManyClients) {
+TEST(ViewServer, LimitsTheNumberOfClients) {
   ViewOptions options = options_of_test();
   options.max_clients = 2;
   const Served served(options);
@@ -302,7 +302,7 @@ TEST(ViewServer, HasRoomForSoManyClients) {
   EXPECT_EQ(status, 101);
 }
 
-TEST(ViewServer, TheRunMayEndWhileAClientIsLetIn) {
+TEST(ViewServer, TheRunMayEndDuringAHandshake) {
   for (int i = 0; i <= 12; ++i) {
     auto served = std::make_unique<Served>();
     support::Connection connection(served->port);
@@ -410,7 +410,7 @@ TEST(ViewServer, SpeaksEachSubprotocol) {
       "foxglove.sdk.v1");
 }
 
-TEST(ViewServer, CompressesOnlyWhatGoesOverANetwork) {
+TEST(ViewServer, CompressesOnlyForRemoteClients) {
   const std::vector<std::string> topics{"/cairn/labels", "/cairn/reject", "/cairn/disparity", "/cairn/left"};
   const auto frame = [&](const std::string& address, std::uint64_t& bytes) {
     ViewOptions options = options_of_test();
@@ -440,7 +440,7 @@ TEST(ViewServer, CompressesOnlyWhatGoesOverANetwork) {
   EXPECT_LT(4 * compressed, plain);
 }
 
-TEST(ViewServer, UnderstandsWhatAClientCompressesButNotWithoutLimit) {
+TEST(ViewServer, AcceptsCompressedMessagesUpToALimit) {
   ViewOptions options = options_of_test();
   options.address = "0.0.0.0";
   options.insecure = true;
@@ -457,7 +457,7 @@ TEST(ViewServer, UnderstandsWhatAClientCompressesButNotWithoutLimit) {
   EXPECT_EQ(socket.read_close(), 1009);
 }
 
-TEST(ViewServer, ShowsWhatIsInTheFrame) {
+TEST(ViewServer, PublishesTheContentOfTheFrame) {
   Served served;
   const LiveFramePtr frame = frame_at(6);
   served.server.offer(frame);
@@ -537,7 +537,7 @@ TEST(ViewServer, ShowsWhatIsInTheFrame) {
   EXPECT_LT(length(pose.rotated({cube.at("size").at("x"), 0, 0}) - along), 1e-3);
 }
 
-TEST(ViewServer, EncodesNothingThatNobodyWantsAndAllElseOnce) {
+TEST(ViewServer, EncodesSubscribedChannelsOnceAndNoOthers) {
   Served served;
   WebSocket idle = served.connect();
   idle.read_op("advertise");
@@ -568,7 +568,7 @@ TEST(ViewServer, EncodesNothingThatNobodyWantsAndAllElseOnce) {
   EXPECT_EQ(served.server.encoded(), 11U);
 }
 
-TEST(ViewServer, AClientThatDoesNotReadCostsTheOthersNothing) {
+TEST(ViewServer, AStalledClientDoesNotDelayOthers) {
   constexpr int kFrames = 200;
   Served served;
   WebSocket reader = served.connect();
@@ -605,7 +605,7 @@ TEST(ViewServer, AClientThatDoesNotReadCostsTheOthersNothing) {
               more / 1000);
 }
 
-TEST(ViewServer, ASlowClientGetsWholeFrames) {
+TEST(ViewServer, ASlowClientGetsCompleteFrames) {
   const std::vector<std::string> topics{"/cairn/left", "/cairn/labels", "/cairn/reject", "/cairn/disparity",
                                         "/cairn/stats"};
   Served served;
@@ -647,7 +647,7 @@ TEST(ViewServer, ASlowClientGetsWholeFrames) {
   }
 }
 
-TEST(ViewServer, SaysHowTheCameraDoesWhileItGivesNoFrame) {
+TEST(ViewServer, ReportsTheCamerasStateWithoutFrames) {
   ViewedRun run = run_of_test();
   run.source = [] {
     io::SourceStatus status;
@@ -664,7 +664,7 @@ TEST(ViewServer, SaysHowTheCameraDoesWhileItGivesNoFrame) {
   EXPECT_EQ(status.at("source").at("trouble"), "/dev/video0: unplugged");
 }
 
-TEST(ViewServer, TakesForeignTextForWhatItIs) {
+TEST(ViewServer, EscapesForeignText) {
   Served served;
   WebSocket socket = served.connect();
   const auto complaint = [&](const std::string& text) {
@@ -703,7 +703,7 @@ TEST(ViewServer, TakesForeignTextForWhatItIs) {
   EXPECT_EQ(ask(served.port, request("/", served.host() + served.cookie())).status, 200);
 }
 
-TEST(ViewServer, TakesMutatedMessagesForWhatTheyAre) {
+TEST(ViewServer, SurvivesMutatedMessages) {
   const std::vector<std::string> sound{
       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2},{"id":3,"channelId":4}]})",
       R"({"op":"unsubscribe","subscriptionIds":[1,3]})",
@@ -746,7 +746,7 @@ TEST(ViewServer, TakesMutatedMessagesForWhatTheyAre) {
   EXPECT_GT(sets, 30);
 }
 
-TEST(ViewServer, SaysGoodbye) {
+TEST(ViewServer, ClosesConnectionsProperly) {
   Served served;
   WebSocket socket = served.connect();
   socket.read_op("advertise");
@@ -756,7 +756,7 @@ TEST(ViewServer, SaysGoodbye) {
   EXPECT_ANY_THROW(served.connect());
 }
 
-TEST(ViewServer, ShowsAMovingPictureToWhoHasNoScript) {
+TEST(ViewServer, ServesAMotionJpegWithoutScripts) {
   Served served;
   served.server.offer(renumbered(0));
   support::Connection connection(served.port);
@@ -785,7 +785,7 @@ Json get_message(const std::string& name) {
   return {{"op", "getParameters"}, {"id", "g"}, {"parameterNames", {name}}};
 }
 
-TEST(ViewServer, TellsAllOptionsAndChangesNoneUnlessTunable) {
+TEST(ViewServer, ListsAllOptionsAndChangesNoneUnlessTunable) {
   const Served served;
   WebSocket socket = served.connect();
   socket.send({{"op", "getParameters"}, {"parameterNames", Json::array()}});
@@ -875,7 +875,7 @@ struct Tuned {
   std::thread thread;
 };
 
-TEST(ViewServer, AnOptionThatAViewerSetsHoldsFromTheNextFrameOn) {
+TEST(ViewServer, AnOptionSetByAViewerAppliesFromTheNextFrame) {
   Tuned tuned;
   WebSocket socket = tuned.served->connect();
   socket.subscribe("/cairn/labels", 1);
@@ -909,7 +909,7 @@ TEST(ViewServer, AnOptionThatAViewerSetsHoldsFromTheNextFrameOn) {
   EXPECT_EQ(shown(), first);
 }
 
-TEST(ViewServer, RefusesValuesAndSaysWhatItExpects) {
+TEST(ViewServer, RefusesValuesAndNamesTheExpectation) {
   Tuned tuned;
   WebSocket socket = tuned.served->connect();
   const auto refusal = [&](const std::string& name, const Json& value) {
@@ -938,7 +938,7 @@ TEST(ViewServer, RefusesValuesAndSaysWhatItExpects) {
             first_config().segmentation.match.num_disparities);
 }
 
-TEST(ViewServer, TellsOthersOfChanges) {
+TEST(ViewServer, NotifiesOthersOfChanges) {
   Tuned tuned;
   WebSocket a = tuned.served->connect();
   WebSocket watcher = tuned.served->connect();
@@ -960,7 +960,7 @@ TEST(ViewServer, TellsOthersOfChanges) {
   EXPECT_EQ(tuned.steps, 1);
 }
 
-TEST(ViewServer, RecordsWhereThatIsPossible) {
+TEST(ViewServer, RecordsIfPossible) {
   std::atomic<bool> is_recording = false;
   ViewOptions options = options_of_test();
   options.tunable = true;

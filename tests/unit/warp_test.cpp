@@ -54,7 +54,7 @@ int count(const Warped& warped, std::int64_t id) {
   return found;
 }
 
-TEST(Warp, ACameraThatStandsSeesWhatItSaw) {
+TEST(Warp, AStaticCameraSeesTheSame) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   scene.disparity.disparity_px(10, 5) = kNan;  // at a corner: not enclosed
@@ -72,7 +72,7 @@ TEST(Warp, ACameraThatStandsSeesWhatItSaw) {
   EXPECT_EQ(now.masks[0].in_view, 1);
 }
 
-TEST(Warp, ThingsGoLeftWhenTheCameraGoesRight) {
+TEST(Warp, ObjectsMoveLeftIfTheCameraMovesRight) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   Pose pose;
@@ -84,7 +84,7 @@ TEST(Warp, ThingsGoLeftWhenTheCameraGoesRight) {
   EXPECT_EQ(count(now, 1), 24);
 }
 
-TEST(Warp, ThePlaceInTheMapDoesNotDependOnWhereTheCameraWas) {
+TEST(Warp, ThePositionInTheMapDoesNotDependOnTheCamera) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   Pose before = rotation_about({0.3, -0.2, 0.9});
@@ -119,7 +119,7 @@ TEST(Warp, GapsOfOnePixelAreClosedAndWiderOnesAreNot) {
   EXPECT_LT(count(warped(scene, much_nearer), 1), 101);
 }
 
-TEST(Warp, AMovingTrackGoesByItsVelocity) {
+TEST(Warp, AMovingTrackFollowsItsVelocity) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   scene.tracks.list[0].velocity_m_s = {0.4, 0, 0};
@@ -131,7 +131,7 @@ TEST(Warp, AMovingTrackGoesByItsVelocity) {
   EXPECT_EQ(now.ids(17, 5), TrackId{1});
 }
 
-TEST(Warp, WhatLeavesThePictureIsCounted) {
+TEST(Warp, PixelsOutsideTheImageAreCounted) {
   Scene scene;
   scene.add({0, 5, 10, 4}, 5);
   Pose pose;
@@ -142,7 +142,7 @@ TEST(Warp, WhatLeavesThePictureIsCounted) {
   EXPECT_EQ(warped(scene, turned).masks[0].in_view, 0);  // behind the camera
 }
 
-TEST(Warp, ATrackThatIsNoMoreIsNotShown) {
+TEST(Warp, ADeadTrackIsNotShown) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   const Remembered before = scene.remembered();
@@ -189,7 +189,7 @@ TEST(Remember, PiecesAreOneMask) {
   EXPECT_EQ(memory.masks[0].points.size(), 33U);
 }
 
-TEST(OverlapsOf, CountsWhatThePresentShowsWhereATrackIsExpected) {
+TEST(OverlapsOf, CountsCurrentPixelsWhereATrackIsExpected) {
   Scene scene;
   scene.add({10, 5, 10, 4}, 5);
   const Remembered memory = scene.remembered();

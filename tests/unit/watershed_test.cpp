@@ -20,7 +20,7 @@ Rows basins(std::initializer_list<std::initializer_list<int>> heights) {
   return numbers(watershed(gradient, {}).labels);
 }
 
-TEST(Watershed, PartsTwoValleysAtTheRidgeBetweenThem) {
+TEST(Watershed, SeparatesTwoValleysAtTheirRidge) {
   EXPECT_EQ(basins({{0, 3, 9, 4, 1}}), (Rows{{0, 0, 0, 1, 1}}));
 }
 
@@ -38,7 +38,7 @@ TEST(Watershed, MakesAPlainImageOneBasin) {
   EXPECT_EQ(basins({{7, 7, 7}, {7, 7, 7}}), (Rows{{0, 0, 0}, {0, 0, 0}}));
 }
 
-TEST(Watershed, HalvesAPlateauBetweenItsTwoWaysDown) {
+TEST(Watershed, HalvesAPlateauBetweenItsTwoOutlets) {
   EXPECT_EQ(basins({{1, 5, 5, 5, 5, 2}}), (Rows{{0, 0, 0, 1, 1, 1}}));
 }
 
@@ -46,13 +46,13 @@ TEST(Watershed, GivesTheMiddleOfAnOddPlateauToTheLeft) {
   EXPECT_EQ(basins({{1, 5, 5, 5, 2}}), (Rows{{0, 0, 0, 1, 1}}));
 }
 
-TEST(Watershed, CrossesAPlateauTheShortestWayAroundAnObstacle) {
+TEST(Watershed, CrossesAPlateauOnTheShortestPathAroundAnObstacle) {
   // The corner at the lower right is two steps from the way down above it and three from the one at the left.
   EXPECT_EQ(basins({{9, 9, 9, 2}, {9, 9, 9, 5}, {1, 5, 9, 5}, {9, 5, 5, 5}}),
             (Rows{{0, 1, 1, 1}, {0, 0, 1, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}));
 }
 
-TEST(Watershed, JoinsADipOfSeveralPixelsToOneBasin) {
+TEST(Watershed, MakesAFlatDipOneBasin) {
   EXPECT_EQ(basins({{2, 8, 2}, {2, 8, 2}, {2, 2, 2}}), (Rows{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}));
 }
 
@@ -78,7 +78,7 @@ TEST(SplitFloor, MakesTheFloorOneRegionEvenInPieces) {
   EXPECT_EQ(split.count, 5);
 }
 
-TEST(SplitFloor, PartsABasinThatTheFloorCutsInTwo) {
+TEST(SplitFloor, SplitsABasinCutByTheFloor) {
   const Basins one{grid<RegionId>({{0, 0, 0}, {0, 0, 0}}), 1};
   const Image<std::uint8_t> floor = grid<std::uint8_t>({{0, 1, 0}, {0, 1, 0}});
   EXPECT_EQ(numbers(split_floor(one, floor, {}).labels), (Rows{{0, 1, 2}, {0, 1, 2}}));
@@ -104,7 +104,7 @@ TEST(FloorWithHoles, AHoleGoesToTheFloorOfItsBasin) {
             (std::vector<std::int64_t>{255, 255, 255, 255, 0, 0, 0}));
 }
 
-TEST(FloorWithHoles, AHoleInABasinThatIsAtLeastHalfOtherStays) {
+TEST(FloorWithHoles, AHoleInABasinMostlyOutsideTheFloorStays) {
   constexpr int kNone = kHole16;
   const Basins one{grid<RegionId>({{0, 0, 0, 0}}), 1};
   const Image<std::int16_t> values = grid<std::int16_t>({{70, 70, kNone, 72}});

@@ -57,7 +57,7 @@ bool ends_well(const std::filesystem::path& path) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-TEST(YamlText, ACommaWhereNoneCanBeIsRefusedAtOnce) {
+TEST(YamlText, AMisplacedCommaIsRefusedAtOnce) {
   const support::TemporaryFolder folder;
   for (const std::string text :
        {",",    ",,",     "\n,",   " ,",     "!,",         "&a ,",        "[],", "{},",
@@ -74,7 +74,7 @@ TEST(YamlText, ACommaWhereNoneCanBeIsRefusedAtOnce) {
                            {"f.yaml: line 2: is not YAML: nothing is allowed here"}));
 }
 
-TEST(YamlText, ShortTextsOfItsSignsEnd) {
+TEST(YamlText, ShortTextsOfSpecialCharactersTerminate) {
   const support::TemporaryFolder folder;
   const std::string signs = ",[]{}:-?&*!|>'\"%@\n a#.<";
   std::mt19937 random(11);
@@ -86,7 +86,7 @@ TEST(YamlText, ShortTextsOfItsSignsEnd) {
   }
 }
 
-TEST(YamlText, LongTextsEnd) {
+TEST(YamlText, LongTextsTerminate) {
   const support::TemporaryFolder folder;
   for (const char* part : {"[", "{", "- ", "? ", "{a: ", "[a, ", "a: &b [*b, ", "- a\n", "a\n\n", "--- a\n",
                            "!a ", "&a ", "'a' ", "\"", "|\n ", "# a\n", ": ", "a: 1\n"}) {
