@@ -329,10 +329,10 @@ Worked work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFra
   const std::string mine = lock.is_held() ? "" : "." + note.host + "-" + std::to_string(note.pid);
   Checkpoint rows(run, run.work() / (name_of(shard) + ".rows" + mine), frames);
   worked.resumed = note.resumed = rows.rows();
-  double said_s = 0;
+  double reported_s = 0;
   for (std::size_t i = rows.rows(); i < frames.size(); ++i) {
-    if (now_s() - said_s > kSecondsBetweenNotes) {
-      said_s = note.updated_s = now_s();
+    if (now_s() - reported_s > kSecondsBetweenNotes) {
+      reported_s = note.updated_s = now_s();
       note.rows = rows.rows();
       note.errors = rows.errors();
       lock.say(note);

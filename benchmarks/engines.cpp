@@ -72,11 +72,11 @@ constexpr std::array kFolders{std::pair{"Motorcycle", "real/middlebury2014/Motor
 std::vector<Scene> load_scenes(const std::filesystem::path& data) {
   std::vector<Scene> scenes;
   for (const auto& [name, folder] : kFolders) {
-    const io::PicturePair pictures = io::load_pair(data / folder / "left.png", data / folder / "right.png");
+    const io::PicturePair images = io::load_pair(data / folder / "left.png", data / folder / "right.png");
     for (const auto& [size, num_disparities] : kExtents) {
-      const Image<Rgb>& rgb = pictures.left.rgb;
-      scenes.push_back({name, num_disparities, resized(pictures.left.gray, size),
-                        resized(pictures.right.gray, size), rgb.empty() ? Image<Rgb>() : resized(rgb, size)});
+      const Image<Rgb>& rgb = images.left.rgb;
+      scenes.push_back({name, num_disparities, resized(images.left.gray, size),
+                        resized(images.right.gray, size), rgb.empty() ? Image<Rgb>() : resized(rgb, size)});
     }
   }
   return scenes;
@@ -152,7 +152,7 @@ Settings parse(const std::vector<std::string>& words) {
       settings.data = words[i];
       continue;
     }
-    if (i + 1 == words.size()) throw Error("'" + words[i] + "' needs a value behind it");
+    if (i + 1 == words.size()) throw Error("'" + words[i] + "' needs a value");
     const std::string& option = words[i++];
     if (option == "--repeats") {
       settings.repeats = report::positive_number(words[i]);

@@ -282,7 +282,7 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
   std::vector<double> ours_bad, ours_density, theirs_bad, theirs_density;
   for (const char* folder : kMiddlebury) {
     for (const report::TrueFrame& frame : report::load_true_frames(data / "real" / folder)) {
-      const auto pair = StereoPair::from(frame.pictures.left.gray, frame.pictures.right.gray);
+      const auto pair = StereoPair::from(frame.images.left.gray, frame.images.right.gray);
       match.num_disparities = (frame.num_disparities + 15) / 16 * 16;  // required by StereoBM
       const auto errors = [&](View<const float> disparity_px) {
         return disparity_errors(disparity_px, frame.truth_px, frame.hidden, match.num_disparities);

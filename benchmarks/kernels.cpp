@@ -20,10 +20,10 @@ using namespace cairn;
 constexpr Size kSize{640, 480};
 
 /// The right image is the left one shifted by 5 px, with some dots of its own.
-struct Pictures {
+struct ImagePair {
   Image<Gray> left{kSize};
   Image<Gray> right{kSize};
-  Pictures() {
+  ImagePair() {
     std::mt19937 random(1);
     for (int y = 0; y < kSize.height; ++y) {
       for (int x = 0; x < kSize.width; ++x) left(x, y) = static_cast<Gray>(random());
@@ -34,8 +34,8 @@ struct Pictures {
   }
   [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right); }
 };
-const Pictures& pictures() {
-  static const Pictures all;
+const ImagePair& images() {
+  static const ImagePair all;
   return all;
 }
 
@@ -56,7 +56,7 @@ Exec exec_on(Target target) {
 void match_on(benchmark::State& state, const MatchConfig& config, Target target) {
   const Exec exec = exec_on(target);
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(match(pictures().pair(), config, SemiGlobalConfig(), exec));
+    benchmark::DoNotOptimize(match(images().pair(), config, SemiGlobalConfig(), exec));
   }
   count_candidates(state, config);
 }
@@ -93,9 +93,9 @@ void add_all() {
   }
   add_match("match/semi_global", {.method = MatchMethod::semi_global});
 
-  static const Matches matches = match_windows(pictures().pair(), kFiltered, {});
-  add_stage("filter_xsobel", [](const Exec& exec) { return filter_xsobel(pictures().left, 31, exec); });
-  add_stage("remove_mean", [](const Exec& exec) { return remove_mean(pictures().left, 9, exec); });
+  static const Matches matches = match_windows(images().pair(), kFiltered, {});
+  add_stage("filter_xsobel", [](const Exec& exec) { return filter_xsobel(images().left, 31, exec); });
+  add_stage("remove_mean", [](const Exec& exec) { return remove_mean(images().left, 9, exec); });
   add_stage("refine_subpixel", [](const Exec& exec) { return refine_subpixel(matches, {}, exec); });
   add_stage("reject_inconsistent/true",
             [](const Exec& exec) { return reject_inconsistent(matches, {}, exec); });

@@ -104,7 +104,7 @@ Image<float> matched(const report::TrueFrame& frame, const Settings& s) {
                              static_cast<int>(s.p2) * pixels, 1, 63, static_cast<int>(s.uniqueness),
                              static_cast<int>(s.speckle_size), static_cast<int>(s.speckle_range));
   cv::Mat sixteenths;
-  matcher->compute(report::matrix(frame.pictures.left.gray), report::matrix(frame.pictures.right.gray),
+  matcher->compute(report::matrix(frame.images.left.gray), report::matrix(frame.images.right.gray),
                    sixteenths);
   return report::disparity_px_of(sixteenths, 0);
 }

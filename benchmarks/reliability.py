@@ -100,7 +100,7 @@ def hidden_floor(left, right, k, frames):
 
 
 BREAKAGES = [
-    ("as it is", as_it_is, {}),
+    ("unchanged", as_it_is, {}),
     ("right image black", black, {}),
     ("right image blurred, σ 3 px", blurred, {}),
     ("right image two frames late", late, {}),

@@ -12,19 +12,19 @@ namespace {
 
 template <class T>
 void require_size(const Image<T>& truth, const TrueFrame& frame) {
-  const Size size = frame.pictures.left.gray.size();
+  const Size size = frame.images.left.gray.size();
   if (!truth.empty() && truth.size() != size)
-    throw Error(frame.name + ": the truth is " + text(truth.size()) + ", the pictures are " + text(size));
+    throw Error(frame.name + ": the truth is " + text(truth.size()) + ", the images are " + text(size));
 }
 
 }  // namespace
 
 TrueFrame load_true_frame(const io::FrameFiles& files) {
-  if (!files.right) throw Error(files.left.string() + ": there is no right picture");
+  if (!files.right) throw Error(files.left.string() + ": no right image");
   const io::TruthFiles truth = io::find_truth(files);
   TrueFrame frame;
   frame.name = files.name;
-  frame.pictures = io::load_pair(files.left, *files.right);
+  frame.images = io::load_pair(files.left, *files.right);
   if (files.calib) {
     const io::Calibration calibration = io::load_calibration(*files.calib, files.grey_cameras);
     frame.rig = calibration.rig;
@@ -48,9 +48,9 @@ std::vector<TrueFrame> load_true_frames(const std::filesystem::path& folder) {
 
 Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec& exec) {
   config.match.num_disparities = frame.num_disparities;
-  const io::Picture& left = frame.pictures.left;
+  const io::Picture& left = frame.images.left;
   const View<const Rgb> colour = grey ? View<const Rgb>{} : left.rgb.view();
-  return segment(StereoPair::from(left.gray, frame.pictures.right.gray, colour), frame.rig, config, exec);
+  return segment(StereoPair::from(left.gray, frame.images.right.gray, colour), frame.rig, config, exec);
 }
 
 Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec& exec) {

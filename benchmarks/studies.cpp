@@ -120,7 +120,7 @@ void operators(const fs::path& data, const Exec& exec) {
   std::printf("\n|---|---|");
   for (std::size_t i = 0; i < kCosts.size(); ++i) std::printf("---:|");
   std::printf("\n");
-  constexpr std::array kConditions{Condition{"as it is", 1, 0, 0},
+  constexpr std::array kConditions{Condition{"unchanged", 1, 0, 0},
                                    Condition{"gain 1.25, offset 12", 1.25, 12, 0},
                                    Condition{"both: noise 4", 1, 0, 4}, Condition{"both: noise 8", 1, 0, 8}};
   for (const char* name : {"middlebury2003/cones", "middlebury2003/teddy", "middlebury2001/tsukuba"}) {

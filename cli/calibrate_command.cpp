@@ -64,10 +64,10 @@ Sightings look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& boa
   const Progress progress(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     progress.at(i, pairs[i].name);
-    const io::PicturePair pictures = io::load_pair(pairs[i].left, right_of(pairs[i]));
-    Sightings& group = of_size(groups, pictures.left.gray.size());
-    auto left = io::find_board(pictures.left.gray, board);
-    auto right = io::find_board(pictures.right.gray, board);
+    const io::PicturePair images = io::load_pair(pairs[i].left, right_of(pairs[i]));
+    Sightings& group = of_size(groups, images.left.gray.size());
+    auto left = io::find_board(images.left.gray, board);
+    auto right = io::find_board(images.right.gray, board);
     if (left && right) {
       group.names.push_back(pairs[i].name);
       group.list.push_back({std::move(*left), std::move(*right)});

@@ -120,7 +120,7 @@ void add_input_options(CLI::App& app, InputOptions& options) {
 
 namespace {
 
-std::optional<fs::path> calibration_beside(const fs::path& left) {
+std::optional<fs::path> calibration_next_to(const fs::path& left) {
   std::error_code ignored;
   const fs::path folder = fs::absolute(left, ignored).parent_path();
   for (const fs::path& candidate :
@@ -139,7 +139,7 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
   files.folder = left.parent_path();
   files.left = left;
   if (!options.right.empty()) files.right = options.right;
-  files.calib = calibration_beside(left);
+  files.calib = calibration_next_to(left);
   return files;
 }
 

@@ -75,7 +75,7 @@ std::string expected_by(const CLI::Option& option) {
   const std::string value = type.substr(0, type.find(':'));
   if (value == "NAME=VALUE") return "@assignment";
   if (value == "DIR") return "@folder";
-  // Positionals are pictures and folders in every command.
+  // Positionals are images and folders in every command.
   return positional || value == "FILE" || value == "PATH" ? "@file" : "@text";
 }
 

@@ -48,9 +48,9 @@ std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, Examine
                                             const Exec& exec) {
   const fs::path& right_file = right_of(files);
   try {
-    io::PicturePair pictures = io::load_pair(files.left, right_file, exec.pool);
-    examined.size = pictures.left.gray.size();
-    return pictures;
+    io::PicturePair images = io::load_pair(files.left, right_file, exec.pool);
+    examined.size = images.left.gray.size();
+    return images;
   } catch (const Error&) {
     const Size left = io::load_picture(files.left, exec.pool).gray.size();
     const Size right = io::load_picture(right_file, exec.pool).gray.size();
@@ -111,11 +111,11 @@ void examine_rectification(ExaminedPair& examined) {
 
 ExaminedPair examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
   ExaminedPair examined{files.name, {}, {}, {}, {}};
-  const std::optional<io::PicturePair> pictures = load_or_find(files, examined, exec);
+  const std::optional<io::PicturePair> images = load_or_find(files, examined, exec);
   const io::Calibration calibration = calibration_or_find(files, options.input.calib, examined);
-  if (!pictures) return examined;
+  if (!images) return examined;
   const Config config = resolve(options.input.config, calibration.num_disparities).config;
-  examined.measures = measure_pair(StereoPair::from(pictures->left.gray, pictures->right.gray), exec);
+  examined.measures = measure_pair(StereoPair::from(images->left.gray, images->right.gray), exec);
   for (Finding& finding : diagnose(*examined.measures, calibration.rig, config.match, DiagnosisConfig{}))
     examined.findings.push_back(std::move(finding));
   examined.not_checked = not_checked(*examined.measures, calibration.rig, DiagnosisConfig{});
@@ -177,20 +177,19 @@ std::optional<io::PicturePair> load_if_possible(const io::FrameFiles& files, con
 
 /// Consecutive usable pairs of one size, from `first` on.
 Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& frames, const Exec& exec) {
-  std::vector<io::PicturePair> pictures;
+  std::vector<io::PicturePair> images;
   std::vector<StereoPair> pairs;
   Sequence sequence;
   sequence.first = first;
   for (std::size_t i = first; i < std::min(frames.size(), first + kLongestSequence); ++i) {
     std::optional<io::PicturePair> one = load_if_possible(frames[i], exec);
     if (!one) break;
-    if (!pictures.empty() && one->left.gray.size() != pictures.front().left.gray.size()) break;
-    pictures.push_back(std::move(*one));
+    if (!images.empty() && one->left.gray.size() != images.front().left.gray.size()) break;
+    images.push_back(std::move(*one));
     sequence.names.push_back(frames[i].name);
   }
-  pairs.reserve(pictures.size());
-  for (const io::PicturePair& one : pictures)
-    pairs.push_back(StereoPair::from(one.left.gray, one.right.gray));
+  pairs.reserve(images.size());
+  for (const io::PicturePair& one : images) pairs.push_back(StereoPair::from(one.left.gray, one.right.gray));
   sequence.synchrony = measure_synchrony(pairs, exec);
   sequence.finding = diagnose(sequence.synchrony, sequence.names);
   if (!sequence.finding) return sequence;

@@ -717,9 +717,9 @@ std::string frames_that_differ(const std::vector<Run>& runs) {
 }
 
 int compare(const EvaluateOptions& options) {
-  for (const auto& [asked, name] : {std::pair{options.json, "--json"}, {options.html, "--html"}}) {
-    if (asked) {
-      throw Error(std::string(name) + " " + *asked + ": needs one run, found " +
+  for (const auto& [requested, name] : {std::pair{options.json, "--json"}, {options.html, "--html"}}) {
+    if (requested) {
+      throw Error(std::string(name) + " " + *requested + ": needs one run, found " +
                   std::to_string(options.results.size()) + "; --csv accepts several");
     }
   }

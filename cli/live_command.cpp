@@ -23,7 +23,7 @@ struct LiveCommandOptions {
   std::string map;
   bool map_read_only = false;
   ConfigOptions config;
-  bool is_config_told = false;  // --preset or --config was given
+  bool has_config_option = false;  // --preset or --config was given
   LiveRecordOptions record;
   ExecOptions exec;
   bool every_frame = false;
@@ -90,7 +90,7 @@ std::string summary_text(const live::LiveSummary& summary) {
 
 int live_command(LiveCommandOptions options) {
   check(options);
-  const RecordedConfig recorded(options.source.source, options.config, options.is_config_told);
+  const RecordedConfig recorded(options.source.source, options.config, options.has_config_option);
   check(options.view);
   const Exec exec = make_exec(options.exec);
   const auto open = [&] { return open_source(options.source, exec.pool); };
@@ -180,7 +180,7 @@ Work declare_live(CLI::App& app) {
   add_view_options(app, options->view);
   add_ros2_options(app, options->ros2);
   return [options, &app] {
-    options->is_config_told = app.count("--preset") + app.count("--config") > 0;
+    options->has_config_option = app.count("--preset") + app.count("--config") > 0;
     return live_command(*options);
   };
 }

@@ -40,9 +40,9 @@ void begin_recording(const LiveRecordOptions& options, live::Recorder& recorder)
   if (!options.file.empty()) recorder.start(options.file);
 }
 
-RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options, bool is_told)
+RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options, bool has_config_option)
     : source_(source) {
-  if (is_told || !ros::has_mcap() || !ros::is_mcap(source)) return;
+  if (has_config_option || !ros::has_mcap() || !ros::is_mcap(source)) return;
   const auto text = ros::attachment_of(ros::McapReader(source), "config.yaml");
   if (!text) return;
   // Unnamed, so that no other program can find or replace it.

@@ -32,7 +32,7 @@ class RecordedConfig {
  public:
   /// Empty if `source` is not a recording, or one without a configuration, or if --preset or --config is
   /// given.
-  RecordedConfig(const std::string& source, ConfigOptions& options, bool is_told);
+  RecordedConfig(const std::string& source, ConfigOptions& options, bool has_config_option);
   ~RecordedConfig();
   /// A line for stderr; empty if there is none.
   [[nodiscard]] std::string notice() const;

@@ -174,8 +174,8 @@ void remove_older_page(const fs::path& folder) {
 
 LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, const Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
-  for (const auto& [asked, name] : metric_outputs(options)) {
-    if (asked && !loaded.rig) throw Error(no_metres(name, files));
+  for (const auto& [requested, name] : metric_outputs(options)) {
+    if (requested && !loaded.rig) throw Error(no_metres(name, files));
   }
   return loaded;
 }
@@ -240,10 +240,10 @@ bool is_folder_of_frames(const fs::path& input, const std::vector<io::FrameFiles
 /// Rejects options that write files but need an output folder.
 void require_output(const SegmentOptions& options) {
   if (!options.output.empty()) return;
-  const auto require = [](bool asked, const char* name) {
-    if (asked) throw Error(std::string(name) + ": needs -o DIR, the folder for output");
+  const auto require = [](bool requested, const char* name) {
+    if (requested) throw Error(std::string(name) + ": needs -o DIR, the folder for output");
   };
-  for (const auto& [asked, name] : metric_outputs(options)) require(asked, name);
+  for (const auto& [requested, name] : metric_outputs(options)) require(requested, name);
   require(options.html, "--html");
 }
 

@@ -128,7 +128,7 @@ if(CAIRN_IO)
   if(CAIRN_HAS_CALIBRATION)
     string(PREPEND opencv_libs "-lopencv_calib3d ")
   endif()
-  cairn_install_pkgconfig(cairn-io "Files of cairn: pictures, calibrations, options and results" "-lcairn-io"
+  cairn_install_pkgconfig(cairn-io "Files of cairn: images, calibrations, options and results" "-lcairn-io"
     "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg zlib" "${opencv_libs}")
   if(CAIRN_HAS_TRACKING)
     set(mcap_requires)

@@ -13,13 +13,13 @@ namespace {
 
 void print_objects(const std::filesystem::path& folder) {
   // [readme]
-  const auto pictures = cairn::io::load_pair(folder / "left.png", folder / "right.png");
+  const auto images = cairn::io::load_pair(folder / "left.png", folder / "right.png");
   const auto calibration = cairn::io::load_calibration(folder / "calib.txt");
 
   cairn::Config config;  // every option and its default: docs/options.md
   config.match.num_disparities = calibration.num_disparities.value_or(64);
 
-  const auto pair = cairn::StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  const auto pair = cairn::StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
   const auto frame = cairn::segment(pair, calibration.rig, config, cairn::Exec::with_threads(0));
 
   for (const cairn::Object& object : frame.objects.list) {

@@ -147,9 +147,9 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const std::filesystem::path folder = argv[1];
-  const auto pictures = io::load_pair(folder / "left.png", folder / "right.png");
+  const auto images = io::load_pair(folder / "left.png", folder / "right.png");
   const auto calibration = io::load_calibration(folder / "calib.txt");
-  const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  const auto pair = StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
 
   for (const char* const preset : {"paper", "default"}) {
     Config config = Config::preset(preset);

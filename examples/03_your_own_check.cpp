@@ -49,9 +49,9 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const std::filesystem::path folder = argv[1];
-  const auto pictures = io::load_pair(folder / "left.png", folder / "right.png");
+  const auto images = io::load_pair(folder / "left.png", folder / "right.png");
   const auto calibration = io::load_calibration(folder / "calib.txt");
-  const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  const auto pair = StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
 
   Config config;
   config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);

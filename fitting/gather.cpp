@@ -243,10 +243,10 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   Config config;
   config.match.num_disparities = frame.num_disparities;
   const Exec exec;
-  const View<const Gray> left = frame.pictures.left.gray;
-  const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.pictures.left.rgb.view();
+  const View<const Gray> left = frame.images.left.gray;
+  const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.images.left.rgb.view();
   Observed stage(exec);
-  Given given{left, rgb, frame.pictures.right.gray, {}};
+  Given given{left, rgb, frame.images.right.gray, {}};
   SuperpixelScene cut = cut_scene(given, frame.rig, config, nullptr, exec, stage);
   const Superpixels& superpixels = cut.superpixels;
   if (files.inputs.is_open()) {
@@ -255,12 +255,12 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
     return;
   }
   std::vector<Pair> pairs;
-  JudgedPair told;
+  JudgedPair on_judged;
   if (files.pairs.is_open())
-    told = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
+    on_judged = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
   const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
   cut.hints = hint_objects(hint_input(superpixels.edges, cut.cues(given), exec), network, exec);
-  const MergeTree tree = grow_merge_tree(superpixels, cut.cues(given), same_thing, exec, told);
+  const MergeTree tree = grow_merge_tree(superpixels, cut.cues(given), same_thing, exec, on_judged);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
   const double milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;

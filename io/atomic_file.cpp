@@ -51,7 +51,7 @@ class OutputFile {
 };
 
 /// Hidden, so that a listing does not show it as a result; unique for each writer.
-fs::path temporary_beside(const fs::path& path) {
+fs::path temporary_next_to(const fs::path& path) {
   static std::atomic<unsigned> count{0};
   const std::string mark = std::to_string(::getpid()) + "-" + std::to_string(count++);
   return path.parent_path() / ("." + path.filename().string().substr(0, 200) + "." + mark + ".tmp");
@@ -80,7 +80,7 @@ fs::path target_of(const fs::path& path) {
 struct GrowingFile::State {
   explicit State(const fs::path& final_path)
       : path(target_of(final_path)),
-        temporary(takes_bytes_directly(path) ? fs::path() : temporary_beside(path)),
+        temporary(takes_bytes_directly(path) ? fs::path() : temporary_next_to(path)),
         file(temporary.empty() ? path : temporary, temporary.empty() ? 0 : O_CREAT | O_EXCL) {
     if (!file.is_open()) refuse(path, errno);
   }

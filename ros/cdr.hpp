@@ -104,7 +104,7 @@ class CdrReader {
   /// Throws Error unless all bytes but padding have been read.
   void end() const {
     if (bytes_.size() - at_ >= 8)
-      refuse("found " + std::to_string(bytes_.size() - at_) + " bytes behind its end");
+      refuse("found " + std::to_string(bytes_.size() - at_) + " bytes after its end");
   }
 
  private:

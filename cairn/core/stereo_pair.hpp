@@ -53,9 +53,9 @@ struct PointPair {
   friend bool operator==(const PointPair&, const PointPair&) = default;
 };
 
-/// The floor as known before any image is taken: how the rig is mounted. Part of the calibration file.
+/// Prior knowledge of the floor from the mounting of the rig. Part of the calibration file.
 struct KnownGround {
-  std::vector<PointPair> points;         // on the floor: none, or at least four, not collinear
+  std::vector<PointPair> points;         // on the floor: empty, or at least four, not collinear
   std::optional<float> camera_height_m;  // of the left camera above the floor
   float camera_pitch_deg = 0;            // positive looks down
   float camera_roll_deg = 0;             // positive lowers the camera's right side

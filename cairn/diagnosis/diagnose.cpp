@@ -365,7 +365,7 @@ std::vector<float> supported_disparities(const std::vector<Correspondence>& poin
     int alike = 0;
     for (std::size_t i = 0; i < count; ++i)
       alike += std::abs(nearest[i].second - c.disparity()) <= tolerance ? 1 : 0;
-    if (alike > 1) supported.push_back(c.disparity());  // the point itself counts as one
+    if (alike > 1) supported.push_back(c.disparity());  // the count includes the point itself
   }
   std::sort(supported.begin(), supported.end());
   return supported;

@@ -111,8 +111,8 @@ struct PairMeasures {
 };
 PairMeasures measure_pair(const StereoPair& pair, const Exec& exec);
 
-/// The faults of a pair, in the order of kFindings; empty for a good one. `range` holds the disparities to be
-/// searched; without `rig` the calibration is not judged.
+/// The faults of a pair, in the order of kFindings; empty for a good pair. `range` holds the disparities to
+/// be searched; without `rig` the calibration is not judged.
 std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<StereoRig>& rig,
                               const MatchConfig& range, const DiagnosisConfig& config);
 

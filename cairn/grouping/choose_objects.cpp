@@ -8,8 +8,7 @@
 namespace cairn {
 namespace {
 
-/// 1/(1 + e^−x) in steps of 1/4096: what exp() gives in the last place may differ between processors, and is
-/// rounded away here.
+/// 1/(1 + e^−x) in steps of 1/4096. The last bit of exp() may differ between processors; rounding removes it.
 float likelihood(float odds_logarithm) {
   return static_cast<float>(std::floor(4096.0 / (1.0 + std::exp(-double{odds_logarithm})) + 0.5) / 4096.0);
 }
@@ -38,22 +37,22 @@ std::vector<float> score_nodes(const MergeTree& tree, const FittedTrees& whole_o
 
 ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores, const ChoiceLimits& limits) {
   const std::size_t count = tree.nodes.size();
-  std::vector<double> best(count);  // gain over min_score of the best choice at or below each node
-  std::vector<bool> taken(count);   // whether that choice is the node itself
+  std::vector<double> best(count);     // gain over min_score of the best choice at or below each node
+  std::vector<bool> is_chosen(count);  // whether that choice is the node itself
   for (std::size_t i = 0; i < count; ++i) {
     const MergeNode& node = tree.nodes[i];
     if (node.part_a >= 0) best[i] = best[slot(node.part_a)] + best[slot(node.part_b)];
     if (node.area < limits.min_area) continue;
     const double gain = double{scores[i]} - limits.min_score;
-    taken[i] = gain > 0 && gain >= best[i];
-    if (taken[i]) best[i] = gain;
+    is_chosen[i] = gain > 0 && gain >= best[i];
+    if (is_chosen[i]) best[i] = gain;
   }
   ChosenObjects chosen{{}, {0.0F}, {}};
   std::vector<std::int32_t> object(count, 0);
   for (std::size_t i = count; i-- > 0;) {
     const std::int32_t whole = tree.nodes[i].whole;
     if (whole >= 0) object[i] = object[slot(whole)];
-    if (object[i] > 0 || !taken[i]) continue;
+    if (object[i] > 0 || !is_chosen[i]) continue;
     object[i] = static_cast<std::int32_t>(chosen.scores.size());
     chosen.scores.push_back(scores[i]);
   }

@@ -46,7 +46,7 @@ using Narrow = hn::Rebind<std::int16_t, Sums>;
 
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Sums()));
 
-/// The outputs from sums of products.
+/// Outputs from sums of products.
 HWY_INLINE void put(hn::Vec<Sums> sum, const Convolution& by, int output, std::int16_t* out) {
   const auto least = hn::Set(Scales(), static_cast<float>(by.least));
   const auto greatest = hn::Set(Scales(), static_cast<float>(kGreatestActivation));
@@ -65,7 +65,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   const Sums d;
   const Products pairs;
   hn::Vec<Sums> sums[kPixels][kVectors];
-  hn::Vec<Sums> others[kPixels][kVectors];  // where an instruction set sums two halves apart
+  hn::Vec<Sums> others[kPixels][kVectors];  // for instruction sets that sum two halves separately
 #pragma GCC unroll 12
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 12
@@ -104,7 +104,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   }
 }
 
-/// A row, several pixels at a time: as many sums as registers hold.
+/// A row, several pixels at a time: as many sums as fit in registers.
 template <int kVectors>
 HWY_INLINE void row_of(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out) {
   constexpr int kPixels = kVectors < 6 ? 12 / kVectors : 2;
@@ -142,10 +142,10 @@ inline void convolve(const std::int16_t* const* rows, const Convolution& by, int
 
 using Activation = hn::CappedTag<std::int16_t, 8>;
 
-constexpr int kTiles = 5;     // side by side, at a time: as many sums as registers hold, with
+constexpr int kTiles = 5;     // adjacent tiles at a time: as many sums as fit in registers, with
 constexpr int kTogether = 2;  // vectors of outputs
 
-/// Transforms four numbers in a row.
+/// Transforms four consecutive numbers.
 template <class V>
 HWY_INLINE void transform(V a, V b, V c, V d, V* to) {
   to[0] = hn::Sub(a, c);
@@ -154,7 +154,7 @@ HWY_INLINE void transform(V a, V b, V c, V d, V* to) {
   to[3] = hn::Sub(b, d);
 }
 
-/// The two sums over three numbers in a row, from the products of what was transformed.
+/// The two sums over three consecutive numbers, from the products of transformed values.
 template <class V>
 HWY_INLINE void sums_from(V a, V b, V c, V d, V* sums) {
   sums[0] = hn::Add(hn::Add(a, b), c);
@@ -179,7 +179,7 @@ HWY_INLINE void transform_tile(const std::int16_t* const* rows, const std::ptrdi
   }
 }
 
-/// Some outputs of kTiles tiles from column x on, as far as they are inside the image.
+/// Outputs of kTiles tiles from column x on, as far as they are inside the image.
 template <int kCount>
 HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const Convolution& by, int output,
                                  int x, int width, std::int16_t* const* out) {

@@ -26,7 +26,7 @@ struct Convolution {
 /// The largest number of outputs.
 inline constexpr int kMostOutputs = 48;
 
-/// The number of places in a transformed tile of convolve_two().
+/// The number of elements of a transformed tile of convolve_two().
 inline constexpr int kPlaces = 16;
 
 /// The limit of an output: no sum of products can then exceed 32 bits.
@@ -34,7 +34,7 @@ inline constexpr int kGreatestActivation = 8191;
 
 /// Integer sums, one multiplication by a float, rounded to nearest: the same bits on every target.
 struct ConvolutionKernels {
-  /// `rows`: the `side` rows of the window, channels side by side in each pixel, from the window's first
+  /// `rows`: the `side` rows of the window, channels interleaved, from the window's first
   /// column of the first output on. Output o of pixel x, at out[x · outputs + o], is
   /// (bias[o] + Σ weights · inputs) · scale[o], rounded, from `least` to kGreatestActivation.
   void (*convolve)(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out);

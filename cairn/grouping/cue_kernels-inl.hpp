@@ -21,11 +21,11 @@ inline void nearest_plane(std::span<const GroundPlane> planes, int y, int width,
 }
 
 inline void in_steps(const float* disparity_px, float above, int width, std::int32_t* CAIRN_RESTRICT out) {
-  // Truncating what is positive is quicker than floor(), and in doubles as exact.
+  // For positive numbers truncation is faster than floor(), and exact in doubles.
   constexpr int kPositive = 1 << 20;
   for (int x = 0; x < width; ++x) {
     const float d = disparity_px[x];
-    const bool is_one = d > above;  // NaN is not
+    const bool is_one = d > above;  // false for NaN
     const double steps = double{is_one ? d : 0.0F} * kDisparitySteps + (0.5 + kPositive);
     const std::int32_t rounded = static_cast<std::int32_t>(steps) - kPositive;
     out[x] = is_one ? rounded : kNoDisparity;
@@ -38,7 +38,7 @@ inline void add_steps(const std::uint16_t* edges, const float* up, const float* 
     const float d = here[x];
     const auto larger = [d](float step, float other) {
       const float to = std::abs(other - d);
-      return to > step ? to : step;  // NaN is not
+      return to > step ? to : step;  // false for NaN
     };
     float step = larger(larger(larger(larger(0.0F, here[left]), here[right]), up[x]), down[x]);
     step = largest < step ? largest : step;
@@ -55,8 +55,8 @@ inline void sum_trees(const FittedTrees::Split* splits, const float* leaves, std
                       std::size_t count, const float* features, float* CAIRN_RESTRICT sums) {
   using Lanes = float[kTreeLanes];
   const std::size_t size = std::size_t{1} << depth;
-  // From the leaves up, each split takes the value of the side that a sample goes to: no sample waits for the
-  // split before, and all splits of a tree together take less time than one path of each sample.
+  // From the leaves up, each split takes the value of the branch that a sample follows: no sample waits for
+  // the previous split, and all splits of a tree take less time than one path per sample.
   Lanes values[std::size_t{1} << kDeepestTree];
   for (std::size_t tree = 0; tree < count; ++tree, splits += size, leaves += size) {
     for (std::size_t place = size - 1; place >= size / 2; --place) {

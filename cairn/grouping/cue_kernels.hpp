@@ -9,7 +9,7 @@
 #include <limits>
 #include <span>
 
-/// What superpixels and cues are computed from, per pixel of a row; one set per instruction set. Private to the
+/// The kernels of superpixels and cues, per pixel of a row; one set per instruction set. Private to the
 /// library.
 namespace cairn::kernels {
 
@@ -24,8 +24,8 @@ struct CueKernels {
   void (*nearest_plane)(std::span<const GroundPlane> planes, int y, int width, float* out);
   /// In 1/64 px, rounded, halves up; kNoDisparity where a value is NaN or not above `above`.
   void (*in_steps)(const float* disparity_px, float above, int width, std::int32_t* out);
-  /// Adds to each edge `weight` times the largest step of disparity to one of the four neighbours, limited to
-  /// `largest` px; 0 where the sum is below `least`. Beside holes there is no step.
+  /// Adds to each edge `weight` times the largest disparity step to one of the four neighbours, limited to
+  /// `largest` px; 0 where the sum is below `least`. A hole has no step.
   void (*add_steps)(const std::uint16_t* edges, const float* up, const float* here, const float* down,
                     int width, float weight, float largest, int least, std::uint16_t* out);
   /// Adds to each of kTreeLanes sums the leaves that its sample reaches in `count` complete trees, stored as in

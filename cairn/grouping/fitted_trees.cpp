@@ -13,7 +13,7 @@ namespace {
 #include <cairn/grouping/fitted_same_thing.inc>
 #include <cairn/grouping/fitted_whole_object.inc>
 
-// A step down waits for the one before, so several trees are walked at the same time.
+// A step down depends on the previous one, so several trees are walked concurrently.
 constexpr std::size_t kAtOnce = 8;
 
 std::size_t depth_below(std::span<const FittedTrees::Node> nodes, std::int16_t node) {
@@ -34,7 +34,7 @@ FittedTrees::FittedTrees(float base, std::span<const std::int16_t> roots, std::s
   for (std::size_t tree = 0; tree < count_; ++tree) complete(nodes, roots[tree], tree, 1);
 }
 
-/// Stores what is below `node` at a place of a tree. A leaf that is not deep enough is repeated.
+/// Stores the subtree below `node` at a place of a tree. A leaf that is not deep enough is repeated.
 void FittedTrees::complete(std::span<const Node> nodes, std::int16_t node, std::size_t tree,
                            std::size_t place) {
   const Node& n = nodes[slot(node)];

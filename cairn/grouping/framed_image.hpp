@@ -8,7 +8,7 @@
 
 namespace cairn {
 
-/// Channels side by side in each pixel, with a frame of zeros one pixel wide. Private to the library.
+/// Interleaved channels, with a frame of zeros one pixel wide. Private to the library.
 inline Image<std::int16_t> framed_image(Size size, int channels, const Pool& pool) {
   Image<std::int16_t> framed({(size.width + 2) * channels, size.height + 2}, pool);
   std::fill_n(framed.row(0), framed.width(), std::int16_t{0});

@@ -36,8 +36,8 @@ enum Channel : int {
   kHasColour
 };
 
-/// Which pixels along one axis belong to each cell: first … last − 1, those with pixel · cells / pixels = cell; where
-/// there are fewer pixels than cells, the one at the cell's place.
+/// The pixels of each cell along one axis: first … last − 1, those with pixel · cells / pixels = cell; with
+/// fewer pixels than cells, the pixel at the cell's place.
 struct Runs {
   std::vector<std::int32_t> first, last;
   int longest = 1;
@@ -54,7 +54,7 @@ struct Runs {
   [[nodiscard]] int count(int cell) const { return last[slot(cell)] - first[slot(cell)]; }
 };
 
-/// An array for each of the sums.
+/// One array per sum.
 template <class Sums, class Whole>
 class SumArrays {
  public:
@@ -73,19 +73,19 @@ class SumArrays {
   std::vector<double> real_;
 };
 
-/// What is told relative to the whole image, of each cell.
+/// The values of each cell that are normalised by the whole image.
 struct Means {
-  Image<double> brightness, disparity, ground;  // disparity: kNone where no pixel has one
+  Image<double> brightness, disparity, ground;  // disparity: kNone without a disparity
   explicit Means(Size cells, const Pool& pool)
       : brightness(cells, pool), disparity(cells, pool), ground(cells, pool) {}
 };
 
-/// Sums over all pixels of a row of cells.
+/// Sums over all pixels of a row of cells, as exact integers.
 struct RowTotal {
   double pixels = 0, brightness = 0, squares = 0;  // whole numbers, exact
 };
 
-/// Describes one row of cells after the other.
+/// Processes the rows of cells in order.
 class Describing {
  public:
   Describing(View<const std::uint16_t> edges, const Cues& cues, const Runs& across, const Exec& exec)
@@ -100,7 +100,7 @@ class Describing {
         areas_(slot(cells_)),
         means_(slot(cells_)) {}
 
-  /// Sums up rows first … last − 1 of the image.
+  /// Sums the rows first … last − 1 of the image.
   void sum_up(int first, int last) {
     columns_.clear();
     for (int y = first; y < last; ++y) {
@@ -129,7 +129,7 @@ class Describing {
     return total;
   }
 
-  /// Writes to row y of `means`, and the channels that do not need the whole image to `out`.
+  /// Writes row y of `means`, and to `out` the channels that do not depend on the whole image.
   void describe(int y, int rows, Means& means, std::int16_t* out) {
     const double* const areas = areas_.data();
     const double* const matched = whole(kMatched);
@@ -174,7 +174,7 @@ class Describing {
   SurfacesBehind behind_;
   SumArrays<ColumnSums, std::int32_t> columns_;
   SumArrays<CellSums, double> sums_;
-  std::vector<double> areas_;  // pixels of each cell
+  std::vector<double> areas_;  // pixels per cell
   std::vector<double> means_;
 };
 

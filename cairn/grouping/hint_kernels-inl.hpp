@@ -26,7 +26,7 @@ inline void add_counts(const HintPixels& row, int width, std::int32_t* CAIRN_RES
   const float* const disparity = row.disparity_px;
   const float* const ground = row.ground_px;
   for (int x = 0; x < width; ++x) {
-    const int is_matched = disparity[x] == disparity[x] ? 1 : 0;  // NaN equals nothing
+    const int is_matched = disparity[x] == disparity[x] ? 1 : 0;  // false for NaN
     edges[x] += edge[x];
     textured[x] += evidence[x] == evidence[x] ? 1 : 0;
     matched[x] += is_matched;
@@ -95,7 +95,7 @@ inline void mean(const double* sums, const double* counts, int cells, double non
 
 inline void put(const double* values, int cells, double zero, double unit, double least, double most,
                 int stride, std::int16_t* CAIRN_RESTRICT out) {
-  // Truncating what is positive is quicker than floor(), and as exact.
+  // For positive numbers truncation is faster than floor(), and exact.
   constexpr int kPositive = 1024;
   constexpr double kSteps = 64;
   for (int c = 0; c < cells; ++c) {

@@ -7,7 +7,7 @@
 #include <cairn/core/image.hpp>
 #include <cstdint>
 
-/// What hint_input() is computed from, per row of pixels or cells; one set per instruction set. Private to the
+/// The kernels of hint_input(), per row of pixels or cells; one set per instruction set. Private to the
 /// library.
 namespace cairn::kernels {
 
@@ -22,7 +22,7 @@ struct HintPixels {
   const float* background_px = nullptr;
 };
 
-/// Sums of whole numbers over pixels …
+/// Integer sums over pixels …
 enum WholeSum : std::size_t {
   kBrightness,
   kBlue,
@@ -34,11 +34,11 @@ enum WholeSum : std::size_t {
   kAbove,
   kWholeSums
 };
-/// … and of distances: those above the ground where there is any, those before the background where there is a
+/// … and of distances: those above the ground if there is one, those in front of the background if there is a
 /// disparity.
 enum RealSum : std::size_t { kDisparity, kGround, kHeight, kBefore, kRealSums };
 
-/// Arrays side by side.
+/// Structure of arrays.
 struct ColumnSums {
   std::array<std::int32_t*, kWholeSums> whole{};
   std::array<double*, kRealSums> real{};
@@ -51,9 +51,9 @@ struct CellSums {
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct HintKernels {
-  /// Adds a row to the sums of its columns. Precondition: they hold fewer than 2¹⁵ rows.
+  /// Adds a row to the column sums. Precondition: they contain fewer than 2¹⁵ rows.
   void (*add_row)(const HintPixels& row, int width, const ColumnSums& sums);
-  /// The sums over columns first[cell] … last[cell] − 1, of which there are `most` or fewer, but at least one.
+  /// The sums over columns first[cell] … last[cell] − 1: at least one and at most `most` columns.
   void (*sum_cells)(const ColumnSums& columns, const std::int32_t* first, const std::int32_t* last, int most,
                     int cells, const CellSums& sums);
   /// sums / counts; `none` where the count is 0.

@@ -16,11 +16,11 @@ constexpr int kMuch = 8;                 // a part of less than 1/8 of the other
 class Growing {
  public:
   Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing, const Exec& exec,
-          const JudgedPair& told)
+          const JudgedPair& on_judged)
       : graph_(gather_cues(superpixels, cues, exec)),
         frame_(frame_cues(graph_, cues)),
         same_thing_(same_thing),
-        told_(told),
+        on_judged_(on_judged),
         fits_(graph_.regions.size()),
         nodes_(graph_.regions.size()),
         contacts_of_(graph_.regions.size()),
@@ -91,7 +91,7 @@ class Growing {
   [[nodiscard]] MergeFeatures features_of(std::int32_t contact) const {
     const ContactCues& c = graph_.contacts[slot(contact)];
     const MergeFeatures features = merge_features(side(c.a), side(c.b), c, frame_);
-    if (told_) told_(nodes_[slot(c.a)], nodes_[slot(c.b)], features);
+    if (on_judged_) on_judged_(nodes_[slot(c.a)], nodes_[slot(c.b)], features);
     return features;
   }
   [[nodiscard]] Entry judged(std::int32_t contact, float score) {
@@ -207,7 +207,7 @@ class Growing {
   RegionGraphCues graph_;
   FrameCues frame_;
   const FittedTrees& same_thing_;
-  const JudgedPair& told_;
+  const JudgedPair& on_judged_;
   std::vector<RegionFits> fits_;
   std::vector<std::int32_t> nodes_;  // of each region
   std::vector<std::vector<std::int32_t>> contacts_of_;
@@ -223,8 +223,8 @@ class Growing {
 }  // namespace
 
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
-                          const Exec& exec, const JudgedPair& told) {
-  return Growing(superpixels, cues, same_thing, exec, told).run();
+                          const Exec& exec, const JudgedPair& on_judged) {
+  return Growing(superpixels, cues, same_thing, exec, on_judged).run();
 }
 
 }  // namespace cairn

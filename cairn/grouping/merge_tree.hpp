@@ -39,6 +39,6 @@ using JudgedPair = std::function<void(std::int32_t node_a, std::int32_t node_b, 
 /// of the larger; others are re-evaluated when their turn comes, and are queued again if they are not the
 /// likeliest any more. Ties: the contact that occurs first in raster order.
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
-                          const Exec& exec, const JudgedPair& told = {});
+                          const Exec& exec, const JudgedPair& on_judged = {});
 
 }  // namespace cairn

@@ -29,7 +29,7 @@ constexpr int kLargest = 320;     // 1/16 of log₂
 
 // ---- the network
 
-/// The output of a layer: channels side by side in each pixel, with a frame of zeros.
+/// The output of a layer: interleaved channels, with a frame of zeros.
 struct Activations {
   Image<std::int16_t> framed;
   Size size;
@@ -49,7 +49,7 @@ Activations convolved(const Activations& in, const kernels::Convolution& by, con
   if (by.transformed_weights != nullptr) {
     parallel_for(exec, (size.height + 1) / 2, kGrain / 2, [&](int first, int last) {
       for (int y = 2 * first; y < 2 * last; y += 2) {
-        // Of an odd number of rows, the last has no partner.
+        // With an odd number of rows, the last has no partner.
         const bool both = y + 1 < size.height;
         std::array<const std::int16_t*, 4> rows{};
         for (int r = 0; r < 4; ++r)
@@ -109,7 +109,7 @@ enum Layer : std::size_t {
   kDecode4b,
   kDecode2a,
   kDecode2b,
-  kTell
+  kOutput
 };
 
 /// Whether convolve_two() computes the layer.
@@ -155,7 +155,7 @@ std::int16_t limited(int value, int least, int most) {
 }  // namespace
 
 struct HintNetwork::Numbers {
-  Scratch<std::int16_t> weights;  // pairs of inputs side by side
+  Scratch<std::int16_t> weights;  // interleaved pairs of inputs
   Scratch<std::int16_t> transformed_weights;
   std::vector<std::int32_t> bias;
   std::vector<float> scale;
@@ -220,12 +220,12 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   up = layer(kDecode8b, doubled_and_added(layer(kDecode8a, up), eighth, exec.pool));
   up = layer(kDecode4b, doubled_and_added(layer(kDecode4a, up), quarter, exec.pool));
   up = layer(kDecode2b, doubled_and_added(layer(kDecode2a, up), half, exec.pool));
-  const Activations told = layer(kTell, up);
+  const Activations output = layer(kOutput, up);
   // Each output pixel holds four neighbouring cells.
   Image<ObjectHint> hints(cells, exec.pool);
   for (int y = 0; y < cells.height; ++y) {
     for (int x = 0; x < cells.width; ++x) {
-      const std::int16_t* const t = told.row(y / 2) + x / 2 * told.channels + y % 2 * 2 + x % 2;
+      const std::int16_t* const t = output.row(y / 2) + x / 2 * output.channels + y % 2 * 2 + x % 2;
       hints(x, y) = {limited(t[0], -kMostLogOdds, kMostLogOdds), limited(t[4], -kMostLogOdds, kMostLogOdds),
                      limited(t[8], -kFarthest, kFarthest), limited(t[12], -kFarthest, kFarthest),
                      limited(t[16], 0, kLargest)};

@@ -34,8 +34,8 @@ Size hint_cells(Size image);
 /// The number of input channels of a cell: brightness, colour, disparity, distance from ground and background,
 /// edges … (docs/stages/object_hints.md lists them).
 inline constexpr int kHintChannels = 12;
-/// The input of the network: hint_cells() with a frame of zeros around them, the channels of a cell next to each
-/// other, in 1/64. `edges`: superpixel_edges(). `cues.hints` is not used.
+/// The input of the network: hint_cells() with a frame of zeros, interleaved channels in 1/64. `edges`:
+/// superpixel_edges(). `cues.hints` is not used.
 Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec);
 
 /// The shape of one layer.
@@ -47,11 +47,11 @@ struct HintLayer {
 };
 inline constexpr std::size_t kHintLayers = 17;
 
-/// The fitted numbers, in the order that the kernels read.
+/// The fitted weights, in the order in which the kernels read them.
 class HintNetwork {
  public:
-  /// `weights`: of every layer [row][column][input][output]; `bias` and `scale`: of every layer [output].
-  /// They are copied. Precondition: as many as `layers` ask for; only the last layer has a negative `least`.
+  /// `weights`: per layer [row][column][input][output]; `bias` and `scale`: per layer [output]. Copied.
+  /// Precondition: their sizes match `layers`; only the last layer has a negative `least`.
   HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
               std::span<const std::int32_t> bias, std::span<const float> scale);
   HintNetwork(HintNetwork&&) noexcept;
@@ -74,7 +74,7 @@ const HintNetwork& hint_network();
 /// doubles it again and adds the encoder's activations of the same resolution (Ronneberger et al. 2015,
 /// "U-Net"). All sums are integers.
 Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& network, const Exec& exec);
-/// By the library's network.
+/// The same with the library's network.
 Image<ObjectHint> hint_objects(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec);
 
 }  // namespace cairn

@@ -17,7 +17,7 @@ constexpr int kFar = 3;         // px to either side of a contact
 constexpr int kLeastRows = 16;  // of a band
 using kernels::kNoDisparity;
 
-/// The bin of each difference of colours, −255 … 255.
+/// Histogram bin of a colour difference, −255 … 255.
 constexpr auto kBins = [] {
   std::array<std::uint8_t, 511> bins{};
   for (int i = 0; i < 511; ++i)
@@ -38,7 +38,7 @@ float weakest_edge(float noise_sigma) {
 /// The sums over a run of pixels in one row, kept in registers.
 struct RunMoments {
   std::int64_t n = 0, x = 0, xx = 0, d = 0, xd = 0, dd = 0;
-  /// Without a branch, because which pixels have a disparity cannot be predicted.
+  /// Branch-free, because valid disparities are unpredictable.
   void add(std::int64_t at_x, std::int32_t disparity) {
     const bool is_known = disparity != kNoDisparity;
     const std::int64_t known_x = is_known ? at_x : 0;
@@ -50,18 +50,18 @@ struct RunMoments {
     xd += known_d * at_x;
     dd += known_d * known_d;
   }
-  /// As the sums of pixels in row y.
+  /// Sums for pixels of row y.
   [[nodiscard]] PlaneMoments in_row(std::int64_t y) const {
     return {n, x, n * y, xx, x * y, n * y * y, d, xd, d * y, dd};
   }
 };
 
-/// Heights of up to kMost pixels, so that no 32-bit sum overflows: twice as many to a vector.
+/// Heights of up to kMost pixels, so that no 32-bit sum overflows: twice as many per vector as with 64 bits.
 struct RunHeights {
   static constexpr std::int32_t kMost = 512;
   std::int32_t n = 0, sum = 0, squares = 0, behind = 0, on = 0;
-  /// `height`: clamped, 0 if not known. `is_known`: 0 or 1, without a branch, because which pixels have a disparity cannot be
-  /// predicted.
+  /// `height`: clamped, 0 if unknown. `is_known`: 0 or 1, branch-free, because valid disparities are
+  /// unpredictable.
   void add(std::int32_t height, int is_known) {
     n += is_known;
     sum += height;
@@ -74,10 +74,10 @@ struct RunHeights {
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 static_assert(kLargest / RunHeights::kMost / clamped_height(kLargest) >= clamped_height(kLargest));
 
-/// Gathers over some rows, for gather_cues().
+/// Accumulates some rows, for gather_cues().
 class Gathering {
  public:
-  /// `steps`: the disparities of the whole image, for all of them together.
+  /// `steps`: the disparities of the whole image, shared by all bands.
   Gathering(const Superpixels& superpixels, const Cues& cues, Image<std::int32_t>& steps, const Exec& exec)
       : cues_(cues),
         run_(kernels::cue_kernels(exec)),
@@ -112,15 +112,15 @@ class Gathering {
     }
   }
 
-  /// … and when those of all rows are there, their contacts.
+  /// … then, after all bands, their contacts.
   void add_contacts(int first_row, int last_row) {
     for_each_contact(labels_, first_row, last_row, [&](int x, int y, int dx, int dy) { meet(x, y, dx, dy); });
   }
 
-  /// Adds what was gathered over the rows that follow.
+  /// Adds the sums of the following rows.
   void add(const Gathering& next) {
     for (std::size_t i = 0; i < result_.regions.size(); ++i) {
-      // A contact alone adds to the perimeter.
+      // Only contacts add to the perimeter.
       const RegionCues& region = next.result_.regions[i];
       if (region.area > 0 || region.perimeter > 0) result_.regions[i].add(region, 0);
     }
@@ -236,7 +236,7 @@ class Gathering {
       for (int x = begin; x < std::min(begin + RunHeights::kMost, last); ++x) {
         const std::int32_t base = behind[slot(x)];
         const int is_known = static_cast<int>(base != kNoDisparity) & static_cast<int>(d[x] != kNoDisparity);
-        // A textured pixel has the disparity that it has among all.
+        // The textured disparities are a subset of all disparities.
         const int is_textured = is_known & static_cast<int>(textured_[slot(x)] != kNoDisparity);
         const std::int32_t height = clamped_height(known(d[x]) - known(base)) & -is_known;
         of_all.add(height, is_known);

@@ -23,7 +23,7 @@ namespace cairn {
 struct HintSums {
   std::int64_t object = 0, outline = 0;
   std::int64_t weight = 0, x = 0, y = 0, xx = 0, yy = 0, size = 0;
-  /// `pixels`: how many of the cell's.
+  /// `pixels`: number of the cell's pixels.
   void add(const ObjectHint& hint, int column, int row, int pixels);
   void add(const HintSums& other);
   friend bool operator==(const HintSums&, const HintSums&) = default;

@@ -9,8 +9,8 @@
 namespace cairn {
 namespace {
 
-constexpr double kLevelling = 4e-4;  // of a plane: the spread that its slopes are damped by, in image widths²
-constexpr std::int64_t kLeastTextured = 6;  // disparities that a plane is believed from
+constexpr double kLevelling = 4e-4;         // damping of a plane's slopes: a spread in image widths²
+constexpr std::int64_t kLeastTextured = 6;  // textured disparities needed for a plane
 constexpr std::int64_t kLeastMatched = 12;
 
 /// More than half of the region.
@@ -18,7 +18,7 @@ bool mostly(std::int64_t part, const RegionCues& region) {
   return 2 * part > region.area;
 }
 
-/// Takes the features in turn, each with its name.
+/// Collects the features in order, with their names.
 struct Values {
   std::span<float> out;
   std::size_t n = 0;
@@ -35,7 +35,7 @@ double share(double part, double whole) {
 double share(std::int64_t part, std::int64_t whole) {
   return share(static_cast<double>(part), static_cast<double>(whole));
 }
-/// Of sums in 1/64 px.
+/// Mean of sums in 1/64 px.
 double mean_px(std::int64_t sum, std::int64_t n) {
   return share(static_cast<double>(sum) / kDisparitySteps, static_cast<double>(n));
 }
@@ -61,7 +61,7 @@ double colour_difference(const RegionCues& p, const RegionCues& q) {
   const double red = mean(p, 2) - mean(q, 2);
   return std::sqrt(blue * blue + red * red);
 }
-/// χ² of the shares of each bin.
+/// χ² distance of two histograms.
 template <class P, class Q>
 double histogram_distance(const P& p, const Q& q) {
   const float of_p = 1.0F / static_cast<float>(p.area);
@@ -75,7 +75,7 @@ double histogram_distance(const P& p, const Q& q) {
   return sum;
 }
 
-/// By basic operations alone: a library's may differ in the last bit from processor to processor.
+/// Uses basic operations only: a library function may differ in the last bit between processors.
 double log2_of(double value) {
   int exponent = 0;
   double mantissa = std::frexp(value, &exponent);  // 1/2 … 1
@@ -116,13 +116,13 @@ std::int64_t at_image_border(const RegionCues& r) {
   return r.at_image_border[0] + r.at_image_border[1] + r.at_image_border[2] + r.at_image_border[3];
 }
 
-/// Where the contact's middle lies, from the image's centre.
+/// Position of the contact's middle, from the image's centre.
 std::pair<double, double> middle(const ContactCues& c) {
   const auto twice = static_cast<double>(2 * c.length);
   return {static_cast<double>(c.x2) / twice, static_cast<double>(c.y2) / twice};
 }
 
-/// Depth of a smaller region s beside a larger one l, by one kind of disparities.
+/// Depth of a smaller region s relative to a larger one l, for one kind of disparities.
 template <class Out>
 void depth_features(const std::array<std::string_view, 5>& names, const PlaneMoments& of_s,
                     const FittedPlane& s, const PlaneMoments& of_l, const FittedPlane& l, std::int64_t least,
@@ -466,8 +466,8 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("same-object score, lowest inside", origin.least_same_thing);
   out("disparities in the image, share", frame.matched_share);
   out("evidence in the image, share", frame.evidence_share);
-  out("its colours beside the floor's", region.fits.to_floor);
-  out("its colours beside the background's", region.fits.to_background);
+  out("distance of its colours from the floor's", region.fits.to_floor);
+  out("distance of its colours from the background's", region.fits.to_background);
   const HintVotes& votes = region.fits.votes;
   const double cells = static_cast<double>(r.area) * frame.cells_per_px;
   const auto area = static_cast<double>(r.area);

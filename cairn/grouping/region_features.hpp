@@ -22,17 +22,17 @@ struct FittedPlane {
   double squares = 0;          // sum of squared residuals, including the cost of levelling
   [[nodiscard]] double at(double px, double py) const { return d + a * (px - x) + b * (py - y); }
 };
-/// `width`: of the image.
+/// Fits the plane. `width`: of the image.
 FittedPlane fit_plane(const PlaneMoments& moments, int width);
 
-/// The centroid that the hints of a region vote for and the spread of the votes, in cells; log₂ of the size voted for.
+/// Votes of a region's hints: their centroid and spread, in cells; log₂ of the voted size.
 struct HintVotes {
-  bool any = false;  // they weigh enough
+  bool any = false;  // their weight suffices
   double x = 0, y = 0, spread = 0, size = 0;
 };
 
-/// Of a region: the planes through all its disparities and through its textured ones, the votes of its hints, and
-/// the distances of its colours from those of the floor and of the background.
+/// Fits of a region: planes through all its disparities and through its textured ones, the votes of its
+/// hints, and the distances of its colours from those of floor and background.
 struct RegionFits {
   FittedPlane matched, textured;
   HintVotes votes;

@@ -26,7 +26,7 @@ constexpr int kGrain = 16;                // rows
 constexpr float kSmoothing = 0.7F;        // px
 constexpr float kStepWeight = 8.0F;       // 1/4 grey level for each px of a step of disparity
 constexpr float kLargestStep = 4.0F;      // px
-constexpr float kFlat = 4.0F;             // 1/4 grey level; a weaker edge is none …
+constexpr float kFlat = 4.0F;             // 1/4 grey level; weaker edges are ignored …
 constexpr float kFlatInNoise = 4.0F;      // … and this much more per grey level of noise
 constexpr double kEvenWithoutEdge = 2.0;  // 1/4 grey level
 

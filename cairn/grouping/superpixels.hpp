@@ -41,9 +41,9 @@ struct Superpixels {
 Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
                             float noise_sigma, const SuperpixelsConfig& config, const Exec& exec);
 
-/// The same in two steps: the edges of the image alone, edge_strength() at σ = 0.7 px …
+/// The same in two steps: first the edges of the image, edge_strength() at σ = 0.7 px …
 Image<std::uint16_t> superpixel_edges(View<const Gray> gray, View<const Rgb> rgb, const Exec& exec);
-/// … and all else.
+/// … then the superpixels.
 Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
                             const SuperpixelsConfig& config, const Exec& exec);
 

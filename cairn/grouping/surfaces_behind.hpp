@@ -9,8 +9,8 @@
 
 namespace cairn {
 
-/// The disparities of the ground and of the background in one row, in px, limited to 0 … kMaxDisparity; 0 where there
-/// is none. Private to the library.
+/// The disparities of ground and background in one row, in px, limited to 0 … kMaxDisparity; 0 without one.
+/// Private to the library.
 class SurfacesBehind {
  public:
   SurfacesBehind(const Cues& cues, int width, const Exec& exec);

@@ -95,7 +95,7 @@ struct Pyramid {
 };
 
 /// Finds `p` at half size and refines the centre of its window at full size, where subpixel positions are
-/// more accurate. They are read as shift_rows() will write them.
+/// more accurate. Both are interpolated as in shift_rows().
 std::optional<Sighting> sight(const Pyramid& pyramid, Point p, const Search& search) {
   const auto match = find(pyramid.left_half, p, pyramid.right_half, search);
   if (!match) return std::nullopt;

@@ -16,7 +16,6 @@
 //
 // A column without candidate inside the right image has the sum 0 and does not contribute: this implements
 // the clipping.
-// clipping.
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {

@@ -544,10 +544,10 @@ class Crossing {
     fold<Sums, lanes::Lesser>(
         [&](int pixel) CAIRN_LANES_ATTR {
           const std::int16_t* const sums = sums_of(row, pixel);
-          auto least_beside = lanes::Load(Sums(), sums);
+          auto least_other = lanes::Load(Sums(), sums);
           for (int i = kSums; i < g_.lanes; i += kSums)
-            least_beside = lanes::Min(least_beside, lanes::Load(Sums(), sums + i));
-          return least_beside;
+            least_other = lanes::Min(least_other, lanes::Load(Sums(), sums + i));
+          return least_other;
         },
         runner_up.data());
     write_costs(before, pixels, task_.out.cost_before.row(y) + x_first);

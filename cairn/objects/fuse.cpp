@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kGrain = 64;  // rows
 
-/// Pixels beside each other that lie in one intensity and one disparity region.
+/// Adjacent pixels in the same intensity region and the same disparity region.
 struct Overlap {
   RegionId by_intensity;
   RegionId by_disparity;

@@ -22,15 +22,15 @@
 namespace cairn {
 namespace {
 
-// Neighbours on one surface differ by less, those on two surfaces rarely; as in reject_speckles().
+// Neighbours on one surface differ by less, neighbours on two surfaces rarely; as in reject_speckles().
 constexpr float kStep = 1.0F;  // px
 
-// ln σ = kBias + kSpread · ln(interquartile range + 0.1 px) + kSeen · valid share, fitted to how far the
-// disparities of found objects were from the true ones: ./dev bench geometry --fit.
+// ln σ = kBias + kSpread · ln(interquartile range + 0.1 px) + kSeen · valid share, fitted to the disparity
+// errors of found objects: ./dev bench geometry --fit.
 constexpr double kBias = 1.756;
 constexpr double kSpread = 0.427;
 constexpr double kSeen = -2.888;
-constexpr double kWidth95 = 1.96;   // standard deviations on either side that hold 95 %
+constexpr double kWidth95 = 1.96;   // standard deviations on either side of the mean: 95 %
 constexpr double kSideSigma = 2.0;  // px: uncertainty of an object's centre by its mask …
 constexpr double kEndShare = 0.2;   // … and of the end of each side of a box, as a share of its length
 
@@ -111,8 +111,9 @@ constexpr std::size_t rank_of(std::size_t percent, std::size_t count) {
   return (percent * (count - 1) + 50) / 100;
 }
 
-/// The ranks of the `percent`-th percentile and of the one as far from the other end: ⌊(p·(n−1) + 50)/100⌋ in
-/// ascending order. A few outliers do not stretch the interval. Reorders `values`, which must not be empty.
+/// The ranks of the `percent`-th percentile and of its counterpart from the other end: ⌊(p·(n−1) + 50)/100⌋
+/// in ascending order, so that a few outliers do not stretch the interval. Reorders `values`, which must not
+/// be empty.
 Interval without_tails(std::span<float> values, std::size_t percent, const Exec& exec) {
   const std::size_t n = values.size();
   const auto [low, high] = values_at_ranks(values, rank_of(percent, n), rank_of(100 - percent, n), exec);
@@ -126,7 +127,7 @@ float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& e
   const auto [low, high] = values_at_ranks(disparities_px, rank_of(25, n), rank_of(75, n), exec);
   const double logarithm =
       kBias + kSpread * std::log(double{high} - double{low} + 0.1) + kSeen * double{valid_share};
-  // What exp() gives in the last place may differ between processors; nearly all of it is rounded away here.
+  // The last bit of exp() may differ between processors; rounding removes nearly all such differences.
   return static_cast<float>(std::floor(std::exp(logarithm) * 1024 + 0.5) / 1024);
 }
 
@@ -146,11 +147,11 @@ class Points {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::span<float> axis(std::size_t i) { return {axis_.at(i).data(), size_}; }
   [[nodiscard]] std::span<const float> axis(std::size_t i) const { return {axis_.at(i).data(), size_}; }
-  /// From the i-th on.
+  /// The points from the i-th on.
   [[nodiscard]] kernels::PointLists from(std::size_t i) {
     return {axis_[0].data() + i, axis_[1].data() + i, axis_[2].data() + i};
   }
-  /// Of `count` points from the i-th on, moves those that are near to the front.
+  /// Moves the near ones of `count` points from the i-th on to the front.
   void keep_near(std::size_t i, int count) {
     std::size_t kept = i;
     for (const std::size_t end = i + slot(count); i < end; ++i) {
@@ -169,7 +170,8 @@ class Points {
   std::array<std::vector<float>, 3> axis_;
 };
 
-/// The near points of an object's main part, in raster order. `disparities_px(stretch)`: those of its pixels.
+/// The near points of an object's main part, in raster order. `disparities_px(stretch)`: the disparities of
+/// its pixels.
 template <class Disparities>
 Points points_of(const Part& part, Disparities disparities_px, const StereoRig& rig, const Exec& exec) {
   const kernels::PointKernels& run = kernels::point_kernels(exec);
@@ -223,7 +225,7 @@ class SmoothSurface {
     return static_cast<std::ptrdiff_t>((slot(run.y - top_) + kReach) * pitch_ + slot(run.first - left_) +
                                        kReach);
   }
-  /// Of values `step` apart. The frame around the surface need not be right.
+  /// For values `step` apart. The frame around the surface may have any content.
   static void sum_five(const std::vector<float>& v, std::size_t step, std::vector<float>& sums) {
     for (std::size_t i = 2 * step; i + 2 * step < v.size(); ++i)
       sums[i] = v[i - 2 * step] + v[i - step] + v[i] + v[i + step] + v[i + 2 * step];
@@ -232,7 +234,7 @@ class SmoothSurface {
   int left_ = 0;
   int top_ = 0;
   std::size_t pitch_ = 0;
-  std::vector<float> values_;  // with a frame, which saves the questions at the ends of a row
+  std::vector<float> values_;  // with a frame, to avoid bounds checks at the ends of a row
 };
 
 // ---- boxes on the floor ----
@@ -240,8 +242,7 @@ class SmoothSurface {
 /// Points seen from above: their coordinates on the floor.
 using Plan = std::array<std::vector<float>, 2>;
 
-/// `count` of the points. Fewer than all are drawn at random: every n-th point could come from only a few columns
-/// of the image.
+/// `count` of the points, drawn at random: every n-th point could come from only a few columns of the image.
 Plan plan_of(const Points& points, std::size_t count) {
   constexpr std::uint64_t kStride = 2654435761;  // Knuth's multiplier: 2³² divided by the golden ratio
   Plan plan{std::vector<float>(count), std::vector<float>(count)};
@@ -253,7 +254,7 @@ Plan plan_of(const Points& points, std::size_t count) {
   return plan;
 }
 
-/// The intervals that hold the points along axes turned by a yaw, but for the tails.
+/// The intervals of the points along axes turned by a yaw, without the tails.
 std::array<Interval, 2> sides_of(std::span<const float> xs, std::span<const float> ys, float cosine,
                                  float sine, Plan& room, const Exec& exec) {
   for (auto& axis : room) axis.resize(xs.size());
@@ -396,11 +397,11 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
   if (points.size() == 0) return;
   Points smooth(0);
   if (floor) {
-    const SmoothSurface surface(part, disparity_px);  // the noise of single pixels would widen the box
+    const SmoothSurface surface(part, disparity_px);  // noise of single pixels would widen the box
     smooth = points_of(
         part, [&](const Stretch& run) { return surface.disparities_px(run); }, rig, exec);
   }
-  // At infinity, means may have no point where single pixels have one.
+  // At infinity, means may have no position even if single pixels have one.
   if (smooth.size() > 0) {
     object.box_on_floor = box_on(*floor, std::move(smooth), exec);
     const double z = object.position_in_camera_m->z;
@@ -411,7 +412,7 @@ void place(Object& object, const Part& part, const Image<float>& disparity_px,
     if (!std::all_of(known.begin(), known.end(), [](float c) { return std::isfinite(c); }))
       object.box_on_floor.reset();
   }
-  // Compensates for the tails that were cut off, assuming evenly spread points.
+  // Compensates for the removed tails, assuming uniformly spread points.
   const auto span = [&](std::size_t axis) {
     return length(without_tails(points.axis(axis), kTailOfExtent, exec)) * 100 /
            float{100 - 2 * kTailOfExtent};

@@ -9,18 +9,17 @@ namespace cairn {
 
 /// Locates objects: adds the uncertainty of their disparity and, with a rig, position, depth interval and
 /// extent, and with a ground the box on the floor.
-///
-/// All are measured on the main part of an object: the largest component of its mask whose neighbours (4)
-/// differ by at most 1 px of disparity, and the other pixels of the mask with a disparity between its least and
-/// its greatest. So background or another object within the mask does not stretch it, and a hole that divides it
-/// does not shorten it. The depth is that of disparity_px, which also orders the objects.
+/// All are measured on the main part of an object: the largest component of its mask whose 4-neighbours
+/// differ by at most 1 px of disparity, and the other pixels of the mask with a disparity within the
+/// component's range. So background or another object within the mask does not stretch it, and a hole that
+/// divides it does not shorten it. The depth is that of disparity_px, which also orders the objects.
 /// (docs/stages/objects.md, beyond the paper)
 Objects locate(Objects objects, const DisparityMap& disparity, const Ground& ground,
                const std::optional<StereoRig>& rig, const Exec& exec);
 
-/// The points of the object's pixels that have one, in raster order, m, in the left camera's frame. Those of its
-/// whole mask, holes of the disparity left out; the box and the extent are of its main part.
-/// Throws Error if there is no such object.
+/// The points of the object's pixels with a position, in raster order, m, in the left camera's frame. Covers
+/// the whole mask, without holes of the disparity; box and extent only cover the main part. Throws Error if
+/// there is no such object.
 std::vector<Vec3> object_points(const Objects& objects, ObjectId id, View<const float> disparity_px,
                                 const StereoRig& rig);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kGrain = 64;  // rows
 
-/// How an object's outline looks, in steps from a pixel of it to a 4-neighbour that is not.
+/// The outline of an object, in steps from one of its pixels to a 4-neighbour outside.
 struct Rim {
   std::int64_t length = 0;
   std::int64_t at_edge = 0;
@@ -45,7 +45,7 @@ struct Outline {
   std::array<std::int64_t, 3> colour_sum{};
   Rim rim;
 
-  /// `more`: of lower rows.
+  /// `more`: of rows further down.
   void absorb(const Outline& more) {
     if (pixel_count == 0) first_pixel = more.first_pixel;
     pixel_count += more.pixel_count;
@@ -63,7 +63,7 @@ struct Inputs {
   const Image<float>& disparity_px;
   View<const Gray> left;
   View<const Rgb> left_rgb;
-  int edge_min;  // grey levels: what differs by more across an outline is an edge
+  int edge_min;  // grey levels: a larger difference across the outline is an edge
 };
 
 constexpr float kEdgeMin = 4.0F;          // grey levels …
@@ -91,7 +91,7 @@ class Survey {
   }
 
   [[nodiscard]] std::vector<Outline>& outlines() { return outlines_; }
-  /// In raster order.
+  /// Visits runs in raster order.
   [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
 
  private:
@@ -134,7 +134,7 @@ class Survey {
     }
   }
 
-  /// From each pixel to the one above.
+  /// Steps from each pixel to the one above.
   void look_up(int y) {
     const int count = run_.differing(in_.candidates.row(y), in_.candidates.row(y - 1), in_.left.width(),
                                      ends_.data(), {upper_.data(), lower_.data()});
@@ -144,7 +144,7 @@ class Survey {
     }
   }
 
-  /// The step between two regions belongs to the rim of both.
+  /// A step between two regions belongs to the rims of both.
   static void add_step(Outline& p, Outline& q, bool is_edge) {
     p.rim.add(is_edge);
     q.rim.add(is_edge);
@@ -167,7 +167,7 @@ class Survey {
   std::vector<std::uint64_t> up_to_;  // sums of a row's colours, as the kernels pack them
 };
 
-/// One band for each thread, from the top down.
+/// One band per thread, from the top down.
 std::vector<Survey> survey(const Inputs& in, const Exec& exec) {
   const int height = in.left.height();
   std::vector<Survey> bands(slot(std::min(exec.threads(), height)), Survey(in, exec));
@@ -185,7 +185,7 @@ const std::vector<Outline>& outlines_of(std::vector<Survey>& bands) {
   std::vector<Outline>& all = bands.front().outlines();
   for (std::size_t band = 1; band < bands.size(); ++band) {
     const std::vector<Outline>& more = bands[band].outlines();
-    // Those without a pixel in it, too: the rim of a region just above belongs to a band as well.
+    // Includes regions without a pixel in the band: the rim of a region just above belongs to it as well.
     for (std::size_t i = 0; i < all.size(); ++i) all[i].absorb(more[i]);
   }
   return all;
@@ -201,7 +201,8 @@ bool may_be_object(const Outline& outline, Size image, const ObjectsConfig& conf
   return percent >= config.min_area && percent <= config.max_area && borders_touched(outline.box, image) < 3;
 }
 
-/// The mean of the two middle values where their number is even. Reorders `values`, which are not empty.
+/// The median; the mean of the two middle values if their number is even. Reorders `values`, which must not
+/// be empty.
 float median(std::span<float> values, const Exec& exec) {
   const std::size_t upper = values.size() / 2;
   if (values.size() % 2 == 1) return values_at_ranks(values, upper, upper, exec).first;
@@ -212,7 +213,7 @@ float median(std::span<float> values, const Exec& exec) {
 /// The valid disparities of an object, gathered run by run.
 class ObjectDisparities {
  public:
-  /// The number of floats that an object needs.
+  /// The number of floats needed by an object.
   static std::size_t room_for(std::size_t pixels) { return pixels + kernels::kListSlack; }
   ObjectDisparities(const Inputs& in, float* room, const Exec& exec)
       : in_(in), labels_(kernels::label_kernels(exec)), room_(room) {}
@@ -246,7 +247,7 @@ float confidence_of(const Object& object, Size image) {
   return static_cast<float>(supported / (1.0 + std::exp(-sum)));
 }
 
-/// nullopt where no pixel has a disparity.
+/// nullopt if no pixel has a disparity.
 std::optional<Object> measured(const Outline& outline, const ObjectDisparities& gathered, Size image,
                                const Exec& exec) {
   const std::span<float> disparities = gathered.disparities();
@@ -267,7 +268,7 @@ std::optional<Object> measured(const Outline& outline, const ObjectDisparities& 
   return object;
 }
 
-/// A region that may be an object.
+/// A candidate for an object.
 struct Candidate {
   std::size_t region;
   std::size_t room = 0;  // where its lists begin
@@ -297,8 +298,8 @@ void measure_range(const Inputs& in, const std::vector<Survey>& bands, const std
   }
 }
 
-/// The first candidates of lists with about equally many pixels, and the end. Each list takes one pass over the
-/// image.
+/// Splits the candidates into lists of about equally many pixels: first candidates of the lists, and the end.
+/// Each list takes one pass over the image.
 std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const std::vector<Outline>& outline,
                                 const Exec& exec) {
   const int parts = exec.threads() == 1 ? 1 : 2 * exec.threads();
@@ -314,7 +315,7 @@ std::vector<std::size_t> shares(const std::vector<Candidate>& candidates, const 
   return begins;
 }
 
-/// Measures the regions that may_be() objects, and keeps those of them that is() holds for, nearest first.
+/// Measures the regions for which may_be() holds, and keeps those for which is() holds, nearest first.
 template <class MayBe, class Is>
 Objects measure_those(const Inputs& in, MayBe may_be, Is is, const Exec& exec) {
   const Size size = in.candidates.size();

@@ -69,7 +69,8 @@ inline void find_sides(const float* xs, const float* ys, int count, std::size_t 
       const float along = axis == 0 ? xs[i] : ys[i];
       const float across = axis == 0 ? ys[i] : -xs[i];
       for (std::size_t k = 0; k < TurnedRectangles::kCount; ++k) {
-        // What is beyond a value takes its place and moves it on: without branches, vectors do so for all yaws.
+        // A value beyond the current one replaces it and moves it on: branch-free, so vectors process all
+        // yaws.
         const float turned = cosine[k] * along + sine[k] * across;
         float low = turned;
         float high = turned;

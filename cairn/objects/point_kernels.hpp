@@ -18,8 +18,8 @@ struct PointLists {
   float* z;
 };
 
-/// Rectangles turned by as many yaws, to be compared in one pass over the points: a sum alone would wait for each
-/// of its additions.
+/// Rectangles at several yaws, processed in one pass over the points: a single sum would wait for each of its
+/// additions.
 struct TurnedRectangles {
   static constexpr std::size_t kCount = 16;
   static constexpr std::size_t kMostTail = 6;

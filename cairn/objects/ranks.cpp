@@ -12,8 +12,8 @@ namespace cairn {
 namespace {
 
 constexpr std::size_t kMostBuckets = 1024;
-constexpr std::size_t kInBucket = 4;  // values on average, at least: few buckets are quicker to search
-constexpr std::size_t kFew = 256;     // up to so many values, nth_element is faster than counting
+constexpr std::size_t kInBucket = 4;  // values on average, at least: few buckets are faster to search
+constexpr std::size_t kFew = 256;     // up to this many values, nth_element is faster than counting
 
 std::ptrdiff_t offset(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);

@@ -14,10 +14,10 @@ constexpr int kGrain = 64;  // rows
 constexpr int kSteps = 2;
 constexpr double kLargestStep = 0.5;  // px; brightness is nearly linear within it
 constexpr int kInset = 4;             // px left out at either end of a row: outlines keep their disparity
-// Chosen on the fit set; half or twice these hardly matters.
-constexpr double kSigmaPx = 0.2;     // of the shift, before anything is seen
-constexpr double kPixelsAsOne = 16;  // neighbours err alike, so this many count as one measurement
-constexpr double kRounding = 1;      // grey levels²; least variance of what differs
+// Chosen on the fit set; results hardly change with half or twice these values.
+constexpr double kSigmaPx = 0.2;     // standard deviation of the prior of the shift
+constexpr double kPixelsAsOne = 16;  // pixels per independent measurement: neighbouring errors correlate
+constexpr double kRounding = 1;      // grey levels²; lower limit of the variance of the residuals
 
 /// Pixels of a row whose neighbours up to kInset on both sides belong to the same object and have a disparity.
 struct Stretch {
@@ -42,8 +42,8 @@ std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const f
   return of;
 }
 
-/// Sums over pixels of the horizontal gradient g of the left image, and of what the right image, shifted,
-/// exceeds the left one by, e.
+/// Sums over pixels of the horizontal gradient g of the left image and of the residual e, the shifted right
+/// image minus the left one.
 struct Sums {
   double n = 0;
   double g = 0;

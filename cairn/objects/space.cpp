@@ -60,7 +60,7 @@ struct Tally {
   }
 };
 
-/// For each superpixel whether it is floor; none where there are no superpixels.
+/// Whether each superpixel is floor; empty without superpixels.
 std::vector<std::uint8_t> floor_pieces(const SpaceCues& cues, View<const float> seen_px,
                                        const kernels::Backdrop& backdrop, float margin, const Exec& exec) {
   if (cues.superpixels.empty()) return {};
@@ -148,7 +148,7 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
       const float* const seen = seen_px.row(y);
-      if (pieces.empty()) {  // a pixel that is known is a piece; the kernel sees whether it is on the floor
+      if (pieces.empty()) {  // each known pixel is a piece; the kernel checks whether it is on the floor
         std::transform(seen, seen + width, in_floor.begin(), [](float d) { return d == d ? 1 : 0; });
       } else {
         const RegionId* const piece = cues.superpixels.row(y);

@@ -45,7 +45,7 @@ inline void sum_floor(const float* seen_px, const float* free_floor_px, float ma
     const std::uint64_t on_floor = std::abs(seen - free_floor_px[x]) <= margin ? 1 : 0;
     up_to[x + 1] = known + on_floor;
   }
-  // Sums need one addition after the other: no loop for vectors.
+  // A sum waits for each addition, so it is not vectorised.
   up_to[0] = 0;
   for (int x = 0; x < width; ++x) up_to[x + 1] += up_to[x];
 }
@@ -55,7 +55,7 @@ inline void label(const SpaceRow& given, float margin, int width, Space* CAIRN_R
   const SpaceRow row = given;
   for (int x = 0; x < width; ++x) {
     const float floor = row.free_floor[x];
-    // A hole in a piece of floor is floor; a pixel with a disparity off the floor is not.
+    // A hole in a superpixel of floor is floor; a pixel with a disparity off the floor is not.
     const float seen = row.seen[x] == row.seen[x] ? row.seen[x] : floor;
     const bool is_floor = (row.in_floor[x] != 0) & (std::abs(seen - floor) <= margin);
     const bool is_in_front =

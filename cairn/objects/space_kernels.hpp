@@ -12,7 +12,7 @@
 /// the library.
 namespace cairn::kernels {
 
-/// What is known to be behind objects.
+/// The surfaces behind objects.
 struct Backdrop {
   std::optional<GroundPlane> floor;
   std::vector<GroundPlane> walls;

@@ -33,12 +33,12 @@ SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, con
   cut.seen_px =
       stage("floor_under_reflections", floor_under_reflections(found.disparity, found.ground, exec));
 
-  // Superpixels, and meanwhile the hints of the network; both need the edges of the image.
+  // Superpixels, and concurrently the hints of the network; both need the edges of the image.
   const Image<std::uint16_t> edges =
       stage("superpixel_edges", superpixel_edges(given.left, given.left_rgb, exec));
-  Later<Superpixels> superpixels(exec, [&](const Exec& beside) {
-    return cut_superpixels(edges.clone(beside.pool), cut.seen_px, scene.noise_sigma, config.superpixels,
-                           beside);
+  Later<Superpixels> superpixels(exec, [&](const Exec& concurrent) {
+    return cut_superpixels(edges.clone(concurrent.pool), cut.seen_px, scene.noise_sigma, config.superpixels,
+                           concurrent);
   });
   if (network)
     cut.hints = stage("hint_objects", hint_objects(hint_input(edges, cut.cues(given), exec), *network, exec));
@@ -50,9 +50,9 @@ GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const C
                       const Exec& exec, Observed& stage) {
   GrownScene grown{cut_scene(given, rig, config, &hint_network(), exec, stage), {}, {}};
   const SuperpixelScene& cut = grown.cut;
-  Later<Image<float>> confidence(exec, [&](const Exec& beside) {
+  Later<Image<float>> confidence(exec, [&](const Exec& concurrent) {
     return estimate_confidence(cut.scene.matches, cut.scene.found.disparity,
-                               confidence_model(config.match.method), beside);
+                               confidence_model(config.match.method), concurrent);
   });
 
   // The tree of merged regions.

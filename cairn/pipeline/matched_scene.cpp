@@ -9,11 +9,11 @@
 namespace cairn {
 namespace {
 
-/// Disparities after the checks of single pixels, and the data that these used.
+/// Disparities after the per-pixel checks, and the data that they used.
 struct Matched {
   EpipolarOffset epipolar;
   Matches matches;
-  Image<Gray> right;  // corrected; empty where nothing was
+  Image<Gray> right;  // corrected; empty without correction
   DisparityMap disparity;
 };
 
@@ -30,7 +30,7 @@ Matched match_and_check(Given& given, const Config& config, const Exec& exec, Ob
   Matches matches = stage("match", match(pair, config.match, config.semi_global, exec));
   auto refined = stage("refine_subpixel", refine_subpixel(matches, config.subpixel, exec));
 
-  // Independent checks of each match; each sets a bit of its own.
+  // Independent checks of each match; each sets its own bit.
   const auto inconsistent =
       stage("reject_inconsistent", reject_inconsistent(matches, config.left_right, exec));
   const auto ambiguous = stage("reject_ambiguous", reject_ambiguous(matches, config.uniqueness, exec));

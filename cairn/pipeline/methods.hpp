@@ -25,12 +25,12 @@ struct SuperpixelScene {
             scene.found.ground, background,     scene.noise_sigma, hints};
   }
 };
-/// The first half of segment_by_hierarchy(), and the input of fitting, which has hints of its own: without a
-/// `network` there are none.
+/// The first half of segment_by_hierarchy(), and the input of fitting, which supplies its own hints: without
+/// a `network` there are none.
 SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                           const HintNetwork* network, const Exec& exec, Observed& stage);
 
-/// Every candidate region, and what they were grown from.
+/// Every candidate region, and the data from which they were grown.
 struct GrownScene {
   SuperpixelScene cut;
   MergeTree tree;
@@ -39,7 +39,7 @@ struct GrownScene {
 /// segment_by_hierarchy() up to the tree …
 GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
                       const Exec& exec, Observed& stage);
-/// … and from the choice of regions on, which may use more than one frame.
+/// … and from the choice of regions on, which may use several frames.
 Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given,
                const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage);
 

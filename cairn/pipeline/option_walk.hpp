@@ -192,9 +192,9 @@ inline const Condition* unmet(const std::vector<Read>& all, const Read& option,
   if (!sections.empty() &&
       std::find(sections.begin(), sections.end(), section_of(condition.option)) == sections.end())
     return nullptr;
-  const Read& asked = find(all, condition.option);
-  if (const Condition* before = unmet(all, asked, sections)) return before;
-  return (asked.value == condition.value) == condition.equal ? nullptr : &condition;
+  const Read& required = find(all, condition.option);
+  if (const Condition* before = unmet(all, required, sections)) return before;
+  return (required.value == condition.value) == condition.equal ? nullptr : &condition;
 }
 
 inline std::string describe(const Condition& condition) {

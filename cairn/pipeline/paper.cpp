@@ -23,12 +23,14 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   frame.floor = std::move(scene.found.floor);
 
   // Growing by disparity uses one thread; the left image is segmented at the same time.
-  Later<Segmentation> by_intensity(
-      exec, [&](const Exec& beside) { return segment_intensity(given.left, config.intensity, beside); });
+  Later<Segmentation> by_intensity(exec, [&](const Exec& concurrent) {
+    return segment_intensity(given.left, config.intensity, concurrent);
+  });
 
   // (The memory pool of the left image's regions may still be in use.)
-  Later<Image<float>> confidence(exec.beside(), [&](const Exec& beside) {
-    return estimate_confidence(scene.matches, frame.disparity, confidence_model(config.match.method), beside);
+  Later<Image<float>> confidence(exec.beside(), [&](const Exec& concurrent) {
+    return estimate_confidence(scene.matches, frame.disparity, confidence_model(config.match.method),
+                               concurrent);
   });
 
   // Fusion of the two segmentations.

@@ -195,7 +195,7 @@ std::int32_t first_unseen(GrowingRegions& regions, std::int32_t region) {
 }
 
 /// Whether (a, b) < (c, d) in lexicographic order.
-bool stands_before(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
+bool precedes(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
 #ifdef __SIZEOF_INT128__
   // One comparison without a branch.
   __extension__ using Both = unsigned __int128;
@@ -218,7 +218,7 @@ std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
     const double theirs = regions.mean(neighbour);
     const std::uint64_t value = ascending_bits(has_mean ? std::abs(mean - theirs) : theirs);
     const Placed entry = placed(regions, neighbour);
-    const bool better = stands_before(value, entry, least, best);
+    const bool better = precedes(value, entry, least, best);
     least = better ? value : least;
     best = better ? entry : best;
   });

@@ -70,7 +70,7 @@ struct LabelKernels {
   /// present one row higher, or nearby in the row, are skipped: every pair of touching labels in the image is
   /// reported somewhere, most of them rarely. `above` of the first row: labels that do not occur. Return the
   /// number of pairs.
-  int (*touches_beside)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
+  int (*touches_right)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
   int (*touches_below)(const RegionId* above, const RegionId* row, int width, LabelPairs pairs);
   /// Prefix sums of a row: up_to[x] = sum · 2⁴⁰ + sum of squares of the first x pixels, x = 0 … width. Sums
   /// overflow beyond 65535 pixels; differences over shorter distances remain correct.

@@ -143,14 +143,14 @@ int differing(const RegionId* row, const RegionId* other, int width, std::int32_
   return plain_labels::differing_from(x, count, row, other, width, pixels, pairs);
 }
 
-int touches_beside(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,
-                   LabelPairs pairs) {
+int touches_right(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,
+                  LabelPairs pairs) {
   const Labels d;
   const auto step = static_cast<int>(hn::Lanes(d));
   const auto* const higher = reinterpret_cast<const std::int32_t*>(above);
   const auto* const here = reinterpret_cast<const std::int32_t*>(row);
   int x = std::min(2, width);
-  int count = plain_labels::touches_beside_in(1, x, 0, above, row, width, pairs);
+  int count = plain_labels::touches_right_in(1, x, 0, above, row, width, pairs);
   for (; x + step < width; x += step) {
     const auto p = hn::LoadU(d, here + x - 1);
     const auto q = hn::LoadU(d, here + x);
@@ -162,7 +162,7 @@ int touches_beside(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTR
     const auto known = hn::Or(straight, hn::Or(from_left, from_right));
     count = put_pairs(d, p, q, hn::AndNot(known, hn::Ne(p, q)), pairs, count);
   }
-  return plain_labels::touches_beside_in(x, width, count, above, row, width, pairs);
+  return plain_labels::touches_right_in(x, width, count, above, row, width, pairs);
 }
 
 int touches_below(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,
@@ -374,7 +374,7 @@ std::size_t find_marked(const std::uint8_t* HWY_RESTRICT marks, std::size_t coun
   return plain_labels::find_marked_from(i, count_found, marks, count, found);
 }
 
-constexpr LabelKernels kLabelKernels{compare,       count_up,    find_runs,       differing,   touches_beside,
+constexpr LabelKernels kLabelKernels{compare,       count_up,    find_runs,       differing,   touches_right,
                                      touches_below, sum_grey,    sum_disparities, sum_colours, keep_known,
                                      find_range,    keep_bucket, number_buckets,  find_marked};
 

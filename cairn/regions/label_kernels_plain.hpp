@@ -96,10 +96,10 @@ inline int differing(const RegionId* row, const RegionId* other, int width, std:
   return differing_from(0, 0, row, other, width, pixels, pairs);
 }
 
-/// touches_beside() for the pixels first … last − 1 and their left neighbours, after `count` pairs. A
+/// touches_right() for the pixels first … last − 1 and their left neighbours, after `count` pairs. A
 /// vertical or diagonal border is reported in its first row only.
-inline int touches_beside_in(int first, int last, int count, const RegionId* above, const RegionId* row,
-                             int width, LabelPairs pairs) {
+inline int touches_right_in(int first, int last, int count, const RegionId* above, const RegionId* row,
+                            int width, LabelPairs pairs) {
   for (int x = first; x < last; ++x) {
     const RegionId p = row[x - 1];
     const RegionId q = row[x];
@@ -112,8 +112,8 @@ inline int touches_beside_in(int first, int last, int count, const RegionId* abo
   return count;
 }
 
-inline int touches_beside(const RegionId* above, const RegionId* row, int width, LabelPairs pairs) {
-  return touches_beside_in(1, width, 0, above, row, width, pairs);
+inline int touches_right(const RegionId* above, const RegionId* row, int width, LabelPairs pairs) {
+  return touches_right_in(1, width, 0, above, row, width, pairs);
 }
 
 /// touches_below() for the pixels first … last − 1. If both labels are in an adjacent column, they are also
@@ -234,7 +234,7 @@ inline std::size_t find_marked(const std::uint8_t* marks, std::size_t count, std
 }
 
 inline constexpr LabelKernels kLabelKernels{
-    compare,         count_up,    find_runs,  differing,  touches_beside, touches_below,  sum_grey,
-    sum_disparities, sum_colours, keep_known, find_range, keep_bucket,    number_buckets, find_marked};
+    compare,         count_up,    find_runs,  differing,  touches_right, touches_below,  sum_grey,
+    sum_disparities, sum_colours, keep_known, find_range, keep_bucket,   number_buckets, find_marked};
 
 }  // namespace cairn::kernels::plain_labels

@@ -136,7 +136,7 @@ Touches find_touches(View<const RegionId> labels, const kernels::LabelKernels& r
     const RegionId* const row = labels.row(y);
     const RegionId* const above = y > 0 ? labels.row(y - 1) : nothing.data();
     touches.append(slot(width),
-                   [&](kernels::LabelPairs room) { return run.touches_beside(above, row, width, room); });
+                   [&](kernels::LabelPairs room) { return run.touches_right(above, row, width, room); });
     if (y == 0) continue;
     touches.append(slot(width),
                    [&](kernels::LabelPairs room) { return run.touches_below(above, row, width, room); });

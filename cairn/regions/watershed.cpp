@@ -146,7 +146,7 @@ Bits flow_downhill(View<const std::uint16_t> heights, const Exec& exec) {
 }
 
 /// Finds the plateau pixels at distance 1: next to a pixel of the same height that flows downhill.
-void flow_beside(Bits& bits, const Exec& exec) {
+void flow_next_to_slopes(Bits& bits, const Exec& exec) {
   const std::ptrdiff_t stride = bits.row_stride();
   parallel_for(exec, bits.size().height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
@@ -416,7 +416,7 @@ class DrainagePaths {
 
 Basins watershed(View<const std::uint16_t> gradient, const Exec& exec) {
   Bits bits = flow_downhill(gradient, exec);
-  flow_beside(bits, exec);
+  flow_next_to_slopes(bits, exec);
   Flooding(bits, exec).run();
   Basins basins{Image<RegionId>(gradient.size(), exec.pool), 0};
   basins.count = DrainagePaths(bits, basins.labels, exec).label();

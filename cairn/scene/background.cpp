@@ -22,8 +22,8 @@ struct Point3 {
   float x, y, d;
 };
 
-/// Points, one array per coordinate, so that several are judged at once; and the background's disparity
-/// there.
+/// Points, one array per coordinate, so that several are judged at once; and the background's disparity at
+/// each.
 struct Points {
   std::pmr::vector<float> x, y, d, behind;
   Points(std::size_t count, std::pmr::memory_resource* memory)
@@ -85,7 +85,7 @@ Condition through(const Point3& p) {
   return {{p.x, p.y, 1}, p.d};
 }
 
-/// Searches for walls among points, and keeps those found so far.
+/// Searches for walls among points, and stores those found.
 class WallSearch {
  public:
   /// `rig`: given if the first of `planes` is a floor, to which walls are perpendicular.
@@ -105,11 +105,11 @@ class WallSearch {
     if (rig_) conditions_.push_back(square(planes_.front(), *rig_));
   }
 
-  /// Adds the best wall; false where none is good enough.
+  /// Adds the best wall; false if none is good enough.
   bool find_next() { return add_best(min_share_); }
 
-  /// Adds the best wall perpendicular to the first one. One point determines such a wall, so less evidence is
-  /// enough, for example for a side wall with a window.
+  /// Adds the best wall perpendicular to the first one. A single point determines such a wall, so less
+  /// support suffices, for example for a side wall with a window.
   bool find_next_square() {
     if (!rig_ || planes_.size() < 2) return false;
     conditions_.push_back(square(planes_[1], *rig_));
@@ -166,7 +166,7 @@ class WallSearch {
     return drawn;
   }
 
-  /// Through as many points as the conditions leave free.
+  /// A plane through as many points as the conditions leave free.
   std::optional<GroundPlane> hypothesis(const Points& before) {
     std::array<Condition, 3> all{};
     std::copy(conditions_.begin(), conditions_.end(), all.begin());
@@ -205,7 +205,7 @@ class WallSearch {
     return best;
   }
 
-  /// The normal equations of the points on a plane, and how many there are.
+  /// The normal equations of the points on a plane, and their number.
   struct Normal {
     std::array<Condition, 3> equations{};
     double weight = 0;
@@ -213,7 +213,7 @@ class WallSearch {
   [[nodiscard]] Normal normal_of(const GroundPlane& plane, const Points& before) const {
     std::pmr::vector<float> d_on(before.size(), memory_);
     const kernels::PlaneSums on = run_.sum_on(before.arrays(), plane, 0.7F * tolerance_, d_on.data());
-    // Disparities are no whole numbers: their sums depend on the order.
+    // Disparities are not integers, so their sums depend on the order.
     double xd = 0;
     double yd = 0;
     double d = 0;
@@ -263,7 +263,7 @@ class WallSearch {
   Points points_;
   std::vector<GroundPlane> planes_;
   std::optional<StereoRig> rig_;
-  std::vector<Condition> conditions_;  // that every wall must meet
+  std::vector<Condition> conditions_;  // for every wall
   float least_distance_;
   float tolerance_;
   double min_share_;
@@ -272,8 +272,8 @@ class WallSearch {
   Random draw_;
 };
 
-/// The pixels with evidence, in raster order; but not what a glossy floor mirrors: that lies behind every
-/// wall and would speak against each.
+/// The textured pixels, in raster order, without reflections on a glossy floor: these are behind every wall
+/// and would count against it.
 Points points_of(View<const float> evidence_px, const std::optional<GroundPlane>& floor, float tolerance,
                  std::pmr::memory_resource* memory) {
   std::size_t most = 0;

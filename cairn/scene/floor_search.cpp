@@ -19,7 +19,7 @@
 namespace cairn {
 namespace {
 
-// The appearance of a floor. Distances are in px of disparity for any image size, as a matcher's errors are.
+// Properties of a floor. Distances are in px of disparity for any image size, like a matcher's errors.
 constexpr float kTolerance = 1.0F;  // px; correct matches are rarely farther from the floor
 constexpr float kSteepestPitch =
     77.0F;  // degrees below the horizon; planes that face the camera more directly are walls
@@ -110,7 +110,7 @@ std::int64_t count_valid(View<const float> disparity_px, const Exec& exec) {
   return sum;
 }
 
-/// The spacing of the finest grid with at most about kSamples matches at its nodes, in px.
+/// The spacing in px of the finest grid with at most about kSamples matches at its nodes.
 int grid_step(std::int64_t valid) {
   return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(valid) / kSamples)));
 }
@@ -130,15 +130,15 @@ Points sample(View<const float> disparity_px, int step) {
 /// The positions of the matches below a plane's horizon relative to the plane.
 struct Tally {
   int on = 0;        // within the tolerance
-  int beside = 0;    // else within twice the tolerance
+  int near = 0;      // else within twice the tolerance
   int below = 0;     // else farther away from the camera
-  int mirrored = 0;  // those of beside and below that are mirror images in the plane
+  int mirrored = 0;  // those of near and below that are mirror images in the plane
   int all = 0;
 
-  /// A surface that intersects the plane has as many matches beside it as on it, and so has noise; only the
-  /// surplus on the plane supports it. Matches below a floor are wrong or mirror images; known mirror images do
-  /// not count.
-  [[nodiscard]] int score() const { return on - beside - below + mirrored; }
+  /// A surface that intersects the plane has as many matches next to it as on it, and so does noise; only the
+  /// surplus on the plane is support. Matches below a floor are wrong or mirror images; known mirror images
+  /// do not count.
+  [[nodiscard]] int score() const { return on - near - below + mirrored; }
   /// The criterion for comparing planes: the score, and its share of the matches below the horizon. By the score
   /// alone, a plane that spans the image would beat a road that fills its lower half.
   [[nodiscard]] double rank() const {
@@ -156,7 +156,7 @@ float radians(float degrees) {
   return degrees * std::numbers::pi_v<float> / 180;
 }
 
-/// The camera as far as it is known, else assumed.
+/// The known parameters of the camera, else assumed ones.
 struct Camera {
   float cx_px;
   float cy_px;
@@ -183,10 +183,10 @@ struct Camera {
   }
 };
 
-/// The matches around a place: one of the given disparity, only farther ones, or none that decides.
+/// The matches around a position: one of the given disparity, only farther ones, or neither.
 enum class MatchAtPlace : std::uint8_t { same, farther, none };
 
-/// An index of the matches by place.
+/// An index of the matches by position.
 class MatchIndex {
  public:
   MatchIndex(const Points& points, Size image, int grid_step)
@@ -220,7 +220,7 @@ class MatchIndex {
   }
 
  private:
-  // In a coarse grid, a cell is two steps wide, so that none is without a node.
+  // In a coarse grid a cell is two steps wide, so that every cell has a node.
   static constexpr int kCell = 8;  // px
 
   [[nodiscard]] std::size_t cell_of(std::size_t i) const {
@@ -236,8 +236,8 @@ class MatchIndex {
   std::vector<std::size_t> members_;
 };
 
-/// Calls visit(number, x, y, d) for each match below the plane, with the place and the disparity of the
-/// original that the plane as a mirror would show there. A point's distance from the plane, in units of its
+/// Calls visit(number, x, y, d) for each match below the plane, with the position and the disparity at which
+/// the original would be seen if the plane is a mirror. A point's distance from the plane, in units of its
 /// depth, is the difference of the disparities divided by the normal's length.
 template <class Visit>
 void for_each_original(const GroundPlane& plane, const Points& points, const Camera& camera,
@@ -259,8 +259,8 @@ void for_each_original(const GroundPlane& plane, const Points& points, const Cam
   }
 }
 
-/// Splits the matches below a plane into those whose original is seen where the plane as a mirror puts it, and
-/// those where something farther away is seen instead.
+/// Splits the matches below a plane into those whose original is seen at its predicted position, and those
+/// with a farther surface there.
 struct Reflections {
   int seen = 0;
   int missing = 0;
@@ -317,8 +317,8 @@ struct PlaneHypothesis {
   int score;
 };
 
-/// The plane through two matches for an assumed roll: two matches are correct together more often than three. Most
-/// cameras are upright; for the others, refinement bridges the step of the assumed rolls.
+/// The plane through two matches for an assumed roll: two matches are correct together more often than three.
+/// Most cameras are upright; for the others, refinement covers the steps between the assumed rolls.
 PlaneHypothesis guess(const Points& points, std::uint64_t draw) {
   constexpr std::array kRollTangents{0.0F,  0.0F,   0.0F,  0.0F,   0.0F,  0.0F,   0.06F, -0.06F,
                                      0.12F, -0.12F, 0.18F, -0.18F, 0.26F, -0.26F, 0.36F, -0.36F};
@@ -422,7 +422,7 @@ void for_each_finalist(const std::vector<PlaneHypothesis>& list, const Points& p
     const auto explains = [&](const GroundPlane& plane) {
       return points.on(plane, next.i) && points.on(plane, next.j);
     };
-    // Candidates through a wall and something else, or beside it, lead to the same wall again.
+    // Candidates through a wall and another surface lead to the same wall again.
     const auto touches = [&](const GroundPlane& plane) {
       return std::min(std::abs(points.above(plane, next.i)), std::abs(points.above(plane, next.j))) <=
              2 * kTolerance;
@@ -454,8 +454,8 @@ Candidates candidates(View<const float> disparity_px, const std::vector<PlaneHyp
   return found;
 }
 
-/// A floor that shows little but mirror images: of the planes with matches of their own, the one whose mirror
-/// images are most similar to their originals.
+/// A floor that shows hardly more than mirror images: of the planes with some matches of their own, the one
+/// whose mirror images are most similar to their originals.
 std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<PlaneHypothesis> list,
                                   const Points& points, const std::vector<GroundPlane>& walls,
                                   const MatchIndex& places, const Camera& camera, const Kernels& run,
@@ -464,7 +464,7 @@ std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<PlaneHypoth
   for (PlaneHypothesis& guess : list) {
     const Tally judged = tally(guess.plane, few, camera.infinity, run);
     const Reflections found = reflections(guess.plane, few, places, camera, run);
-    guess.score = judged.on - judged.beside + found.seen - found.missing;
+    guess.score = judged.on - judged.near + found.seen - found.missing;
   }
   std::stable_sort(list.begin(), list.end(),
                    [](const PlaneHypothesis& p, const PlaneHypothesis& q) { return p.score > q.score; });
@@ -478,8 +478,8 @@ std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<PlaneHypoth
     const float bottom = std::max(plane.disparity_px(0, last), plane.disparity_px(right, last));
     if (bottom + camera.infinity > kNearest * (nearest + camera.infinity)) return;
     const Tally judged = tally(plane, points, camera.infinity, run);
-    const double chance = std::sqrt(judged.on + judged.beside);
-    if (judged.on - judged.beside < 2 * chance || !camera.may_stand_on(plane)) return;
+    const double chance = std::sqrt(judged.on + judged.near);
+    if (judged.on - judged.near < 2 * chance || !camera.may_stand_on(plane)) return;
     const double alike = likeness(plane, points, places, camera, contrast, run);
     if (alike < most) return;
     most = alike;
@@ -520,7 +520,8 @@ const Candidate& choose(const std::vector<Candidate>& floors, const Points& poin
   return *best;
 }
 
-/// Whether a plane that is no floor explains the image: one that faces the camera, at the median disparity.
+/// Whether a plane that is not a floor explains the image: one that faces the camera, at the median
+/// disparity.
 bool faces_a_wall(const Points& points, const Camera& camera, const Kernels& run) {
   std::vector<float> sorted = points.d;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

@@ -43,7 +43,7 @@ double mean_square(const PairsPlane& found) {
 
 using Triple = std::array<std::size_t, 3>;
 
-/// Every triple of n things, or a fixed choice of them where they are many.
+/// All triples of n items, or a fixed sample of them if there are many.
 std::vector<Triple> triples(std::size_t n) {
   std::vector<Triple> chosen;
   if (n <= 12) {  // 220 triples
@@ -54,7 +54,7 @@ std::vector<Triple> triples(std::size_t n) {
     }
     return chosen;
   }
-  constexpr std::size_t kTrials = 300;  // with half the pairs wrong, one in eight holds three right ones
+  constexpr std::size_t kTrials = 300;  // if half of the pairs are wrong, one triple in eight is correct
   Random random;
   while (chosen.size() < kTrials) {
     const Triple t{random.below(n), random.below(n), random.below(n)};

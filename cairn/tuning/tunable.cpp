@@ -69,12 +69,12 @@ bool may_be_read(std::string_view name, const std::vector<Tunable>& varied,
   const OptionInfo& option = option_named(all, name);
   if (option.active) return true;
   const std::size_t end = option.needs.find_first_of("!=");
-  const std::string asked = option.needs.substr(0, end);
+  const std::string required = option.needs.substr(0, end);
   const bool varies =
-      std::any_of(varied.begin(), varied.end(), [&](const Tunable& t) { return t.name == asked; });
+      std::any_of(varied.begin(), varied.end(), [&](const Tunable& t) { return t.name == required; });
   const bool differs = option.needs[end] == '!';
-  const bool same = option.needs.substr(end + (differs ? 2 : 1)) == option_named(all, asked).value;
-  return (varies || same != differs) && may_be_read(asked, varied, all);
+  const bool same = option.needs.substr(end + (differs ? 2 : 1)) == option_named(all, required).value;
+  return (varies || same != differs) && may_be_read(required, varied, all);
 }
 
 double number_of(const std::string& text) {

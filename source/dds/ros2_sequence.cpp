@@ -238,16 +238,16 @@ class Ros2Sequence : public io::SourceSequence {
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = stamp;
-    io::PicturePair pictures =
+    io::PicturePair images =
         io::pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
-    bits_ = pictures.bits;
-    pictures = calibration_.rectified(std::move(pictures), pool_);
+    bits_ = images.bits;
+    images = calibration_.rectified(std::move(images), pool_);
     io::SequenceFrame frame{
         io::number_text(index),
         index,
         stamp,
-        std::move(pictures.left),
-        std::move(pictures.right.gray),
+        std::move(images.left),
+        std::move(images.right.gray),
         false,
         std::max(pair.left.value.arrived, pair.right.value.arrived),
         ros::camera_of(pair.left.value.image.header),

@@ -16,7 +16,7 @@ TEST_F(BadInput, RefusesInvalidImages) {
   const auto good = pair_in("good");
   const std::string png = content(good[0]);
   write(at("empty.png"), "");
-  write(at("text.png"), "this is no picture\n");
+  write(at("text.png"), "this is not an image\n");
   write(at("cut.png"), png.substr(0, png.size() / 2));
   write(at("header.png"), png.substr(0, 20));
   write(at("cut.pgm"), "P5\n96 72\n255\nabc");
@@ -272,7 +272,7 @@ TEST_F(BadInput, RefusesEvaluationsWithoutResults) {
   refuses({"evaluate", path("result"), path("truth")}, {"truth"});
   io::save_png(at("truth/objects.png"), others.view());
   refuses({"evaluate", path("result"), path("truth")}, {"96x72", "95x72"});
-  write(at("truth/objects.png"), "no picture");
+  write(at("truth/objects.png"), "no image");
   refuses({"evaluate", path("result"), path("truth")}, {"objects.png"});
   io::save_png(at("truth/objects.png"), ids.view());
   write(at("result/objects.json"), "{");
@@ -286,7 +286,7 @@ TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndSkipped) {
   pair_in("many/a");
   const auto bad = pair_in("many/b");
   pair_in("many/c");
-  write(bad[1], "no picture");
+  write(bad[1], "no image");
   const Outcome outcome = run({"segment", path("many"), "--html", "-o", path("out")});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 3) << outcome.err;
@@ -310,14 +310,14 @@ TEST_F(BadInput, ABadResultOfAFolderIsNamedAndSkipped) {
   for (const char* name : {"a", "b", "c"}) pair_in(std::string("many/") + name);
   ASSERT_EQ(run({"segment", path("many"), "-o", path("results")}).code, 0);
   ASSERT_EQ(run({"segment", path("many"), "-o", path("truth")}).code, 0);
-  write(at("results/b/objects.png"), "no picture");
+  write(at("results/b/objects.png"), "no image");
   const Outcome outcome = run({"evaluate", path("results"), path("truth"), "--json", path("e.json")});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err.find("cairn: frame b is skipped: "), 0U) << outcome.err;
   EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames skipped\n"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("in 2 frames"), std::string::npos) << outcome.out;
   EXPECT_NE(content(at("e.json")).find("\"left_out\": [\n  \"b\"\n ]"), std::string::npos);
-  for (const char* name : {"a", "c"}) write(at("results") / name / "objects.png", "no picture");
+  for (const char* name : {"a", "c"}) write(at("results") / name / "objects.png", "no image");
   fs::remove(at("e.json"));
   EXPECT_EQ(run({"evaluate", path("results"), path("truth"), "--json", path("e.json")}).code, 2);
   EXPECT_FALSE(fs::exists(at("e.json")));
@@ -328,7 +328,7 @@ TEST_F(BadInput, AFailedRunKeepsTheOlderResult) {
   ASSERT_EQ(run(with("segment", pair, {"-o", path("out")})).code, 0);
   const std::string before = content(at("out/objects.json"));
   refuses(with("segment", pair, {"-o", path("out"), "--set", "match.window_size=8"}), {"match.window_size"});
-  write(pair[1], "no picture");
+  write(pair[1], "no image");
   refuses(with("segment", pair, {"-o", path("out")}), {"right.png"});
   EXPECT_EQ(content(at("out/objects.json")), before);
 }

@@ -210,7 +210,7 @@ TEST_F(Doctor, DetectsLateLossOfSyncInALongFolder) {
 
 TEST_F(Doctor, NamesAnUnreadablePairAndProcessesTheOthers) {
   for (const char* name : {"a", "b", "c"}) pair_in(std::string("rig/") + name);
-  write(at("rig/a/right.png"), "no picture");
+  write(at("rig/a/right.png"), "no image");
   const Outcome outcome = run({"doctor", path("rig"), "--json", path("d.json")});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err.find("cairn: frame a is skipped: "), 0U) << outcome.err;

@@ -280,7 +280,7 @@ TEST_F(Faults, AnyNameIsEscapedInPagesTablesAndJson) {
   EXPECT_TRUE(fs::exists(at("out") / name / "objects.json"));
   const std::string page = content(at("out/segment.html"));
   EXPECT_EQ(page.find("<script>alert"), std::string::npos);
-  write(at("in/" + name + "/right.png"), "no picture");
+  write(at("in/" + name + "/right.png"), "no image");
   const Outcome bad = run({"segment", path("in"), "-o", path("out")});
   EXPECT_EQ(bad.code, 2);
   EXPECT_EQ(bad.err.find('\x1b'), std::string::npos) << bad.err;

@@ -93,7 +93,7 @@ TEST_F(LiveRecord, StoresItsOptions) {
 
 TEST_F(LiveRecord, TheCamerasFrameOfARecordingIsInTheResults) {
   const samples::Sample sample = samples::load("four_in_a_row");
-  const io::Picture& left = sample.pictures.left;
+  const io::Picture& left = sample.images.left;
   {
     recordings::CameraFile robot(at("robot.mcap"));
     const auto left_topic = robot.topic<ros::Image>("/front/left/image_rect");
@@ -103,7 +103,7 @@ TEST_F(LiveRecord, TheCamerasFrameOfARecordingIsInTheResults) {
       robot.add(left_topic, stamp,
                 left.rgb.empty() ? ros::image_of(header, left.gray.view())
                                  : ros::image_of(header, left.rgb.view()));
-      robot.add(right_topic, stamp, ros::image_of(header, sample.pictures.right.gray.view()));
+      robot.add(right_topic, stamp, ros::image_of(header, sample.images.right.gray.view()));
     }
   }
   const auto says = [&](const std::vector<std::string>& words) {

@@ -17,13 +17,13 @@
 int main(int, char** argv) {
   const std::filesystem::path folder = argv[1];
   const std::filesystem::path result = argv[2];
-  const auto pictures = cairn::io::load_pair(folder / "left.png", folder / "right.png");
+  const auto images = cairn::io::load_pair(folder / "left.png", folder / "right.png");
   const auto calibration = cairn::io::load_calibration(folder / "calib.txt");
   cairn::Config config;
   config.match.num_disparities = calibration.num_disparities.value_or(64);
-  const auto pair = cairn::StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  const auto pair = cairn::StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
   const auto frame = cairn::segment(pair, calibration.rig, config, cairn::Exec::with_threads(0));
-  cairn::io::write_result(result, pictures.left.gray, pictures.left.rgb, frame,
+  cairn::io::write_result(result, images.left.gray, images.left.rgb, frame,
                           {"default", config, calibration.rig, {}, false});
   std::printf("files: %zu objects, %zu bytes of options, %zu of an empty page\n", frame.objects.list.size(),
               cairn::io::config_yaml(config).size(),

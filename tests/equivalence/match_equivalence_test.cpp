@@ -20,13 +20,13 @@ using namespace cairn;
 
 /// Two windows of larger images, so that rows are unaligned and the stride is odd. Few grey levels in places,
 /// so that costs tie; black patches, so that windows have no energy.
-struct Pictures {
+struct ImagePair {
   Size size;
   std::ptrdiff_t stride;
   std::vector<Gray> left;
   std::vector<Gray> right;
 
-  Pictures(Size picture_size, unsigned seed)
+  ImagePair(Size picture_size, unsigned seed)
       : size(picture_size), stride(size.width + 7), left(count()), right(count()) {
     std::mt19937 random(seed);
     for (std::size_t i = 0; i < left.size(); ++i) {
@@ -76,8 +76,8 @@ void expect_equal_to_reference(const StereoPair& pair, const MatchConfig& config
 
 void expect_equal_to_reference(Size size, const MatchConfig& config,
                                const std::vector<int>& thread_counts = {1}) {
-  const Pictures pictures(size, static_cast<unsigned>(size.width * 31 + config.window_size));
-  expect_equal_to_reference(pictures.pair(), config, thread_counts);
+  const ImagePair images(size, static_cast<unsigned>(size.width * 31 + config.window_size));
+  expect_equal_to_reference(images.pair(), config, thread_counts);
 }
 
 class MatchEquivalence : public testing::TestWithParam<Cost> {
@@ -244,8 +244,8 @@ INSTANTIATE_TEST_SUITE_P(AllCosts, MatchEquivalence, testing::ValuesIn(all_costs
 
 TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
   for (const Size size : {Size{1, 1}, Size{2, 1}, Size{1, 5}, Size{3, 2}, Size{37, 41}}) {
-    const Pictures pictures(size, 5);
-    const View<const Gray> image = pictures.pair().left();
+    const ImagePair images(size, 5);
+    const View<const Gray> image = images.pair().left();
     for (const Target target : supported_targets()) {
       const Exec exec = Exec::with_threads(target == Target::scalar ? 3 : 1, target);
       EXPECT_EQ(first_difference(reference::filter_xsobel(image, 31), filter_xsobel(image, 31, exec)), "");
@@ -259,10 +259,10 @@ TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
 
 TEST(SubpixelEquivalence, RefinementMeetsItsDefinition) {
   for (const Size size : {Size{1, 1}, Size{5, 3}, Size{70, 9}}) {
-    const Pictures pictures(size, 7);
+    const ImagePair images(size, 7);
     for (const MatchMaps maps : {MatchMaps::winner, MatchMaps::full}) {
       const Matches matches = match_windows(
-          pictures.pair(),
+          images.pair(),
           {.cost = Cost::sad, .window_size = 3, .min_disparity = 2, .num_disparities = 9, .maps = maps}, {});
       for (const auto& [method_name, method] : kSubpixelMethods) {
         for (const bool enabled : {false, true}) {

@@ -16,13 +16,13 @@ using namespace cairn;
 
 /// Two windows of larger images, so that rows are unaligned and the stride is odd. Uniform patches and few
 /// grey levels in places, so that costs tie and every penalty occurs.
-struct Pictures {
+struct ImagePair {
   Size size;
   std::ptrdiff_t stride;
   std::vector<Gray> left;
   std::vector<Gray> right;
 
-  Pictures(Size picture_size, unsigned seed)
+  ImagePair(Size picture_size, unsigned seed)
       : size(picture_size), stride(size.width + 7), left(count()), right(count()) {
     std::mt19937 random(seed);
     for (std::size_t i = 0; i < left.size(); ++i) {
@@ -59,12 +59,12 @@ MatchConfig search(int first, int count, MatchMaps maps = MatchMaps::full) {
 
 void expect_equal_to_reference(Size size, const MatchConfig& config, const SemiGlobalConfig& penalties = {},
                                const std::vector<int>& thread_counts = {1}) {
-  const Pictures pictures(size, static_cast<unsigned>(size.width * 31 + config.num_disparities));
-  const Matches expected = reference::match_semi_global(pictures.pair(), config, penalties);
+  const ImagePair images(size, static_cast<unsigned>(size.width * 31 + config.num_disparities));
+  const Matches expected = reference::match_semi_global(images.pair(), config, penalties);
   for (const Target target : supported_targets()) {
     for (const int threads : thread_counts) {
       const Matches got =
-          match_semi_global(pictures.pair(), config, penalties, Exec::with_threads(threads, target));
+          match_semi_global(images.pair(), config, penalties, Exec::with_threads(threads, target));
       EXPECT_EQ(first_difference(expected, got), "")
           << text(size) << " disparities " << config.min_disparity << "+" << config.num_disparities
           << " penalties " << penalties.penalty_small << ", " << penalties.penalty_large << ", "

@@ -122,7 +122,7 @@ std::string jpeg_of(const io::PixelRows& rows) {
   return io::encode_jpeg(rows);
 }
 
-std::vector<std::string> pictures() {
+std::vector<std::string> images() {
   return {encoded(1, 1, io::encode_png), encoded(3, 1, io::encode_png), encoded(1, 2, io::encode_png),
           encoded(1, 1, jpeg_of), encoded(3, 1, jpeg_of), "P2\n# grey\n3 2\n255\n0 10 20\n30 40 255\n",
           "P3\n2 1\n255\n1 2 3 4 5 6\n", std::string("P5\n2 2\n65535\n\0\1\2\3\4\5\6\7", 20),
@@ -571,14 +571,14 @@ FollowConfig config_of(Numbers& numbers) {
   return config;
 }
 
-struct Pictures {
+struct ImagePair {
   Image<Gray> left;
   Image<Gray> right;
   Image<Rgb> colours;
 };
 
-Pictures pictures_of(Numbers& numbers, Size size) {
-  Pictures all{Image<Gray>(size), Image<Gray>(size), Image<Rgb>(size)};
+ImagePair image_pair_of(Numbers& numbers, Size size) {
+  ImagePair all{Image<Gray>(size), Image<Gray>(size), Image<Rgb>(size)};
   const unsigned shift = numbers.next() % 8;
   const std::string_view rest = numbers.rest();
   const auto at = [&](std::size_t i) {
@@ -607,10 +607,10 @@ bool method(std::string_view bytes) {
   const Size size{static_cast<int>(numbers.next() % 48) + 1, static_cast<int>(numbers.next() % 48) + 1};
   const std::optional<StereoRig> rig = rig_of(numbers.next());
   const bool in_colour = numbers.next() % 2 == 0;
-  const Pictures pictures = pictures_of(numbers, size);
+  const ImagePair images = image_pair_of(numbers, size);
   return is_taken([&] {
-    const StereoPair pair = in_colour ? StereoPair::from(pictures.left, pictures.right, pictures.colours)
-                                      : StereoPair::from(pictures.left, pictures.right);
+    const StereoPair pair = in_colour ? StereoPair::from(images.left, images.right, images.colours)
+                                      : StereoPair::from(images.left, images.right);
     const Frame frame = segment(pair, rig, config.segmentation, {});
     if (frame.objects.labels.size() != size) throw std::logic_error("labels of another size");
     Follower follower(config, rig);
@@ -638,8 +638,8 @@ std::vector<std::string> json_texts() {
 
 const std::vector<Target>& targets() {
   static const std::vector<Target> all{
-      {"picture", picture, pictures},
-      {"labels", labels, pictures},
+      {"picture", picture, images},
+      {"labels", labels, images},
       {"disparity", disparity, disparities},
       {"calibration", calibration, calibrations},
       {"raw_calibration", raw_calibration, raw_calibrations},

@@ -13,7 +13,7 @@ namespace cairn::reference {
 namespace {
 
 /// The input of the windows: grey levels, or zsad's 1/16 levels minus the local mean.
-struct Pictures {
+struct ImagePair {
   Image<std::int16_t> left;
   Image<std::int16_t> right;
 };
@@ -29,7 +29,7 @@ Image<std::int16_t> picture(View<const Gray> image, const MatchConfig& config) {
 }
 
 /// The cost of left pixel (x, y) and right pixel (x − d, y + row); kNoCost if that is outside.
-float cost_of(const Pictures& in, const MatchConfig& config, int x, int y, int d, int row) {
+float cost_of(const ImagePair& in, const MatchConfig& config, int x, int y, int d, int row) {
   if (!in.right.view().contains(x - d, y + row)) return kNoCost;
   std::int64_t n = 0, l = 0, r = 0, ll = 0, rr = 0, lr = 0, ad = 0;
   const int half = config.window_size / 2;
@@ -60,7 +60,7 @@ float cost_of(const Pictures& in, const MatchConfig& config, int x, int y, int d
 }
 
 /// The least cost over the rows y, y − 1, y + 1, y − 2 …, and its row.
-std::pair<float, int> cost_in_band(const Pictures& in, const MatchConfig& config, int x, int y, int d) {
+std::pair<float, int> cost_in_band(const ImagePair& in, const MatchConfig& config, int x, int y, int d) {
   std::pair best{cost_of(in, config, x, y, d, 0), 0};
   for (int k = 1; k <= config.row_band; ++k) {
     for (const int row : {-k, k}) {
@@ -71,7 +71,7 @@ std::pair<float, int> cost_in_band(const Pictures& in, const MatchConfig& config
   return best;
 }
 
-void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Matches& out) {
+void match_pixel(const ImagePair& in, const MatchConfig& config, int x, int y, Matches& out) {
   std::vector<float> costs;
   std::array<float, pixel_math::kPartialSums> partial{};
   int count = 0;
@@ -104,7 +104,7 @@ void match_pixel(const Pictures& in, const MatchConfig& config, int x, int y, Ma
 }
 
 /// Over the right image: every left pixel and row that may match (x_right, y_right).
-std::int16_t best_of_right(const Pictures& in, const MatchConfig& config, int x_right, int y_right) {
+std::int16_t best_of_right(const ImagePair& in, const MatchConfig& config, int x_right, int y_right) {
   std::int16_t best = kNoMatch;
   float least = kNoCost;
   for (int d = config.min_disparity; d < config.min_disparity + config.num_disparities; ++d) {
@@ -170,7 +170,7 @@ Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& confi
 }
 
 Matches match(const StereoPair& pair, const MatchConfig& config) {
-  const Pictures in{picture(pair.left(), config), picture(pair.right(), config)};
+  const ImagePair in{picture(pair.left(), config), picture(pair.right(), config)};
   const Size size = pair.size();
   const Size band = config.row_band > 0 ? size : Size{};
   const Size minimum = config.maps != MatchMaps::winner ? size : Size{};

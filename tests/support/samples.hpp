@@ -19,11 +19,11 @@ inline std::filesystem::path folder(const std::string& name) {
 
 /// A pair of samples/ with its calibration.
 struct Sample {
-  io::PicturePair pictures;
+  io::PicturePair images;
   io::Calibration calibration;
 
   [[nodiscard]] StereoPair pair() const& {
-    return StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+    return StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
   }
   StereoPair pair() && = delete;  // borrows the images
   /// `config` with the search range of the calibration, as the command uses it.

@@ -42,18 +42,18 @@ std::string message_of(const auto& call) {
 /// An image with objects, as in a robot's loop; `frame_id`: of its source.
 live::LiveFramePtr made_frame(const std::string& frame_id) {
   const std::filesystem::path folder = std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
-  io::PicturePair pictures = io::load_pair(folder / "left.png", folder / "right.png");
+  io::PicturePair images = io::load_pair(folder / "left.png", folder / "right.png");
   const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
   FollowConfig config;
   config.segmentation.match.num_disparities = calibration.num_disparities.value_or(64);
   auto frame = std::make_shared<live::LiveFrame>();
   frame->step.stamp = {1'700'000'000'123'456'789};
-  frame->step.frame = segment(StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb),
+  frame->step.frame = segment(StereoPair::from(images.left.gray, images.right.gray, images.left.rgb),
                               calibration.rig, config.segmentation, {});
   auto pair = std::make_shared<io::SequenceFrame>();
   pair->name = "four_in_a_row";
-  pair->left = std::move(pictures.left);
-  pair->right = std::move(pictures.right.gray);
+  pair->left = std::move(images.left);
+  pair->right = std::move(images.right.gray);
   pair->frame_id = frame_id;
   frame->pair = std::move(pair);
   frame->config = std::make_shared<const FollowConfig>(config);
@@ -385,13 +385,13 @@ ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t
   return message;
 }
 
-io::PicturePair pictures(const ros::Image& left, const ros::Image& right, int bits = 8) {
+io::PicturePair images(const ros::Image& left, const ros::Image& right, int bits = 8) {
   return io::pictures_of(left, "/l", right, "/r", bits, {});
 }
 
 TEST(RosImages, RowsMayBeLongerThanTheImage) {
   const ros::Image grey = image("mono8", 2, 4, {1, 2, 9, 9, 3, 4, 9, 9});
-  const io::PicturePair pair = pictures(grey, grey);
+  const io::PicturePair pair = images(grey, grey);
   EXPECT_EQ(pair.left.gray.size(), (Size{2, 2}));
   EXPECT_EQ(pair.left.gray(1, 0), 2);
   EXPECT_EQ(pair.left.gray(0, 1), 3);
@@ -399,7 +399,7 @@ TEST(RosImages, RowsMayBeLongerThanTheImage) {
 }
 
 TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
-  const io::PicturePair pair = pictures(image("bgr8", 1, 3, {10, 20, 30}), image("rgb8", 1, 3, {10, 20, 30}));
+  const io::PicturePair pair = images(image("bgr8", 1, 3, {10, 20, 30}), image("rgb8", 1, 3, {10, 20, 30}));
   EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{30, 20, 10}));
   EXPECT_EQ(pair.left.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
   EXPECT_EQ(pair.right.gray(0, 0), (77 * 10 + 150 * 20 + 29 * 30 + 128) >> 8);
@@ -408,7 +408,7 @@ TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
 
 TEST(RosImages, DropAlpha) {
   const io::PicturePair pair =
-      pictures(image("rgba8", 1, 4, {10, 20, 30, 7}), image("bgra8", 1, 4, {10, 20, 30, 7}));
+      images(image("rgba8", 1, 4, {10, 20, 30, 7}), image("bgra8", 1, 4, {10, 20, 30, 7}));
   EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{10, 20, 30}));
   EXPECT_EQ(pair.right.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
 }
@@ -416,15 +416,15 @@ TEST(RosImages, DropAlpha) {
 TEST(RosImages, DeepImagesKeepTheirHighBits) {
   ros::Image left = image("mono16", 2, 4, {0x00, 0x01, 0xff, 0x0f});
   const ros::Image right = image("mono16", 2, 4, {0x10, 0x00, 0x20, 0x00});
-  const io::PicturePair pair = pictures(left, right);
+  const io::PicturePair pair = images(left, right);
   EXPECT_EQ(pair.bits, 12);
   EXPECT_EQ(pair.left.gray(0, 0), 0x10);
   EXPECT_EQ(pair.left.gray(1, 0), 0xff);
   EXPECT_EQ(pair.right.gray(1, 0), 0x02);
-  EXPECT_EQ(pictures(right, right, 12).left.gray(1, 0), 0x02);
+  EXPECT_EQ(images(right, right, 12).left.gray(1, 0), 0x02);
   left.is_bigendian = 1;
-  EXPECT_EQ(pictures(left, left).left.gray(1, 0), 0xff);
-  EXPECT_EQ(pictures(left, left).bits, 16);
+  EXPECT_EQ(images(left, left).left.gray(1, 0), 0xff);
+  EXPECT_EQ(images(left, left).bits, 16);
 }
 
 TEST(RosImages, RefusesInvalidImages) {
@@ -432,26 +432,26 @@ TEST(RosImages, RefusesInvalidImages) {
   ros::Image other = sound;
   other.encoding = "bayer_rggb8";
   EXPECT_EQ(
-      message_of([&] { pictures(sound, other); }),
+      message_of([&] { images(sound, other); }),
       "/r: has the encoding bayer_rggb8, expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (debayer others "
       "first)");
   other = sound;
   other.data.pop_back();
   EXPECT_NE(
-      message_of([&] { pictures(other, sound); }).find("/l: has 3 bytes in rows of 2, expected those of 2x2"),
+      message_of([&] { images(other, sound); }).find("/l: has 3 bytes in rows of 2, expected those of 2x2"),
       std::string::npos);
   other = sound;
   other.width = 0xffffffff;
-  EXPECT_NE(message_of([&] { pictures(other, sound); }).find("4294967295"), std::string::npos);
+  EXPECT_NE(message_of([&] { images(other, sound); }).find("4294967295"), std::string::npos);
   EXPECT_NE(message_of([&] {
-              pictures(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
+              images(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
             }).find("/r: the left image is 2x2, the right one 4x1"),
             std::string::npos)
       << message_of([&] {
-           pictures(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
+           images(sound, image("mono8", 4, 4, {1, 2, 3, 4}));
          });
   EXPECT_NE(message_of([&] {
-              pictures(sound, image("mono16", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8}));
+              images(sound, image("mono16", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8}));
             }).find("/r: the left image has 8 bits, the right one 16"),
             std::string::npos);
 }

@@ -36,12 +36,12 @@ TEST_P(GoodPairs, HaveNoFindings) {
   if (pairs.empty()) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
   for (const fs::path& folder : pairs) {
     const auto frame = io::find_frames(folder).front();
-    const auto pictures = io::load_pair(frame.left, *frame.right);
+    const auto images = io::load_pair(frame.left, *frame.right);
     io::Calibration calibration;
     if (frame.calib) calibration = io::load_calibration(*frame.calib);
     MatchConfig range = Config{}.match;
     range.num_disparities = calibration.num_disparities.value_or(range.num_disparities);
-    const auto measures = measure_pair(StereoPair::from(pictures.left.gray, pictures.right.gray), {});
+    const auto measures = measure_pair(StereoPair::from(images.left.gray, images.right.gray), {});
     for (const Finding& finding : diagnose(measures, calibration.rig, range, {}))
       ADD_FAILURE() << folder << ": " << info(finding.kind).name << ": " << finding.says;
   }
@@ -63,13 +63,13 @@ class GoodSequences : public testing::TestWithParam<const char*> {};
 TEST_P(GoodSequences, AreSynchronousAndAShiftIsDetected) {
   if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   const auto frames = io::find_frames(collection() / GetParam());
-  std::vector<io::PicturePair> pictures;
-  for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
+  std::vector<io::PicturePair> images;
+  for (const auto& frame : frames) images.push_back(io::load_pair(frame.left, *frame.right));
   for (const int late : {0, 1}) {
     std::vector<StereoPair> pairs;
-    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+    for (std::size_t i = 0; i + 1 < images.size(); ++i)
       pairs.push_back(
-          StereoPair::from(pictures[i + static_cast<std::size_t>(late)].left.gray, pictures[i].right.gray));
+          StereoPair::from(images[i + static_cast<std::size_t>(late)].left.gray, images[i].right.gray));
     const Synchrony measured = measure_synchrony(pairs, Exec::with_threads(2));
     EXPECT_EQ(measured.lag(), late);
     EXPECT_FALSE(measured.change);
@@ -80,16 +80,16 @@ TEST_P(GoodSequences, AreSynchronousAndAShiftIsDetected) {
 TEST_P(GoodSequences, AShiftFromTheMiddleOnIsDetected) {
   if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   const auto frames = io::find_frames(collection() / GetParam());
-  std::vector<io::PicturePair> pictures;
-  for (const auto& frame : frames) pictures.push_back(io::load_pair(frame.left, *frame.right));
+  std::vector<io::PicturePair> images;
+  for (const auto& frame : frames) images.push_back(io::load_pair(frame.left, *frame.right));
   std::vector<StereoPair> pairs;  // the left camera loses an image
-  for (std::size_t i = 0; i + 1 < pictures.size(); ++i) {
-    const std::size_t late = i < pictures.size() / 2 ? 0 : 1;
-    pairs.push_back(StereoPair::from(pictures[i + late].left.gray, pictures[i].right.gray));
+  for (std::size_t i = 0; i + 1 < images.size(); ++i) {
+    const std::size_t late = i < images.size() / 2 ? 0 : 1;
+    pairs.push_back(StereoPair::from(images[i + late].left.gray, images[i].right.gray));
   }
   const Synchrony measured = measure_synchrony(pairs, Exec::with_threads(2));
   ASSERT_TRUE(measured.change);
-  EXPECT_EQ(measured.change->from, static_cast<int>(pictures.size() / 2));
+  EXPECT_EQ(measured.change->from, static_cast<int>(images.size() / 2));
   EXPECT_EQ(measured.change->before, 0);
   EXPECT_EQ(measured.change->after, 1);
 }
@@ -97,11 +97,10 @@ TEST_P(GoodSequences, AShiftFromTheMiddleOnIsDetected) {
 TEST(SlowSequence, IsNotJudgedSynchronous) {
   const fs::path folder = collection() / "real/sequences/conveyor_box";
   if (!fs::exists(folder)) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
-  std::vector<io::PicturePair> pictures;
-  for (const auto& frame : io::find_frames(folder))
-    pictures.push_back(io::load_pair(frame.left, *frame.right));
+  std::vector<io::PicturePair> images;
+  for (const auto& frame : io::find_frames(folder)) images.push_back(io::load_pair(frame.left, *frame.right));
   std::vector<StereoPair> pairs;
-  for (const auto& pair : pictures) pairs.push_back(StereoPair::from(pair.left.gray, pair.right.gray));
+  for (const auto& pair : images) pairs.push_back(StereoPair::from(pair.left.gray, pair.right.gray));
   const auto finding = diagnose(measure_synchrony(pairs, Exec::with_threads(2)));
   ASSERT_TRUE(finding);
   EXPECT_EQ(static_cast<int>(finding->severity), static_cast<int>(Severity::note)) << finding->says;

@@ -82,8 +82,8 @@ Image<Gray> blurred(View<const Gray> image, int radius) {
 
 class Diagnosis : public testing::Test {
  protected:
-  [[nodiscard]] View<const Gray> left() const { return sample_.pictures.left.gray; }
-  [[nodiscard]] View<const Gray> right() const { return sample_.pictures.right.gray; }
+  [[nodiscard]] View<const Gray> left() const { return sample_.images.left.gray; }
+  [[nodiscard]] View<const Gray> right() const { return sample_.images.right.gray; }
   [[nodiscard]] std::vector<Finding> findings(View<const Gray> l, View<const Gray> r) const {
     return diagnose(measure_pair(StereoPair::from(l, r), {}), rig_, range_, {});
   }
@@ -222,7 +222,7 @@ TEST_F(Diagnosis, DetectsAnUnrectifiedPair) {
 
 TEST_F(Diagnosis, DetectsImagesOfDifferentScenes) {
   const samples::Sample other = samples::load("overlap");
-  finds(findings(left(), other.pictures.right.gray), FindingKind::nothing_in_common, Severity::broken);
+  finds(findings(left(), other.images.right.gray), FindingKind::nothing_in_common, Severity::broken);
 }
 
 TEST_F(Diagnosis, DetectsAnImageUpsideDown) {

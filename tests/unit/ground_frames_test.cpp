@@ -34,11 +34,11 @@ GroundPlane truth(const std::filesystem::path& file) {
 }
 
 Ground found_in(const std::filesystem::path& frame, const std::string& preset) {
-  const auto pictures = io::load_pair(frame / "left.png", frame / "right.png");
+  const auto images = io::load_pair(frame / "left.png", frame / "right.png");
   const auto calibration = io::load_calibration(frame / "calib.txt");
   Config config = Config::preset(preset);
   config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
-  const auto pair = StereoPair::from(pictures.left.gray, pictures.right.gray, pictures.left.rgb);
+  const auto pair = StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
   return estimate_disparity(pair, calibration.rig, config, {}).ground;
 }
 

@@ -84,9 +84,9 @@ TEST(OpenCv, PutsHeadersOverTheImagesOwnPixels) {
 
 TEST(OpenCv, SegmentsMatricesAsItDoesImages) {
   const samples::Sample sample = samples::load("four_in_a_row");
-  const cv::Mat left = copy_of(sample.pictures.left.gray);
-  const cv::Mat right = copy_of(sample.pictures.right.gray);
-  const cv::Mat rgb = copy_of(sample.pictures.left.rgb);
+  const cv::Mat left = copy_of(sample.images.left.gray);
+  const cv::Mat right = copy_of(sample.images.right.gray);
+  const cv::Mat rgb = copy_of(sample.images.left.rgb);
   const Config config = sample.suited();
   const Frame expected = segment(sample.pair(), sample.calibration.rig, config, {});
   const auto pair = stereo_pair(left, right, rgb);
@@ -103,8 +103,8 @@ TEST(OpenCv, SegmentsColourInOpenCvsOrderAsItDoesFiles) {
     cv::cvtColor(mat_of(picture.rgb), bgr, cv::COLOR_RGB2BGR);
     return bgr;
   };
-  const cv::Mat left = bgr_of(sample.pictures.left);
-  const cv::Mat right = bgr_of(sample.pictures.right);
+  const cv::Mat left = bgr_of(sample.images.left);
+  const cv::Mat right = bgr_of(sample.images.right);
   auto made = stereo_pair(left, right);
   const auto pair = std::move(made);  // keeps the pixels alive
   const Config config = sample.suited();
@@ -112,7 +112,7 @@ TEST(OpenCv, SegmentsColourInOpenCvsOrderAsItDoesFiles) {
   const Frame frame = segment(pair, sample.calibration.rig, config, {});
   EXPECT_TRUE(same_bits(frame.disparity.disparity_px, expected.disparity.disparity_px));
   EXPECT_TRUE(same_bits(frame.objects.labels, expected.objects.labels));
-  EXPECT_EQ(pair.left_rgb()(3, 5), sample.pictures.left.rgb(3, 5));
+  EXPECT_EQ(pair.left_rgb()(3, 5), sample.images.left.rgb(3, 5));
   EXPECT_FALSE((std::is_convertible_v<MatPair, const StereoPair&>));  // its pixels would be freed
   EXPECT_TRUE((std::is_convertible_v<const MatPair&, const StereoPair&>));
 }

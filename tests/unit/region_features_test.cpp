@@ -174,11 +174,12 @@ TEST(ObjectFeatures, DescribeARegion) {
   EXPECT_EQ(features.region(1, "ground known"), 1);
   EXPECT_EQ(features.region(1, "disparity, share of the nearest"), 1);
   EXPECT_EQ(features.region(1, "same-object score of its parts"), 20) << "a superpixel";
-  EXPECT_EQ(features.region(0, "its colours beside the background's"), 0) << "it is all of that";
-  EXPECT_FLOAT_EQ(features.region(1, "its colours beside the background's"), 2);
+  EXPECT_EQ(features.region(0, "distance of its colours from the background's"), 0) << "it is all of that";
+  EXPECT_FLOAT_EQ(features.region(1, "distance of its colours from the background's"), 2);
   EXPECT_EQ(features.contact("distance of the smaller one's colours from the background's"), 2);
   EXPECT_EQ(features.contact("distance of the larger one's colours from the background's"), 0);
-  EXPECT_EQ(features.region(1, "its colours beside the floor's"), kUnknown) << "nothing lies on the floor";
+  EXPECT_EQ(features.region(1, "distance of its colours from the floor's"), kUnknown)
+      << "nothing lies on the floor";
 }
 
 TEST(Features, AreUnknownWithoutData) {
@@ -196,8 +197,8 @@ TEST(Features, AreUnknownWithoutData) {
         "distance from its plane, px", "evidence: slope down, relative", "height above the ground, px",
         "height above the ground, relative", "share on the ground", "share in the background",
         "least step of the planes around, px", "evidence: height above the ground over its error",
-        "neighbours on the ground, share", "its colours beside the floor's",
-        "its colours beside the background's"})
+        "neighbours on the ground, share", "distance of its colours from the floor's",
+        "distance of its colours from the background's"})
     EXPECT_EQ(features.region(0, name), kUnknown) << name;
   EXPECT_EQ(features.contact("disparities, share of the smaller one"), 0);
   EXPECT_EQ(features.region(0, "ground known"), 0);

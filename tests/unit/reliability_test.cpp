@@ -48,7 +48,7 @@ TEST(Reliability, AGoodPairOfAStaticCameraIsReliable) {
 TEST(Reliability, ABlackRightImageIsDetectedAndReportedAfterTenFrames) {
   const samples::Sample sample = samples::load("four_in_a_row");
   const Image<Gray> black(sample.pair().size(), Gray{0}, {});
-  const StereoPair pair = StereoPair::from(sample.pictures.left.gray, black);
+  const StereoPair pair = StereoPair::from(sample.images.left.gray, black);
   const Reliability ninth = last_of(sample, pair, 9);
   ASSERT_TRUE(ninth.value);
   EXPECT_LT(*ninth.value, kUnreliable);
@@ -62,10 +62,10 @@ TEST(Reliability, ARightImageOfAnotherMomentLowersThePhotometricWitness) {
   Image<Gray> moved(sample.pair().size(), Gray{0}, {});
   for (int y = 0; y < moved.height(); ++y)
     for (int x = 0; x < moved.width(); ++x)
-      moved(x, y) = sample.pictures.right.gray(std::min(x + 3, moved.width() - 1),
-                                               std::min(y + 12, moved.height() - 1));
+      moved(x, y) =
+          sample.images.right.gray(std::min(x + 3, moved.width() - 1), std::min(y + 12, moved.height() - 1));
   const Reliability good = last_of(sample, sample.pair());
-  const Reliability bad = last_of(sample, StereoPair::from(sample.pictures.left.gray, moved));
+  const Reliability bad = last_of(sample, StereoPair::from(sample.images.left.gray, moved));
   EXPECT_LT(bad.witnesses.stereo.value(), good.witnesses.stereo.value() - 0.2F);
   EXPECT_LT(bad.witnesses.photometric.value(), good.witnesses.photometric.value() - 0.1F);
 }

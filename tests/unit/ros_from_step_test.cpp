@@ -14,7 +14,7 @@ namespace cairn::ros {
 namespace {
 
 struct Sample {
-  io::PicturePair pictures;
+  io::PicturePair images;
   io::Calibration calibration;
   Config config;
   Step step;
@@ -26,13 +26,13 @@ const Sample& sample() {
     const std::filesystem::path folder =
         std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
     Sample s;
-    s.pictures = io::load_pair(folder / "left.png", folder / "right.png");
+    s.images = io::load_pair(folder / "left.png", folder / "right.png");
     s.calibration = io::load_calibration(folder / "calib.txt");
     s.config.match.num_disparities = s.calibration.num_disparities.value_or(64);
     FollowConfig config;
     config.segmentation = s.config;
     Follower follower(config, s.calibration.rig);
-    s.step = follower.next(StereoPair::from(s.pictures.left.gray, s.pictures.right.gray, s.pictures.left.rgb),
+    s.step = follower.next(StereoPair::from(s.images.left.gray, s.images.right.gray, s.images.left.rgb),
                            {1'500'000'000});
     return s;
   }();
@@ -143,9 +143,9 @@ TEST(RosFromStep, LabelsAndReasonsEqualThoseOfTheFrame) {
 
 TEST(RosFromStep, CloudsContainThePixelsOfTheirClass) {
   const Sample& s = sample();
-  const auto& pictures = s.pictures.left;
+  const auto& images = s.images.left;
   const auto cloud = [&](Space space, int stride) {
-    return cloud_of(kHeader, s.step.frame, space, s.calibration.rig, pictures.gray, pictures.rgb, stride);
+    return cloud_of(kHeader, s.step.frame, space, s.calibration.rig, images.gray, images.rgb, stride);
   };
   const PointCloud2 obstacles = cloud(Space::obstacle, 1);
   const PointCloud2 floor = cloud(Space::floor, 1);
@@ -154,7 +154,7 @@ TEST(RosFromStep, CloudsContainThePixelsOfTheirClass) {
   EXPECT_EQ(obstacles.data.size(), std::size_t{obstacles.width} * 24);
   EXPECT_GT(float_at(obstacles.data, 8), 0.3F);
   EXPECT_NEAR(cloud(Space::obstacle, 4).width, obstacles.width / 16.0, obstacles.width / 40.0);
-  EXPECT_EQ(cloud_of(kHeader, s.step.frame, Space::floor, std::nullopt, pictures.gray, {}).width, 0U);
+  EXPECT_EQ(cloud_of(kHeader, s.step.frame, Space::floor, std::nullopt, images.gray, {}).width, 0U);
 }
 
 TEST(RosFromStep, TheFloorIsBelowTheCamera) {

@@ -52,10 +52,10 @@ io::SequenceFrame pair_at(std::size_t index) {
   pair.name = std::to_string(index);
   pair.index = index;
   pair.stamp.ns = static_cast<std::int64_t>(index + 1) * 100'000'000;
-  const auto& pictures = sample().pictures;
-  pair.left.gray = pictures.left.gray.clone();
-  if (!pictures.left.rgb.empty()) pair.left.rgb = pictures.left.rgb.clone();
-  pair.right = pictures.right.gray.clone();
+  const auto& images = sample().images;
+  pair.left.gray = images.left.gray.clone();
+  if (!images.left.rgb.empty()) pair.left.rgb = images.left.rgb.clone();
+  pair.right = images.right.gray.clone();
   return pair;
 }
 
@@ -96,7 +96,7 @@ LiveFramePtr renumbered(int index) {
 ViewedRun run_of_test() {
   ViewedRun run;
   run.name = "a test";
-  run.image = sample().pictures.left.gray.size();
+  run.image = sample().images.left.gray.size();
   run.rig = sample().calibration.rig;
   run.config = [config = std::make_shared<const FollowConfig>(first_config())] { return config; };
   return run;
@@ -817,7 +817,7 @@ class Fed : public io::Sequence {
   }
   [[nodiscard]] std::optional<std::size_t> size() const override { return std::nullopt; }
   [[nodiscard]] std::string name() const override { return "fed"; }
-  [[nodiscard]] Size image_size() const override { return sample().pictures.left.gray.size(); }
+  [[nodiscard]] Size image_size() const override { return sample().images.left.gray.size(); }
   [[nodiscard]] const std::optional<StereoRig>& rig() const override { return sample().calibration.rig; }
   [[nodiscard]] std::optional<int> disparities() const override { return std::nullopt; }
   [[nodiscard]] const KnownGround& ground() const override { return ground_; }
