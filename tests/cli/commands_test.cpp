@@ -82,9 +82,9 @@ TEST_F(Command, TheOrderOfSettingsDoesNotMatter) {
 }
 
 TEST_F(Command, ConfigPrintsOnlyChangedOptions) {
-  const std::vector<std::string> asked{
+  const std::vector<std::string> changed_arguments{
       "config", "--changed", "--preset", "paper", "--set", "match.window_size=11", "--set", "match.cost=sad"};
-  const std::string changed = run(asked).out;
+  const std::string changed = run(changed_arguments).out;
   EXPECT_EQ(changed.find("preset: paper\nmatch:\n  cost: sad"), 0U) << changed;
   EXPECT_EQ(std::count(changed.begin(), changed.end(), '\n'), 4) << changed;
   write(at("options.yaml"), changed);

@@ -158,7 +158,7 @@ class Player(PageTest):
 
     def test_makes_no_network_requests(self):
         self.load(self.rich)
-        self.assertEqual(self.asked_of_the_network(), [])
+        self.assertEqual(self.network_requests(), [])
 
     def test_shows_ids_distances_and_the_table_of_the_frame(self):
         self.load(self.plain)

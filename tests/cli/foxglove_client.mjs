@@ -127,12 +127,12 @@ async function check(address, subprotocol) {
 
   const answers = new Map();
   client.on('parameterValues', ({id, parameters}) => answers.get(id)?.(parameters));
-  const asked = (what, ask) => within(what, (resolve) => {
+  const answered = (what, ask) => within(what, (resolve) => {
     answers.set(what, resolve);
     ask(what);
   });
   // While paused, all channels show the same frame.
-  await asked('pause', (id) => client.setParameters([{name: 'live.pause', value: true}], id));
+  await answered('pause', (id) => client.setParameters([{name: 'live.pause', value: true}], id));
 
   const readers = new Map(), byStamp = new Map();
   const messages = await within('all channels', (resolve) => {
@@ -147,17 +147,17 @@ async function check(address, subprotocol) {
   });
   checkMessages(messages);
 
-  const all = await asked('all', (id) => client.getParameters([], id));
+  const all = await answered('all', (id) => client.getParameters([], id));
   assert.ok(all.length > 50);
-  const [wanted] = await asked('set', (id) => client.setParameters([{name: 'objects.min_area', value: 1}], id));
+  const [wanted] = await answered('set', (id) => client.setParameters([{name: 'objects.min_area', value: 1}], id));
   assert.deepEqual(wanted, {name: 'objects.min_area', value: 1, type: 'float64'});
   const refusal = within('a refusal', (resolve) => client.on('status', resolve));
   client.setParameters([{name: 'objects.min_area', value: -5}]);
   const {level, message} = await refusal;
   assert.equal(level, 2);
   assert.match(message, /option objects\.min_area: found '-5', expected 0 … 100/);
-  await asked('reset', (id) => client.setParameters([{name: 'objects.min_area'}], id));
-  await asked('play', (id) => client.setParameters([{name: 'live.pause', value: false}], id));
+  await answered('reset', (id) => client.setParameters([{name: 'objects.min_area'}], id));
+  await answered('play', (id) => client.setParameters([{name: 'live.pause', value: false}], id));
   client.close();
   console.log(`${subprotocol}: ${channels.map(({topic}) => topic).join(' ')}`);
 }

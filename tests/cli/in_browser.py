@@ -86,9 +86,9 @@ class PageTest(unittest.TestCase):
         mouse.pointer_action.move_to_location(round(left + right * wide), round(top + down * high))
         mouse.perform()
 
-    def asked_of_the_network(self):
-        asked = self.browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
-        return [name for name in asked if not name.startswith("data:")]
+    def network_requests(self):
+        names = self.browser.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
+        return [name for name in names if not name.startswith("data:")]
 
     def keep(self, name):
         if folder := os.environ.get("CAIRN_SCREENSHOTS"):

@@ -88,7 +88,7 @@ class Page(PageTest):
     def test_makes_no_network_requests(self):
         for command in self.pages:
             self.open(command)
-            self.assertEqual(self.asked_of_the_network(), [])
+            self.assertEqual(self.network_requests(), [])
 
     def test_has_all_images_and_tables(self):
         self.open("segment")
@@ -117,10 +117,10 @@ class Page(PageTest):
                 ("obstacle: no object", (s == 255 and i == 0 for s, i in zip(space, ids))),
                 ("floor", (s == 128 for s in space)), ("unknown", (s == 0 for s in space)))}
             self.assertGreater(min(shares.values()), 0)
-            told = self.legend("space")
-            self.assertEqual(list(told), list(shares))
+            shown = self.legend("space")
+            self.assertEqual(list(shown), list(shares))
             for name, share in shares.items():
-                self.assertAlmostEqual(told[name], share, delta=0.051)
+                self.assertAlmostEqual(shown[name], share, delta=0.051)
             Select(self.find("[data-panel=space] select")).select_by_visible_text("Floor")
             self.assertEqual(list(self.legend("space")), ["floor"])
             drawn = self.browser.execute_script(
@@ -428,8 +428,8 @@ class Page(PageTest):
             error = cap if score["error"] is None else min(score["error"], cap)
             bins[min(20, int(error / cap * 20))] += 1
         bars = self.find_all("#histogram .hit")
-        told = [self.browser.execute_script("return arguments[0].textContent", bar) for bar in bars]
-        self.assertEqual([int(text.split(": ")[1].split(" ")[0]) for text in told], bins)
+        shown = [self.browser.execute_script("return arguments[0].textContent", bar) for bar in bars]
+        self.assertEqual([int(text.split(": ")[1].split(" ")[0]) for text in shown], bins)
         fullest = bins.index(max(bins))
         ActionChains(self.browser).move_to_element(bars[fullest]).click().perform()
         self.assertEqual(len(self.column("truth", "id")), bins[fullest])

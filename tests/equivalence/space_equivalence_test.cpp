@@ -19,7 +19,7 @@ constexpr GroundPlane kFloor{0.01F, 0.2F, -3};
 constexpr GroundPlane kLeftWall{-0.1F, 0.01F, 4};
 constexpr GroundPlane kRightWall{0.08F, 0, 1};
 
-/// A scene on which nothing is sure: disparities on and off the planes, holes, pieces in part on the floor.
+/// A scene with every kind of pixel: disparities on and off the planes, holes, pieces in part on the floor.
 struct Scene {
   DisparityMap disparity;
   Image<float> seen;

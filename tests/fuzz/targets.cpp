@@ -471,14 +471,14 @@ bool request(std::string_view bytes) {
   }());
   std::string_view rest = bytes;
   std::string_view line = taken_until('\n', rest);
-  live::ViewRequest asked;
-  asked.method = taken_until(' ', line);
-  asked.target = line;
-  asked.host = taken_until('\n', rest);
-  asked.origin = taken_until('\n', rest);
-  asked.cookie = taken_until('\n', rest);
-  asked.is_upgrade = bytes.size() % 2 == 0;
-  const live::ViewVerdict verdict = access.judge(asked);
+  live::ViewRequest view_request;
+  view_request.method = taken_until(' ', line);
+  view_request.target = line;
+  view_request.host = taken_until('\n', rest);
+  view_request.origin = taken_until('\n', rest);
+  view_request.cookie = taken_until('\n', rest);
+  view_request.is_upgrade = bytes.size() % 2 == 0;
+  const live::ViewVerdict verdict = access.judge(view_request);
   if (verdict.status < 400 && bytes.find("a-token-of-the-fuzzer") == std::string_view::npos)
     throw std::logic_error("seen without the token");
   return verdict.status < 400;

@@ -333,12 +333,12 @@ class Growing {
       origin.least_same_thing = std::min(origin.least_same_thing, of.origin.least_same_thing);
     }
     const auto [small, large] = std::minmax(tree_.nodes[slot(stays)].area, tree_.nodes[slot(goes)].area);
-    const bool all_anew = small * 8 > large;
+    const bool judge_all = small * 8 > large;
 
     std::vector<Contact> kept;
-    std::set<std::int32_t> anew;  // neighbours to judge again
+    std::set<std::int32_t> changed;  // neighbours to judge again
     for (const Contact& c : contacts_) {
-      if (c.has(goes)) anew.insert(c.a == goes ? c.b : c.a);
+      if (c.has(goes)) changed.insert(c.a == goes ? c.b : c.a);
     }
     for (const Contact& c : contacts_) {
       // Of two contacts with a common neighbour, the one seen first remains, in the orientation of its own
@@ -361,7 +361,7 @@ class Growing {
     regions_.erase(goes);
     regions_[node] = std::move(whole);
     for (Contact& c : contacts_) {
-      if (c.has(node) && (all_anew || anew.contains(c.a == node ? c.b : c.a))) judge(c);
+      if (c.has(node) && (judge_all || changed.contains(c.a == node ? c.b : c.a))) judge(c);
     }
     describe(node, origin);
   }

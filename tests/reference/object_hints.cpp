@@ -88,7 +88,7 @@ std::vector<int> pixels_of(int c, int n, int w) {
   return pixels;
 }
 
-/// The mean of what is known.
+/// The mean of the known values.
 struct Mean {
   double sum = 0;
   int count = 0;
@@ -189,12 +189,12 @@ Image<ObjectHint> hint_objects(View<const std::int16_t> input, const HintNumbers
   const Volume eighth = next(next(next(quarter)));
   Volume up = next(next(next(eighth)));
   for (const Volume* like : {&eighth, &quarter, &half}) up = next(doubled_and_added(next(up), *like));
-  const Volume told = next(up);
+  const Volume outputs = next(up);
   Image<ObjectHint> hints(cells);
   for (int y = 0; y < cells.height; ++y) {
     for (int x = 0; x < cells.width; ++x) {
       const auto say = [&](int what, int least, int most) {
-        const std::int64_t value = told.at(x / 2, y / 2, 4 * what + 2 * (y % 2) + x % 2);
+        const std::int64_t value = outputs.at(x / 2, y / 2, 4 * what + 2 * (y % 2) + x % 2);
         return static_cast<std::int16_t>(std::clamp<std::int64_t>(value, least, most));
       };
       hints(x, y) = {say(0, -96, 96), say(1, -96, 96), say(2, -2000, 2000), say(3, -2000, 2000),

@@ -209,13 +209,13 @@ TEST(Associate, PiecesOfOneObjectShareItsTrack) {
   common(overlaps, 0, 1) = 38;
   common(overlaps, 0, 2) = 35;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}, {1, 2}}));
-  // What is apart is no piece, nor is what only overlaps with its edge …
+  // A distant object is not a piece, nor is one that overlaps only with its edge …
   sightings[1].box_px.x += 3;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
   sightings[1].box_px.x -= 3;
   common(overlaps, 0, 2) = 20;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
-  // … and what comes in pieces for long is several objects.
+  // … and an object that is in pieces for long is several objects.
   common(overlaps, 0, 2) = 35;
   tracks.list[0].in_parts = 5;
   EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));

@@ -139,10 +139,10 @@ TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
       EXPECT_EQ(message.find(option.name + " has no effect with "), 0U) << message;
       // The option that it suggests setting is active itself, and had the value described.
       const std::string with = message.substr(message.find(" with ") + 6);
-      const std::string asked = with.substr(0, with.find('='));
-      EXPECT_EQ(with.substr(0, with.find(';')), asked + "=" + named(all, asked).value) << message;
-      EXPECT_NE(with.find("; set " + asked), std::string::npos) << message;
-      EXPECT_TRUE(named(all, asked).active) << message;
+      const std::string required = with.substr(0, with.find('='));
+      EXPECT_EQ(with.substr(0, with.find(';')), required + "=" + named(all, required).value) << message;
+      EXPECT_NE(with.find("; set " + required), std::string::npos) << message;
+      EXPECT_TRUE(named(all, required).active) << message;
     }
     EXPECT_GT(refused, 5) << preset;
   }

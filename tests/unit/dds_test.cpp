@@ -298,10 +298,10 @@ TEST_F(Dds, ResultsArePublished) {
 
 TEST_F(Dds, TheFrameIdIsTheSourcesUnlessSet) {
   const live::LiveFramePtr frame = made_frame("front_left_optical");
-  for (const std::string asked : {"", "left_optical"}) {
+  for (const std::string requested : {"", "left_optical"}) {
     live::Ros2Options options;
-    options.name_space = own_topic("named" + asked);
-    options.camera_frame = asked;
+    options.name_space = own_topic("named" + requested);
+    options.camera_frame = requested;
     const auto sink = ros2_sink(options, rig());
     const Participant participant;
     Reader<ros::Detection3DArray> reader(participant, options.name_space + "/objects");
@@ -311,7 +311,7 @@ TEST_F(Dds, TheFrameIdIsTheSourcesUnlessSet) {
       std::this_thread::sleep_for(20ms);
       return (came = reader.take()).has_value();
     }));
-    EXPECT_EQ(came->header.frame_id, asked.empty() ? "front_left_optical" : asked);
+    EXPECT_EQ(came->header.frame_id, requested.empty() ? "front_left_optical" : requested);
     EXPECT_EQ(came->header.stamp.nanosec, ros::time_of(frame->step.stamp).nanosec);
   }
 }

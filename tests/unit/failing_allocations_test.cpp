@@ -107,7 +107,8 @@ constexpr int kDense = 200;  // up to this number every allocation fails, then o
   for (;;) {
     const int number = tally.number;
     tally.number += 1 + (number < kDense ? 0 : number / 32);
-    const Attempt first = attempt(trial.work, number, those);  // allocates what a process allocates once
+    const Attempt first =
+        attempt(trial.work, number, those);  // makes the allocations that happen once per process
     if (trial.look) trial.look(first);
     const Attempt again = attempt(trial.work, number, those);
     const std::string where = "allocation " + std::to_string(number) +

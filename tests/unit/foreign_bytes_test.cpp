@@ -86,8 +86,8 @@ std::string changed(std::string bytes, const std::vector<std::string>& others, s
 TEST_P(ForeignBytes, AnyMutationEndsInAResultOrInOneLine) {
   std::vector<std::string> inputs = GetParam().seeds();
   for (std::string& bytes : found_once(GetParam().name)) inputs.push_back(std::move(bytes));
-  const char* const asked = std::getenv("CAIRN_FUZZ_SECONDS");
-  const double seconds = asked != nullptr ? std::atof(asked) : 5;
+  const char* const setting = std::getenv("CAIRN_FUZZ_SECONDS");
+  const double seconds = setting != nullptr ? std::atof(setting) : 5;
   const char* const seed = std::getenv("CAIRN_FUZZ_SEED");
   const auto first =
       seed != nullptr ? static_cast<std::mt19937::result_type>(std::atoll(seed)) : std::random_device()();

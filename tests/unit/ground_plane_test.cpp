@@ -156,7 +156,7 @@ TEST(GroundAutomatic, DoesNotExplainPointsBelowAPlaneByReflectionsOfUnseenObject
 }
 
 TEST(GroundAutomatic, FindsAFloorWithFewMatchesNextToALargeWall) {
-  // Most hypotheses are on the wall; if it were tried repeatedly, none would be left for the floor.
+  // Most hypotheses are on the wall; if it were tried repeatedly, no hypothesis would be left for the floor.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Room room{.wall_px = 5, .floor_density = 0.2, .wrong = 0.02, .seed = seed};
     EXPECT_FINDS(room, 0.5F);

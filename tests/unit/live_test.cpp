@@ -235,9 +235,9 @@ TEST(Runner, EndsAfterItsTimeAndOnRequest) {
   options.duration = 150ms;
   EXPECT_LT(run(endless, options, notebook).seconds, 5);
   Camera other(1'000'000, 1ms, true);
-  LiveOptions told;
-  told.is_ended = [&] { return notebook.count > 5; };
-  EXPECT_LT(run(other, told, notebook).seconds, 5);
+  LiveOptions ended_early;
+  ended_early.is_ended = [&] { return notebook.count > 5; };
+  EXPECT_LT(run(other, ended_early, notebook).seconds, 5);
 }
 
 TEST(Runner, OptionsApplyFromTheNextFrameAndAreRefusedAsAWhole) {

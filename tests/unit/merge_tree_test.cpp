@@ -121,15 +121,15 @@ TEST(MergeTree, HasEveryNodeAfterItsPartsUpToTheWholeImage) {
 TEST(MergeTree, ReportsTheJudgedPairs) {
   RegionScene scene(grid<RegionId>({{0, 1, 2}, {0, 1, 2}}));
   scene.paint({50, 54, 203});
-  Parts told;
+  Parts judged_pairs;
   std::vector<float> scores;
   const ByBrightness by;
   static_cast<void>(grow_merge_tree(scene.superpixels, scene.cues(), by.trees(), {},
                                     [&](std::int32_t a, std::int32_t b, const MergeFeatures& features) {
-                                      told.push_back(std::minmax({a, b}));
+                                      judged_pairs.push_back(std::minmax({a, b}));
                                       scores.push_back(by.trees()(features));
                                     }));
-  EXPECT_EQ(told, (Parts{{0, 1}, {1, 2}, {2, 3}}));
+  EXPECT_EQ(judged_pairs, (Parts{{0, 1}, {1, 2}, {2, 3}}));
   EXPECT_EQ(scores, (std::vector<float>{3, -2, -2}));
 }
 

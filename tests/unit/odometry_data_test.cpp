@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-struct Asked {
+struct Drive {
   std::string folder;
   std::string truth;       // in the folder; empty: the folder itself
   bool by_wheels = false;  // odometry.csv
@@ -46,14 +46,14 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Measured measure(const Asked& asked) {
-  const fs::path folder = collection() / asked.folder;
+Measured measure(const Drive& drive) {
+  const fs::path folder = collection() / drive.folder;
   const auto source = io::open_sequence(folder.string(), {});
-  io::Trajectory truth = io::load_trajectory(folder / asked.truth);
+  io::Trajectory truth = io::load_trajectory(folder / drive.truth);
   Config segmentation;
   segmentation.match.num_disparities = source->disparities().value_or(segmentation.match.num_disparities);
   const std::unique_ptr<io::MotionPriors> wheels =
-      asked.by_wheels ? io::load_odometry(folder / "odometry.csv", folder) : nullptr;
+      drive.by_wheels ? io::load_odometry(folder / "odometry.csv", folder) : nullptr;
 
   Measured all;
   std::vector<TimedPose> ours;
@@ -67,8 +67,8 @@ Measured measure(const Asked& asked) {
     SceneDisparity scene = estimate_disparity(
         StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), source->rig(), segmentation, exec);
     Image<Gray> left = frame->left.gray.clone();
-    if (asked.black > 0 &&
-        k % static_cast<std::size_t>(asked.black) == static_cast<std::size_t>(asked.black) - 1) {
+    if (drive.black > 0 &&
+        k % static_cast<std::size_t>(drive.black) == static_cast<std::size_t>(drive.black) - 1) {
       left.fill(0);
       scene.disparity.disparity_px.fill(std::numeric_limits<float>::quiet_NaN());
       scene.disparity.reject.fill(Reject::no_data);
@@ -86,7 +86,7 @@ Measured measure(const Asked& asked) {
     times.push_back(1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     ours.push_back({frame->stamp, step.state.map_from_camera});
     if (step.motion.refusal != MotionRefusal::none) ++all.refused;
-    const bool frame_by_frame = truth.poses.size() > k && asked.truth != "groundtruth_left_camera_tum.txt";
+    const bool frame_by_frame = truth.poses.size() > k && drive.truth != "groundtruth_left_camera_tum.txt";
     if (k > 0 && frame_by_frame && step.motion.refusal == MotionRefusal::none &&
         state.refused_in_a_row == 0) {
       const auto since = [&](const std::vector<TimedPose>& poses) {
@@ -102,8 +102,8 @@ Measured measure(const Asked& asked) {
   all.milliseconds = median(times);
   const TrajectoryError& e = all.error;
   std::printf("| %-38s | %6.2f | %6.4f | %5.2f | %5.2f | %6.4f | %5.2f | %5.1f | %d | %4.1f |\n",
-              (asked.folder.substr(asked.folder.rfind('/') + 1) + (asked.by_wheels ? ", wheels" : "") +
-               (asked.black > 0 ? ", 1 of " + std::to_string(asked.black) + " black" : ""))
+              (drive.folder.substr(drive.folder.rfind('/') + 1) + (drive.by_wheels ? ", wheels" : "") +
+               (drive.black > 0 ? ", 1 of " + std::to_string(drive.black) + " black" : ""))
                   .c_str(),
               e.path_m, e.end_error_m, 100 * e.end_drift, kDegrees * e.end_error_rad, e.ate_rmse_m,
               100 * e.t_rel, all.nees, all.refused, all.milliseconds);

@@ -39,7 +39,7 @@ std::vector<float> drawn(std::uint32_t seed, float most) {
   return values;
 }
 
-/// Equal bits, which tells −0 from 0; all NaN are alike.
+/// Equality of bits, which distinguishes −0 from 0; all NaN are equal.
 void expect_same(float got, float expected, int i) {
   if (std::isnan(expected)) {
     EXPECT_TRUE(std::isnan(got)) << i;

@@ -39,7 +39,7 @@ TEST(PriorOfWheels, StraightAheadIsAlongTheCamerasView) {
   ASSERT_TRUE(prior);
   EXPECT_EQ(prior->kind, PriorKind::wheels);
   EXPECT_EQ(priors->kind(), PriorKind::wheels);
-  // What was 1 m ahead is 0.6 m ahead now.
+  // A point 1 m ahead is now 0.6 m ahead.
   const Point3 now = prior->now_from_before({0, 0, 1});
   EXPECT_NEAR(now.x, 0, 1e-12);
   EXPECT_NEAR(now.z, 0.6, 1e-12);

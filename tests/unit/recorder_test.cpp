@@ -187,12 +187,12 @@ TEST(Recorder, SkipsFramesInsteadOfDelayingTheRunAndReportsIt) {
   ASSERT_GT(status.skipped, 0U);
   EXPECT_EQ(status.frames + status.skipped, kFrames + 1U);
   ros::McapReader reader(folder.path() / "a.mcap");
-  std::uint64_t told = 0;
+  std::uint64_t reported = 0;
   while (const auto message = reader.next()) {
     if (reader.channels().at(message->channel).topic != "/cairn/skipped") continue;
-    told += std::stoull(ros::decode<ros::String>(message->bytes).data.substr(10));  // {"frames":3}
+    reported += std::stoull(ros::decode<ros::String>(message->bytes).data.substr(10));  // {"frames":3}
   }
-  EXPECT_EQ(told, status.skipped);
+  EXPECT_EQ(reported, status.skipped);
   EXPECT_NE(recorder.summary().find("skipped"), std::string::npos);
 }
 

@@ -31,7 +31,7 @@ TEST(Sha256, DoesNotDependOnHowTheBytesAreCut) {
       Sha256 sum;
       for (std::size_t at = 0; at < length; at += cut) sum.add(whole.substr(at, cut));
       EXPECT_EQ(sum.hex(), expected) << length << " bytes, " << cut << " at a time";
-      EXPECT_EQ(sum.hex(), expected) << "asked twice";
+      EXPECT_EQ(sum.hex(), expected) << "called twice";
     }
   }
 }

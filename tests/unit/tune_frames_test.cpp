@@ -61,14 +61,14 @@ TEST_F(Tuned, FramesOfOneNameAreHeldOutTogether) {
 }
 
 TEST_F(Tuned, StoppedItKeepsTheBestSoFarOrHasNone) {
-  std::vector<TuneProgress> told;
-  const TuneHooks after_three{[&] { return told.size() > 3; },
-                              [&](const TuneProgress& now) { told.push_back(now); }};
+  std::vector<TuneProgress> reports;
+  const TuneHooks after_three{[&] { return reports.size() > 3; },
+                              [&](const TuneProgress& now) { reports.push_back(now); }};
   const Tuning some = tune(frames(), {.options = {"*"}, .budget_s = 600}, Exec{}, after_three);
   EXPECT_EQ(some.end, TuneEnd::interrupted);
   EXPECT_EQ(some.search.evaluations, 3);
-  EXPECT_FALSE(told[0].best.has_value());
-  EXPECT_EQ(told[1].best, told[1].before);
+  EXPECT_FALSE(reports[0].best.has_value());
+  EXPECT_EQ(reports[1].best, reports[1].before);
   const Tuning none = tune(frames(), {}, Exec{}, {[] { return true; }, {}});
   EXPECT_EQ(none.end, TuneEnd::interrupted);
   EXPECT_TRUE(none.before.empty());

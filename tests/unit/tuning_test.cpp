@@ -228,15 +228,15 @@ TEST(Search, IsReproducibleForASeedAndANumberOfEvaluations) {
   std::vector<std::vector<Setting>> ways;
   for (const std::uint32_t seed : {1U, 1U, 2U}) {
     const auto& all = bowl_tunables();
-    std::vector<Setting> asked;
+    std::vector<Setting> tried;
     (void)search(all, settings_of(Config{}, all),
                  [&](const std::vector<Setting>& settings) {
-                   asked.insert(asked.end(), settings.begin(), settings.end());
+                   tried.insert(tried.end(), settings.begin(), settings.end());
                    return bowl(settings);
                  },
                  {.evaluations = 12, .seed = seed});
-    EXPECT_EQ(asked.size(), 12 * all.size());
-    ways.push_back(asked);
+    EXPECT_EQ(tried.size(), 12 * all.size());
+    ways.push_back(tried);
   }
   EXPECT_EQ(ways[0], ways[1]);
   EXPECT_NE(ways[0], ways[2]);
