@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cairn
-from cairn import _cairn
+from cairn import _calls
 from conftest import gray_of, same, same_frame
 
 
@@ -19,29 +19,34 @@ def address(array):
     return array.__array_interface__["data"][0]
 
 
+def address_of_pixels(picture, bgr=False):
+    """Where the library reads them."""
+    return _calls.image(picture, "picture", cairn.Exec(1), bgr).address
+
+
 # ---- in ----
 
 
 def test_grey_pictures_are_read_where_they_lie():
     picture = np.zeros((48, 64), np.uint8)
-    assert _cairn._address_of_pixels(picture) == address(picture)
+    assert address_of_pixels(picture) == address(picture)
     window = picture[5:40, 7:50]  # rows of a larger picture
-    assert _cairn._address_of_pixels(window) == address(window)
+    assert address_of_pixels(window) == address(window)
     row = picture[3:4, :]
-    assert _cairn._address_of_pixels(row) == address(row)
+    assert address_of_pixels(row) == address(row)
     every_other_row = picture[::2]
-    assert _cairn._address_of_pixels(every_other_row) == address(every_other_row)
+    assert address_of_pixels(every_other_row) == address(every_other_row)
     picture.flags.writeable = False
-    assert _cairn._address_of_pixels(picture) == address(picture)
+    assert address_of_pixels(picture) == address(picture)
 
 
 def test_colours_are_read_where_they_lie():
     picture = np.zeros((48, 64, 3), np.uint8)
     for there in (picture, picture[5:40, 7:50], picture[3:4], picture[::2], picture[:, :1]):
-        assert _cairn._address_of_pixels(there) == address(there)
+        assert address_of_pixels(there) == address(there)
     for other in (picture[:, :, ::-1], picture[::-1], picture[:, ::2], np.asfortranarray(picture)):
-        assert _cairn._address_of_pixels(other) != address(other)
-    assert _cairn._address_of_pixels(picture, bgr=True) != address(picture)  # another order, another array
+        assert address_of_pixels(other) != address(other)
+    assert address_of_pixels(picture, bgr=True) != address(picture)  # another order, another array
 
 
 def test_a_frame_holds_the_colours_themselves(sample):
@@ -55,7 +60,7 @@ def test_a_frame_holds_the_colours_themselves(sample):
 def test_pixels_that_do_not_lie_side_by_side_are_copied():
     picture = np.zeros((48, 64), np.uint8)
     for other in (picture[:, ::2], picture.T, picture[::-1], picture[:, ::-1], np.asfortranarray(picture)):
-        assert _cairn._address_of_pixels(other) != address(other)
+        assert address_of_pixels(other) != address(other)
 
 
 def test_any_layout_gives_the_same_frame(sample):
