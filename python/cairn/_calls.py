@@ -145,6 +145,8 @@ def converted(value, name, kind, exec, bgr):
             return None if value is None else again(value, name, kind[9:-1])
         except ArgumentError:
             return refuse(name, value, kind)
+    if outer == "Sequence" and isinstance(value, np.ndarray) and value.ndim == 1 and value.dtype.kind in NUMPY_KINDS.get(inner, ""):
+        return value.tolist()
     if outer in ("Sequence", "Tuple"):
         kinds = inner.split(", ") if outer == "Tuple" else None
         if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or (kinds and len(value) != len(kinds)):
@@ -180,6 +182,7 @@ def converted(value, name, kind, exec, bgr):
 
 
 CLASSES = {}  # of the package, by name
+NUMPY_KINDS = {"int": "iu", "float": "f", "bool": "b"}
 LIMITS = {"noise_sigma": (np.inf, "0 or more grey levels"), "smoothing_sigma": (5, "0 … 5 px")}
 
 
@@ -238,8 +241,8 @@ def checked(function, title="", more=(), groups=None, is_stage=False, run=lambda
     signature = inspect.signature(function)
     all_parameters = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD] + list(more)
     parameters = [p for p in all_parameters if p.name != "self"]
-    has_groups = len(all_parameters) - len(more) < len(signature.parameters)
-    takes_options = is_stage or has_groups
+    of_options = [p for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]
+    has_groups, takes_options = bool(of_options), bool(of_options) or is_stage
     groups = groups or (GROUPS if has_groups else [])
     is_method = len(parameters) < len(all_parameters)
 
@@ -265,6 +268,8 @@ def checked(function, title="", more=(), groups=None, is_stage=False, run=lambda
 
     text = "".join(described(all_parameters, takes_options)) + f" -> {signature.return_annotation}"
     call.__doc__ = f"{function.__name__}({text}\n\n{inspect.cleandoc(function.__doc__ or '')}"
+    of_stage = [inspect.Parameter("options", inspect.Parameter.VAR_KEYWORD)] * is_stage
+    call.__signature__ = signature.replace(parameters=all_parameters + of_options + of_stage)
     call.groups, call.by_group = groups, has_groups
     if takes_options:
         call.__doc__ += options_text(groups, has_groups)

@@ -81,8 +81,8 @@ class Frame:
         return self.points()[..., 2].copy()
 
     def points(self, object: Union[Object, int, None] = None) -> NDArray[numpy.float32]:
-        """Points in the camera's frame, m, x right, y down, z forward: (H, W, 3) float32, NaN = hole; of an Object or of its
-        id alone (N, 3), without holes."""
+        """Points in the camera's frame, m, x right, y down, z forward: (H, W, 3) float32, NaN = hole; of an Object or of its id
+        alone (N, 3), without holes."""
         if object is None:
             return _cairn.points_of_pixels(self._data, self._metric())
         return _cairn.points_of_object(self._data, self._metric(), whole(getattr(object, "id", object)) or 0)
@@ -185,8 +185,8 @@ def load_pair(left: PathLike, right: PathLike) -> Tuple[NDArray[numpy.uint8], ND
 
 @of_cpp
 def load_disparity(path: PathLike) -> NDArray[numpy.float32]:
-    """A disparity map from .png (16 bits, px * 256, 0 = hole), .pfm or .npy, or of Middlebury in its own 8 bits: (H, W) float32,
-    px, NaN = hole."""
+    """A disparity map from .png (16 bits, px * 256, 0 = hole), .pfm or .npy, or of Middlebury in its own 8 bits: (H, W)
+    float32, px, NaN = hole."""
 
 
 @of_cpp

@@ -88,8 +88,8 @@ def disparity_errors(ours_px: FloatsLike, truth_px: FloatsLike, excluded: MaskLi
 @of_cpp
 def object_errors(ours: LabelsLike, truth: LabelsLike, min_area: int = DEFAULTS["min_area"],
                   boundary_tolerance: float = DEFAULTS["boundary_tolerance"]) -> ObjectErrors:
-    """Compares a map of objects with the truth of the same size: (H, W) integers, 0 = none; truth -1 = don't care. min_area: px,
-    smaller true objects are not scored; boundary_tolerance: % of the image's diagonal."""
+    """Compares a map of objects with the truth of the same size: (H, W) integers, 0 = none; truth -1 = don't care. min_area:
+    px, smaller true objects are not scored; boundary_tolerance: % of the image's diagonal."""
     if min_area < 0 or not 0 <= boundary_tolerance <= 100:
         raise Error(f"object_errors: found min_area {min_area}, boundary_tolerance {boundary_tolerance}, expected at least 0, "
                     "and 0 … 100")
@@ -132,8 +132,8 @@ class Synchrony:
 
 @describes(None, Report)
 class Finding:
-    """One thing that is wrong with a rig, as `cairn doctor --json` has it (docs/formats.md): severity, value, number, unit, says
-    and remedy as items and attributes."""
+    """One thing that is wrong with a rig, as `cairn doctor --json` has it (docs/formats.md): severity, value, number, unit,
+    says and remedy as items and attributes."""
 
     kind: str = "what it is, 'cameras swapped'; `cairn doctor` calls it the same", lambda self: self["finding"]
 

@@ -21,8 +21,8 @@ from ._options import flat_config
 
 
 def find_epipolar_offset(left: ImageLike, right: ImageLike) -> EpipolarOffset:
-    """Finds how far the right image's rows are off, from textured points all over it. left, right: (H, W) or (H, W, 3) uint8
-    of one size."""
+    """Finds how far the right image's rows are off, from textured points all over it. left, right: (H, W) or (H, W, 3) uint8 of
+    one size."""
 
 
 def shift_rows(right: ImageLike, offset: EpipolarOffset) -> NDArray[numpy.uint8]:
@@ -132,8 +132,7 @@ def floor_under_reflections(disparity: DisparityLike, ground: Ground) -> NDArray
 
 
 def fit_background(evidence_px: DisparitiesLike, ground: Ground, rig: RigLike = None) -> Background:
-    """Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as find_evidence() gives
-    it."""
+    """Finds walls: upright planes with much evidence on them and hardly any behind. evidence_px as find_evidence() gives it."""
 
 
 # ---- regions ----
@@ -186,9 +185,10 @@ def apply_merges(labels: LabelsLike, graph: RegionGraph, merged_into: Sequence[i
     if count_of(labels) != len(graph) or len(merged_into) != len(graph):
         raise Error(f"labels: found {count_of(labels)} regions, merged_into: {len(merged_into)}, expected the {len(graph)} of "
                     "the graph")
-    for region, into in enumerate(merged_into):
-        if not (0 <= into < len(graph) and merged_into[into] == into):
-            raise Error(f"merged_into: found {into} for region {region}, expected a region that ended in itself")
+    into = np.asarray(merged_into)
+    lost = np.flatnonzero((into < 0) | (into >= len(graph)) | (into[np.clip(into, 0, len(graph) - 1)] != into))
+    if len(lost):
+        raise Error(f"merged_into: found {into[lost[0]]} for region {lost[0]}, expected a region that ended in itself")
 
 
 def segment_intensity(left: ImageLike) -> Segmentation:
@@ -215,8 +215,8 @@ def segmentation_of(superpixels: Superpixels, left: ImageLike) -> Segmentation:
 def hint_objects(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, evidence_px: DisparitiesLike,
                  ground: Ground, background: Background, noise_sigma: float) -> NDArray[numpy.int16]:
     """Estimates of a small network, used by grow_merge_tree(): (rows, columns, 5) int16 for cells of about 2x2 pixels of a
-    320x240 image. Log-odds in 1/16 that the cell shows an object, and that an object's outline passes; the way to the
-    object's centroid, x and y in 1/8 cell; log2 of its number of cells in 1/16."""
+    320x240 image. Log-odds in 1/16 that the cell shows an object, and that an object's outline passes; the way to the object's
+    centroid, x and y in 1/8 cell; log2 of its number of cells in 1/16."""
 
 
 def grow_merge_tree(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, evidence_px: DisparitiesLike,
@@ -227,8 +227,8 @@ def grow_merge_tree(superpixels: Superpixels, left: ImageLike, disparity: Dispar
 
 
 def choose_objects(tree: MergeTree) -> ChosenObjects:
-    """Chooses the regions of the tree that are likeliest whole objects; no two share a superpixel. Of the options only
-    min_area and min_confidence count."""
+    """Chooses the regions of the tree that are likeliest whole objects; no two share a superpixel. Of the options only min_area
+    and min_confidence count."""
 
 
 def groups_of(superpixels: Superpixels, chosen: ChosenObjects, disparity: DisparityLike) -> Segmentation:
@@ -274,8 +274,8 @@ def locate(objects: Objects, disparity: DisparityLike, ground: Ground, rig: RigL
 def label_space(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
                 background: Background, superpixels: Superpixels, seen_px: DisparitiesLike,
                 rig: RigLike = None) -> NDArray[numpy.uint8]:
-    """What each pixel shows: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. seen_px as floor_under_reflections()
-    gives it."""
+    """What each pixel shows: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. seen_px as floor_under_reflections() gives
+    it."""
 
 
 STAGES = {name: function for name, function in list(globals().items()) if name in _cairn.stage_groups}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Rigs, and what the stages return: classes of C++, described."""
+"""Rigs, and what the stages return. Each class here describes the class of C++ with its name."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ Reject.__doc__ = ("Why a pixel has no disparity: a set of bits, as in frame.reje
 # ---- rigs ----
 
 
-@describes(_cairn.Rig)
 class Rig:
     """The calibration of a rectified pair (C++: StereoRig). Depth in metres: Z = focal_px * baseline_m / (d + doffs_px), d in
     px."""
@@ -54,7 +53,6 @@ class Rig:
         return isinstance(other, _cairn.Rig) and all(getattr(self, name) == getattr(other, name) for name in self._shown)
 
 
-@describes(_cairn.Calibration)
 class Calibration:
     """What a calibration file says of a rectified pair. Takes the place of a Rig everywhere; segment() then also checks the
     images' size and takes the file's number of disparities as default."""
@@ -85,18 +83,17 @@ class Calibration:
 
 @of_cpp
 def load_calibration(path: PathLike) -> Calibration:
-    """Reads a calibration, its form recognised by content: our own YAML, Middlebury, KITTI, OpenCV FileStorage, ROS
-    camera_info (or the folder of a pair of them), key=value lines. Raises cairn.Error."""
+    """Reads a calibration, its form recognised by content: our own YAML, Middlebury, KITTI, OpenCV FileStorage, ROS camera_info
+    (or the folder of a pair of them), key=value lines. Raises cairn.Error."""
     return path, False
 
 
 # ---- matching ----
 
 
-@describes(_cairn.EpipolarOffset)
 class EpipolarOffset:
-    """How far the right image's rows are off: what the left one shows in row y is in column x of the right one at row
-    y + rows + rows_per_px * (x - (width - 1) / 2)."""
+    """How far the right image's rows are off: what the left one shows in row y is in column x of the right one at row y + rows
+    + rows_per_px * (x - (width - 1) / 2)."""
 
     rows: float = "rows, in the middle column"
     rows_per_px: float = "tangent of the roll"
@@ -111,7 +108,6 @@ class EpipolarOffset:
         return rows, rows_per_px
 
 
-@describes(_cairn.EpipolarCorrection)
 class EpipolarCorrection:
     """Result of correct_epipolar()."""
 
@@ -119,7 +115,6 @@ class EpipolarCorrection:
     right: Optional[NDArray[numpy.uint8]] = "(H, W) uint8, the right image moved; None where the pair is to be matched as it is"
 
 
-@describes(_cairn.Matches)
 class Matches:
     """Outcome of the correlation for each pixel of the left image (best_right: of the right one). Arrays (H, W), read-only;
     row_offset is None without match.row_band."""
@@ -134,7 +129,6 @@ class Matches:
     cost_after: Optional[NDArray[numpy.float32]] = "float32, at best + 1; inf = no such candidate"
 
 
-@describes(_cairn.DisparityMap)
 class DisparityMap:
     """Disparity for each pixel of the left image, and for each one without the reason. Arrays (H, W), read-only. A hole is
     where reject is not 0, and there disparity_px is NaN."""
@@ -143,7 +137,6 @@ class DisparityMap:
     reject: NDArray[numpy.uint16] = "uint16, the bits of cairn.Reject; 0 = none"
 
 
-@describes(_cairn.SceneDisparity)
 class SceneDisparity:
     """Disparity with everything that speaks against it, ground and speckle included."""
 
@@ -160,7 +153,6 @@ class SceneDisparity:
 # ---- floor and walls ----
 
 
-@describes(_cairn.GroundPlane)
 class GroundPlane:
     """A plane as the left image's disparity: d = a * x + b * y + c, all in px."""
 
@@ -176,7 +168,6 @@ class GroundPlane:
         return iter((self.a, self.b, self.c))
 
 
-@describes(_cairn.Ground)
 class Ground:
     """The floor, or why there is none."""
 
@@ -189,7 +180,6 @@ class Ground:
         return self.plane is not None
 
 
-@describes(_cairn.FloorFrame)
 class FloorFrame:
     """Where the floor is, in metres: its frame has its origin on the floor below the left camera, x forward, y left, z up."""
 
@@ -209,7 +199,6 @@ def floor_frame(ground: GroundPlane, rig: RigLike) -> Optional[FloorFrame]:
     return ground, rig.rig
 
 
-@describes(_cairn.Background)
 class Background:
     """The planes that bound the scene from behind: floor and walls."""
 
@@ -224,7 +213,6 @@ class Background:
 # ---- regions ----
 
 
-@describes(_cairn.Region)
 class Region:
     """A set of connected pixels. Mean and variance are over its valid pixels: of grey levels, or of disparities in px."""
 
@@ -237,7 +225,6 @@ class Region:
     is_background: bool = "the region that holds all that is no object, in the groups of a frame"
 
 
-@describes(_cairn.Segmentation)
 class Segmentation:
     """Regions: every pixel belongs to one."""
 
@@ -248,7 +235,6 @@ class Segmentation:
         return len(self.regions)
 
 
-@describes(_cairn.Basins)
 class Basins:
     """Result of watershed()."""
 
@@ -256,7 +242,6 @@ class Basins:
     count: int = "number of basins, 1 or more"
 
 
-@describes(_cairn.RegionGraph)
 class RegionGraph:
     """Regions and which of them touch (4-neighbourhood)."""
 
@@ -267,7 +252,6 @@ class RegionGraph:
         return self._neighbours(region)
 
 
-@describes(_cairn.Superpixels)
 class Superpixels:
     """The image cut into connected pieces that no clear edge of brightness, colour or depth runs through."""
 
@@ -275,7 +259,6 @@ class Superpixels:
     count: int = "number of superpixels, 1 or more"
 
 
-@describes(_cairn.MergeTree)
 class MergeTree:
     """All regions that superpixels fuse to, from the superpixels to the whole image; its length is the number of its nodes.
     Every node comes after its parts."""
@@ -287,7 +270,6 @@ class MergeTree:
         return len(self.parents)
 
 
-@describes(_cairn.ChosenObjects)
 class ChosenObjects:
     """The regions of a MergeTree that are objects."""
 
@@ -302,7 +284,6 @@ class ChosenObjects:
 # ---- objects ----
 
 
-@describes(_cairn.Fusion)
 class Fusion:
     """Which intensity regions make up each fused region: the candidates for objects."""
 
@@ -315,10 +296,9 @@ class Fusion:
         return len(self.parts)
 
 
-@describes(_cairn.FloorBox)
 class FloorBox:
-    """A box about what is seen of an object, upright on the floor and turned as it is. In the floor's frame: x forward, y
-    left, z up, from the floor below the left camera."""
+    """A box about what is seen of an object, upright on the floor and turned as it is. In the floor's frame: x forward, y left,
+    z up, from the floor below the left camera."""
 
     centre_in_floor_m: Tuple[float, float, float] = "(x, y, z), m"
     size_m: Tuple[float, float, float] = "(along its longer side, along its shorter one, up), m"
@@ -328,7 +308,6 @@ class FloorBox:
         lambda self: np.array(self._covariance, np.float32)[[0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(3, 3))
 
 
-@describes(_cairn.Object)
 class Object:
     """An object in front of the background."""
 
@@ -353,7 +332,6 @@ class Object:
     box_on_floor: Optional[FloorBox] = "its box, upright on the floor: a FloorBox; None without a rig or a ground"
 
 
-@describes(_cairn.LeftOut)
 class LeftOut:
     """An obstacle that is no object, and why."""
 
@@ -366,7 +344,6 @@ class LeftOut:
     confidence: float = "0 to 1: the best of a region that holds some of it; 0 where none was judged"
 
 
-@describes(_cairn.ObstacleScan)
 class ObstacleScan:
     """The nearest obstacle in each direction, as a laser scanner has it, seen from the floor below the left camera."""
 
@@ -379,7 +356,6 @@ class ObstacleScan:
         return len(self.ranges_m)
 
 
-@describes(_cairn.ObstacleGrid)
 class ObstacleGrid:
     """Obstacles on the floor: rows along y, from the right to the left, of cells along x, from the camera forward."""
 
@@ -388,7 +364,6 @@ class ObstacleGrid:
     cells: NDArray[numpy.int8] = "(height, width) int8: -1 = unknown, 0 = free, 100 = occupied"
 
 
-@describes(_cairn.Objects)
 class Objects:
     """The objects of a frame, nearest first: a sequence of Object, and their map."""
 
@@ -406,3 +381,7 @@ class Objects:
 
     def __repr__(self):
         return f"Objects({len(self)}" + "".join(f"\n  {one!r}" for one in self) + ")"
+
+
+globals().update({name: describes(getattr(_cairn, name))(value) for name, value in list(globals().items())
+                  if isinstance(value, type) and value.__module__ == __name__})
