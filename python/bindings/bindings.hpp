@@ -4,8 +4,8 @@
 
 #include <pybind11/pybind11.h>
 
-/// The module _cairn: what the package (python/cairn) calls. It has no help and refuses nothing in words of its
-/// own; the package checks arguments, describes, and adds what is shorter in Python.
+/// The module _cairn: what the package (python/cairn) calls. It has no help; the package checks arguments,
+/// describes, and adds what is shorter in Python.
 namespace cairn::python {
 
 // One file each, in the order in which the types need each other.

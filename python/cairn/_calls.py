@@ -145,8 +145,10 @@ def converted(value, name, kind, exec, bgr):
             return None if value is None else again(value, name, kind[9:-1])
         except ArgumentError:
             return refuse(name, value, kind)
-    if outer == "Sequence" and isinstance(value, np.ndarray) and value.ndim == 1 and value.dtype.kind in NUMPY_KINDS.get(inner, ""):
-        return value.tolist()
+    if outer == "Sequence" and inner in PLAIN:
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if isinstance(value, list) and {*map(type, value)} <= {PLAIN[inner]}:
+            return value
     if outer in ("Sequence", "Tuple"):
         kinds = inner.split(", ") if outer == "Tuple" else None
         if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or (kinds and len(value) != len(kinds)):
@@ -182,7 +184,7 @@ def converted(value, name, kind, exec, bgr):
 
 
 CLASSES = {}  # of the package, by name
-NUMPY_KINDS = {"int": "iu", "float": "f", "bool": "b"}
+PLAIN = {"int": int, "float": float, "bool": bool}
 LIMITS = {"noise_sigma": (np.inf, "0 or more grey levels"), "smoothing_sigma": (5, "0 … 5 px")}
 
 
@@ -266,8 +268,8 @@ def checked(function, title="", more=(), groups=None, is_stage=False, run=lambda
         own = {name: value for name, value in values.items() if name in signature.parameters}
         return run(values, options, function(*owner, **own, **(options if has_groups else {})))
 
-    text = "".join(described(all_parameters, takes_options)) + f" -> {signature.return_annotation}"
-    call.__doc__ = f"{function.__name__}({text}\n\n{inspect.cleandoc(function.__doc__ or '')}"
+    text = f"{function.__name__}({described(all_parameters, takes_options)} -> {signature.return_annotation}"
+    call.__doc__ = f"{text}\n\n{inspect.cleandoc(function.__doc__ or '')}"
     of_stage = [inspect.Parameter("options", inspect.Parameter.VAR_KEYWORD)] * is_stage
     call.__signature__ = signature.replace(parameters=all_parameters + of_options + of_stage)
     call.groups, call.by_group = groups, has_groups
