@@ -2,26 +2,29 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/pipeline/segment.hpp>
+#include <io/image_files.hpp>
 #include <io/results.hpp>
-#include <memory>
-#include <utility>
 
-#include "define.hpp"
+#include "values.hpp"
 
 namespace cairn::python {
 
-/// A frame with its inputs. The frame may be part of an object that it keeps alive.
-struct PyFrame {
-  PyFrame(Picture l, std::shared_ptr<Frame> whole, io::Provenance how)
-      : left(std::move(l)), owner(std::move(whole)), frame(*owner), provenance(std::move(how)) {}
-  PyFrame(Picture l, Frame made, io::Provenance how)
-      : PyFrame(std::move(l), std::make_shared<Frame>(std::move(made)), std::move(how)) {}
-
-  Picture left;
-  std::shared_ptr<Frame> owner;
-  Frame& frame;
-  io::Provenance provenance;
-};
+CAIRN_MEMBERS(io::StageTime, _stage, _milliseconds)
+CAIRN_MEMBERS(io::Provenance, _preset, _config, rig, _timings, _external_disparity, _stamp_ns)
 
 }  // namespace cairn::python
+
+namespace pybind11::detail {
+
+/// A file's image: colour if it has it, else grey.
+template <>
+struct type_caster<cairn::io::Picture> {
+  static constexpr auto name = const_name("array");
+  static handle cast(cairn::io::Picture from, return_value_policy, handle) {
+    return (from.rgb.empty() ? cairn::python::array_from(std::move(from.gray))
+                             : cairn::python::array_from(std::move(from.rgb)))
+        .release();
+  }
+};
+
+}  // namespace pybind11::detail

@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """make_stubs.py FILE: writes the module's type stubs, by inspecting the module. The build calls it.
 
-Docstrings of functions begin with their signature, and attributes have a type: see bindings/define.hpp.
+Docstrings of functions begin with their signature, and classes have the types of their attributes: see cairn/_calls.py.
 """
 
 import inspect
@@ -18,7 +18,7 @@ except ImportError:
     print(f"No type stubs of the Python module: {sys.executable} has no numpy")
     sys.exit(0)
 import cairn
-from cairn import _cairn
+from cairn import _calls
 
 HEAD = '''\
 # SPDX-License-Identifier: Apache-2.0
@@ -37,6 +37,8 @@ ImageLike = NDArray[numpy.uint8]  # (H, W) or (H, W, 3)
 FloatsLike = NDArray[numpy.floating[Any]]  # (H, W), px
 DisparityLike = Union["DisparityMap", FloatsLike]
 MaskLike = Union[NDArray[numpy.uint8], NDArray[numpy.bool_], None]  # (H, W)
+DisparitiesLike = FloatsLike  # each within ±2047, NaN = hole
+MatrixLike = NDArray[numpy.floating[Any]]  # square
 LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)
 NumbersLike = NDArray[Any]  # (H, W)
 RigLike = Union["Rig", "Calibration", None]
@@ -46,9 +48,9 @@ __version__: str
 '''
 
 
-# Declarations that no signature contains.
+# Declarations of C++ that no signature contains.
 SPECIAL = {
-    "__eq__": "def __eq__(self, other: object) -> bool: ...",
+    "__len__": "def __len__(self) -> int: ...",
     "__iadd__": "def __iadd__(self, other: {owner}) -> {owner}: ...",
 }
 OVERLOADS = {
@@ -69,34 +71,32 @@ def group_class(group):
     return "".join(word.capitalize() for word in group.split("_")) + "Options"
 
 
-def all_options():
-    return cairn.options() + (cairn.follow_options() if isinstance(cairn.Follower, type) else [])
-
-
-def option_arguments(title):
+def option_arguments(function):
     """The keywords that **options of a function stands for."""
-    by_group, groups = _cairn._options_of[title]
-    if by_group:
-        return [f"{group}: {group_class(group)} = ..." for group in groups]
-    return [f"{o.name.split('.')[1]}: {option_type(o)} = ..." for o in all_options() if o.group in groups]
+    if function.by_group:
+        return [f"{group}: {group_class(group)} = ..." for group in function.groups]
+    return [f"{o.name.split('.')[1]}: {option_type(o)} = ..." for o in _calls.OPTIONS if o.group in function.groups]
 
 
 def function_stub(title, function, decorator=""):
     name = title.split(".")[-1]
+    if not hasattr(function, "groups"):
+        signature = inspect.signature(function)
+        return f"def {name}({_calls.described(signature.parameters.values(), False)} -> {signature.return_annotation}: ..."
     line, _, words = function.__doc__.partition("\n\n")
     if title in OVERLOADS:
         return "\n".join(f"@overload\ndef {name}{line}: ..." for line in OVERLOADS[title])
-    if "**options" in line:
-        options = option_arguments(title.replace(".__init__", ""))
+    if re.search(r"\*\*\w+", line):
+        options = option_arguments(function)
         has_star = "*, " in line or not options
-        line = line.replace("**options", ("" if has_star else "*, ") + ", ".join(options)).replace(", )", ")")
+        line = re.sub(r"\*\*\w+", ("" if has_star else "*, ") + ", ".join(options), line).replace(", )", ")")
     return f"{decorator}def {line}:{doc_of(words)}"
 
 
 def doc_of(text):
     """The docstring without the list of options, which is shown with the groups."""
     text = re.split(r"\n\nOptions, |\n\nconfig: a cairn.Config", text.strip())[0].strip()
-    lines = [wrapped for line in text.split("\n") for wrapped in textwrap.wrap(line, 100)]
+    lines = [wrapped for line in re.split(r"\n(?= )", text) for wrapped in textwrap.wrap(line, 100)]
     if len(lines) < 2:
         return f'\n    """{lines[0]}"""' if lines else " ..."
     return '\n    """' + "\n    ".join(lines) + '\n    """'
@@ -105,20 +105,20 @@ def doc_of(text):
 def class_stub(name, cls):
     members = []
     for key, value in vars(cls).items():
-        if isinstance(value, property):
-            members.append(f"@property\ndef {key}(self) -> {value.fget.__doc__}:" + doc_of(value.__doc__))
-        elif key in SPECIAL:
-            members.append(SPECIAL[key].format(owner=name))
+        if isinstance(value, property) and key in cls._shown:
+            members.append(f"@property\ndef {key}(self) -> {cls._shown[key]}:" + doc_of(value.__doc__))
         elif isinstance(value, staticmethod):
             members.append(function_stub(f"{name}.{key}", value.__func__, "@staticmethod\n"))
-        elif callable(value) and (value.__doc__ or "").startswith(f"{key}("):
+        elif inspect.isfunction(value) and (hasattr(value, "groups") or key.startswith("__") and value.__annotations__):
             members.append(function_stub(f"{name}.{key}", value))
+        elif key in SPECIAL:
+            members.append(SPECIAL[key].format(owner=name))
     return f"class {name}:" + doc_of(cls.__doc__) + "\n" + textwrap.indent("\n".join(members), "    ")
 
 
 def options_stub(group):
     lines = [f"class {group_class(group)}(TypedDict, total=False):"]
-    for o in all_options():
+    for o in _calls.OPTIONS:
         if o.group == group:
             unit = f"{o.unit}, " if o.unit else ""
             needs = f", read while {o.needs}" if o.needs else ""
@@ -141,7 +141,7 @@ def stub(name, value):
 
 
 def stubs():
-    groups = dict.fromkeys(option.group for option in all_options())
+    groups = dict.fromkeys(option.group for option in _calls.OPTIONS)
     names = sorted(cairn.__all__, key=lambda name: (name != "Error", name))
     blocks = [options_stub(group) for group in groups] + [stub(name, getattr(cairn, name)) for name in names]
     return HEAD + "\n" + "\n\n".join(blocks) + "\n"

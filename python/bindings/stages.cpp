@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/disparity/confidence.hpp>
+#include <cairn/grouping/choose_objects.hpp>
+#include <cairn/grouping/object_hints.hpp>
+#include <cairn/image/gradient.hpp>
+#include <cairn/image/noise.hpp>
+#include <cairn/objects/locate.hpp>
+#include <cairn/objects/refine_objects.hpp>
+#include <cairn/regions/grow_near_to_far.hpp>
+#include <cairn/regions/grow_statistical.hpp>
+#include <variant>
+
+#include "bindings.hpp"
+#include "values.hpp"
+
+namespace cairn::python {
+namespace {
+
+// ---- a stage's parameters, by their types ----
+
+/// What a stage is called with.
+struct Given {
+  const Config& config;
+  const Exec& exec;
+  const py::args& values;
+  std::size_t next = 0;
+
+  py::object value() { return values[next++]; }
+};
+
+/// The next of the caller's arguments.
+template <class P>
+struct Passed {
+  py::detail::make_caster<P> made;
+  void take(Given& given) {
+    if (!made.load(given.value(), true))
+      throw py::cast_error("argument " + std::to_string(given.next) + " does not fit");
+  }
+  decltype(auto) get() { return py::detail::cast_op<P&>(made); }
+};
+/// A section of the configuration.
+template <class P>
+concept Section = requires(P& section) {
+  fields(section, [](auto&&...) {});
+};
+template <Section P>
+struct Passed<P> {
+  const P* section = nullptr;
+  void take(const Given& given) {
+    for_each_section(given.config, [&]<class Other>(const char*, const Other& other) {
+      if constexpr (std::is_same_v<Other, P>) section = &other;
+    });
+  }
+  const P& get() const { return *section; }
+};
+template <>
+struct Passed<Exec> {
+  const Exec* exec = nullptr;
+  void take(const Given& given) { exec = &given.exec; }
+  [[nodiscard]] const Exec& get() const { return *exec; }
+};
+/// The colours of the image before.
+template <>
+struct Passed<View<const Rgb>> {
+  View<const Rgb> rgb;
+  void take(const Given& given) {
+    rgb = py::object(given.values[given.next - 1]).cast<const Picture&>().rgb();
+  }
+  [[nodiscard]] View<const Rgb> get() const { return rgb; }
+};
+/// Two images of the same size, valid for the configuration. The source of the ground is irrelevant here.
+template <>
+struct Passed<StereoPair> {
+  std::optional<StereoPair> pair;
+  void take(Given& given) {
+    const auto& left = given.value().cast<const Picture&>();
+    const auto& right = given.value().cast<const Picture&>();
+    pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
+    Config any_ground = given.config;
+    any_ground.ground = {};
+    validate(any_ground, pair->size(), true);
+  }
+  [[nodiscard]] const StereoPair& get() const { return *pair; }
+};
+
+DisparityMap cloned(const DisparityMap& map, const Pool& pool) {
+  return {map.disparity_px.clone(pool), map.reject.clone(pool)};
+}
+Objects cloned(const Objects& objects, const Pool& pool) {
+  return {objects.labels.clone(pool), objects.list};
+}
+template <class P, class V>
+decltype(auto) argument(V&& value, const Exec& exec) {
+  if constexpr (std::is_reference_v<P> || std::is_copy_constructible_v<P>) {
+    return std::forward<V>(value);
+  } else {
+    return cloned(value, exec.pool);
+  }
+}
+
+template <class P>
+void note_group(py::list& groups) {
+  if constexpr (Section<P>) {
+    const Config all;
+    for_each_section(all, [&]<class Other>(const char* name, const Other&) {
+      if constexpr (std::is_same_v<Other, P>) groups.append(name);
+    });
+  }
+}
+
+/// A stage as `name(config, exec, arguments…)`; its sections are the groups of its keywords.
+template <class R, class... P>
+void stage(py::module_& m, const char* name, R (*function)(P...)) {
+  m.def(name, [function](const PyConfig& config, const Exec& exec, const py::args& values) {
+    Given given{config.config, exec, values};
+    std::tuple<Passed<std::remove_cvref_t<P>>...> passed;
+    return std::apply(
+        [&](auto&... p) {
+          (p.take(given), ...);
+          return released([&] { return function(argument<P>(p.get(), exec)...); });
+        },
+        passed);
+  });
+  py::list groups;
+  (note_group<std::remove_cvref_t<P>>(groups), ...);
+  m.attr("stage_groups")[name] = groups;
+}
+
+// ---- stages whose C++ functions take more, or other types ----
+
+using GreyOrSixteenths = std::variant<View<const std::int16_t>, View<const Gray>>;
+
+/// One row with as many pixels as the tree's superpixels have: only the image's area matters.
+Size size_of(const MergeTree& tree) {
+  std::int64_t area = 0;
+  for (int i = 0; i < tree.superpixels; ++i) area += tree.nodes[slot(i)].area;
+  return {static_cast<int>(area), 1};
+}
+
+template <Merges (*grow)(const RegionGraph&, const GrowCriteria&, const Exec&)>
+Numbers<std::int32_t> grown(const RegionGraph& graph, double mean_difference_max, double deviation_max,
+                            double sigma_min, int min_region_area, const Exec& exec) {
+  return {grow(graph, {mean_difference_max, deviation_max, sigma_min, min_region_area}, exec)};
+}
+
+Image<ObjectHint> hints(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
+                        const DisparityMap& disparity, View<const float> evidence_px, const Ground& ground,
+                        const Background& background, float noise, const Exec& exec) {
+  return hint_objects(superpixels.edges,
+                      {left, rgb, disparity.disparity_px, evidence_px, ground, background, noise}, exec);
+}
+
+Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
+                                   const DisparityMap& disparity, View<const float> evidence_px,
+                                   const Ground& ground, const Background& background, float noise,
+                                   const Exec& exec) {
+  const Image<ObjectHint> all =
+      hints(superpixels, left, rgb, disparity, evidence_px, ground, background, noise, exec);
+  Numbers<std::int16_t> numbers{{}, {all.height(), all.width(), 5}};
+  for (int y = 0; y < all.height(); ++y) {
+    std::for_each_n(all.row(y), all.width(), [&](const ObjectHint& h) {
+      numbers.values.insert(numbers.values.end(), {h.object, h.outline, h.to_x, h.to_y, h.size});
+    });
+  }
+  return numbers;
+}
+
+MergeTree merge_tree(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
+                     const DisparityMap& disparity, View<const float> evidence_px, const Ground& ground,
+                     const Background& background, float noise, const Exec& exec) {
+  const Image<ObjectHint> found =
+      hints(superpixels, left, rgb, disparity, evidence_px, ground, background, noise, exec);
+  const Cues cues{left, rgb, disparity.disparity_px, evidence_px, ground, background, noise, found};
+  return grow_merge_tree(superpixels, cues, same_thing_trees(), exec);
+}
+
+/// combine() takes a list of fixed length, so the verdicts are united into one.
+DisparityMap combined(View<const float> refined_px, const std::vector<View<const Reject>>& verdicts,
+                      const Exec& exec) {
+  Image<Reject> all(refined_px.size(), Reject::none, exec.pool);
+  for (const View<const Reject>& verdict : verdicts) {
+    for (int y = 0; y < all.height(); ++y) {
+      for (int x = 0; x < all.width(); ++x) all(x, y) |= verdict(x, y);
+    }
+  }
+  return combine(copied(refined_px, exec.pool), {all}, exec);
+}
+
+Ground ground_of(const std::variant<const DisparityMap*, View<const float>>& disparity,
+                 const std::optional<StereoRig>& rig, View<const Gray> left, const GroundConfig& config,
+                 const Exec& exec) {
+  validate(config, rig.has_value());
+  if (const auto* map = std::get_if<const DisparityMap*>(&disparity))
+    return fit_ground(**map, rig, config, exec);
+  return fit_ground(std::get<View<const float>>(disparity), rig, config, exec, left);
+}
+
+Ground likely(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
+              const GroundConfig& config, const Exec& exec) {
+  validate(config, rig.has_value());
+  return likely_ground(ground, disparity, rig, config, exec);
+}
+
+}  // namespace
+
+void bind_stages(py::module_& m) {
+  m.attr("stage_groups") = py::dict();
+  stage(m, "find_epipolar_offset", &find_epipolar_offset);
+  stage(m, "shift_rows", &shift_rows);
+  stage(m, "correct_epipolar", &correct_epipolar);
+  stage(m, "match", &match);
+  stage(m, "match_windows", &match_windows);
+  stage(m, "match_semi_global", &match_semi_global);
+  stage(m, "refine_subpixel", &refine_subpixel);
+
+  stage(m, "reject_inconsistent", &reject_inconsistent);
+  stage(m, "reject_ambiguous", &reject_ambiguous);
+  stage(m, "reject_flat", &reject_flat);
+  stage(m, "reject_textureless", &reject_textureless);
+  stage(m, "combine", &combined);
+  stage(m, "external_disparity", &external_disparity);
+  stage(m, "noise_sigma", &noise_sigma);
+  stage(m, "find_evidence", &find_evidence);
+  stage(m, "reject_speckles", &reject_speckles);
+  stage(
+      m, "estimate_confidence",
+      +[](const Matches& matches, const DisparityMap& map, const MatchConfig& config, const Exec& exec) {
+        return estimate_confidence(matches, map, confidence_model(config.method), exec);
+      });
+
+  stage(m, "fit_ground", &ground_of);
+  stage(m, "reject_below_ground", &reject_below_ground);
+  stage(m, "label_floor", &label_floor);
+  stage(m, "likely_ground", &likely);
+  stage(m, "floor_under_reflections", &floor_under_reflections);
+  stage(m, "fit_background", &fit_background);
+
+  stage(
+      m, "gradient", +[](const GreyOrSixteenths& image, float smoothing_sigma, const Exec& exec) {
+        return std::visit([&](auto view) { return gradient(view, smoothing_sigma, exec); }, image);
+      });
+  stage(m, "edge_strength", &edge_strength);
+  stage(m, "quantised", &quantised);
+  stage(m, "watershed", &watershed);
+  stage(
+      m, "build_graph",
+      +[](View<const RegionId> labels, int count, const GreyOrSixteenths& values,
+          View<const std::uint8_t> floor, const Exec& exec) {
+        if (const auto* grey = std::get_if<View<const Gray>>(&values))
+          return build_graph(labels, count, *grey, exec);
+        return build_graph(labels, count, std::get<View<const std::int16_t>>(values), floor, exec);
+      });
+  stage(m, "grow_statistical", &grown<&grow_statistical>);
+  stage(m, "grow_near_to_far", &grown<&grow_near_to_far>);
+  stage(m, "apply_merges", &apply_merges);
+  stage(m, "segment_intensity", &segment_intensity);
+  stage(m, "segment_disparity", &segment_disparity);
+
+  stage<Superpixels, View<const Gray>, View<const Rgb>, View<const float>>(m, "cut_superpixels",
+                                                                           &cut_superpixels);
+  stage(m, "segmentation_of", &segmentation_of);
+  stage(m, "hint_objects", &hint_numbers);
+  stage(m, "grow_merge_tree", &merge_tree);
+  stage(
+      m, "choose_objects", +[](const MergeTree& tree, const ObjectsConfig& config, const Exec& exec) {
+        return choose_objects(tree, whole_object_trees(), limits_of(config, size_of(tree)), exec);
+      });
+  stage(m, "groups_of", &groups_of);
+
+  stage(m, "fuse", &fuse);
+  stage<Objects, View<const RegionId>, const std::vector<bool>&>(m, "measure", &measure);
+  stage<Objects, View<const RegionId>, const std::vector<float>&>(m, "measure_chosen", &measure);
+  stage(m, "refine_objects", &refine_objects);
+  stage(m, "locate", &locate);
+  stage(
+      m, "label_space",
+      +[](const Objects& objects, const DisparityMap& disparity, View<const float> confidence,
+          const Ground& ground, const Background& background, const Superpixels& superpixels,
+          View<const float> seen_px, const std::optional<StereoRig>& rig, const GroundConfig& config,
+          const Exec& exec) {
+        return label_space(
+            {disparity, seen_px, confidence, ground, background, superpixels.labels, objects.labels}, rig,
+            config, exec);
+      });
+}
+
+}  // namespace cairn::python
