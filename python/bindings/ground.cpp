@@ -122,11 +122,16 @@ void bind_ground(py::module_& m) {
       m, "likely_ground", {"ground"},
       "The ground itself, or where it was refused for want of evidence, one fitted to all disparities: a "
       "plain floor "
-      "has no texture that would vouch for it.",
-      [](const Call& call, const Ground& ground, const DisparityInput& disparity, const KnownRig& rig) {
-        return likely_ground(ground, disparity.map(), rig.rig(), ground_config(call.config, rig), call.exec);
+      "has no texture that would vouch for it. evidence_px, as find_evidence() gives it, and left refuse planes that "
+      "textured disparities show to be upright, and allow a floor that mirrors.",
+      [](const Call& call, const Ground& ground, const DisparityInput& disparity, const KnownRig& rig,
+         const std::optional<Disparities>& evidence_px, const std::optional<Picture>& left) {
+        return likely_ground(ground, disparity.map(), rig.rig(), ground_config(call.config, rig), call.exec,
+                             evidence_px ? evidence_px->view() : View<const float>{},
+                             left ? left->gray() : View<const Gray>{});
       },
-      "ground"_a, "disparity"_a, "rig"_a = py::none());
+      "ground"_a, "disparity"_a, "rig"_a = py::none(), py::kw_only(), "evidence_px"_a = py::none(),
+      "left"_a = py::none());
   stage(
       m, "floor_under_reflections", {},
       "(H, W) float32, px: the disparities of what is seen: those of the ground where a match was rejected "
