@@ -106,7 +106,7 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const float noise = noise_sigma(pair.left(), exec);
   const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
   const Ground seen = fit_ground(evidence_px, rig, config.ground, exec, pair.left());
-  const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec);
+  const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec, evidence_px, pair.left());
   disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
   disparity = reject_speckles(std::move(disparity), config.speckle, exec);
   const Background background = fit_background(evidence_px, ground, rig, config.background, exec);

@@ -42,10 +42,10 @@ struct SpaceCues {
 };
 
 /// Classifies each pixel. obstacle: part of an object, or above the floor (without a floor: in front of the
-/// background) by more than config.margin, with a disparity more likely right than wrong. floor: outside of
-/// objects, in a superpixel with at least a fifth of its pixels known and three fifths of these on the floor,
-/// except for pixels that are off the floor themselves. Holes in such a superpixel are floor too. Everything
-/// else is unknown.
+/// walls; without either: nearer than infinity) by more than config.margin, with a disparity more likely right
+/// than wrong. floor: outside of objects, in a superpixel with at least a fifth of its pixels known and three
+/// fifths of these on the floor, except for pixels that are off the floor themselves. Holes in such a
+/// superpixel are floor too. Everything else is unknown.
 Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
                          const GroundConfig& config, const Exec& exec);
 

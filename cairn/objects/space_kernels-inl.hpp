@@ -29,10 +29,9 @@ inline void look_behind(const Backdrop& backdrop, int y, int width, const Backdr
       barrier[x] = below_horizon ? d : farthest;
     }
   } else {
-    const float most = backdrop.walls.empty() ? kNone : farthest;
     for (int x = 0; x < width; ++x) {
       free_floor[x] = kNone;
-      barrier[x] = wall[x] > most ? wall[x] : most;
+      barrier[x] = wall[x] > farthest ? wall[x] : farthest;
     }
   }
 }

@@ -23,8 +23,7 @@ struct Backdrop {
 struct BackdropRow {
   float* free_floor;  // NaN above the horizon, without a floor, and where a wall hides the floor
   float* wall;        // of the nearest wall, −∞ without walls
-  float*
-      barrier;  // what an obstacle must be in front of: the floor or, without one, the walls; without any, NaN
+  float* barrier;     // what an obstacle must be in front of: the floor, else the walls, else infinity
 };
 
 /// The rows of label_space().

@@ -60,8 +60,8 @@ MatchedScene match_scene(Given& given, const std::optional<StereoRig>& rig, cons
   found.epipolar = matched.epipolar;
   if (config.fusion.method == FusionMethod::hierarchy) {
     found.ground = stage("fit_ground", fit_ground(scene.evidence_px, rig, config.ground, exec, given.left));
-    found.ground =
-        stage("likely_ground", likely_ground(found.ground, matched.disparity, rig, config.ground, exec));
+    found.ground = stage("likely_ground", likely_ground(found.ground, matched.disparity, rig, config.ground,
+                                                        exec, scene.evidence_px, given.left));
   } else {
     found.ground = stage("fit_ground", fit_ground(matched.disparity, rig, config.ground, exec));
   }

@@ -35,6 +35,10 @@ constexpr double kLeastRise = 0.5;      // share of its slope that the matches c
 constexpr int kFewestPairs = 8;         // of matches, to judge the slope
 constexpr double kAlike = 4;            // number of neighbouring matches with the same error
 constexpr double kLeastLikeness = 7.5;  // standard deviations: similarity of mirror images to their originals
+constexpr double kConfirmedLikeness = 5;  // the same, after a fit to all matches that confirm the plane
+constexpr double kNoLikeness = 2;         // the same; less is chance
+constexpr double kLeastSurplus = 6;       // standard deviations: of matches on a mirror over those beside it
+constexpr int kFewestSeen = 3;            // originals seen for each one that is missing, of a mirror
 constexpr float kNearest = 1.25F;  // times the nearest match: the nearest a floor may be at the lower border
 constexpr float kApart = 4;        // px; least distance from an original
 constexpr int kLowerSurface = 3;   // a plane below the best counts with a third of its score
@@ -47,6 +51,10 @@ constexpr std::size_t kMirrorScreening = 256;
 constexpr int kDraws = 8192;
 constexpr std::size_t kGuesses = 1024;
 constexpr std::size_t kFinalists = 24;
+constexpr std::size_t kMirrorGuesses = 512;
+constexpr std::size_t kMirrorFinalists = 32;
+constexpr std::size_t kMirrorClimbs = 6;
+constexpr int kClimbs = 6;  // rounds for each step
 
 /// Matches, one array per coordinate, so that several are judged at once.
 struct Points {
@@ -236,6 +244,25 @@ class MatchIndex {
   std::vector<std::size_t> members_;
 };
 
+/// The matches of a map that the search uses.
+struct Sampled {
+  View<const float> disparity_px;
+  int step;
+  Points points;
+  MatchIndex places;
+
+  Sampled(View<const float> map, std::int64_t valid)
+      : disparity_px(map),
+        step(grid_step(valid)),
+        points(sample(map, step)),
+        places(points, map.size(), step) {}
+  Sampled(const Sampled&) = delete;  // the index refers to the points
+  Sampled& operator=(const Sampled&) = delete;
+  Sampled(Sampled&&) = delete;
+  Sampled& operator=(Sampled&&) = delete;
+  ~Sampled() = default;
+};
+
 /// Calls visit(number, x, y, d) for each match below the plane, with the position and the disparity at which
 /// the original would be seen if the plane is a mirror. A point's distance from the plane, in units of its
 /// depth, is the difference of the disparities divided by the normal's length.
@@ -367,11 +394,15 @@ GroundPlane refined(GroundPlane plane, const Points& points, const std::array<fl
   return plane;
 }
 
+/// rising: certainly; flat: more likely than rising; unknown: too few matches, or too uncertain.
+enum class Slope : std::uint8_t { rising, flat, unknown };
+
 /// Whether the matches on the plane rise towards the camera as the plane does: disparities some rows apart must
 /// differ by more than noise explains. This distinguishes a floor from a plane across upright surfaces at different
 /// depths, for example an object in front of a wall, each of which has one disparity from top to bottom.
-bool rises(const GroundPlane& plane, View<const float> disparity_px, const Points& points,
-           const Kernels& run) {
+Slope slope_on(const GroundPlane& plane, const Sampled& seen, const Kernels& run) {
+  const View<const float> disparity_px = seen.disparity_px;
+  const Points& points = seen.points;
   double nn = 0;  // n rows apart, d px apart
   double nd = 0;
   double dd = 0;
@@ -391,11 +422,13 @@ bool rises(const GroundPlane& plane, View<const float> disparity_px, const Point
       dd += apart * apart;
     }
   }
-  if (pairs < kFewestPairs) return false;
+  if (pairs < kFewestPairs) return Slope::unknown;
   const double slope = nd / nn;
   const double variance = std::max(0.0, dd - slope * nd) / pairs;
   const double uncertainty = 2 * std::sqrt(kAlike * variance / nn);  // two standard deviations of the slope
-  return slope - uncertainty >= kLeastRise * double{plane.b};
+  const double least = kLeastRise * double{plane.b};
+  if (slope - uncertainty >= least) return Slope::rising;
+  return slope < least ? Slope::flat : Slope::unknown;
 }
 
 struct Candidate {
@@ -435,56 +468,242 @@ void for_each_finalist(const std::vector<PlaneHypothesis>& list, const Points& p
   }
 }
 
-Candidates candidates(View<const float> disparity_px, const std::vector<PlaneHypothesis>& list,
-                      const Points& points, const MatchIndex& places, const Camera& camera,
-                      const Kernels& run) {
+/// The local contrast of the left image, computed when it is first needed.
+class Contrast {
+ public:
+  Contrast(View<const Gray> left, const Exec& exec) : left_(left), exec_(exec) {}
+  [[nodiscard]] bool is_known() const { return !left_.empty(); }
+  [[nodiscard]] View<const float> view() {
+    if (contrast_.empty()) contrast_ = local_contrast(left_, exec_);
+    return contrast_;
+  }
+
+ private:
+  View<const Gray> left_;
+  const Exec& exec_;
+  Image<float> contrast_;
+};
+
+/// The tally with the mirror images among the matches.
+Tally tally_with_mirrored(const GroundPlane& plane, const Sampled& seen, const Camera& camera,
+                          const Kernels& run) {
+  Tally judged = tally(plane, seen.points, camera.infinity, run);
+  judged.mirrored = reflections(plane, seen.points, seen.places, camera, run).seen;
+  return judged;
+}
+
+/// Whether textured matches show the plane to be upright. Smooth matches can rise across what has no texture.
+bool is_upright(const GroundPlane& plane, const Sampled& textured, const Camera& camera, const Kernels& run) {
+  return tally_with_mirrored(plane, textured, camera, run).convincing() &&
+         slope_on(plane, textured, run) == Slope::flat;
+}
+
+/// `textured` may be null.
+Candidates candidates(const std::vector<PlaneHypothesis>& list, const Sampled& seen, const Sampled* textured,
+                      Contrast& contrast, const Camera& camera, const Kernels& run) {
   Candidates found;
-  for_each_finalist(list, points, found.walls, run, [&](const GroundPlane& plane) {
-    Tally judged = tally(plane, points, camera.infinity, run);
-    judged.mirrored = reflections(plane, points, places, camera, run).seen;
+  for_each_finalist(list, seen.points, found.walls, run, [&](const GroundPlane& plane) {
+    const Tally judged = tally_with_mirrored(plane, seen, camera, run);
     if (!judged.convincing()) return;
-    if (camera.may_stand_on(plane) && rises(plane, disparity_px, points, run)) {
-      found.floors.push_back({plane, judged});
-    } else {
+    if (!camera.may_stand_on(plane) || slope_on(plane, seen, run) != Slope::rising ||
+        (textured && is_upright(plane, *textured, camera, run))) {
       found.walls.push_back(plane);
+      return;
     }
+    // A plane that only its mirror images support must be a mirror indeed.
+    const bool is_carried = judged.score() < judged.mirrored;
+    const bool is_no_mirror =
+        is_carried && contrast.is_known() &&
+        likeness(plane, seen.points, seen.places, camera, contrast.view(), run) < kNoLikeness;
+    if (!is_no_mirror) found.floors.push_back({plane, judged});
   });
   std::stable_sort(found.floors.begin(), found.floors.end(),
                    [](const Candidate& p, const Candidate& q) { return p.tally.rank() > q.tally.rank(); });
   return found;
 }
 
-/// A floor that shows hardly more than mirror images: of the planes with some matches of their own, the one
-/// whose mirror images are most similar to their originals.
-std::optional<GroundPlane> mirror(View<const Gray> left, std::vector<PlaneHypothesis> list,
-                                  const Points& points, const std::vector<GroundPlane>& walls,
-                                  const MatchIndex& places, const Camera& camera, const Kernels& run,
-                                  const Exec& exec) {
-  const Points few = about(kMirrorScreening, points);
+/// Whether a floor may be as near as this at the lower border, given the nearest match.
+bool is_within_reach(const GroundPlane& plane, const Points& points, Size image, const Camera& camera) {
+  const float nearest = *std::max_element(points.d.begin(), points.d.end());
+  const auto last = static_cast<float>(image.height - 1);
+  const auto right = static_cast<float>(image.width - 1);
+  const float bottom = std::max(plane.disparity_px(0, last), plane.disparity_px(right, last));
+  return bottom + camera.infinity <= kNearest * (nearest + camera.infinity);
+}
+
+/// A floor that shows little but mirror images: of the planes with matches of their own, the one whose mirror
+/// images are most similar to their originals.
+std::optional<GroundPlane> mirror(std::vector<PlaneHypothesis> list, const Sampled& seen,
+                                  View<const float> contrast, const std::vector<GroundPlane>& walls,
+                                  const Camera& camera, const Kernels& run) {
+  const Points few = about(kMirrorScreening, seen.points);
   for (PlaneHypothesis& guess : list) {
     const Tally judged = tally(guess.plane, few, camera.infinity, run);
-    const Reflections found = reflections(guess.plane, few, places, camera, run);
+    const Reflections found = reflections(guess.plane, few, seen.places, camera, run);
     guess.score = judged.on - judged.near + found.seen - found.missing;
   }
   std::stable_sort(list.begin(), list.end(),
                    [](const PlaneHypothesis& p, const PlaneHypothesis& q) { return p.score > q.score; });
-  const Image<float> contrast = local_contrast(left, exec);
-  const float nearest = *std::max_element(points.d.begin(), points.d.end());
   std::optional<GroundPlane> best;
   double most = kLeastLikeness;
-  for_each_finalist(list, points, walls, run, [&](const GroundPlane& plane) {
-    const auto last = static_cast<float>(left.height() - 1);
-    const auto right = static_cast<float>(left.width() - 1);
-    const float bottom = std::max(plane.disparity_px(0, last), plane.disparity_px(right, last));
-    if (bottom + camera.infinity > kNearest * (nearest + camera.infinity)) return;
-    const Tally judged = tally(plane, points, camera.infinity, run);
+  for_each_finalist(list, seen.points, walls, run, [&](const GroundPlane& plane) {
+    if (!is_within_reach(plane, seen.points, contrast.size(), camera)) return;
+    const Tally judged = tally(plane, seen.points, camera.infinity, run);
     const double chance = std::sqrt(judged.on + judged.near);
     if (judged.on - judged.near < 2 * chance || !camera.may_stand_on(plane)) return;
-    const double alike = likeness(plane, points, places, camera, contrast, run);
+    const double alike = likeness(plane, seen.points, seen.places, camera, contrast, run);
     if (alike < most) return;
     most = alike;
     best = plane;
   });
+  return best;
+}
+
+/// The plane in which match i is the mirror image of match j: half-way between both, and square to the line
+/// through them.
+std::optional<GroundPlane> plane_between(const Points& points, std::size_t i, std::size_t j,
+                                         const Camera& camera) {
+  const auto point = [&](std::size_t k) {  // in baselines
+    const float z = 1 / (points.d[k] + camera.infinity);
+    return Vec3{(points.x[k] - camera.cx_px) / camera.focal_px * z,
+                (points.y[k] - camera.cy_px) / camera.focal_px * z, z};
+  };
+  if (!(std::min(points.d[i], points.d[j]) + camera.infinity > kTolerance)) return std::nullopt;
+  const Vec3 image = point(i);
+  const Vec3 original = point(j);
+  const Vec3 n{image.x - original.x, image.y - original.y, image.z - original.z};  // its length cancels
+  const float twice_height =
+      n.x * (image.x + original.x) + n.y * (image.y + original.y) + n.z * (image.z + original.z);
+  if (!(twice_height > 0)) return std::nullopt;
+  GroundPlane plane;
+  plane.a = 2 * n.x / (camera.focal_px * twice_height);
+  plane.b = 2 * n.y / (camera.focal_px * twice_height);
+  plane.c = 2 * n.z / twice_height - plane.a * camera.cx_px - plane.b * camera.cy_px - camera.infinity;
+  return plane;
+}
+
+/// Planes between pairs of matches of about the same column, of which one may be the mirror image of the other.
+std::vector<PlaneHypothesis> mirror_guesses(const Points& points, const Camera& camera) {
+  constexpr int kColumn = 8;  // px
+  const float right = *std::max_element(points.x.begin(), points.x.end());
+  std::vector<std::vector<std::uint32_t>> columns(static_cast<std::size_t>(right) / kColumn + 1);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    columns[static_cast<std::size_t>(points.x[i]) / kColumn].push_back(static_cast<std::uint32_t>(i));
+  std::vector<PlaneHypothesis> list;
+  for (int draw = 0; draw < kDraws && list.size() < kMirrorGuesses; ++draw) {
+    const std::uint64_t bits = mixed(static_cast<std::uint64_t>(draw));
+    const auto i = static_cast<std::size_t>((bits & 0xFFFFFFU) % points.size());
+    const auto& column = columns[static_cast<std::size_t>(points.x[i]) / kColumn];
+    const std::size_t j = column[static_cast<std::size_t>(bits >> 24U & 0xFFFFFFU) % column.size()];
+    // The image is below its original, and as far away or farther.
+    if (points.y[i] < points.y[j] + 2 * kApart || points.d[i] > points.d[j] + kTolerance) continue;
+    const auto plane = plane_between(points, i, j, camera);
+    if (plane && camera.may_stand_on(*plane)) list.push_back({*plane, i, j, 0});
+  }
+  return list;
+}
+
+/// How much a plane is a mirror: its likeness, or 0 where it may be no floor.
+class MirrorJudge {
+ public:
+  MirrorJudge(const Sampled& seen, View<const float> contrast, const Camera& camera, const Kernels& run)
+      : seen_(seen), contrast_(contrast), camera_(camera), run_(run) {}
+
+  [[nodiscard]] double operator()(const GroundPlane& plane, const Points& points) const {
+    if (!camera_.may_stand_on(plane) || !is_within_reach(plane, seen_.points, contrast_.size(), camera_))
+      return 0;
+    const Reflections found = reflections(plane, points, seen_.places, camera_, run_);
+    if (found.seen == 0 || kFewestSeen * found.missing > found.seen) return 0;
+    return likeness(plane, points, seen_.places, camera_, contrast_, run_);
+  }
+  [[nodiscard]] double operator()(const GroundPlane& plane) const { return (*this)(plane, seen_.points); }
+
+  /// Whether climbing from both would lead to the same plane.
+  [[nodiscard]] bool are_alike(const GroundPlane& p, const GroundPlane& q) const {
+    const auto last = static_cast<float>(contrast_.height() - 1);
+    const auto apart = [&](float y) {
+      return std::abs(p.disparity_px(camera_.cx_px, y) - q.disparity_px(camera_.cx_px, y));
+    };
+    return std::max(apart(last / 2), apart(last)) <= kNear;
+  }
+
+  /// Moves the plane in small steps while it becomes a better mirror. Returns its likeness.
+  double climb(GroundPlane& plane) const {
+    const float middle = 0.5F * static_cast<float>(contrast_.height());
+    const auto last = static_cast<float>(contrast_.height() - 1);
+    const float half_width = 0.5F * static_cast<float>(contrast_.width());
+    double most = (*this)(plane);
+    for (const float step : {4.0F, 2.0F, 1.0F, 0.5F}) {  // px, at the middle row, the last row, the sides
+      bool moved = true;
+      for (int round = 0; moved && round < kClimbs; ++round) {
+        moved = false;
+        for (const auto& [at_middle, at_last, at_side] : kSteps) {
+          const float up = plane.disparity_px(camera_.cx_px, middle) + at_middle * step;
+          const float down = plane.disparity_px(camera_.cx_px, last) + at_last * step;
+          GroundPlane next;
+          next.a = plane.a + at_side * step / half_width;
+          next.b = (down - up) / (last - middle);
+          next.c = up - next.b * middle - next.a * camera_.cx_px;
+          const double alike = (*this)(next);
+          if (!(alike > most)) continue;
+          most = alike;
+          plane = next;
+          moved = true;
+        }
+      }
+    }
+    return most;
+  }
+
+ private:
+  static constexpr float kNear = 2;  // px
+  static constexpr std::array<std::array<float, 3>, 6> kSteps{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+
+  const Sampled& seen_;
+  View<const float> contrast_;
+  const Camera& camera_;
+  const Kernels& run_;
+};
+
+/// A floor that is known by what it mirrors, of which textured matches tell, and by smooth matches of its own,
+/// which both must confirm: neither is enough by itself.
+std::optional<GroundPlane> confirmed_mirror(std::vector<PlaneHypothesis> list, const Sampled& seen,
+                                            const Sampled& textured, View<const float> contrast,
+                                            const Camera& camera, const Kernels& run) {
+  const MirrorJudge judge(textured, contrast, camera, run);
+  const std::vector<PlaneHypothesis> between = mirror_guesses(textured.points, camera);
+  list.insert(list.end(), between.begin(), between.end());
+  const Points few = about(kMirrorScreening, textured.points);
+  for (PlaneHypothesis& guess : list) guess.score = static_cast<int>(1000 * judge(guess.plane, few));
+  const auto better = [](const PlaneHypothesis& p, const PlaneHypothesis& q) { return p.score > q.score; };
+  std::stable_sort(list.begin(), list.end(), better);
+  list.resize(std::min(list.size(), kMirrorFinalists));
+  for (PlaneHypothesis& guess : list) guess.score = static_cast<int>(1000 * judge(guess.plane));
+  std::stable_sort(list.begin(), list.end(), better);
+  std::optional<GroundPlane> best;
+  double most = kLeastLikeness;
+  std::vector<GroundPlane> starts;
+  for (const PlaneHypothesis& guess : list) {
+    if (starts.size() == kMirrorClimbs) break;
+    if (std::any_of(starts.begin(), starts.end(),
+                    [&](const GroundPlane& start) { return judge.are_alike(start, guess.plane); })) {
+      continue;
+    }
+    starts.push_back(guess.plane);
+    GroundPlane plane = guess.plane;
+    const double alike = judge.climb(plane);
+    if (alike < most) continue;
+    plane = refined(plane, seen.points, std::array{1.0F, 0.75F, 1.0F, 0.5F, 0.5F, 0.5F}, run);
+    const Tally judged = tally(plane, seen.points, camera.infinity, run);
+    const double chance = std::sqrt(judged.on + judged.near);
+    const bool is_confirmed = judged.on - judged.near >= kLeastSurplus * chance &&
+                              slope_on(plane, seen, run) == Slope::rising &&
+                              judge(plane) >= kConfirmedLikeness;
+    if (!is_confirmed) continue;
+    most = alike;
+    best = plane;
+  }
   return best;
 }
 
@@ -567,32 +786,43 @@ Ground refused(Refusal why) {
 
 }  // namespace
 
-Ground find_floor(View<const float> disparity_px, View<const Gray> left, const std::optional<StereoRig>& rig,
+Ground find_floor(View<const float> disparity_px, const FloorCues& cues, const std::optional<StereoRig>& rig,
                   const Exec& exec) {
+  const auto enough = [](View<const float> map, std::int64_t valid) {
+    const auto least = kLeastMatches * static_cast<double>(map.size().area());
+    return valid >= kFewestMatches && static_cast<double>(valid) >= least;
+  };
   const std::int64_t valid = count_valid(disparity_px, exec);
-  const auto least = kLeastMatches * static_cast<double>(disparity_px.size().area());
-  if (valid < kFewestMatches || static_cast<double>(valid) < least) return refused(Refusal::too_few_matches);
-  const int step = grid_step(valid);
-  const Points points = sample(disparity_px, step);
-  if (points.size() < kFewestMatches) return refused(Refusal::too_few_matches);
+  if (!enough(disparity_px, valid)) return refused(Refusal::too_few_matches);
+  const Sampled seen(disparity_px, valid);
+  if (seen.points.size() < kFewestMatches) return refused(Refusal::too_few_matches);
+  std::optional<Sampled> textured;
+  if (!cues.textured_px.empty()) {
+    const std::int64_t of_them = count_valid(cues.textured_px, exec);
+    if (enough(cues.textured_px, of_them)) textured.emplace(cues.textured_px, of_them);
+  }
+  const Sampled* const if_textured = textured ? &*textured : nullptr;
+  Contrast contrast(cues.left, exec);
 
   const Camera camera(disparity_px.size(), rig);
-  const MatchIndex places(points, disparity_px.size(), step);
   const Kernels run(exec);
-  const std::vector<PlaneHypothesis> list = guesses(points, camera, run);
-  const Candidates found = candidates(disparity_px, list, points, places, camera, run);
+  const std::vector<PlaneHypothesis> list = guesses(seen.points, camera, run);
+  const Candidates found = candidates(list, seen, if_textured, contrast, camera, run);
   std::optional<GroundPlane> best;
   if (!found.floors.empty()) {
-    best = choose(found.floors, points, camera).plane;
-  } else if (!left.empty()) {
-    best = mirror(left, list, points, found.walls, places, camera, run, exec);
+    best = choose(found.floors, seen.points, camera).plane;
+  } else if (contrast.is_known() && if_textured) {
+    best = confirmed_mirror(list, seen, *if_textured, contrast.view(), camera, run);
+  } else if (contrast.is_known()) {
+    best = mirror(list, seen, contrast.view(), found.walls, camera, run);
   }
   if (!best) {
-    return refused(!found.walls.empty() || faces_a_wall(points, camera, run) ? Refusal::implausible
-                                                                             : Refusal::no_plane);
+    return refused(!found.walls.empty() || faces_a_wall(seen.points, camera, run) ? Refusal::implausible
+                                                                                  : Refusal::no_plane);
   }
-  const auto plane = refined(*best, points, std::array{1.0F, 0.5F, 0.5F, 0.5F}, run);
-  return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, points), Refusal::none};
+  const auto plane = refined(*best, seen.points, std::array{1.0F, 0.5F, 0.5F, 0.5F}, run);
+  return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, seen.points),
+          Refusal::none};
 }
 
 }  // namespace cairn

@@ -104,7 +104,7 @@ Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>
                   const GroundConfig& config, const Exec& exec, View<const Gray> left) {
   switch (config.source) {
     case GroundSource::automatic:
-      return find_floor(disparity_px, left, rig, exec);
+      return find_floor(disparity_px, {.left = left}, rig, exec);
     case GroundSource::points:
       return ground_from_points(config.known.points);
     case GroundSource::pose:
@@ -117,9 +117,10 @@ Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>
 }
 
 Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
-                     const GroundConfig& config, const Exec& exec) {
+                     const GroundConfig& config, const Exec& exec, View<const float> textured_px,
+                     View<const Gray> left) {
   if (ground.plane || config.source != GroundSource::automatic) return ground;
-  return fit_ground(disparity.disparity_px, rig, config, exec);
+  return find_floor(disparity.disparity_px, {textured_px, left}, rig, exec);
 }
 
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,

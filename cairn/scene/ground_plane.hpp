@@ -65,7 +65,8 @@ Ground fit_ground(const DisparityMap& disparity, const std::optional<StereoRig>&
                   const GroundConfig& config, const Exec& exec);
 
 /// The same from bare disparities, NaN = hole, for example from trusted ones only. `left`, if given, also
-/// allows a floor that mirrors so well that it has hardly any disparities of its own.
+/// allows a floor that mirrors so well that it has hardly any disparities of its own, and refuses one that only
+/// supposed mirror images support.
 Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>& rig,
                   const GroundConfig& config, const Exec& exec, View<const Gray> left = {});
 
@@ -77,9 +78,11 @@ Ground ground_from_points(const std::vector<PointPair>& points);
 void validate(const GroundConfig& config, bool has_rig);
 
 /// `ground`, or, if that was refused for lack of support, a ground fitted to all disparities: a floor without
-/// texture has no textured disparities.
+/// texture has no textured disparities. `textured_px` and `left`, if given, refuse planes that textured
+/// disparities show to be upright, and allow a floor that both its mirror images and its own disparities show.
 Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
-                     const GroundConfig& config, const Exec& exec);
+                     const GroundConfig& config, const Exec& exec, View<const float> textured_px = {},
+                     View<const Gray> left = {});
 
 /// Rejects matches below the floor, which are reflections: d < d_ground − margin → Reject::below_ground. A
 /// surface seen beyond the edge of the floor is kept: at least 2 % of the image, with steps of at most 0.2

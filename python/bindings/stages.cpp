@@ -197,9 +197,10 @@ Ground ground_of(const std::variant<const DisparityMap*, View<const float>>& dis
 }
 
 Ground likely(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
-              const GroundConfig& config, const Exec& exec) {
+              View<const float> evidence_px, View<const Gray> left, const GroundConfig& config,
+              const Exec& exec) {
   validate(config, rig.has_value());
-  return likely_ground(ground, disparity, rig, config, exec);
+  return likely_ground(ground, disparity, rig, config, exec, evidence_px, left);
 }
 
 }  // namespace

@@ -121,9 +121,11 @@ def label_floor(disparity: DisparityLike, ground: Ground, rig: RigLike = None) -
     """(H, W) uint8: 255 where the disparity is the floor's, else 0. None where there is no ground or label_floor is off."""
 
 
-def likely_ground(ground: Ground, disparity: DisparityLike, rig: RigLike = None) -> Ground:
-    """The ground itself, or where it was refused for want of evidence, one fitted to all disparities: a plain floor has no
-    texture that would vouch for it."""
+def likely_ground(ground: Ground, disparity: DisparityLike, rig: RigLike = None, *,
+                  evidence_px: Optional[DisparitiesLike] = None, left: Optional[ImageLike] = None) -> Ground:
+    """The ground itself, or if it was refused for lack of support, one fitted to all disparities: a plain floor has no
+    textured disparities. evidence_px, as find_evidence() gives it, and left refuse planes that textured disparities show
+    to be upright, and allow a floor that mirrors."""
 
 
 def floor_under_reflections(disparity: DisparityLike, ground: Ground) -> NDArray[numpy.float32]:

@@ -54,7 +54,8 @@ def by_hierarchy(sample):
     matches = cairn.match_semi_global(sample.left, sample.right, num_disparities=32)
     disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches)])
     evidence = cairn.find_evidence(sample.left, disparity, noise)
-    ground = cairn.likely_ground(cairn.fit_ground(evidence, rig, left=sample.left), disparity, rig)
+    seen = cairn.fit_ground(evidence, rig, left=sample.left)
+    ground = cairn.likely_ground(seen, disparity, rig, evidence_px=evidence, left=sample.left)
     disparity = cairn.reject_below_ground(disparity, ground, rig)
     disparity = cairn.reject_speckles(disparity)
     seen = cairn.floor_under_reflections(disparity, ground)
@@ -203,6 +204,9 @@ def test_mismatched_arguments_are_refused(sample):
         lambda: cairn.measure_chosen(labels, scores, frame.disparity_map, half, 1),
         lambda: cairn.measure_chosen(labels, scores, frame.disparity_map, sample.left, 1, min_area=1),
         lambda: cairn.likely_ground(frame.ground, frame.disparity_map, source="points"),
+        lambda: cairn.likely_ground(frame.ground, frame.disparity_map, left=half),
+        lambda: cairn.likely_ground(frame.ground, frame.disparity_map, evidence_px=frame.disparity[1:]),
+        lambda: cairn.fit_ground(frame.disparity, left=half),
         lambda: cairn.combine(frame.disparity, [frame.reject[:, 1:]]),
         lambda: cairn.segment_disparity(frame.disparity_map, frame.floor[1:]),
         lambda: cairn.build_graph(labels - 1, sample.gray()[0]),

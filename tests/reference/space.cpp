@@ -12,7 +12,7 @@ struct Behind {
   std::optional<float> floor;       // not above the horizon
   std::optional<float> wall;        // the nearest
   std::optional<float> free_floor;  // not behind a wall
-  std::optional<float> barrier;     // what an obstacle is in front of
+  float barrier = 0;                // what an obstacle is in front of
 };
 
 Behind behind(const SpaceCues& cues, const std::optional<StereoRig>& rig, int x, int y) {
@@ -28,8 +28,8 @@ Behind behind(const SpaceCues& cues, const std::optional<StereoRig>& rig, int x,
   if (found.floor && (!found.wall || *found.floor >= *found.wall)) found.free_floor = found.floor;
   if (cues.ground.plane) {
     found.barrier = found.floor ? *found.floor : -infinity;
-  } else if (found.wall) {
-    found.barrier = std::max(*found.wall, -infinity);
+  } else {
+    found.barrier = std::max(found.wall.value_or(-infinity), -infinity);
   }
   return found;
 }
@@ -68,8 +68,7 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
     return std::isnan(seen_px(x, y)) || is_on_floor(x, y);
   };
   const auto is_obstacle = [&](int x, int y) {
-    const auto barrier = behind(cues, rig, x, y).barrier;
-    return barrier && disparity_px(x, y) - *barrier > config.margin &&
+    return disparity_px(x, y) - behind(cues, rig, x, y).barrier > config.margin &&
            (cues.confidence.empty() || cues.confidence(x, y) >= 0.5F);
   };
   Image<Space> space(disparity_px.size());

@@ -143,6 +143,39 @@ TEST(GroundAutomatic, FindsAFloorThatShowsMoreMirrorImagesThanItself) {
   for (std::uint32_t seed = 1; seed <= 5; ++seed) EXPECT_FINDS(of_mirror_images(1, seed), 0.25F);
 }
 
+/// Random squares of 4 px; where the room shows mirror images, those of the boxes, or of nothing.
+Image<Gray> image_of(const Room& room, bool is_mirrored) {
+  std::mt19937 random(room.seed);
+  Image<Gray> left(room.size);
+  for (int y = 0; y < room.size.height; ++y) {
+    for (int x = 0; x < room.size.width; ++x) {
+      const bool is_first = x % 4 == 0 && y % 4 == 0;
+      left(x, y) = is_first ? static_cast<Gray>(random() & 255U) : left(x / 4 * 4, y / 4 * 4);
+    }
+  }
+  for (const Rect& box : room.boxes) {
+    const int foot = box.y + box.height;
+    for (int y = foot; is_mirrored && y < std::min(foot + box.height, room.size.height); ++y)
+      std::copy_n(left.row(2 * foot - 1 - y) + box.x, box.width, left.row(y) + box.x);
+  }
+  return left;
+}
+
+TEST(GroundAutomatic, APlaneThatOnlyMirrorImagesSupportMustLookLikeAMirror) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    const Room room = of_mirror_images(1, seed);
+    const DisparityMap map = matches_of(room);
+    const auto found = [&](bool is_mirrored) {
+      const Image<Gray> left = image_of(room, is_mirrored);
+      return fit_ground(map.disparity_px, std::nullopt, {}, {}, left);
+    };
+    const Ground mirror = found(true);
+    ASSERT_TRUE(mirror.plane) << seed;
+    EXPECT_LT(error(mirror, room), 0.25F) << seed;
+    EXPECT_FALSE(found(false).plane) << seed;
+  }
+}
+
 TEST(GroundAutomatic, FindsAMirroringFloorInALargeImageToo) {
   EXPECT_FINDS(of_mirror_images(3, 1), 0.25F);
 }
@@ -402,6 +435,18 @@ TEST(LikelyGround, UsesAllDisparitiesIfTooFewAreTextured) {
   const Ground likely = likely_ground(refused, map, std::nullopt, {}, {});
   ASSERT_TRUE(likely.plane);
   EXPECT_LT(error(likely, room), 0.25F);
+}
+
+TEST(LikelyGround, IsNoneWhereTexturedDisparitiesShowItToBeUpright) {
+  // A wall with little texture, across which smooth matching draws a slope.
+  DisparityMap slope{Image<float>({320, 240}), Image<Reject>({320, 240}, Reject::none, {})};
+  for (int y = 0; y < 240; ++y)
+    std::fill_n(slope.disparity_px.row(y), 320, 6 + 0.01F * static_cast<float>(y));
+  const Image<float> wall({320, 240}, 7.2F, {});
+  const Ground refused{{}, 0, 0, Refusal::too_few_matches};
+  EXPECT_TRUE(likely_ground(refused, slope, std::nullopt, {}, {}).plane);
+  EXPECT_TRUE(likely_ground(refused, slope, std::nullopt, {}, {}, slope.disparity_px).plane);
+  EXPECT_EQ(likely_ground(refused, slope, std::nullopt, {}, {}, wall).refusal, Refusal::implausible);
 }
 
 TEST(LikelyGround, IsNoneIfDisabledOrInvisible) {

@@ -120,15 +120,29 @@ TEST(LabelSpace, AnObjectIsAnObstacleWithItsHoles) {
   EXPECT_EQ(room.space()(45, 55), Space::obstacle);
 }
 
-TEST(LabelSpace, WithoutAnyPlaneOnlyObjectsAreObstacles) {
+TEST(LabelSpace, WithoutAnyPlaneAllThatIsNearerThanInfinityIsAnObstacle) {
   Room room;
   room.ground = {};
   room.background = {};
   room.objects(45, 55) = ObjectId{1};
+  room.disparity.disparity_px(46, 55) = kNan;
+  room.disparity.disparity_px(47, 55) = GroundConfig{}.margin;
+  room.confidence(48, 55) = 0.4F;
   const Image<Space> space = room.space();
   EXPECT_EQ(space(45, 55), Space::obstacle);
   EXPECT_EQ(space(46, 55), Space::unknown);
-  EXPECT_EQ(space(40, 5), Space::unknown);
+  EXPECT_EQ(space(47, 55), Space::unknown);
+  EXPECT_EQ(space(48, 55), Space::unknown);
+  EXPECT_EQ(space(49, 55), Space::obstacle);
+}
+
+TEST(LeftOutOf, WithoutAnyPlaneWhateverIsNotAnObjectIsListed) {
+  Room room;
+  room.ground = {};
+  room.background = {};
+  const std::vector<LeftOut> left_out = room.left_out({}, kRig);
+  ASSERT_FALSE(left_out.empty());
+  for (const LeftOut& left : left_out) EXPECT_NE(left.reason, LeftOutReason::background);
 }
 
 TEST(LabelSpace, WithoutAFloorObstaclesAreInFrontOfTheWalls) {
