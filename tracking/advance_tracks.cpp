@@ -190,9 +190,8 @@ void miss(Track& track, std::size_t t, const Overlaps& overlaps, Stamp now, cons
 /// Whether a joined object that carries another track's id also shows this track.
 bool is_in_joined(const Track& track, std::size_t t, const std::vector<ObjectId>& joined,
                   const Overlaps& overlaps) {
-  return track.state != TrackState::tentative && std::ranges::any_of(joined, [&](ObjectId object) {
-           return 2 * overlaps.at(t, object) >= overlaps.predicted[t] && overlaps.predicted[t] > 0;
-         });
+  return track.state != TrackState::tentative &&
+         std::ranges::any_of(joined, [&](ObjectId object) { return is_joined_with(overlaps, t, object); });
 }
 
 bool wants_to_move(const Track& track, const TrackingConfig& config) {

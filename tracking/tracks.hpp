@@ -164,7 +164,9 @@ struct Overlaps {
   }
 };
 
-/// The objects that cover at least half of the predicted masks of two or more confirmed tracks, ascending.
+/// Whether an object covers at least half of the predicted mask of a track, by its index, and is not in front of it.
+bool is_joined_with(const Overlaps& overlaps, std::size_t track, ObjectId object);
+/// The objects that are joined with two or more confirmed tracks, ascending.
 std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overlaps);
 
 struct Match {

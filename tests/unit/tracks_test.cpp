@@ -429,6 +429,25 @@ TEST(Tracks, JoinedOnesLiveOnAndKeepTheirPlaces) {
   EXPECT_FALSE(story.tracks.list[0].is_joined);
 }
 
+TEST(Tracks, AnObjectInFrontOfTwoIsANewOneAndHidesThem) {
+  Story story;
+  for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 4}), sighting_at(2, {0.3, 0, 4})});
+  Overlaps overlaps = story.plain(1);
+  overlaps.common = {90, 95};
+  overlaps.nearer = {85, 90};  // the image shows something nearer than the tracks there
+  Sighting front = sighting_at(1, {0.1, 0, 1.5});
+  front.pixel_count = 800;
+  EXPECT_TRUE(joined_objects(story.tracks, overlaps).empty());
+  story.step({front}, overlaps);
+  ASSERT_EQ(story.ids(), (std::vector<std::int64_t>{1, 2, 3}));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(story.tracks.list[i].state, TrackState::occluded);
+    EXPECT_FALSE(story.tracks.list[i].is_joined);
+    EXPECT_EQ(story.tracks.list[i].object, ObjectId::none);
+  }
+  EXPECT_EQ(story.tracks.list[2].object, ObjectId{1});
+}
+
 TEST(Tracks, AnObjectThatIsTwoOfThemFoundsNone) {
   Story story;
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2}), sighting_at(2, {0.3, 0, 2})});
