@@ -5,7 +5,7 @@
 
 The rendered rooms have exact truth. Measures floor and obstacles per pixel, and for each object found (IoU of 0.5 or
 more) its depth, depth interval, extent and box. Prints a table with the fit and the validation sets in columns. --fit
-fits the three coefficients of locate() that predict the error of a median disparity, on the fit set.
+fits the three coefficients of locate() that predict the error of a median disparity, and the seven of sight() that predict that of a mask's centre, on the fit set.
 """
 import math
 import pathlib
@@ -178,6 +178,46 @@ def fit_sigma(folders):
     return len(errors), weights
 
 
+def fit_middle(folders):
+    """The numbers of sight() in tracking/sight.cpp before they are widened: standard deviations of an object's position
+    against the mean point of its visible part, across the ray by width and height and along it. The likeliest scales of
+    Student's t with 3 degrees of freedom, since a few masks miss half of an object."""
+    rows = []
+    for folder in folders:
+        truth = Truth(folder)
+        frame = cairn.segment(truth.left, truth.right, truth.calibration)
+        for found, mask in found_objects(truth, frame):
+            if found.position_in_camera_m is None or mask.sum() < 200 * (mask.shape[1] / 320) ** 2:
+                continue
+            px, py, pz = found.position_in_camera_m
+            off = np.subtract((px, py, pz), truth.points[mask].mean(0))
+            x, y, w, h = found.box_px
+            c = min(max(found.confidence, 0.02), 0.99)
+            rows.append([off[0] - off[2] * px / pz, off[1] - off[2] * py / pz, off[2], pz / truth.rig.focal_px, *found.extent_in_camera_m,
+                         math.log((1 - c) / c), x == 0 or x + w == mask.shape[1], y == 0 or y + h == mask.shape[0],
+                         pz * pz * found.disparity_sigma_px / (truth.rig.focal_px * truth.rig.baseline_m)])
+    off_x, off_y, off_z, pixel, width, height, depth, odds, cut_x, cut_y, sigma_z = np.array(rows, float).T
+
+    def loss(logs):
+        edge, wide, high, cut, disparity, deep = np.exp(logs[:6])
+        doubt = np.exp(logs[6] * odds)
+        scales = [np.sqrt((edge * pixel) ** 2 + ((doubt * share) ** 2 + (is_cut * cut) ** 2) * extent**2)
+                  for share, is_cut, extent in ((wide, cut_x, width), (high, cut_y, height))]
+        scales.append(np.hypot(disparity * sigma_z, deep * depth))
+        return sum(np.mean(np.log(s) + 2 * np.log1p((e / s) ** 2 / 3)) for e, s in zip((off_x, off_y, off_z), scales))
+
+    best = np.array([-0.3, -2.8, -2.0, -2.4, -0.6, -3.0, 0.45])
+    step = 0.5
+    while step > 1e-3:  # along each number in turn
+        moves = [best + sign * step * direction for direction in np.eye(len(best)) for sign in (1, -1)]
+        least = min(moves, key=loss)
+        if loss(least) < loss(best):
+            best = least
+        else:
+            step /= 2
+    return len(rows), [*np.exp(best[:6]), best[6]]
+
+
 def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--fit"]
     if len(arguments) != 1:
@@ -189,6 +229,9 @@ def main():
     if "--fit" in sys.argv:
         count, (bias, spread, seen) = fit_sigma(folders["fit"])
         print(f"{count} objects: bias {bias:.3f}, spread {spread:.3f}, seen {seen:.3f}")
+        count, numbers = fit_middle(folders["fit"])
+        names = ["edge px", "width share", "height share", "cut share", "disparity share", "depth share", "doubt power"]
+        print(f"{count} objects, middle: " + ", ".join(f"{name} {number:.3f}" for name, number in zip(names, numbers)))
         return
     found = {name: measure(of) for name, of in folders.items()}
     print("| | " + " | ".join(found) + " |\n|---|" + "---:|" * len(found))

@@ -56,9 +56,11 @@ double horizontal(Point3 a, Point3 b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
+/// On the floor, along the worse axis. Legs and leaves that a mask loses make heights much less certain.
 double largest_sigma(const Covariance3& covariance) {
+  const Eigen::Matrix2d on_floor = matrix(covariance).topLeftCorner<2, 2>();
   return std::sqrt(
-      Eigen::SelfAdjointEigenSolver<Matrix3>(matrix(covariance), Eigen::EigenvaluesOnly).eigenvalues()[2]);
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(on_floor, Eigen::EigenvaluesOnly).eigenvalues()[1]);
 }
 
 int octant_of(Point3 landmark, Point3 camera) {

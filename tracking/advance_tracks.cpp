@@ -27,6 +27,7 @@ struct Observation {
   std::vector<const Sighting*> all;
   Point3 position_m;
   Covariance3 covariance_m2{};
+  Covariance3 steady_m2{};
   Point3 camera_m;
   bool has_place = false;
   bool is_cut = false;
@@ -60,6 +61,7 @@ Observation seen_by(std::vector<const Sighting*> sightings, const Pose& map_from
   seen.camera_m = map_from_camera.translation_m;
   seen.covariance_m2 =
       in_map(seen.main->covariance_in_camera_m2, in_camera_m, map_from_camera, pose_covariance);
+  seen.steady_m2 = rotated(map_from_camera, seen.main->steady_in_camera_m2);
   return seen;
 }
 
@@ -147,7 +149,7 @@ void update(Track& track, const Observation& seen, bool is_joined, Stamp now, co
   if (is_joined) return;
   if (seen.has_place) {
     update_place(track, seen, was_cut, now, config);
-    track.measured_m2 = seen.covariance_m2;
+    track.measured_m2 = seen.steady_m2;
     track.seen_from_m = seen.camera_m;
   }
   update_looks(track, seen);
@@ -190,9 +192,8 @@ void miss(Track& track, std::size_t t, const Overlaps& overlaps, Stamp now, cons
 /// Whether a joined object that carries another track's id also shows this track.
 bool is_in_joined(const Track& track, std::size_t t, const std::vector<ObjectId>& joined,
                   const Overlaps& overlaps) {
-  return track.state != TrackState::tentative && std::ranges::any_of(joined, [&](ObjectId object) {
-           return 2 * overlaps.at(t, object) >= overlaps.predicted[t] && overlaps.predicted[t] > 0;
-         });
+  return track.state != TrackState::tentative &&
+         std::ranges::any_of(joined, [&](ObjectId object) { return is_joined_with(overlaps, t, object); });
 }
 
 bool wants_to_move(const Track& track, const TrackingConfig& config) {
@@ -230,7 +231,7 @@ void report(Track& track) {
   track.position_m = track.is_moving ? track.as_moving.position_m : track.as_static.position_m;
   track.velocity_m_s = track.is_moving ? track.as_moving.velocity_m_s : Point3{};
   // Errors of a mask persist from frame to frame, so they do not average out.
-  track.covariance_m2 = sum(known, track.measured_m2, kSteadyShare);
+  track.covariance_m2 = sum(known, track.measured_m2, 1);
 }
 
 Track founded(TrackId id, const Sighting& sighting, const Pose& map_from_camera,

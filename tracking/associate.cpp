@@ -17,9 +17,11 @@ constexpr double kLookWeight = 10;    // at appearance_weight 1
 constexpr double kSizeWeight = 2;     // per factor of e
 constexpr double kOverlapWeight = 5;  // for disjoint masks
 constexpr float kJoinedShare = 0.5F;  // of a predicted mask
-constexpr float kSameMask = 0.5F;     // intersection over union
-constexpr float kPartShare = 0.7F;    // of a piece
-constexpr int kPartsInARow = 5;       // frames; an object that comes in pieces for longer is several objects
+constexpr float kHiddenShare =
+    0.5F;                          // of a predicted mask; an object in front of a track is not joined with it
+constexpr float kSameMask = 0.5F;  // intersection over union
+constexpr float kPartShare = 0.7F;  // of a piece
+constexpr int kPartsInARow = 5;     // frames; an object that comes in pieces for longer is several objects
 
 bool is_confirmed(const Track& track) {
   return track.state != TrackState::tentative && track.state != TrackState::dead;
@@ -61,12 +63,11 @@ class Costs {
     const Sighting& seen = sightings_[s];
     const int common = overlaps_.at(t, seen.object);
     const float overlap = share(common, overlaps_.predicted[t] + seen.pixel_count - common);
-    const bool covers = share(common, overlaps_.predicted[t]) >= kJoinedShare;
     double cost = kOverlapWeight * (1 - double{overlap}) + kLookWeight * double{config_.appearance_weight} *
                                                                (1 - double{likeness(track.look, seen.look)});
     if (is_joined(seen.object)) {
       // Its centre is between the objects that it joins: the masks decide.
-      if (!covers) return CostTable::kForbidden;
+      if (!is_joined_with(overlaps_, t, seen.object)) return CostTable::kForbidden;
       cost += double{config_.gate};
     } else if (track.has_place && seen.has_place) {
       const Innovation found = nearest(track, s);
@@ -133,14 +134,18 @@ bool touch(const Rect& a, const Rect& b) {
 
 }  // namespace
 
+bool is_joined_with(const Overlaps& overlaps, std::size_t track, ObjectId object) {
+  const int predicted = overlaps.predicted[track];
+  return share(overlaps.at(track, object), predicted) >= kJoinedShare &&
+         share(overlaps.nearer[track], predicted) < kHiddenShare;
+}
+
 std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overlaps) {
   std::vector<ObjectId> joined;
   for (std::int32_t j = 1; j <= overlaps.objects; ++j) {
     int covered = 0;
     for (std::size_t t = 0; t < tracks.list.size(); ++t) {
-      if (is_confirmed(tracks.list[t]) &&
-          share(overlaps.at(t, ObjectId{j}), overlaps.predicted[t]) >= kJoinedShare)
-        ++covered;
+      if (is_confirmed(tracks.list[t]) && is_joined_with(overlaps, t, ObjectId{j})) ++covered;
     }
     if (covered >= 2) joined.push_back(ObjectId{j});
   }

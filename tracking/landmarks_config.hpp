@@ -23,7 +23,7 @@ template <class V>
 void fields(LandmarksConfig& c, V&& v) {
   v("min_frames", c.min_frames, "frames", "observations of a track before it becomes a landmark",
     range(2, 1000));
-  v("max_sigma", c.max_sigma, "m", "largest standard deviation of the position of a landmark",
+  v("max_sigma", c.max_sigma, "m", "largest standard deviation of a landmark's position on the floor",
     range(0.005F, 10.0F));
   v("min_baseline", c.min_baseline, "m",
     "smallest camera travel while observing a landmark, unless min_angle is reached", range(0.0F, 10.0F));

@@ -115,6 +115,25 @@ std::shared_ptr<Keyframe> look_at(View<const Gray> left, const OdometryConfig& c
   return frame;
 }
 
+/// The frame with the mean and the deviation of the keyframe's brightness, if they differ: corners are compared by
+/// brightness, which a jump of the exposure changes. nullptr if they are alike, or if one of the two is flat.
+std::shared_ptr<Keyframe> in_light_of(const Keyframe& key, View<const Gray> left,
+                                      const OdometryConfig& config) {
+  constexpr double kFlat = 4;   // grey levels
+  constexpr double kAlike = 4;  // grey levels
+  constexpr double kAlikeGain = 1.1;
+  const cv::Mat now = borrowed(left);
+  cv::Scalar mean_then, deviation_then, mean_now, deviation_now;
+  cv::meanStdDev(key.pyramid.front(), mean_then, deviation_then);
+  cv::meanStdDev(now, mean_now, deviation_now);
+  if (deviation_then[0] < kFlat || deviation_now[0] < kFlat) return nullptr;
+  const double gain = deviation_then[0] / deviation_now[0];
+  if (std::max(gain, 1 / gain) < kAlikeGain && std::abs(mean_then[0] - mean_now[0]) < kAlike) return nullptr;
+  cv::Mat relit;
+  now.convertTo(relit, CV_8U, gain, mean_then[0] - gain * mean_now[0]);
+  return look_at({relit.data, Size{relit.cols, relit.rows}, static_cast<std::ptrdiff_t>(relit.step)}, config);
+}
+
 /// Median disparity of the 3×3 pixels around (x, y); NaN if fewer than five are valid.
 double disparity_at(View<const float> disparity_px, int x, int y) {
   std::array<float, 9> found{};
@@ -376,6 +395,7 @@ struct PresentFrame {
 struct Attempt {
   std::vector<FollowedCorner> corners;
   MotionFit fit;
+  bool is_relit = false;  // the exposure differs from the keyframe's
 };
 
 Attempt attempt(const Keyframe& key, const Keyframe& now, const Pose& start, const PresentFrame& present) {
@@ -406,6 +426,12 @@ Attempt motion_from(const PlacedKeyframe& key, const OdometryState& state, const
   if (state.seen && state.seen->size == now.size) {
     const Pose turn = guess_turn(state.seen->small, now.small, now.size, present.rig);
     Attempt again = attempt(*key.frame, now, turn * before_from_key, present);
+    if (is_better(again, best)) best = std::move(again);
+  }
+  if (best.fit.refusal == MotionRefusal::none) return best;
+  if (const auto relit = in_light_of(*key.frame, present.left, present.config)) {
+    Attempt again = attempt(*key.frame, *relit, expected_step * before_from_key, present);
+    again.is_relit = true;
     if (is_better(again, best)) best = std::move(again);
   }
   return best;
@@ -598,7 +624,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
     wants_key =
         config.method == OdometryMethod::frame ||
         fit.inliers < static_cast<int>(config.keyframe_inliers * static_cast<float>(state.key.inliers)) ||
-        angle_of(fit.now_from_key) > kKeyframeTurn_rad || by_spare;
+        angle_of(fit.now_from_key) > kKeyframeTurn_rad || by_spare || best.is_relit;
   }
   const bool wants_spare = !seen;
   if (now && (wants_key || wants_spare)) {

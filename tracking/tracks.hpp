@@ -62,9 +62,10 @@ struct Sighting {
   ObjectId object = ObjectId::none;
   bool has_place = false;  // whether position, covariance, extent and height are known, in metres
   Point3 position_in_camera_m;
-  Covariance3 covariance_in_camera_m2{};
-  Vec3 extent_m;                  // see Object::extent_in_camera_m
-  float height_over_floor_m = 0;  // of the position; 0 without a floor
+  Covariance3 covariance_in_camera_m2{};  // of a change from frame to frame, for filters and matching
+  Covariance3 steady_in_camera_m2{};      // of the error that persists while the same is seen
+  Vec3 extent_m;                          // see Object::extent_in_camera_m
+  float height_over_floor_m = 0;          // of the position; 0 without a floor
   ColourHistogram look{};
   float confidence = 0;
   int pixel_count = 0;
@@ -132,7 +133,7 @@ struct Track {
   std::vector<Place> places;  // of the detections since that sum was 0, oldest first
   std::uint32_t recent = 0;   // bit k: detected k frames ago
   bool is_cut = false;        // by the image border, at the last detection
-  Covariance3 measured_m2{};  // of the last detection
+  Covariance3 measured_m2{};  // of the last detection: Sighting::steady_in_camera_m2, in the map
   Point3 seen_from_m;         // camera position at the last detection
 };
 
@@ -164,7 +165,9 @@ struct Overlaps {
   }
 };
 
-/// The objects that cover at least half of the predicted masks of two or more confirmed tracks, ascending.
+/// Whether an object covers at least half of the predicted mask of a track, by its index, and is not in front of it.
+bool is_joined_with(const Overlaps& overlaps, std::size_t track, ObjectId object);
+/// The objects that are joined with two or more confirmed tracks, ascending.
 std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overlaps);
 
 struct Match {

@@ -112,6 +112,48 @@ TEST(Follower, IsLostAfterAPauseThatEndsInTheDark) {
   }
 }
 
+TEST(Follower, APersonBeforeTheLensForFiveSecondsCostsNoIds) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const Size size = sample.pair().size();
+  // A speckled surface at a quarter of the nearest disparity that is searched for.
+  const int near_px = sample.suited().match.num_disparities / 4 * 3;
+  Image<Gray> left(size);
+  Image<Gray> right(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const auto speckle = [&](int u) {
+        return static_cast<Gray>(60 +
+                                 (static_cast<std::uint32_t>(u * 7919 + y * 104729) * 2654435761U >> 25U));
+      };
+      left(x, y) = speckle(x);
+      right(x, y) = speckle(x + near_px);
+    }
+  }
+  const StereoPair covered = StereoPair::from(left, right);
+  Follower follower(config_for(sample), sample.calibration.rig);
+  Step before;
+  int frame = 0;
+  for (int k = 0; k < 5; ++k) before = follower.next(sample.pair(), frame_stamp(frame++));
+  ASSERT_GE(before.tracks.list.size(), 2U);
+  for (int k = 0; k < 50; ++k) {
+    const Step dark = follower.next(covered, frame_stamp(frame++));
+    for (const Track& track : before.tracks.list)
+      EXPECT_TRUE(std::ranges::any_of(dark.tracks.list, [&](const Track& t) { return t.id == track.id; }))
+          << number(track.id) << " ended after " << k << " frames";
+  }
+  Step after;
+  for (int k = 0; k < 5; ++k) after = follower.next(sample.pair(), frame_stamp(frame++));
+  EXPECT_FALSE(after.is_lost);
+  EXPECT_LT(length(after.map_from_camera.translation_m - before.map_from_camera.translation_m), 0.02);
+  for (const Track& track : before.tracks.list) {
+    const auto found =
+        std::ranges::find_if(after.tracks.list, [&](const Track& t) { return t.id == track.id; });
+    ASSERT_NE(found, after.tracks.list.end()) << number(track.id);
+    EXPECT_EQ(found->object, track.object);
+    EXPECT_FALSE(found->is_moving);
+  }
+}
+
 TEST(Follower, RefusesStampsThatDoNotIncrease) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);

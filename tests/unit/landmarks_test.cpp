@@ -516,6 +516,39 @@ TEST(Landmarks, LocaliseTheStartOfARun) {
   EXPECT_EQ(wrong, 0);
 }
 
+TEST(Landmarks, AHundredThousandElsewhereDisturbNoRun) {
+  const DrawnRoom room = DrawnRoom::random(1, 14);
+  Excursion first;
+  first.lap(room);
+  LandmarkMap map = first.state.map;
+  const std::vector<Landmark> here = map.list;
+  ASSERT_GE(here.size(), 5U);
+  // The same things in other places, 100 m away and more.
+  constexpr int kMany = 100'000;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> far_m(100, 1000);
+  while (map.list.size() < kMany) {
+    Landmark other = here[map.list.size() % here.size()];
+    other.id = LandmarkId{map.next++};
+    other.position_m = {far_m(random), far_m(random), other.position_m.z};
+    map.list.push_back(std::move(other));
+  }
+
+  Excursion second(map, 2, Pose{});
+  constexpr int kFrames = 30;
+  for (int i = 0; i < kFrames; ++i) second.frame(room, Excursion::on_lap(kTurn * i / Excursion::kLap));
+  EXPECT_GE(second.recognised, 3);
+  EXPECT_EQ(second.state.map.list.size(), std::size_t{kMany});
+  for (const auto& [id, things] : second.things_of) EXPECT_LE(number(id), number(here.back().id));
+  EXPECT_TRUE(changes_of(second.events).empty());
+
+  // A run that does not know where it begins must not be placed among the others.
+  Excursion lost(std::move(map), 3);
+  lost.odom_from_map = camera_at(0, 0, 0) * inverse(camera_at(1, -3, 0.4));
+  for (int i = 0; i < kFrames; ++i) lost.frame(room, Excursion::on_lap(kTurn * i / Excursion::kLap));
+  EXPECT_TRUE(!lost.state.is_located || lost.pose_error_m() < 0.3) << lost.pose_error_m();
+}
+
 TEST(Landmarks, DoNotLocaliseInAnotherRoom) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Excursion first;

@@ -395,6 +395,57 @@ TEST(Odometry, TrustsTheImagesIfTheWheelsSlip) {
   EXPECT_NEAR(state.map_from_camera.translation_m.z, 0.2, 0.01) << "it went on for two frames only";
 }
 
+TEST(Odometry, ContradictsWheelsWhoseTurnsAreMirrored) {
+  OdometryState state = step(begin_odometry({}), look({})).state;
+  Pose truth;
+  for (int k = 0; k < 4; ++k) {
+    truth = truth * at(0, 0.02, 3);
+    const OdometryStep turned = step(state, look(truth), wheels(inverse(at(0, 0.02, -3))));
+    EXPECT_EQ(turned.motion.refusal, MotionRefusal::disagrees_with_prior) << k;
+    EXPECT_FALSE(turned.state.lost);
+    state = turned.state;
+  }
+}
+
+TEST(Odometry, LateWheelsDisagreeWhereTheRobotStartsAndStopsOnly) {
+  constexpr int kLate = 2;  // frames; 0.2 s at 10 Hz
+  const std::vector<double> driven_m{0, 0, 0.08, 0.08, 0.08, 0.08, 0.08, 0, 0, 0, 0};
+  OdometryState state = step(begin_odometry({}), look({})).state;
+  double z_m = 0;
+  std::vector<MotionRefusal> refusals;
+  for (std::size_t k = 0; k < driven_m.size(); ++k) {
+    z_m += driven_m[k];
+    const double said_m = k < kLate ? 0 : driven_m[k - kLate];
+    const OdometryStep moved = step(state, look(at(0, z_m, 0)), wheels(inverse(at(0, said_m, 0))));
+    refusals.push_back(moved.motion.refusal);
+    state = moved.state;
+  }
+  for (std::size_t k = 0; k < driven_m.size(); ++k) {
+    const bool is_right = k < kLate || driven_m[k] == driven_m[k - kLate];
+    EXPECT_EQ(refusals[k], is_right ? MotionRefusal::none : MotionRefusal::disagrees_with_prior) << k;
+  }
+  EXPECT_FALSE(state.lost);
+  EXPECT_NEAR(state.map_from_camera.translation_m.z, z_m, 0.01) << "what was missed came late";
+}
+
+TEST(Odometry, AJumpOfTheExposureLeadsNowhere) {
+  for (const double gain : {0.5, 1.6}) {
+    OdometryState state = step(begin_odometry({}), look({})).state;
+    for (int k = 1; k <= 8; ++k) {
+      const Pose truth = at(0, 0.02 * k, 0.5 * k);
+      Seen seen = look(truth);
+      for (int y = 0; k >= 4 && y < room::kSize.height; ++y) {
+        for (int x = 0; x < room::kSize.width; ++x)
+          seen.left(x, y) = static_cast<Gray>(std::clamp(gain * seen.left(x, y) + 10, 0.0, 255.0));
+      }
+      const OdometryStep moved = step(state, seen);
+      EXPECT_LT(metres_apart(moved.state.map_from_camera, truth), 0.02) << gain << " " << k;
+      EXPECT_FALSE(moved.motion.is_new_segment);
+      state = moved.state;
+    }
+  }
+}
+
 TEST(Odometry, AGyroscopeProvidesRotationOnly) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   const Pose truth = at(0.02, 0.05, 8);

@@ -366,6 +366,20 @@ TEST(SequenceOfFolders, KeepsOneScaleForDeepImages) {
   EXPECT_EQ(int{frames[1].left.gray(0, 0)}, 1000 >> 4);
 }
 
+TEST(SequenceOfFolders, ADeepImageAmongThoseOfEightBitsHasItsOwnScale) {
+  const TemporaryFolder folder;
+  save_frames(folder, 3);
+  const Gray before = all_of(*open(folder))[2].left.gray(0, 0);
+  Image<std::uint16_t> deep(kSize);
+  for (int y = 0; y < kSize.height; ++y) std::fill_n(deep.row(y), kSize.width, std::uint16_t{4000});
+  save_png(folder.path() / "001/left.png", deep.view());
+  save_png(folder.path() / "001/right.png", deep.view());
+  const auto frames = all_of(*open(folder));
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(int{frames[1].left.gray(0, 0)}, 4000 >> 4);
+  EXPECT_EQ(frames[2].left.gray(0, 0), before);
+}
+
 TEST(SequenceOfFolders, OfOneFrameIsASequence) {
   const TemporaryFolder folder;
   save_frames(folder, 1);

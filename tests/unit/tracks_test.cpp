@@ -239,6 +239,23 @@ TEST(Tracks, AreConfirmedAtOnceByAConfidentSighting) {
   EXPECT_EQ(two.only().state, TrackState::confirmed);
 }
 
+TEST(Tracks, FiveHundredObjectsInAFrameKeepTheirIds) {
+  constexpr std::int32_t kMany = 500;
+  const auto at = [](std::int32_t thing) { return Point3{0.4 * (thing % 25), 0.4 * (thing / 25), 6}; };
+  Story story;
+  for (const std::int32_t stride : {1, 3, 7, 9}) {  // in each frame in another order
+    std::vector<Sighting> sightings;
+    for (std::int32_t i = 0; i < kMany; ++i) sightings.push_back(sighting_at(i + 1, at(i * stride % kMany)));
+    story.step(sightings);
+    ASSERT_EQ(story.tracks.list.size(), std::size_t{kMany}) << stride;
+    for (std::int32_t thing = 0; thing < kMany; ++thing) {
+      const Track& track = story.tracks.list[static_cast<std::size_t>(thing)];
+      EXPECT_EQ(number(track.id), thing + 1);
+      EXPECT_LT(length(track.position_m - at(thing)), 1e-9);
+    }
+  }
+}
+
 TEST(Tracks, AreCreatedByConfidentObjectsOnly) {
   Story story;
   story.step({sighting_at(1, {0, 0, 2}, 0.3F)});
@@ -307,13 +324,29 @@ TEST(Tracks, AReappearingObjectKeepsItsId) {
 
 TEST(Tracks, AverageThePositionOfAStaticObject) {
   Story story;
-  for (int k = 0; k < 40; ++k) story.step({sighting_at(1, {k % 2 == 0 ? 0.03 : -0.03, 0, 2})});
+  for (int k = 0; k < 40; ++k) {
+    Sighting seen = sighting_at(1, {k % 2 == 0 ? 0.03 : -0.03, 0, 2});
+    seen.steady_in_camera_m2 = variances(2e-4);
+    story.step({seen});
+  }
   EXPECT_FALSE(story.only().is_moving);
   EXPECT_NEAR(story.only().position_m.x, 0, 0.01);
   EXPECT_EQ(story.only().velocity_m_s, Point3{});
-  // The mask's own error does not average out: half of its variance remains.
+  // The mask's own error does not average out.
   EXPECT_GT(story.only().covariance_m2[0], 2e-4);
   EXPECT_LT(story.only().covariance_m2[0], 4e-4);
+}
+
+TEST(Tracks, StateTheErrorThatPersistsHoweverOftenTheyAreSeen) {
+  Story story;
+  Sighting seen = sighting_at(1, {0, 0, 2});
+  seen.steady_in_camera_m2 = variances(9e-4);
+  for (int k = 0; k < 50; ++k) story.step({seen});
+  const Track& track = story.only();
+  for (const std::size_t i : {0U, 4U, 8U}) {
+    EXPECT_GT(track.covariance_m2.at(i), 9e-4);
+    EXPECT_NEAR(track.covariance_m2.at(i), 9e-4 + track.as_static.covariance_m2.at(i), 1e-12);
+  }
 }
 
 TEST(Tracks, ARollingObjectIsDetectedAsMovingAndStoppedLater) {
@@ -427,6 +460,25 @@ TEST(Tracks, JoinedOnesSurviveAndKeepTheirPositions) {
   EXPECT_EQ(story.ids(), (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(story.tracks.list[0].object, ObjectId{1});
   EXPECT_FALSE(story.tracks.list[0].is_joined);
+}
+
+TEST(Tracks, AnObjectInFrontOfTwoIsANewOneAndHidesThem) {
+  Story story;
+  for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 4}), sighting_at(2, {0.3, 0, 4})});
+  Overlaps overlaps = story.plain(1);
+  overlaps.common = {90, 95};
+  overlaps.nearer = {85, 90};  // the image shows something nearer than the tracks there
+  Sighting front = sighting_at(1, {0.1, 0, 1.5});
+  front.pixel_count = 800;
+  EXPECT_TRUE(joined_objects(story.tracks, overlaps).empty());
+  story.step({front}, overlaps);
+  ASSERT_EQ(story.ids(), (std::vector<std::int64_t>{1, 2, 3}));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(story.tracks.list[i].state, TrackState::occluded);
+    EXPECT_FALSE(story.tracks.list[i].is_joined);
+    EXPECT_EQ(story.tracks.list[i].object, ObjectId::none);
+  }
+  EXPECT_EQ(story.tracks.list[2].object, ObjectId{1});
 }
 
 TEST(Tracks, AnObjectThatCoversTwoOfThemCreatesNone) {
@@ -555,15 +607,25 @@ TEST(Sight, ReportsAPositionWithItsUncertainty) {
   EXPECT_NEAR(seen.covariance_in_camera_m2[0], 0.01 * 0.01 + 0.02 * 0.02, 1e-8);
   EXPECT_NEAR(seen.covariance_in_camera_m2[4], 0.01 * 0.01 + 0.01 * 0.01, 1e-8);
   EXPECT_NEAR(seen.covariance_in_camera_m2[8], 0.01, 1e-8);
+  // 1.5 times 0.76 px are 2.28 cm at 2 m. Odds of 1 to 99 against the mask, to the power of 0.458, are 0.122: of
+  // 0.093 of the width, 0.4 m, and of 0.194 of the height, 0.2 m. 0.84 of 0.25 px of disparity are 8.4 cm of depth.
+  EXPECT_NEAR(seen.steady_in_camera_m2[0], 0.0228 * 0.0228 + 0.00453 * 0.00453, 1e-6);
+  EXPECT_NEAR(seen.steady_in_camera_m2[4], 0.0228 * 0.0228 + 0.00472 * 0.00472, 1e-6);
+  EXPECT_NEAR(seen.steady_in_camera_m2[8], 0.084 * 0.084, 1e-6);
 }
 
 TEST(Sight, AnUncertainOrClippedMaskHasAMoreUncertainCentre) {
-  const double sure = Picture({10, 10, 12, 8}, 1).sighted().at(0).covariance_in_camera_m2[0];
+  const Sighting whole = Picture({10, 10, 12, 8}, 1).sighted().at(0);
+  const double sure = whole.covariance_in_camera_m2[0];
   EXPECT_GT(Picture({10, 10, 12, 8}, 0.5F).sighted().at(0).covariance_in_camera_m2[0], 2 * sure);
   const Sighting cut = Picture({0, 10, 12, 8}, 1).sighted().at(0);
   EXPECT_TRUE(cut.is_cut);
   EXPECT_GT(cut.covariance_in_camera_m2[0], 10 * sure);
   EXPECT_LT(cut.covariance_in_camera_m2[4], sure);  // clipped at left and right, not at top and bottom
+  const Sighting unsure = Picture({10, 10, 12, 8}, 0.5F).sighted().at(0);
+  EXPECT_GT(unsure.steady_in_camera_m2[0], 2 * whole.steady_in_camera_m2[0]);
+  EXPECT_GT(cut.steady_in_camera_m2[0], 5 * whole.steady_in_camera_m2[0]);
+  EXPECT_EQ(cut.steady_in_camera_m2[4], whole.steady_in_camera_m2[4]);
 }
 
 TEST(Sight, OmitsObjectsBelowTheConfidenceThreshold) {

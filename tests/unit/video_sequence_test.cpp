@@ -4,6 +4,8 @@
 
 #include <cairn/core/image.hpp>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
@@ -145,6 +147,15 @@ TEST_F(Video, RefusesInvalidInput) {
   SourceOptions late = laid_out("top_bottom");
   late.frames = parse_frame_range("9:");
   EXPECT_TRUE(has(refused(small, late), {"small.mkv", "--frames"}));
+  // A codec that is not installed.
+  std::string bytes = [&] {
+    std::ifstream file(small, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  }();
+  ASSERT_NE(bytes.find("FFV1"), std::string::npos);
+  for (std::size_t at = 0; (at = bytes.find("FFV1", at)) != std::string::npos;) bytes.replace(at, 4, "ZZZZ");
+  const std::string unknown = folder_.with("unknown.mkv", bytes).string();
+  EXPECT_TRUE(has(refused(unknown, laid_out("top_bottom")), {"unknown.mkv", "cannot be opened as a video"}));
   const std::string wide = write("wide.mkv", noise(2, {32, 16}, true));
   EXPECT_TRUE(has(refused(small + "," + wide, {}), {"wide.mkv", "32x16", "30x16"}));
 }
