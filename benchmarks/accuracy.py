@@ -9,6 +9,7 @@
 DATA is the folder with real/ and rendered/; COMMIT is the commit that the page names. All files are written at the end,
 after the last measurement. Exit code 2: no data.
 """
+import collections
 import concurrent.futures
 import datetime
 import functools

@@ -57,6 +57,10 @@ if [[ $mode == --check ]]; then
   [[ $key == "$then_key" ]] || unable "the counts were taken with $then_key; this build has $key"
 fi
 "$build_dir/cairn" info --target avx2 >/dev/null 2>&1 || unable "AVX2 is not there in this build or on this processor"
+# Highway reads the processor's time stamps when it is loaded; valgrind refuses that instruction on processors that do
+# not report it.
+[[ $(valgrind --tool=none "$build_dir/cairn" --version 2>&1) != *"unhandled instruction"* ]] ||
+  unable "valgrind cannot start cairn on this processor: it does not know an instruction of the Highway library"
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

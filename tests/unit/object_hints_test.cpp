@@ -145,7 +145,7 @@ TEST(HintFeatures, IndicateThatTwoObjectsTouch) {
   EXPECT_EQ(of_region("hints: object"), 2);
   EXPECT_EQ(of_region("hints: spread of the votes, relative"), 0);
   EXPECT_NEAR(of_region("hints: its centroid from that of its votes, relative"), 0, 0.02);
-  EXPECT_NEAR(of_region("hints: area over the size voted for"), std::log2(2401.0) - 180 / 16.0, 1e-4);
+  EXPECT_NEAR(of_region("hints: area over the voted size"), std::log2(2401.0) - 180 / 16.0, 1e-4);
   EXPECT_NEAR(of_region("hints: nearest centroid around it, relative"), 40 / std::sqrt(2401.0), 1e-4);
 }
 
