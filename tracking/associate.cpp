@@ -17,11 +17,10 @@ constexpr double kLookWeight = 10;    // at appearance_weight 1
 constexpr double kSizeWeight = 2;     // per factor of e
 constexpr double kOverlapWeight = 5;  // for disjoint masks
 constexpr float kJoinedShare = 0.5F;  // of a predicted mask
-constexpr float kHiddenShare =
-    0.5F;                          // of a predicted mask; an object in front of a track is not joined with it
-constexpr float kSameMask = 0.5F;  // intersection over union
-constexpr float kPartShare = 0.7F;  // of a piece
-constexpr int kPartsInARow = 5;     // frames; an object that comes in pieces for longer is several objects
+constexpr float kHiddenShare = 0.5F;  // of a predicted mask; more behind the object: it is not joined
+constexpr float kSameMask = 0.5F;     // intersection over union
+constexpr float kPartShare = 0.7F;    // of a piece
+constexpr int kPartsInARow = 5;       // frames; an object that comes in pieces for longer is several objects
 
 bool is_confirmed(const Track& track) {
   return track.state != TrackState::tentative && track.state != TrackState::dead;

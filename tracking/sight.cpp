@@ -153,6 +153,11 @@ Covariance3 around_ray(Point3 p, double x, double y, double z) {
           zz};
 }
 
+/// The standard deviation of the depth that follows from that of the disparity, m.
+double depth_sigma_m(Point3 p, const Object& object, const StereoRig& rig) {
+  return p.z * p.z * double{object.disparity_sigma_px} / (double{rig.focal_px} * double{rig.baseline_m});
+}
+
 /// Across the ray from the mask's outline, along it from the disparity.
 Covariance3 covariance_of(Point3 p, Vec3 extent_m, const Object& object, Cut cut, const StereoRig& rig) {
   const double focal = rig.focal_px;
@@ -161,9 +166,8 @@ Covariance3 covariance_of(Point3 p, Vec3 extent_m, const Object& object, Cut cut
     const double part = is_cut ? kCutShare : doubt * kDoubtShare;
     return std::hypot(p.z * kEdgeSigma / focal, kExtentShare * double{extent}, part * double{extent});
   };
-  const double disparity_sigma_px = object.disparity_sigma_px;
-  const double z = std::hypot(p.z * p.z * disparity_sigma_px / (focal * double{rig.baseline_m}),
-                              kDepthShare * double{extent_m.z}, doubt * kDoubtShare * double{extent_m.z});
+  const double z = std::hypot(depth_sigma_m(p, object, rig), kDepthShare * double{extent_m.z},
+                              doubt * kDoubtShare * double{extent_m.z});
   return around_ray(p, across(extent_m.x, cut.x), across(extent_m.y, cut.y), z);
 }
 
@@ -177,9 +181,8 @@ Covariance3 steady_covariance_of(Point3 p, Vec3 extent_m, const Object& object, 
     return steady::kWidened * std::hypot(edge, doubt * share * double{extent},
                                          is_cut ? steady::kCutShare * double{extent} : 0.0);
   };
-  const double sigma_z = p.z * p.z * object.disparity_sigma_px / (focal * double{rig.baseline_m});
-  const double z = steady::kWidened *
-                   std::hypot(steady::kDisparityShare * sigma_z, steady::kDepthShare * double{extent_m.z});
+  const double z = steady::kWidened * std::hypot(steady::kDisparityShare * depth_sigma_m(p, object, rig),
+                                                 steady::kDepthShare * double{extent_m.z});
   return around_ray(p, across(steady::kWidthShare, extent_m.x, cut.x),
                     across(steady::kHeightShare, extent_m.y, cut.y), z);
 }

@@ -250,12 +250,15 @@ struct Sampled {
   int step;
   Points points;
   MatchIndex places;
+  float nearest = 0;  // the largest disparity, px
 
   Sampled(View<const float> map, std::int64_t valid)
       : disparity_px(map),
         step(grid_step(valid)),
         points(sample(map, step)),
-        places(points, map.size(), step) {}
+        places(points, map.size(), step) {
+    if (points.size() > 0) nearest = *std::max_element(points.d.begin(), points.d.end());
+  }
   Sampled(const Sampled&) = delete;  // the index refers to the points
   Sampled& operator=(const Sampled&) = delete;
   Sampled(Sampled&&) = delete;
@@ -523,8 +526,7 @@ Candidates candidates(const std::vector<PlaneHypothesis>& list, const Sampled& s
 }
 
 /// Whether a floor may be as near as this at the lower border, given the nearest match.
-bool is_within_reach(const GroundPlane& plane, const Points& points, Size image, const Camera& camera) {
-  const float nearest = *std::max_element(points.d.begin(), points.d.end());
+bool is_within_reach(const GroundPlane& plane, float nearest, Size image, const Camera& camera) {
   const auto last = static_cast<float>(image.height - 1);
   const auto right = static_cast<float>(image.width - 1);
   const float bottom = std::max(plane.disparity_px(0, last), plane.disparity_px(right, last));
@@ -547,7 +549,7 @@ std::optional<GroundPlane> mirror(std::vector<PlaneHypothesis> list, const Sampl
   std::optional<GroundPlane> best;
   double most = kLeastLikeness;
   for_each_finalist(list, seen.points, walls, run, [&](const GroundPlane& plane) {
-    if (!is_within_reach(plane, seen.points, contrast.size(), camera)) return;
+    if (!is_within_reach(plane, seen.nearest, contrast.size(), camera)) return;
     const Tally judged = tally(plane, seen.points, camera.infinity, run);
     const double chance = std::sqrt(judged.on + judged.near);
     if (judged.on - judged.near < 2 * chance || !camera.may_stand_on(plane)) return;
@@ -610,7 +612,7 @@ class MirrorJudge {
       : seen_(seen), contrast_(contrast), camera_(camera), run_(run) {}
 
   [[nodiscard]] double operator()(const GroundPlane& plane, const Points& points) const {
-    if (!camera_.may_stand_on(plane) || !is_within_reach(plane, seen_.points, contrast_.size(), camera_))
+    if (!camera_.may_stand_on(plane) || !is_within_reach(plane, seen_.nearest, contrast_.size(), camera_))
       return 0;
     const Reflections found = reflections(plane, points, seen_.places, camera_, run_);
     if (found.seen == 0 || kFewestSeen * found.missing > found.seen) return 0;
@@ -800,6 +802,7 @@ Ground find_floor(View<const float> disparity_px, const FloorCues& cues, const s
   if (!cues.textured_px.empty()) {
     const std::int64_t of_them = count_valid(cues.textured_px, exec);
     if (enough(cues.textured_px, of_them)) textured.emplace(cues.textured_px, of_them);
+    if (textured && textured->points.size() < kFewestMatches) textured.reset();
   }
   const Sampled* const if_textured = textured ? &*textured : nullptr;
   Contrast contrast(cues.left, exec);

@@ -449,6 +449,21 @@ TEST(LikelyGround, IsNoneWhereTexturedDisparitiesShowItToBeUpright) {
   EXPECT_EQ(likely_ground(refused, slope, std::nullopt, {}, {}, wall).refusal, Refusal::implausible);
 }
 
+TEST(LikelyGround, ToleratesTexturedDisparitiesThatTheSearchDoesNotSample) {
+  // So many that the search takes every third column, which has none.
+  const Size size{320, 240};
+  Image<float> textured(size, 7.0F, {});
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if (x % 3 == 0 || (x + y) % 7 < 2) textured(x, y) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  const DisparityMap wall{Image<float>(size, 7.0F, {}), Image<Reject>(size, Reject::none, {})};
+  const Image<Gray> left(size, Gray{100}, {});
+  const Ground refused{{}, 0, 0, Refusal::too_few_matches};
+  EXPECT_FALSE(likely_ground(refused, wall, std::nullopt, {}, {}, textured, left).plane);
+}
+
 TEST(LikelyGround, IsNoneIfDisabledOrInvisible) {
   const DisparityMap floor = matches_of({.boxes = kFurniture});
   const Ground off{{}, 0, 0, Refusal::off};
