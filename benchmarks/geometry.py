@@ -5,7 +5,8 @@
 
 The rendered rooms have exact truth. Measures floor and obstacles per pixel, and for each object found (IoU of 0.5 or
 more) its depth, depth interval, extent and box. Prints a table with the fit and the validation sets in columns. --fit
-fits the three coefficients of locate() that predict the error of a median disparity, and the seven of sight() that predict that of a mask's centre, on the fit set.
+fits on the fit set the three coefficients of locate() that predict the error of a median disparity, and the seven of
+sight() that predict that of a mask's centre.
 """
 import math
 import pathlib
@@ -158,18 +159,34 @@ def measure(folders):
     }
 
 
-def fit_sigma(folders):
-    """Coefficients of ln sigma = bias + spread * ln(interquartile range + 0.1 px) + seen * share of valid pixels.
-    Maximum likelihood for errors with a Laplace distribution, then widened until 1.96 sigma covers 95 % of them."""
-    signs, errors = [], []
+def rows_of(folders):
+    """Of each object found: signs and error of its disparity, and the row of fit_middle() or None."""
     for folder in folders:
         truth = Truth(folder)
         frame = cairn.segment(truth.left, truth.right, truth.calibration)
         for found, mask in found_objects(truth, frame):
             ours = frame.disparity[(frame.objects_map == found.id) & ~np.isnan(frame.disparity)]
             low, high = np.quantile(ours, [0.25, 0.75])
-            signs.append([1, math.log(high - low + 0.1), found.valid_share])
-            errors.append(abs(found.disparity_px - np.median(truth.disparity[mask])))
+            signs = [1, math.log(high - low + 0.1), found.valid_share]
+            yield signs, abs(found.disparity_px - np.median(truth.disparity[mask])), middle_of(truth, found, mask)
+
+
+def middle_of(truth, found, mask):
+    """Errors of an object's position across and along the ray, and the values that predict them; None for small objects."""
+    if found.position_in_camera_m is None or mask.sum() < 200 * (mask.shape[1] / 320) ** 2:
+        return None
+    px, py, pz = found.position_in_camera_m
+    off = np.subtract((px, py, pz), truth.points[mask].mean(0))
+    x, y, w, h = found.box_px
+    c = min(max(found.confidence, 0.02), 0.99)
+    return [off[0] - off[2] * px / pz, off[1] - off[2] * py / pz, off[2], pz / truth.rig.focal_px, *found.extent_in_camera_m,
+            math.log((1 - c) / c), x == 0 or x + w == mask.shape[1], y == 0 or y + h == mask.shape[0],
+            pz * pz * found.disparity_sigma_px / (truth.rig.focal_px * truth.rig.baseline_m)]
+
+
+def fit_sigma(signs, errors):
+    """Coefficients of ln sigma = bias + spread * ln(interquartile range + 0.1 px) + seen * share of valid pixels.
+    Maximum likelihood for errors with a Laplace distribution, then widened until 1.96 sigma covers 95 % of them."""
     signs, errors = np.array(signs), np.array(errors)
     weights = np.linalg.lstsq(signs, np.log(errors + 0.02), rcond=None)[0]
     for _ in range(2000):  # gradient descent; errors beyond 6 sigma are clipped
@@ -178,24 +195,10 @@ def fit_sigma(folders):
     return len(errors), weights
 
 
-def fit_middle(folders):
+def fit_middle(rows):
     """The numbers of sight() in tracking/sight.cpp before they are widened: standard deviations of an object's position
     against the mean point of its visible part, across the ray by width and height and along it. The likeliest scales of
     Student's t with 3 degrees of freedom, since a few masks miss half of an object."""
-    rows = []
-    for folder in folders:
-        truth = Truth(folder)
-        frame = cairn.segment(truth.left, truth.right, truth.calibration)
-        for found, mask in found_objects(truth, frame):
-            if found.position_in_camera_m is None or mask.sum() < 200 * (mask.shape[1] / 320) ** 2:
-                continue
-            px, py, pz = found.position_in_camera_m
-            off = np.subtract((px, py, pz), truth.points[mask].mean(0))
-            x, y, w, h = found.box_px
-            c = min(max(found.confidence, 0.02), 0.99)
-            rows.append([off[0] - off[2] * px / pz, off[1] - off[2] * py / pz, off[2], pz / truth.rig.focal_px, *found.extent_in_camera_m,
-                         math.log((1 - c) / c), x == 0 or x + w == mask.shape[1], y == 0 or y + h == mask.shape[0],
-                         pz * pz * found.disparity_sigma_px / (truth.rig.focal_px * truth.rig.baseline_m)])
     off_x, off_y, off_z, pixel, width, height, depth, odds, cut_x, cut_y, sigma_z = np.array(rows, float).T
 
     def loss(logs):
@@ -227,9 +230,10 @@ def main():
         sys.exit(f"geometry: {rendered}: no such folder, expected the rendered rooms of the data collection")
     folders = {name: [f for s in sets for f in sorted((rendered / s).iterdir()) if f.is_dir()] for name, sets in SETS.items()}
     if "--fit" in sys.argv:
-        count, (bias, spread, seen) = fit_sigma(folders["fit"])
+        signs, errors, middles = zip(*rows_of(folders["fit"]))
+        count, (bias, spread, seen) = fit_sigma(signs, errors)
         print(f"{count} objects: bias {bias:.3f}, spread {spread:.3f}, seen {seen:.3f}")
-        count, numbers = fit_middle(folders["fit"])
+        count, numbers = fit_middle([row for row in middles if row])
         names = ["edge px", "width share", "height share", "cut share", "disparity share", "depth share", "doubt power"]
         print(f"{count} objects, middle: " + ", ".join(f"{name} {number:.3f}" for name, number in zip(names, numbers)))
         return
