@@ -16,7 +16,6 @@
 #include <source/follow_files.hpp>
 #include <source/follow_page.hpp>
 #include <source/sequence_run.hpp>
-#include <tracking/controller.hpp>
 #include <tracking/follower.hpp>
 
 #include "commands.hpp"
@@ -240,14 +239,13 @@ Json event_json(const LandmarkEvent& event, const Landmarked& marked, int frame)
 }
 
 Json control_json(const ControlEvent& event, const Step& step) {
-  return {{"frame", step.index},        {"stamp_ns", step.stamp.ns}, {"kind", "option_better"},
-          {"option", event.arm.option}, {"from", event.before},      {"to", event.arm.value},
+  return {{"frame", step.index},
+          {"stamp_ns", step.stamp.ns},
+          {"kind", event.is_set ? "option_set" : "option_better"},
+          {"option", event.arm.option},
+          {"from", event.before},
+          {"to", event.arm.value},
           {"lead", event.lead}};
-}
-
-std::string control_line(const ControlEvent& event) {
-  return "steadier setting: " + event.arm.option + "=" + event.arm.value + " (now " + event.before +
-         "), by " + percent(event.lead);
 }
 
 Json unreliable_json(const Step& step) {
@@ -307,6 +305,10 @@ void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& f
   } else {
     std::cout << line_of(step, frame.name) << "\n";
   }
+  if (step.control) {
+    outputs.add_event(control_json(*step.control, step));
+    std::cerr << frame.name << ": " << control_line(*step.control) << "\n";
+  }
   if (step.reliability.is_unreliable && step.reliability.weak_frames == kUnreliableFrames) {
     outputs.add_event(unreliable_json(step));
     std::cerr << unreliable_line(step, frame.name) << "\n";
@@ -320,8 +322,8 @@ void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& f
 }
 
 /// Processes frames until the source ends, the user stops the run, or no reader is left.
-void go_through(io::Sequence& source, io::SequenceRun& follower, Controller& controller,
-                const FollowOptions& options, Outputs& outputs, Run& run) {
+void go_through(io::Sequence& source, io::SequenceRun& follower, const FollowOptions& options,
+                Outputs& outputs, Run& run) {
   const Progress progress(source.size().value_or(0));
   const auto began = Clock::now();
   while (!is_interrupted() && std::cout) {
@@ -334,15 +336,9 @@ void go_through(io::Sequence& source, io::SequenceRun& follower, Controller& con
                                 std::chrono::duration<double>(Clock::now() - began).count()));
     const auto start = Clock::now();
     const Step step = follower.next(*frame);
-    const std::optional<ControlEvent> control =
-        controller.next(StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), step);
     run.add(step, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     progress.clear();
     tell(step, follower.marked(), *frame, options, outputs, run);
-    if (control) {
-      outputs.add_event(control_json(*control, step));
-      std::cerr << frame->name << ": " << control_line(*control) << "\n";
-    }
   }
 }
 
@@ -363,7 +359,6 @@ int follow(const FollowOptions& options) {
   const auto source = open_source(options.source, exec.pool);
   const FollowConfig config = resolve_follow(options.config, source->disparities(), source->ground());
   io::SequenceRun follower(*source, options.source.source, companions(options, *source), config, exec);
-  Controller controller(config, source->rig(), exec);
   Outputs outputs;
   if (!options.output.empty()) outputs.files.emplace(options.output);
   if (options.html) {
@@ -378,7 +373,7 @@ int follow(const FollowOptions& options) {
   catch_interrupts();
   Run run;
   try {
-    go_through(*source, follower, controller, options, outputs, run);
+    go_through(*source, follower, options, outputs, run);
   } catch (const Error&) {
     close("failed", *source, follower, options, outputs, run);
     throw;

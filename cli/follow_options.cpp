@@ -37,4 +37,9 @@ std::vector<OptionInfo> sequence_options(const ConfigOptions& config) {
   return own;
 }
 
+std::string control_line(const ControlEvent& event) {
+  return "steadier setting: " + event.arm.option + "=" + event.arm.value +
+         (event.is_set ? ", set (was " : " (now ") + event.before + "), by " + percent(event.lead);
+}
+
 }  // namespace cairn::cli

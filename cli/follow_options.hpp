@@ -15,5 +15,7 @@ FollowConfig resolve_follow(const ConfigOptions& options,
                             KnownGround ground = {});
 /// The base preset.
 std::string preset_of(const ConfigOptions& options);
+/// What the search for better options found, in words.
+std::string control_line(const ControlEvent& event);
 
 }  // namespace cairn::cli

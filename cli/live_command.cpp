@@ -41,6 +41,10 @@ struct LiveCommandOptions {
 class StatusLine : public live::Sink {
  public:
   void offer(const live::LiveFramePtr& frame) override {
+    if (frame->step.control) {
+      progress_.clear();
+      std::cerr << frame->pair->name << ": " << control_line(*frame->step.control) << "\n";
+    }
     if (frame->done - shown_ < std::chrono::seconds(1)) return;
     shown_ = frame->done;
     const std::string words =

@@ -155,6 +155,7 @@ LiveFramePtr Runner::work(PairPtr pair) {
     frame->step = follow_.next(*pair);
     frame->landmarks = follow_.marked().tracks;
     frame->events = follow_.marked().events;
+    take_over(frame->step.control);
   } else {
     frame->step.index = frames_;
     frame->step.stamp = pair->stamp;
@@ -188,6 +189,15 @@ void Runner::take_config() {
   follow_.set_config(*config_);
   used_config_ = config_;
   used_revision_ = revision_;
+}
+
+/// Makes an option known that the search for better ones has set; a change made meanwhile has precedence.
+void Runner::take_over(const std::optional<ControlEvent>& control) {
+  if (!control || !control->is_set) return;
+  const std::lock_guard lock(mutex_);
+  if (revision_ != used_revision_) return;
+  config_ = std::make_shared<const FollowConfig>(follow_.config());
+  ++revision_;
 }
 
 void Runner::set(const std::vector<std::pair<std::string, std::string>>& options) {

@@ -78,6 +78,7 @@ class Runner {
   void wait_for_its_time(const io::SequenceFrame& pair);
   LiveFramePtr work(PairPtr pair);
   void take_config();
+  void take_over(const std::optional<ControlEvent>& control);
   void adopt(FollowConfig config);
 
   io::Sequence& source_;

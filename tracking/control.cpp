@@ -9,19 +9,64 @@
 
 namespace cairn {
 
+namespace {
+
+/// Whether `config` with another value of one option is valid.
+bool is_valid(Config config, const std::string& option, const std::string& value, Size image) {
+  try {
+    set(config, option, value);
+    validate(config, image, true);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// The options of `config`, and their values in `known`, that both read and that differ.
+std::vector<Arm> differences(const Config& config, const Config& known) {
+  const std::vector<OptionInfo> there = options(known);
+  std::vector<Arm> differ;
+  for (const OptionInfo& here : active_options(config)) {
+    const OptionInfo& other = *std::ranges::find(there, here.name, &OptionInfo::name);
+    if (other.value != here.value) differ.push_back({here.name, other.value, true});
+  }
+  return differ;
+}
+
+/// Gains, relative to the mean of the setting in force, that let an arm stay in the search and win it.
+double least_lead(const Arm& arm, double lead_percent) {
+  return arm.restores ? 0 : lead_percent / 100;
+}
+
+}  // namespace
+
+std::vector<Arm> restoring_arms(const Config& config, const Config& known, Size image) {
+  std::vector<Arm> arms = differences(config, known);
+  std::erase_if(arms, [&](const Arm& arm) {
+    return arm.option == "match.min_disparity" ||
+           (arm.option == "match.num_disparities" &&
+            known.match.num_disparities < config.match.num_disparities) ||
+           (arm.option == "ground.source" && config.ground.source != GroundSource::off) ||
+           !is_valid(config, arm.option, arm.value, image);
+  });
+  for (Arm& arm : arms) arm.restores = arm.option != "match.num_disparities";
+  return arms;
+}
+
+Config nearest_preset(const Config& config) {
+  std::vector<Config> presets;
+  for (const std::string& name : preset_names()) presets.push_back(Config::preset(name));
+  return *std::ranges::min_element(presets, {},
+                                   [&](const Config& preset) { return differences(config, preset).size(); });
+}
+
 std::vector<Arm> arms_of(const Config& config, Size image, float step) {
   const std::vector<OptionInfo> known = active_options(config);
   std::vector<Arm> arms;
   const auto add = [&](const std::string& option, const std::string& value) {
     const auto now = std::ranges::find(known, option, &OptionInfo::name);
     if (now == known.end() || now->value == value) return;
-    try {
-      Config changed = config;
-      set(changed, option, value);
-      validate(changed, image, true);
-      arms.push_back({option, value});
-    } catch (const Error&) {  // out of its range: no arm
-    }
+    if (is_valid(config, option, value, image)) arms.push_back({option, value});
   };
   const auto scale = [&](const std::string& option, float value, float by) {
     if (value > 0) add(option, option_walk::write(value * by));
@@ -72,14 +117,15 @@ std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent) {
   const std::size_t most = (round.size() + 1) / 2;
   std::ranges::stable_sort(round, std::ranges::greater{}, [](const ArmScore& s) { return lead_of(s).mean; });
   if (round.size() > 1) round.resize(most);
-  std::erase_if(round, [&](const ArmScore& s) { return lead_of(s).mean < double{lead_percent} / 200; });
+  std::erase_if(round,
+                [&](const ArmScore& s) { return lead_of(s).mean < least_lead(s.arm, lead_percent) / 2; });
   return round;
 }
 
 bool is_better(const ArmScore& score, const ControlConfig& config) {
   const Lead lead = lead_of(score);
-  return static_cast<int>(score.of_arm.size()) >= config.window && lead.mean >= double{config.lead} / 100 &&
-         lead.low > 0;
+  return static_cast<int>(score.of_arm.size()) >= config.window &&
+         lead.mean >= least_lead(score.arm, config.lead) && lead.low > 0;
 }
 
 }  // namespace cairn

@@ -11,9 +11,10 @@
 
 namespace cairn {
 
-enum class ControlMethod : std::uint8_t { off, watch };
+enum class ControlMethod : std::uint8_t { off, watch, tune };
 inline constexpr std::array kControlMethods{Choice{"off", ControlMethod::off},
-                                            Choice{"watch", ControlMethod::watch}};
+                                            Choice{"watch", ControlMethod::watch},
+                                            Choice{"tune", ControlMethod::tune}};
 
 /// The trial of other option values during a sequence.
 struct ControlConfig {
@@ -26,23 +27,43 @@ struct ControlConfig {
 template <class V>
 void fields(ControlConfig& c, V&& v) {
   const auto on = unless("control.method", "off");
-  v("method", c.method, "", "search for steadier option values during a sequence", kControlMethods);
+  v("method", c.method, "", "search for steadier option values during a sequence: report them, or set them",
+    kControlMethods);
   v("window", c.window, "frames", "smallest number of frames to compare two settings on", range(3, 1000), on);
-  v("hold", c.hold, "frames", "smallest number of frames between two reports", range(1, 10000), on);
+  v("hold", c.hold, "frames", "smallest number of frames between two reports or changes", range(1, 10000),
+    on);
   v("budget", c.budget, "", "share of frames segmented a second time", range(0.0F, 1.0F), on);
-  v("lead", c.lead, "%", "smallest gain in steadiness that is reported", range(0.0F, 100.0F), on);
+  v("lead", c.lead, "%", "smallest gain in steadiness of a value that is not the preset's",
+    range(0.0F, 100.0F), on);
 }
 
 /// Another value of one option.
 struct Arm {
   std::string option;
   std::string value;
+  bool restores = false;  // the preset's value, fitted on many scenes
   friend bool operator==(const Arm&, const Arm&) = default;
 };
 
 /// The alternatives to `config`: `step` times and 1/`step` times the value of relevant options, or the other
 /// choice. Excludes values without effect or out of range. Always in the same order.
 std::vector<Arm> arms_of(const Config& config, Size image, float step = 2);
+
+/// The values in `known` of the options in which `config` differs from it. Omits what the user knows of the
+/// scene: the origin of the floor, except off, and a disparity range that starts elsewhere or is larger. A smaller
+/// one may be known as well, so the larger one does not count as restoring.
+std::vector<Arm> restoring_arms(const Config& config, const Config& known, Size image);
+
+/// The preset with the fewest options that differ from those of `config`.
+Config nearest_preset(const Config& config);
+
+/// An option value that makes objects steadier.
+struct ControlEvent {
+  Arm arm;
+  bool is_set = false;  // from the next frame on, with ControlMethod::tune
+  std::string before;   // the value of the option
+  double lead = 0;      // share
+};
 
 /// The steadiness of an arm and of the present setting on the same frames. See steadiness().
 struct ArmScore {
@@ -60,11 +81,12 @@ struct Lead {
 Lead lead_of(const ArmScore& score);
 
 /// The survivors of a round of successive halving (Jamieson and Talwalkar 2016): at most half of the arms,
-/// those with the highest lead, and none with a lead below half of `lead`. Ties: the earlier one.
+/// those with the highest lead, and none with a lead below half of `lead`, or below 0 if it restores. Ties: the
+/// earlier one.
 std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent);
 
-/// Whether to report the arm: compared on at least `window` frames, with a lead of at least `lead` that is
-/// significantly above 0.
+/// Whether to report or set the arm: compared on at least `window` frames, with a lead significantly above 0
+/// and, unless it restores, of at least `lead`.
 bool is_better(const ArmScore& score, const ControlConfig& config);
 
 }  // namespace cairn

@@ -8,7 +8,8 @@
 namespace cairn {
 namespace {
 
-constexpr int kFirstSamples = 2;  // frames of the first round
+constexpr int kFirstSamples = 2;  // frames of the first round of many arms
+constexpr int kMostWindows = 4;   // after as many windows without a certain lead an arm is dropped
 constexpr float kLeastStep = 2;
 constexpr float kMostStep = 8;
 constexpr double kObvious = 0.5;  // a lead large enough to skip further rounds
@@ -20,26 +21,39 @@ std::string value_of(const Config& config, const std::string& option) {
 
 }  // namespace
 
-Controller::Controller(const FollowConfig& config, std::optional<StereoRig> rig, Exec exec)
-    : config_(config), rig_(rig), exec_(std::move(exec)), since_report_(config.control.hold) {}
+Controller::Controller(const FollowConfig& config)
+    : config_(config),
+      start_(config.segmentation),
+      preset_(nearest_preset(config.segmentation)),
+      since_report_(config.control.hold) {}
 
 void Controller::begin_search(Size image) {
+  std::vector<Arm> arms = restoring_arms(config_.segmentation, preset_, image);
+  const bool restores = restores_ && !arms.empty();
+  restores_ = !restores;
+  if (!restores) {
+    arms = arms_of(config_.segmentation, image, step_);
+    for (Arm back : restoring_arms(config_.segmentation, start_, image)) {
+      back.restores = false;  // a change that was an improvement is undone only for a clear one
+      if (std::ranges::find(arms, back) == arms.end()) arms.push_back(back);
+    }
+  }
   round_.clear();
-  for (const Arm& arm : arms_of(config_.segmentation, image, step_)) {
+  for (const Arm& arm : arms) {
     if (std::ranges::find(reported_, arm) == reported_.end()) round_.push_back({arm, {}, {}});
   }
   // Try first what helped last.
   std::stable_partition(round_.begin(), round_.end(),
                         [&](const ArmScore& s) { return s.arm.option == last_option_; });
   at_ = 0;
-  samples_ = kFirstSamples;
+  samples_ = restores ? config_.control.window : kFirstSamples;
 }
 
-void Controller::begin_block() {
+void Controller::begin_block(const Follower& follower) {
   FollowConfig config = config_;
   set(config.segmentation, round_[at_].arm.option, round_[at_].arm.value);
-  candidate_.emplace(config, rig_, exec_);
-  left_ = samples_ + 1;  // one more, as the first frame has no predecessor
+  candidate_.emplace(follower.with(std::move(config)));
+  left_ = samples_ + 1;  // one more, as the first frame's predecessor has the present setting
   credit_ -= left_;
 }
 
@@ -56,33 +70,42 @@ std::optional<ControlEvent> Controller::end_block() {
   if (round_.empty()) step_ = step_ < kMostStep ? 2 * step_ : kLeastStep;  // search farther
   const auto best =
       std::ranges::find_if(round_, [&](const ArmScore& s) { return is_better(s, config_.control); });
-  if (best == round_.end() || since_report_ < config_.control.hold) return std::nullopt;
-  const ControlEvent event{best->arm, value_of(config_.segmentation, best->arm.option), lead_of(*best).mean};
+  if (best == round_.end()) {
+    const auto most = static_cast<std::size_t>(kMostWindows * config_.control.window);
+    std::erase_if(round_, [&](const ArmScore& s) { return s.of_arm.size() >= most; });
+    return std::nullopt;
+  }
+  if (since_report_ < config_.control.hold) return std::nullopt;
+  const bool tunes = config_.control.method == ControlMethod::tune;
+  const ControlEvent event{best->arm, tunes, value_of(config_.segmentation, best->arm.option),
+                           lead_of(*best).mean};
   round_.clear();
   since_report_ = 0;
   last_option_ = event.arm.option;
   step_ = kLeastStep;
-  reported_.push_back(event.arm);
+  restores_ = true;
+  if (tunes) {
+    set(config_.segmentation, event.arm.option, event.arm.value);
+  } else {
+    reported_.push_back(event.arm);
+  }
   return event;
 }
 
-std::optional<ControlEvent> Controller::next(const StereoPair& pair, const Step& step) {
-  if (config_.control.method == ControlMethod::off) return std::nullopt;
+std::optional<ControlEvent> Controller::next(const Step& step, const Follower& follower, const Again& again) {
   ++since_report_;
   credit_ += double{config_.control.budget};
   if (!candidate_) {
-    if (round_.empty()) begin_search(pair.size());
-    if (round_.empty() || credit_ < samples_ + 1) return std::nullopt;
-    begin_block();
+    if (round_.empty()) begin_search(step.ids.size());
+    if (!round_.empty() && credit_ >= samples_ + 1) begin_block(follower);
+    return std::nullopt;
   }
-  const bool has_pose = rig_ && !step.is_lost;
-  const Step tried = candidate_->next(pair, step.stamp, std::nullopt,
-                                      has_pose ? std::optional(step.map_from_camera) : std::nullopt);
-  if (tried.index > 0) {
+  const Step tried = again(*candidate_);
+  if (--left_ < samples_) {
     round_[at_].of_arm.push_back(tried.reliability.steadiness);
     round_[at_].of_present.push_back(step.reliability.steadiness);
   }
-  return --left_ == 0 ? end_block() : std::nullopt;
+  return left_ == 0 ? end_block() : std::nullopt;
 }
 
 }  // namespace cairn

@@ -2,35 +2,34 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <functional>
+
 #include "control.hpp"
 #include "follower.hpp"
 
 namespace cairn {
 
-/// An option value that makes objects steadier.
-struct ControlEvent {
-  Arm arm;
-  std::string before;  // the value of the option
-  double lead = 0;     // share
-};
-
-/// Searches for better options next to a Follower: tries other values of single options on some of the same
+/// Searches for better options inside a Follower: tries other values of single options on some of the same
 /// frames. Counts frames, never time: the same frames give the same choices. (docs/stages/reliability.md)
 class Controller {
  public:
-  Controller(const FollowConfig& config, std::optional<StereoRig> rig, Exec exec = {});
+  explicit Controller(const FollowConfig& config);
 
-  /// To be called after `follower.next()` has returned `step` for the frame.
-  std::optional<ControlEvent> next(const StereoPair& pair, const Step& step);
+  /// Processes the present frame with another follower.
+  using Again = std::function<Step(Follower& candidate)>;
+
+  /// `step`: the results of `follower` for the frame, with the configuration of the constructor and everything
+  /// set since.
+  std::optional<ControlEvent> next(const Step& step, const Follower& follower, const Again& again);
 
  private:
   void begin_search(Size image);
-  void begin_block();
+  void begin_block(const Follower& follower);
   std::optional<ControlEvent> end_block();
 
   FollowConfig config_;
-  std::optional<StereoRig> rig_;
-  Exec exec_;
+  Config start_;   // of the segmentation
+  Config preset_;  // nearest to it
   std::vector<ArmScore> round_;
   std::size_t at_ = 0;  // in round_
   int samples_ = 0;     // frames per block of a round
@@ -40,6 +39,7 @@ class Controller {
   int since_report_;
   std::string last_option_;  // the last one that helped
   float step_ = 2;           // factor for numbers
+  bool restores_ = true;     // whether the next search is among the preset's values
   std::vector<Arm> reported_;
 };
 

@@ -6,6 +6,7 @@
 #include <cairn/pipeline/methods.hpp>
 #include <utility>
 
+#include "controller.hpp"
 #include "first_pose.hpp"
 
 namespace cairn {
@@ -58,31 +59,68 @@ Follower::Follower(FollowConfig config, std::optional<StereoRig> rig, Exec exec)
   validate(config_);
   if (rig_) rig_->validate();
   exec_.pool = Pool::make();
+  begin_control();
+}
+
+Follower::~Follower() = default;
+Follower::Follower(Follower&& from) noexcept = default;
+Follower& Follower::operator=(Follower&& from) noexcept = default;
+
+void Follower::begin_control() {
+  const bool is_off = config_.control.method == ControlMethod::off;
+  controller_ = is_off ? nullptr : std::make_unique<Controller>(config_);
 }
 
 void Follower::set_config(FollowConfig config) {
   validate(config);
-  config_ = std::move(config);
+  const auto values = [](const FollowConfig& c) {
+    std::vector<std::string> all;
+    for (OptionInfo& option : options(c)) all.push_back(std::move(option.value));
+    return all;
+  };
+  const bool is_same = values(config) == values(config_);
+  config_ = std::move(config);  // also what is no option: a known floor
+  if (!is_same) begin_control();
+}
+
+Follower Follower::with(FollowConfig config) const {
+  config.control.method = ControlMethod::off;
+  Follower copy(std::move(config), rig_, exec_.beside());
+  copy.state_ = state_;
+  return copy;
 }
 
 void Follower::forget() {
-  odometry_ = after_gap(std::move(odometry_));
-  std::erase_if(tracks_.list, [](const Track& track) { return track.state == TrackState::tentative; });
-  for (Track& track : tracks_.list) track.state = TrackState::lost;
-  reliability_.floor.reset();
+  state_.odometry = after_gap(std::move(state_.odometry));
+  std::erase_if(state_.tracks.list, [](const Track& track) { return track.state == TrackState::tentative; });
+  for (Track& track : state_.tracks.list) track.state = TrackState::lost;
+  state_.reliability.floor.reset();
 }
 
 Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                     const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
-  if (size_ && *size_ != pair.size())
-    throw Error("frame " + std::to_string(frames_) + ": is " + text(pair.size()) + ", the first one is " +
-                text(*size_));
-  if (frames_ > 0 && stamp <= before_)
-    throw Error("frame " + std::to_string(frames_) + ": its stamp " + std::to_string(stamp.ns) +
-                " ns is not later than the one before, " + std::to_string(before_.ns) + " ns");
+  Step step = follow(pair, stamp, prior, map_from_camera, scan);
+  if (controller_) {
+    step.control = controller_->next(step, *this, [&](Follower& candidate) {
+      return candidate.follow(pair, stamp, prior, map_from_camera, scan);
+    });
+    if (step.control && step.control->is_set)
+      set(config_.segmentation, step.control->arm.option, step.control->arm.value);
+  }
+  return step;
+}
+
+Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+                      const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+  if (state_.size && *state_.size != pair.size())
+    throw Error("frame " + std::to_string(state_.frames) + ": is " + text(pair.size()) +
+                ", the first one is " + text(*state_.size));
+  if (state_.frames > 0 && stamp <= state_.before)
+    throw Error("frame " + std::to_string(state_.frames) + ": its stamp " + std::to_string(stamp.ns) +
+                " ns is not later than the one before, " + std::to_string(state_.before.ns) + " ns");
 
   Step step;
-  step.index = frames_;
+  step.index = state_.frames;
   step.stamp = stamp;
   const Config& config = config_.segmentation;
   validate(config, pair.size(), rig_.has_value());
@@ -102,76 +140,79 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   const Image<float>& confidence = has_tree ? grown.confidence : step.frame.confidence;
 
   // … estimate the camera motion …
-  if (frames_ == 0) {
-    odometry_ = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
-    is_over_floor_ = !map_from_camera && ground.plane.has_value();
+  if (state_.frames == 0) {
+    state_.odometry = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
+    state_.is_over_floor = !map_from_camera && ground.plane.has_value();
   }
   if (map_from_camera) {
     step.motion.refusal = MotionRefusal::off;
-    step.motion.now_from_before = inverse(*map_from_camera) * odometry_.map_from_camera;
-    odometry_ = begin_odometry(*map_from_camera);  // the start if a later frame has no pose
+    step.motion.now_from_before = inverse(*map_from_camera) * state_.odometry.map_from_camera;
+    state_.odometry = begin_odometry(*map_from_camera);  // the start if a later frame has no pose
   } else if (rig_) {
     const bool has_wheels = prior && prior->kind == PriorKind::wheels;
-    const Pose expected_step = has_wheels ? prior->now_from_before : odometry_.last_step;
-    const Image<std::uint8_t> moving =
-        expected_movers(remembered_, tracks_, odometry_.map_from_camera * inverse(expected_step), stamp,
-                        *rig_, pair.size(), exec_);
-    OdometryStep moved = advance_odometry(odometry_, pair.left(), disparity, confidence, moving, *rig_, prior,
-                                          config_.odometry);
-    const Pose before = odometry_.map_from_camera;
-    odometry_ = std::move(moved.state);
+    const Pose expected_step = has_wheels ? prior->now_from_before : state_.odometry.last_step;
+    const Image<std::uint8_t> moving = expected_movers(
+        state_.remembered, state_.tracks, state_.odometry.map_from_camera * inverse(expected_step), stamp,
+        *rig_, pair.size(), exec_);
+    OdometryStep moved = advance_odometry(state_.odometry, pair.left(), disparity, confidence, moving, *rig_,
+                                          prior, config_.odometry);
+    const Pose before = state_.odometry.map_from_camera;
+    state_.odometry = std::move(moved.state);
     step.motion = moved.motion;
-    if (step.motion.is_new_segment && is_over_floor_) {
-      if (const auto level = levelled(odometry_.map_from_camera, ground, rig_)) {
-        odometry_ = stood_on_floor(std::move(odometry_), *level);
+    if (step.motion.is_new_segment && state_.is_over_floor) {
+      if (const auto level = levelled(state_.odometry.map_from_camera, ground, rig_)) {
+        state_.odometry = stood_on_floor(std::move(state_.odometry), *level);
         step.motion.now_from_before = inverse(*level) * before;
       }
     }
   } else {
     step.motion.refusal = MotionRefusal::no_rig;
   }
-  const Pose& pose = step.map_from_camera = odometry_.map_from_camera;
-  step.pose_covariance = odometry_.covariance;
-  step.is_lost = odometry_.lost;
+  const Pose& pose = step.map_from_camera = state_.odometry.map_from_camera;
+  step.pose_covariance = state_.odometry.covariance;
+  step.is_lost = state_.odometry.lost;
 
-  const Covariance6 since_key = covariance_since_key(odometry_);
-  tracks_ = tied_to_key(std::move(tracks_), pose, odometry_.key_covariance, step.motion.is_new_segment);
+  const Covariance6 since_key = covariance_since_key(state_.odometry);
+  state_.tracks =
+      tied_to_key(std::move(state_.tracks), pose, state_.odometry.key_covariance, step.motion.is_new_segment);
 
   // … predict the tracks, which helps to choose objects …
   const Image<std::int16_t> best_right = std::move(grown.cut.scene.matches.best_right);
   const StereoRig rig = rig_.value_or(picture_rig(pair.size()));
-  const Warped warped = warp(remembered_, tracks_, pose, stamp, rig, pair.size(), exec_);
+  const Warped warped = warp(state_.remembered, state_.tracks, pose, stamp, rig, pair.size(), exec_);
   if (has_tree) {
     const ChoiceLimits limits = limits_of(config.objects, pair.size());
     std::vector<float> scores = score_nodes(grown.tree, whole_object_trees(), limits, exec_);
     if (!step.is_lost)
-      scores = repaired_scores(grown.tree, std::move(scores), grown.cut.superpixels, warped, tracks_,
+      scores = repaired_scores(grown.tree, std::move(scores), grown.cut.superpixels, warped, state_.tracks,
                                config_.repair);
     const ChosenObjects chosen = stage(
         "choose_objects", choose_candidates(grown.tree, scores, limits, config_.tracking.low_confidence));
     step.frame = frame_of(std::move(grown), chosen, given, rig_, config, exec_, stage);
   }
   const Frame& frame = step.frame;
-  size_ = pair.size();
-  before_ = stamp;
-  ++frames_;
+  state_.size = pair.size();
+  state_.before = stamp;
+  ++state_.frames;
 
   // … match objects and tracks …
-  const Overlaps overlaps = overlaps_of(warped, tracks_, frame.objects, frame.disparity);
+  const Overlaps overlaps = overlaps_of(warped, state_.tracks, frame.objects, frame.disparity);
   const auto sightings = sight(frame, pair.left(), pair.left_rgb(), rig_, config_.tracking);
   const auto matches =
       step.is_lost ? std::vector<Match>{}
-                   : associate(tracks_, sightings, overlaps, pose, since_key, stamp, config_.tracking);
-  tracks_ = advance_tracks(std::move(tracks_), sightings, matches, overlaps, pose, since_key, step.is_lost,
-                           stamp, config_.tracking);
-  remembered_ = remember(std::move(remembered_), tracks_, frame.objects, frame.disparity, pose, stamp, rig);
-  step.tracks = tracks_;
-  step.ids = ids_of(tracks_, frame.objects, exec_);
+                   : associate(state_.tracks, sightings, overlaps, pose, since_key, stamp, config_.tracking);
+  state_.tracks = advance_tracks(std::move(state_.tracks), sightings, matches, overlaps, pose, since_key,
+                                 step.is_lost, stamp, config_.tracking);
+  state_.remembered =
+      remember(std::move(state_.remembered), state_.tracks, frame.objects, frame.disparity, pose, stamp, rig);
+  step.tracks = state_.tracks;
+  step.ids = ids_of(state_.tracks, frame.objects, exec_);
 
   // … and judge how reliable the result is.
   const bool looks_for_floor = config.ground.source == GroundSource::automatic;
-  reliability_ = judge(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, reliability_);
-  step.reliability = reliability_;
+  state_.reliability =
+      judge(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, state_.reliability);
+  step.reliability = state_.reliability;
   return step;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/pipeline/segmenter.hpp>
+#include <memory>
 #include <optional>
 
 #include "follow_config.hpp"
@@ -23,7 +24,10 @@ struct Step {
   bool is_lost = false;  // the pose of the camera is unknown
   Tracks tracks;
   Reliability reliability;
+  std::optional<ControlEvent> control;  // found at this frame
 };
+
+class Controller;
 
 /// Tracks camera and objects through a sequence by calling the stages in order. The origin of the map frame
 /// is on the floor below the first camera, x forward, y left, z up (ROS REP 103); without a floor it is at
@@ -33,6 +37,9 @@ class Follower {
   /// Throws Error if validate(config) or the validate() of the rig does. Without a rig there are ids, but no
   /// metres and no motion. objects.min_confidence is ignored: tracking.low_confidence replaces it.
   explicit Follower(FollowConfig config, std::optional<StereoRig> rig = std::nullopt, Exec exec = {});
+  ~Follower();
+  Follower(Follower&& from) noexcept;
+  Follower& operator=(Follower&& from) noexcept;
 
   /// The next frame. Throws Error if its size differs from the first one's, its stamp is not later than the
   /// one before, or the configuration does not suit its size. `prior`: the motion since the frame before.
@@ -46,23 +53,38 @@ class Follower {
   /// finds its keyframe again, its position has a standard deviation of 1 m and 30°.
   void forget();
 
+  /// A follower that goes on from here with another configuration, without a search for better options. Throws
+  /// Error if validate(config) does.
+  [[nodiscard]] Follower with(FollowConfig config) const;
+
+  /// For the next frame; ControlMethod::tune changes options of the segmentation.
   [[nodiscard]] const FollowConfig& config() const { return config_; }
-  /// Sets the configuration from the next frame on; the state is kept. Throws Error if validate(config) does,
+  /// Sets the configuration from the next frame on; the state is kept, but another configuration begins the
+  /// search for better options anew. Throws Error if validate(config) does,
   /// without any change.
   void set_config(FollowConfig config);
 
  private:
+  Step follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+              const std::optional<Pose>& map_from_camera, const LaserScan* scan);
+  void begin_control();
+
+  struct State {
+    std::optional<Size> size;
+    int frames = 0;
+    bool is_over_floor = false;  // the map's z = 0 is the floor
+    Stamp before;
+    OdometryState odometry;
+    Tracks tracks;
+    Remembered remembered;
+    Reliability reliability;
+  };
+
   FollowConfig config_;
   std::optional<StereoRig> rig_;
   Exec exec_;
-  std::optional<Size> size_;
-  int frames_ = 0;
-  bool is_over_floor_ = false;  // the map's z = 0 is the floor
-  Stamp before_;
-  OdometryState odometry_;
-  Tracks tracks_;
-  Remembered remembered_;
-  Reliability reliability_;
+  State state_;
+  std::unique_ptr<Controller> controller_;  // null if off
 };
 
 }  // namespace cairn

@@ -29,8 +29,10 @@ CAIRN_MEMBERS(Tracks, _list, _next, _stamp, _odometry_suspect)
 CAIRN_MEMBERS(Witnesses, _stereo, _photometric, _temporal, _floor, _odometry, _scan)
 CAIRN_MEMBERS(FloorInCamera, _up, _height)
 CAIRN_MEMBERS(Reliability, _value, _witnesses, _weakest, _steadiness, _weak_frames, _is_unreliable, _floor)
+CAIRN_MEMBERS(Arm, _option, _value, _restores)
+CAIRN_MEMBERS(ControlEvent, _arm, _is_set, _before, _lead)
 CAIRN_MEMBERS(Step, index, _stamp, frame, ids, motion, map_from_camera, pose_covariance, is_lost, _tracks,
-              _reliability)
+              _reliability, _control)
 
 }  // namespace cairn::python
 
@@ -264,6 +266,17 @@ py::dict reliability_of(const Step& step) {
   return known;
 }
 
+std::optional<py::dict> control_of(const Step& step) {
+  if (!step.control) return std::nullopt;
+  py::dict known;
+  known["option"] = step.control->arm.option;
+  known["value"] = step.control->arm.value;
+  known["before"] = step.control->before;
+  known["lead"] = step.control->lead;
+  known["is_set"] = step.control->is_set;
+  return known;
+}
+
 void bind_results(py::module_& m) {
   auto track = value_class<Track>(m, "Track");
   shows(track, "position_m", &if_placed<&Track::position_m>);
@@ -283,6 +296,7 @@ void bind_results(py::module_& m) {
   shows(data, "tracks", &tracks_of);
   shows(data, "odometry_suspect", [](const Step& self) { return self.tracks.odometry_suspect; });
   shows(data, "reliability", &reliability_of);
+  shows(data, "control", &control_of);
   m.def(
       "draw_tracks",
       [](const Picture& left, const Step& step) { return io::draw_tracks(left.gray(), left.rgb(), step); },

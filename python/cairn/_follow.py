@@ -128,6 +128,9 @@ class Step:
     odometry_suspect: bool = "whether most tracks began to move at once: rather the camera's motion is wrong"
     reliability: Dict[str, Any] = (
         "how far the frame is to be trusted: value (0 ... 1 or None), the witnesses it is the mean of, and the weakest one's name")
+    control: Optional[Dict[str, Any]] = (
+        "the option that the search for better ones found at this frame, or None: option, value, before, lead (share) and is_set "
+        "(control={'method': 'watch'} or 'tune')")
     landmarks: Dict[int, int] = "of follow(): landmark by track, both by id", lambda self: self._landmarks
     events: List[Tuple[str, int]] = (
         "of follow(): (kind, landmark), kind 'new', 'moved', 'gone', 'back' or 'relocated'", lambda self: self._events)

@@ -166,6 +166,20 @@ def test_a_map_keeps_landmarks_from_run_to_run(tmp_path):
     assert map_file.read_bytes() == before
 
 
+def test_a_better_option_is_reported_or_set(pairs, rig):
+    left, right = pairs[0]
+    control = {"window": 3, "budget": 1, "lead": 100}
+    for method in ("watch", "tune"):
+        follower = cairn.Follower(rig, objects={"min_area": 60}, control={"method": method, **control})
+        steps = [follower.next(left, right, seconds=0.1 * i) for i in range(20)]
+        found = next(step.control for step in steps if step.control)
+        assert (found["option"], found["before"], found["value"]) == ("objects.min_area", "60", "0.25")
+        assert found["lead"] > 1 and found["is_set"] == (method == "tune")
+        assert follower["objects.min_area"] == ("0.25" if method == "tune" else "60")
+        assert pickle.loads(pickle.dumps(steps[-1])).control == steps[-1].control
+    assert steps[0].control is None
+
+
 def test_the_options_of_sequences_are_listed():
     names = {option.name for option in cairn.follow_options()}
     assert {"odometry.max_features", "tracking.min_hits", "repair.method", "landmarks.min_frames"} <= names

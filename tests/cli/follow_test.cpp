@@ -244,6 +244,23 @@ TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
   EXPECT_EQ(content(at("off/events.jsonl")).find("option_better"), std::string::npos);
 }
 
+TEST_F(Follow, TuningSetsABetterOption) {
+  standing(20);
+  const Outcome outcome =
+      run({"follow", path("in"), "--set", "objects.min_area=60", "--set", "control.method=tune", "--set",
+           "control.budget=1", "--set", "control.window=3", "-o", path("tuned")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<Json> events = lines_of(at("tuned/events.jsonl"));
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events[0]["kind"], "option_set");
+  EXPECT_EQ(events[0]["option"], "objects.min_area");
+  EXPECT_EQ(events[0]["from"], "60");
+  EXPECT_NE(outcome.err.find("objects.min_area=0.25, set (was 60)"), std::string::npos) << outcome.err;
+  const std::vector<Json> lines = lines_of(at("tuned/tracks.jsonl"));
+  EXPECT_EQ(lines.front()["objects"], 0);
+  EXPECT_GT(lines.back()["objects"], 0);
+}
+
 TEST_F(Follow, AMapStoresLandmarks) {
   standing(10);
   write(at("in/stamps.txt"), "5\n5.1\n5.2\n5.3\n5.4\n5.5\n5.6\n5.7\n5.8\n5.9\n");

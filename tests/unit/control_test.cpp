@@ -6,12 +6,18 @@
 #include <map>
 
 #include "support/samples.hpp"
-#include "tracking/controller.hpp"
+#include "tracking/follower.hpp"
 
 namespace cairn {
 namespace {
 
 constexpr Size kSize{320, 240};
+
+std::vector<std::string> values(const Config& config) {
+  std::vector<std::string> all;
+  for (const OptionInfo& option : options(config)) all.push_back(option.value);
+  return all;
+}
 
 ArmScore score(std::vector<float> of_arm, std::vector<float> of_present, const std::string& value = "1") {
   return {{"superpixels.count", value}, std::move(of_arm), std::move(of_present)};
@@ -44,6 +50,7 @@ TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
   EXPECT_FALSE(has("objects.min_area", "160"));
   EXPECT_TRUE(has("objects.min_area", "40"));
   EXPECT_TRUE(has("match.method", "semi_global"));
+  EXPECT_TRUE(has("match.num_disparities", "128"));
   EXPECT_FALSE(has("match.method", "window"));
 }
 
@@ -86,17 +93,18 @@ TEST(ABetterArm, LeadsSignificantlyOnEnoughFrames) {
 struct Seen {
   std::vector<ControlEvent> events;
   Image<TrackId> ids;
+  FollowConfig config;  // after the last frame
 };
 
 Seen play(const samples::Sample& sample, const FollowConfig& config, int frames) {
   Follower follower(config, sample.calibration.rig);
-  Controller controller(config, sample.calibration.rig);
   Seen seen;
   for (int k = 0; k < frames; ++k) {
     Step step = follower.next(sample.pair(), {k * std::int64_t{100'000'000}});
-    if (auto event = controller.next(sample.pair(), step)) seen.events.push_back(*event);
+    if (step.control) seen.events.push_back(*step.control);
     seen.ids = std::move(step.ids);
   }
+  seen.config = follower.config();
   return seen;
 }
 
@@ -157,6 +165,105 @@ TEST(Controller, WatchingChangesNothing) {
   const Seen without = play(sample, off, 30);
   for (int y = 0; y < seen.ids.height(); ++y)
     for (int x = 0; x < seen.ids.width(); ++x) ASSERT_EQ(seen.ids(x, y), without.ids(x, y));
+}
+
+TEST(RestoringArms, AreTheKnownValuesOfOptionsThatDiffer) {
+  const Config known;
+  EXPECT_TRUE(restoring_arms(known, known, kSize).empty());
+  Config config;
+  config.superpixels.count = 40;
+  config.background.max_walls = 0;
+  config.uniqueness.ratio = 5;
+  const std::vector<Arm> arms = restoring_arms(config, known, kSize);
+  EXPECT_EQ(arms, (std::vector<Arm>{{"uniqueness.ratio", "-1", true},
+                                    {"background.max_walls", "3", true},
+                                    {"superpixels.count", "250", true}}));
+}
+
+TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
+  const auto of = [](Config config) { return restoring_arms(config, Config{}, kSize); };
+  Config config;
+  config.match.num_disparities = 128;
+  config.match.min_disparity = 4;
+  EXPECT_TRUE(of(config).empty());
+  config.match.num_disparities = 16;
+  EXPECT_EQ(of(config), (std::vector<Arm>{{"match.num_disparities", "64", false}}));
+  Config pose;
+  pose.ground.source = GroundSource::pose;
+  pose.ground.known.camera_height_m = 1;
+  EXPECT_TRUE(of(pose).empty());
+  pose.ground.source = GroundSource::off;
+  ASSERT_EQ(of(pose).size(), 1U);
+  EXPECT_EQ(of(pose)[0].option, "ground.source");
+}
+
+TEST(RestoringArms, BelongToThePresetWithFewestDifferences) {
+  EXPECT_EQ(values(nearest_preset(Config{})), values(Config{}));
+  Config config = Config::paper();
+  config.uniqueness.ratio = 50;
+  EXPECT_EQ(values(nearest_preset(config)), values(Config::paper()));
+}
+
+TEST(RestoringArms, NeedASignificantLeadButNoLargeOne) {
+  ControlConfig config;
+  config.window = 3;
+  ArmScore little = score({1.05F, 1.02F, 1.04F}, {1, 1, 1});
+  EXPECT_FALSE(is_better(little, config));
+  EXPECT_TRUE(halved({little}, 10).empty());
+  little.arm.restores = true;
+  EXPECT_TRUE(is_better(little, config));
+  EXPECT_EQ(halved({little}, 10).size(), 1U);
+  ArmScore unsure = score({1.3F, 0.8F, 1.0F}, {1, 1, 1});
+  unsure.arm.restores = true;
+  EXPECT_FALSE(is_better(unsure, config));
+}
+
+TEST(Controller, TuningSetsTheOptionFromTheNextFrameOn) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config = too_large(sample, ControlMethod::tune);
+  config.control.lead = 100;  // nothing but the preset's value
+  const Seen seen = play(sample, config, 30);
+  ASSERT_FALSE(seen.events.empty());
+  EXPECT_EQ(seen.events[0].arm.option, "objects.min_area");
+  EXPECT_EQ(seen.events[0].before, "60");
+  EXPECT_TRUE(seen.events[0].is_set);
+  EXPECT_EQ(seen.config.segmentation.objects.min_area, Config{}.objects.min_area);
+  FollowConfig usual = config;
+  usual.segmentation.objects.min_area = Config{}.objects.min_area;
+  usual.control.method = ControlMethod::off;
+  const Image<TrackId> expected = play(sample, usual, 30).ids;
+  for (int y = 0; y < expected.height(); ++y)
+    for (int x = 0; x < expected.width(); ++x)
+      ASSERT_EQ(seen.ids(x, y) == TrackId::none, expected(x, y) == TrackId::none);
+}
+
+TEST(Controller, TuningLeavesThePresetWithoutAClearLead) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config = too_large(sample, ControlMethod::tune);
+  config.control.lead = 100;
+  config.segmentation.objects.min_area = Config{}.objects.min_area;
+  const Seen seen = play(sample, config, 60);
+  EXPECT_TRUE(seen.events.empty());
+  EXPECT_EQ(values(seen.config.segmentation), values(config.segmentation));
+}
+
+TEST(Controller, AnotherConfigurationBeginsTheSearchAnew) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config = too_large(sample, ControlMethod::tune);
+  Follower follower(config, sample.calibration.rig);
+  int frames = 0;
+  const auto until_set = [&] {
+    for (int k = 0; k < 30; ++k) {
+      const Step step = follower.next(sample.pair(), {++frames * std::int64_t{100'000'000}});
+      if (step.control) return step.control->arm.option;
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(until_set(), "objects.min_area");
+  config.segmentation.objects.min_area = Config{}.objects.min_area;
+  config.segmentation.superpixels.count = 4;
+  follower.set_config(config);
+  EXPECT_EQ(until_set(), "superpixels.count");
 }
 
 }  // namespace

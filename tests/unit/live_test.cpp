@@ -9,6 +9,8 @@
 #include <live/runner.hpp>
 #include <thread>
 
+#include "support/samples.hpp"
+
 namespace cairn::live {
 namespace {
 
@@ -266,6 +268,41 @@ TEST(Runner, OptionsApplyFromTheNextFrameAndAreRefusedAsAWhole) {
   EXPECT_EQ(hits(5), 2);
   EXPECT_EQ(hits(8), first);
   EXPECT_EQ(notebook.frames[8]->revision, 2U);
+}
+
+TEST(Runner, ShowsTheOptionThatTheSearchForBetterOnesSets) {
+  struct OfSample : Camera {
+    using Camera::Camera;
+    std::optional<io::SequenceFrame> next() override {
+      auto frame = Camera::next();
+      if (frame) frame->left.gray = sample.images.left.gray.clone();
+      if (frame) frame->right = sample.images.right.gray.clone();
+      return frame;
+    }
+    [[nodiscard]] Size image_size() const override { return sample.pair().size(); }
+    samples::Sample sample = samples::load("four_in_a_row");
+  };
+  OfSample camera(24, 0ms, false);
+  Notebook notebook;
+  LiveOptions options;
+  options.every_frame = true;
+  options.pace = 0;
+  FollowConfig wrong;
+  wrong.segmentation.objects.min_area = 60;
+  wrong.control.method = ControlMethod::tune;
+  wrong.control.budget = 1;
+  wrong.control.window = 3;
+  Runner runner(camera, "camera", {}, wrong, options, {});
+  runner.add(notebook);
+  runner.run();
+  const auto set = std::ranges::find_if(
+      notebook.frames, [](const LiveFramePtr& frame) { return frame->step.control.has_value(); });
+  ASSERT_NE(set, notebook.frames.end());
+  EXPECT_EQ((*set)->step.control->arm.option, "objects.min_area");
+  EXPECT_EQ((*set)->config->segmentation.objects.min_area, 60);
+  ASSERT_NE(set + 1, notebook.frames.end());
+  EXPECT_EQ((*(set + 1))->config->segmentation.objects.min_area, Config{}.objects.min_area);
+  EXPECT_EQ((*(set + 1))->revision, (*set)->revision + 1);
 }
 
 TEST(Runner, AnErrorOfTheSourceIsThrownAfterAllSinksAreDone) {
