@@ -9,8 +9,8 @@ Each sequence is played back and forth until it has 200 frames. Prints means of 
 each setting, their rank correlation, and how many of the pairs of settings that differ by more than 0.05 in E are
 ordered correctly by steadiness.
 
---control: instead measures how much of the error of each wrong setting control.method=tune repairs in the first half of
-the frames, (E wrong - E tuned) / (E wrong - E of the preset) over the second half, and what it costs the preset.
+--control: instead measures how much of the error of each wrong setting control.method=tune repairs, (E wrong - E tuned)
+/ (E wrong - E of the preset) over the same frames, and what it costs the preset.
 """
 import itertools
 import json

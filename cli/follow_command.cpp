@@ -50,6 +50,7 @@ struct FollowOptions {
 
 /// Totals of a run, for its last line and summary.json.
 struct Run {
+  FollowConfig config;  // at the start
   std::vector<double> milliseconds;
   double path_m = 0;
   std::optional<Point3> place;
@@ -349,7 +350,7 @@ void close(const std::string& state, const io::Sequence& source, io::SequenceRun
   follower.close(state == "done" || state == "ended early" ? RunState::done : RunState::aborted);
   if (outputs.files) {
     io::write_file(fs::path(options.output) / "summary.json",
-                   summary_json(run, options, source, follower.config(), state).dump(1) + "\n");
+                   summary_json(run, options, source, run.config, state).dump(1) + "\n");
   }
 }
 
@@ -372,6 +373,7 @@ int follow(const FollowOptions& options) {
   const EndsBySignal ends(*source);
   catch_interrupts();
   Run run;
+  run.config = config;
   try {
     go_through(*source, follower, options, outputs, run);
   } catch (const Error&) {

@@ -70,7 +70,6 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const auto run = [&](const std::vector<Setting>& settings) -> std::optional<SteadinessRun> {
     FollowConfig config = start;
     config.segmentation = with_settings(start.segmentation, settings);
-    config.control.method = ControlMethod::off;
     Follower follower(config, source->rig(), exec);
     SteadinessRun steady;
     for (const io::SequenceFrame& frame : frames) {

@@ -191,12 +191,15 @@ void Runner::take_config() {
   used_revision_ = revision_;
 }
 
-/// Makes an option known that the search for better ones has set; a change made meanwhile has precedence.
+/// Adds an option that the search for better ones has set to the configuration, unless it was changed meanwhile.
 void Runner::take_over(const std::optional<ControlEvent>& control) {
   if (!control || !control->is_set) return;
   const std::lock_guard lock(mutex_);
-  if (revision_ != used_revision_) return;
-  config_ = std::make_shared<const FollowConfig>(follow_.config());
+  FollowConfig changed = *config_;
+  const std::vector<OptionInfo> all = options(changed);
+  if (std::ranges::find(all, control->arm.option, &OptionInfo::name)->value != control->before) return;
+  cairn::set(changed, control->arm.option, control->arm.value);
+  config_ = std::make_shared<const FollowConfig>(std::move(changed));
   ++revision_;
 }
 

@@ -143,6 +143,14 @@ Json track_json(const Track& track, const Step& step, const TrackLabels& shown, 
   return j;
 }
 
+Json control_json(const ControlEvent& event) {
+  return {{"option", event.arm.option},
+          {"from", event.before},
+          {"to", event.arm.value},
+          {"lead", event.lead},
+          {"set", event.is_set}};
+}
+
 }  // namespace
 
 std::string step_json(const Step& step, const std::string& name, const Landmarked& marked,
@@ -157,6 +165,7 @@ std::string step_json(const Step& step, const std::string& name, const Landmarke
                {"reliability", reliability_json(step.reliability)},
                {"objects", step.frame.objects.list.size()},
                {"tracks", tracks}});
+  if (step.control) line["control"] = control_json(*step.control);
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -22,17 +22,6 @@ bool is_valid(Config config, const std::string& option, const std::string& value
   }
 }
 
-/// The options of `config`, and their values in `known`, that both read and that differ.
-std::vector<Arm> differences(const Config& config, const Config& known) {
-  const std::vector<OptionInfo> there = options(known);
-  std::vector<Arm> differ;
-  for (const OptionInfo& here : active_options(config)) {
-    const OptionInfo& other = *std::ranges::find(there, here.name, &OptionInfo::name);
-    if (other.value != here.value) differ.push_back({here.name, other.value, true});
-  }
-  return differ;
-}
-
 /// Gains, relative to the mean of the setting in force, that let an arm stay in the search and win it.
 double least_lead(const Arm& arm, double lead_percent) {
   return arm.restores ? 0 : lead_percent / 100;
@@ -40,10 +29,20 @@ double least_lead(const Arm& arm, double lead_percent) {
 
 }  // namespace
 
+std::vector<Arm> differences(const Config& config, const Config& known) {
+  const std::vector<OptionInfo> there = active_options(known);
+  std::vector<Arm> differ;
+  for (const OptionInfo& here : active_options(config)) {
+    const auto other = std::ranges::find(there, here.name, &OptionInfo::name);
+    if (other != there.end() && other->value != here.value) differ.push_back({here.name, other->value});
+  }
+  return differ;
+}
+
 std::vector<Arm> restoring_arms(const Config& config, const Config& known, Size image) {
   std::vector<Arm> arms = differences(config, known);
   std::erase_if(arms, [&](const Arm& arm) {
-    return arm.option == "match.min_disparity" ||
+    return arm.option == "match.min_disparity" || arm.option.starts_with("space.") ||
            (arm.option == "match.num_disparities" &&
             known.match.num_disparities < config.match.num_disparities) ||
            (arm.option == "ground.source" && config.ground.source != GroundSource::off) ||
@@ -77,7 +76,7 @@ std::vector<Arm> arms_of(const Config& config, Size image, float step) {
   };
   if (2 * config.match.num_disparities <= image.width / 2)
     scale_whole("match.num_disparities", config.match.num_disparities, 2);
-  add("ground.source", "automatic");
+  if (config.ground.source == GroundSource::off) add("ground.source", "automatic");
   for (const float by : {step, 1 / step}) {
     scale_whole("superpixels.count", config.superpixels.count, by);
     scale("objects.min_area", config.objects.min_area, 1 / by);
@@ -117,8 +116,10 @@ std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent) {
   const std::size_t most = (round.size() + 1) / 2;
   std::ranges::stable_sort(round, std::ranges::greater{}, [](const ArmScore& s) { return lead_of(s).mean; });
   if (round.size() > 1) round.resize(most);
-  std::erase_if(round,
-                [&](const ArmScore& s) { return lead_of(s).mean < least_lead(s.arm, lead_percent) / 2; });
+  std::erase_if(round, [&](const ArmScore& s) {
+    const double lead = lead_of(s).mean;
+    return lead <= 0 || lead < least_lead(s.arm, lead_percent) / 2;
+  });
   return round;
 }
 

@@ -49,9 +49,12 @@ struct Arm {
 /// choice. Excludes values without effect or out of range. Always in the same order.
 std::vector<Arm> arms_of(const Config& config, Size image, float step = 2);
 
-/// The values in `known` of the options in which `config` differs from it. Omits what the user knows of the
-/// scene: the origin of the floor, except off, and a disparity range that starts elsewhere or is larger. A smaller
-/// one may be known as well, so the larger one does not count as restoring.
+/// The values in `known` of the options that both read and that differ, as arms that do not restore.
+std::vector<Arm> differences(const Config& config, const Config& known);
+
+/// Of these, the ones that may be set without asking the user, as restoring arms. Omits knowledge of robot and
+/// scene: `space`, the origin of the floor, except off, and a disparity range that starts elsewhere or is
+/// larger. A smaller range may be known as well, so the larger one does not count as restoring.
 std::vector<Arm> restoring_arms(const Config& config, const Config& known, Size image);
 
 /// The preset with the fewest options that differ from those of `config`.
@@ -81,7 +84,7 @@ struct Lead {
 Lead lead_of(const ArmScore& score);
 
 /// The survivors of a round of successive halving (Jamieson and Talwalkar 2016): at most half of the arms,
-/// those with the highest lead, and none with a lead below half of `lead`, or below 0 if it restores. Ties: the
+/// those with the highest lead, and none without a lead or, unless it restores, with less than half of `lead`. Ties: the
 /// earlier one.
 std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent);
 

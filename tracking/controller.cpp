@@ -3,6 +3,7 @@
 #include "controller.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace cairn {
@@ -21,43 +22,43 @@ std::string value_of(const Config& config, const std::string& option) {
 
 }  // namespace
 
-Controller::Controller(const FollowConfig& config)
-    : config_(config),
-      start_(config.segmentation),
-      preset_(nearest_preset(config.segmentation)),
-      since_report_(config.control.hold) {}
+Controller::Controller(const FollowConfig& start)
+    : control_(start.control),
+      start_(start.segmentation),
+      preset_(nearest_preset(start.segmentation)),
+      since_report_(start.control.hold) {}
 
-void Controller::begin_search(Size image) {
-  std::vector<Arm> arms = restoring_arms(config_.segmentation, preset_, image);
-  const bool restores = restores_ && !arms.empty();
-  restores_ = !restores;
-  if (!restores) {
-    arms = arms_of(config_.segmentation, image, step_);
-    for (Arm back : restoring_arms(config_.segmentation, start_, image)) {
-      back.restores = false;  // a change that was an improvement is undone only for a clear one
+void Controller::begin_search(const Config& config, Size image) {
+  std::vector<Arm> arms = restoring_arms(config, preset_, image);
+  is_restoring_ = !is_restoring_ && !arms.empty();
+  if (!is_restoring_) {
+    arms = arms_of(config, image, step_);
+    // A change that was an improvement is undone only for a clear one.
+    for (const Arm& back : differences(config, start_)) {
       if (std::ranges::find(arms, back) == arms.end()) arms.push_back(back);
     }
   }
   round_.clear();
   for (const Arm& arm : arms) {
-    if (std::ranges::find(reported_, arm) == reported_.end()) round_.push_back({arm, {}, {}});
+    const auto is_it = [&](const Arm& r) { return r.option == arm.option && r.value == arm.value; };
+    if (std::ranges::none_of(reported_, is_it)) round_.push_back({arm, {}, {}});
   }
   // Try first what helped last.
   std::stable_partition(round_.begin(), round_.end(),
                         [&](const ArmScore& s) { return s.arm.option == last_option_; });
   at_ = 0;
-  samples_ = restores ? config_.control.window : kFirstSamples;
+  samples_ = is_restoring_ ? control_.window : kFirstSamples;
 }
 
 void Controller::begin_block(const Follower& follower) {
-  FollowConfig config = config_;
+  FollowConfig config = follower.config();
   set(config.segmentation, round_[at_].arm.option, round_[at_].arm.value);
   candidate_.emplace(follower.with(std::move(config)));
   left_ = samples_ + 1;  // one more, as the first frame's predecessor has the present setting
   credit_ -= left_;
 }
 
-std::optional<ControlEvent> Controller::end_block() {
+std::optional<ControlEvent> Controller::end_block(const Config& config) {
   candidate_.reset();
   if (lead_of(round_[at_]).mean > kObvious) {
     round_ = {round_[at_]};
@@ -65,47 +66,57 @@ std::optional<ControlEvent> Controller::end_block() {
     return std::nullopt;
   }
   at_ = 0;
-  round_ = halved(std::move(round_), config_.control.lead);
-  samples_ = std::min(4 * samples_, config_.control.window);
-  if (round_.empty()) step_ = step_ < kMostStep ? 2 * step_ : kLeastStep;  // search farther
-  const auto best =
-      std::ranges::find_if(round_, [&](const ArmScore& s) { return is_better(s, config_.control); });
+  const bool has_seen_objects =
+      std::ranges::any_of(round_, [](const ArmScore& s) { return !s.of_arm.empty(); });
+  if (!has_seen_objects) return std::nullopt;  // compare again
+  round_ = halved(std::move(round_), control_.lead);
+  samples_ = std::min(4 * samples_, control_.window);
+  const auto best = std::ranges::find_if(round_, [&](const ArmScore& s) { return is_better(s, control_); });
   if (best == round_.end()) {
-    const auto most = static_cast<std::size_t>(kMostWindows * config_.control.window);
+    const auto most = static_cast<std::size_t>(kMostWindows * control_.window);
     std::erase_if(round_, [&](const ArmScore& s) { return s.of_arm.size() >= most; });
+    if (round_.empty() && !is_restoring_) step_ = step_ < kMostStep ? 2 * step_ : kLeastStep;
     return std::nullopt;
   }
-  if (since_report_ < config_.control.hold) return std::nullopt;
-  const bool tunes = config_.control.method == ControlMethod::tune;
-  const ControlEvent event{best->arm, tunes, value_of(config_.segmentation, best->arm.option),
-                           lead_of(*best).mean};
+  if (since_report_ < control_.hold) return std::nullopt;
+  const bool tunes = control_.method == ControlMethod::tune;
+  const ControlEvent event{best->arm, tunes, value_of(config, best->arm.option), lead_of(*best).mean};
   round_.clear();
   since_report_ = 0;
   last_option_ = event.arm.option;
   step_ = kLeastStep;
-  restores_ = true;
-  if (tunes) {
-    set(config_.segmentation, event.arm.option, event.arm.value);
-  } else {
-    reported_.push_back(event.arm);
-  }
+  is_restoring_ = false;  // the next search is
+  if (!tunes) reported_.push_back(event.arm);
   return event;
+}
+
+void Controller::forget() {
+  if (candidate_) candidate_->forget();
 }
 
 std::optional<ControlEvent> Controller::next(const Step& step, const Follower& follower, const Again& again) {
   ++since_report_;
-  credit_ += double{config_.control.budget};
-  if (!candidate_) {
-    if (round_.empty()) begin_search(step.ids.size());
-    if (!round_.empty() && credit_ >= samples_ + 1) begin_block(follower);
-    return std::nullopt;
+  credit_ += double{control_.budget};
+  const Config& config = follower.config().segmentation;
+  try {
+    if (!candidate_) {
+      if (round_.empty()) begin_search(config, step.ids.size());
+      if (!round_.empty() && credit_ >= samples_ + 1) begin_block(follower);
+      return std::nullopt;
+    }
+    const Step tried = again(*candidate_);
+    const bool has_objects = tried.reliability.steadiness > 0 || step.reliability.steadiness > 0;
+    if (--left_ < samples_ && has_objects) {
+      round_[at_].of_arm.push_back(tried.reliability.steadiness);
+      round_[at_].of_present.push_back(step.reliability.steadiness);
+    }
+  } catch (const std::exception&) {  // such as no memory: the arm loses, the frame's results do not
+    if (round_.empty()) return std::nullopt;
+    round_[at_].of_arm.assign(2, 0);
+    round_[at_].of_present.assign(2, 1);
+    left_ = 0;
   }
-  const Step tried = again(*candidate_);
-  if (--left_ < samples_) {
-    round_[at_].of_arm.push_back(tried.reliability.steadiness);
-    round_[at_].of_present.push_back(step.reliability.steadiness);
-  }
-  return left_ == 0 ? end_block() : std::nullopt;
+  return left_ == 0 ? end_block(config) : std::nullopt;
 }
 
 }  // namespace cairn

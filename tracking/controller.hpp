@@ -13,21 +13,23 @@ namespace cairn {
 /// frames. Counts frames, never time: the same frames give the same choices. (docs/stages/reliability.md)
 class Controller {
  public:
-  explicit Controller(const FollowConfig& config);
+  /// `start`: the configuration of the first frame.
+  explicit Controller(const FollowConfig& start);
 
   /// Processes the present frame with another follower.
   using Again = std::function<Step(Follower& candidate)>;
 
-  /// `step`: the results of `follower` for the frame, with the configuration of the constructor and everything
-  /// set since.
+  /// `step`: the results of `follower` for the frame. The caller sets what the event says.
   std::optional<ControlEvent> next(const Step& step, const Follower& follower, const Again& again);
+  /// See Follower::forget().
+  void forget();
 
  private:
-  void begin_search(Size image);
+  void begin_search(const Config& config, Size image);
   void begin_block(const Follower& follower);
-  std::optional<ControlEvent> end_block();
+  std::optional<ControlEvent> end_block(const Config& config);
 
-  FollowConfig config_;
+  ControlConfig control_;
   Config start_;   // of the segmentation
   Config preset_;  // nearest to it
   std::vector<ArmScore> round_;
@@ -37,9 +39,9 @@ class Controller {
   int left_ = 0;       // frames left in the current block
   double credit_ = 0;  // frames that may still be segmented a second time
   int since_report_;
-  std::string last_option_;  // the last one that helped
-  float step_ = 2;           // factor for numbers
-  bool restores_ = true;     // whether the next search is among the preset's values
+  std::string last_option_;    // the last one that helped
+  float step_ = 2;             // factor for numbers
+  bool is_restoring_ = false;  // whether the search is among the preset's values
   std::vector<Arm> reported_;
 };
 

@@ -95,6 +95,7 @@ void Follower::forget() {
   std::erase_if(state_.tracks.list, [](const Track& track) { return track.state == TrackState::tentative; });
   for (Track& track : state_.tracks.list) track.state = TrackState::lost;
   state_.reliability.floor.reset();
+  if (controller_) controller_->forget();
 }
 
 Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
@@ -112,12 +113,16 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
 
 Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                       const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
-  if (state_.size && *state_.size != pair.size())
-    throw Error("frame " + std::to_string(state_.frames) + ": is " + text(pair.size()) +
-                ", the first one is " + text(*state_.size));
-  if (state_.frames > 0 && stamp <= state_.before)
-    throw Error("frame " + std::to_string(state_.frames) + ": its stamp " + std::to_string(stamp.ns) +
-                " ns is not later than the one before, " + std::to_string(state_.before.ns) + " ns");
+  const auto refuse = [&](const std::string& why) {
+    throw Error("frame " + std::to_string(state_.frames) + ": " + why);
+  };
+  if (state_.size && *state_.size != pair.size()) {
+    refuse("is " + text(pair.size()) + ", the first one is " + text(*state_.size));
+  }
+  if (state_.frames > 0 && stamp <= state_.before) {
+    refuse("its stamp " + std::to_string(stamp.ns) + " ns is not later than the one before, " +
+           std::to_string(state_.before.ns) + " ns");
+  }
 
   Step step;
   step.index = state_.frames;
@@ -183,9 +188,10 @@ Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<M
   if (has_tree) {
     const ChoiceLimits limits = limits_of(config.objects, pair.size());
     std::vector<float> scores = score_nodes(grown.tree, whole_object_trees(), limits, exec_);
-    if (!step.is_lost)
+    if (!step.is_lost) {
       scores = repaired_scores(grown.tree, std::move(scores), grown.cut.superpixels, warped, state_.tracks,
                                config_.repair);
+    }
     const ChosenObjects chosen = stage(
         "choose_objects", choose_candidates(grown.tree, scores, limits, config_.tracking.low_confidence));
     step.frame = frame_of(std::move(grown), chosen, given, rig_, config, exec_, stage);

@@ -35,7 +35,8 @@ class Controller;
 class Follower {
  public:
   /// Throws Error if validate(config) or the validate() of the rig does. Without a rig there are ids, but no
-  /// metres and no motion. objects.min_confidence is ignored: tracking.low_confidence replaces it.
+  /// metres and no motion. Regions below objects.min_confidence, down to tracking.low_confidence, only keep
+  /// tracks alive.
   explicit Follower(FollowConfig config, std::optional<StereoRig> rig = std::nullopt, Exec exec = {});
   ~Follower();
   Follower(Follower&& from) noexcept;

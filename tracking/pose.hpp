@@ -12,7 +12,7 @@ namespace cairn {
 /// The time of a frame, in nanoseconds since the epoch of its source.
 struct Stamp {
   std::int64_t ns = 0;
-  friend constexpr auto operator<=>(Stamp, Stamp) = default;
+  friend constexpr auto operator<=>(Stamp, Stamp) = default;  // NOLINT(modernize-use-nullptr): its 0 is none
 };
 /// The time from the earlier to the later stamp, in s.
 constexpr double seconds_between(Stamp earlier, Stamp later) {

@@ -145,12 +145,15 @@ class PyFollower {
     const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
     calibration_.check(pair.size());
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
+    const Config used = follower_.config().segmentation;  // the frame may change it for the next one
     Step step = follower_.next(pair, Stamp{ns}, prior, pose);
     std::string json = io::step_json(step, std::to_string(step.index));
-    return {std::move(step), std::move(json),
-            provenance(settings_, follower_.config().segmentation, calibration_.rig(), Stamp{ns})};
+    return {std::move(step), std::move(json), provenance(settings_, used, calibration_.rig(), Stamp{ns})};
   }
-  [[nodiscard]] const FollowConfig& config() const { return follower_.config(); }
+  std::vector<OptionInfo> options() {
+    const std::lock_guard<std::mutex> one_at_a_time(busy_);
+    return cairn::options(follower_.config());
+  }
 
  private:
   FollowSettings settings_;
@@ -191,6 +194,7 @@ class Following {
       close_run();
       return std::nullopt;
     }
+    const Config used = run_->config().segmentation;
     FollowedFrame made{{}, run_->next(*frame), {}, {}, {}, {}};
     const Landmarked& marked = run_->marked();
     made.json = io::step_json(made.step, frame->name, marked, frame->frame_id);
@@ -200,7 +204,7 @@ class Following {
     for (const LandmarkEvent& event : marked.events)
       made.events.emplace_back(choice_name(event.kind, kLandmarkEventKinds), number(event.landmark));
     made.left = std::move(frame->left);
-    made.how = provenance(settings_, run_->config().segmentation, source_->rig(), made.step.stamp);
+    made.how = provenance(settings_, used, source_->rig(), made.step.stamp);
     return made;
   }
 
@@ -312,7 +316,7 @@ void bind_follow(py::module_& m) {
   py::class_<PyFollower>(m, "Pairs")
       .def(py::init<FollowSettings, PyCalibration, const Exec&>())
       .def("next", &PyFollower::next, Released())
-      .def("options", [](const PyFollower& self) { return options(self.config()); });
+      .def("options", &PyFollower::options, Released());
   m.def("follow", &follow, Released());
   py::class_<FollowedFrame> followed(m, "FollowedFrame");
   followed.def_readonly("json", &FollowedFrame::json)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "support/samples.hpp"
 #include "tracking/follower.hpp"
@@ -79,6 +80,7 @@ TEST(Halving, KeepsTheLeadingHalfAndNoMarginalLead) {
   EXPECT_EQ(left[2].arm.value, "4");
   EXPECT_TRUE(halved({score({1.04F, 1.04F}, {1, 1})}, 10).empty());
   EXPECT_EQ(halved({score({1.06F, 1.06F}, {1, 1})}, 10).size(), 1U);
+  EXPECT_TRUE(halved({score({1, 1}, {1, 1})}, 0).empty());  // no effect
 }
 
 TEST(ABetterArm, LeadsSignificantlyOnEnoughFrames) {
@@ -92,16 +94,18 @@ TEST(ABetterArm, LeadsSignificantlyOnEnoughFrames) {
 
 struct Seen {
   std::vector<ControlEvent> events;
+  std::vector<int> frames;  // of the events
   Image<TrackId> ids;
   FollowConfig config;  // after the last frame
 };
 
-Seen play(const samples::Sample& sample, const FollowConfig& config, int frames) {
-  Follower follower(config, sample.calibration.rig);
+Seen play(const samples::Sample& sample, const FollowConfig& config, int frames, int threads = 1) {
+  Follower follower(config, sample.calibration.rig, Exec::with_threads(threads));
   Seen seen;
   for (int k = 0; k < frames; ++k) {
     Step step = follower.next(sample.pair(), {k * std::int64_t{100'000'000}});
     if (step.control) seen.events.push_back(*step.control);
+    if (step.control) seen.frames.push_back(k);
     seen.ids = std::move(step.ids);
   }
   seen.config = follower.config();
@@ -192,9 +196,28 @@ TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
   pose.ground.source = GroundSource::pose;
   pose.ground.known.camera_height_m = 1;
   EXPECT_TRUE(of(pose).empty());
+  const auto has_ground = [](const std::vector<Arm>& arms) {
+    return std::ranges::find(arms, "ground.source", &Arm::option) != arms.end();
+  };
+  EXPECT_FALSE(has_ground(arms_of(pose, kSize)));
   pose.ground.source = GroundSource::off;
-  ASSERT_EQ(of(pose).size(), 1U);
-  EXPECT_EQ(of(pose)[0].option, "ground.source");
+  EXPECT_TRUE(has_ground(of(pose)));
+  EXPECT_TRUE(has_ground(arms_of(pose, kSize)));
+  Config robot;
+  robot.space.range = 10;
+  EXPECT_TRUE(of(robot).empty());
+}
+
+TEST(Differences, LeadBackToTheStart) {
+  Config start;
+  start.ground.source = GroundSource::off;
+  start.match.num_disparities = 16;
+  Config now;  // everything set
+  EXPECT_EQ(differences(now, start),
+            (std::vector<Arm>{{"match.num_disparities", "16"}, {"ground.source", "off"}}));
+  start.match.method = MatchMethod::window;
+  start.match.window_size = 15;  // not read by `now`
+  EXPECT_EQ(differences(now, start).size(), 3U);
 }
 
 TEST(RestoringArms, BelongToThePresetWithFewestDifferences) {
@@ -245,6 +268,68 @@ TEST(Controller, TuningLeavesThePresetWithoutAClearLead) {
   const Seen seen = play(sample, config, 60);
   EXPECT_TRUE(seen.events.empty());
   EXPECT_EQ(values(seen.config.segmentation), values(config.segmentation));
+}
+
+TEST(Controller, TuningIsReproducibleForAnyNumberOfThreadsAndKeepsTheHold) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config = too_large(sample, ControlMethod::tune);
+  config.control.lead = 1;
+  config.control.hold = 25;
+  const Seen seen = play(sample, config, 70);
+  const Seen again = play(sample, config, 70, 3);
+  ASSERT_GE(seen.events.size(), 1U);
+  EXPECT_EQ(seen.frames, again.frames);
+  EXPECT_EQ(values(seen.config.segmentation), values(again.config.segmentation));
+  for (std::size_t i = 1; i < seen.frames.size(); ++i) EXPECT_GE(seen.frames[i] - seen.frames[i - 1], 25);
+}
+
+TEST(Controller, WatchingReportsAValueOnce) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config = too_large(sample, ControlMethod::watch);
+  config.segmentation.objects.min_area = 1;
+  config.segmentation.ground.source = GroundSource::off;
+  config.control.lead = 0;
+  const Seen seen = play(sample, config, 120);
+  std::set<std::pair<std::string, std::string>> reported;
+  for (const ControlEvent& event : seen.events)
+    EXPECT_TRUE(reported.emplace(event.arm.option, event.arm.value).second) << event.arm.option;
+  EXPECT_EQ(values(seen.config.segmentation), values(config.segmentation));
+}
+
+TEST(Controller, SurvivesAGapAndAMoveDuringASearch) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  const FollowConfig config = too_large(sample, ControlMethod::tune);
+  Follower follower(config, sample.calibration.rig);
+  bool is_set = false;
+  for (int k = 0; k < 40 && !is_set; ++k) {
+    if (k == 6) follower.forget();
+    if (k == 8) follower = Follower(std::move(follower));
+    is_set = follower.next(sample.pair(), {k * std::int64_t{100'000'000}}).control.has_value();
+  }
+  EXPECT_TRUE(is_set);
+}
+
+TEST(Follower, WithAnotherConfigurationItGoesOnFromACopy) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  FollowConfig config;
+  config.segmentation = sample.suited();
+  Follower follower(config, sample.calibration.rig);
+  Follower same(config, sample.calibration.rig);
+  Stamp stamp;
+  for (int k = 0; k < 4; ++k, stamp.ns += 100'000'000) {
+    follower.next(sample.pair(), stamp);
+    same.next(sample.pair(), stamp);
+  }
+  FollowConfig wrong = config;
+  wrong.segmentation.objects.min_area = 60;
+  Follower other = follower.with(wrong);
+  const Step tried = other.next(sample.pair(), stamp);
+  EXPECT_EQ(tried.index, 4);
+  EXPECT_LT(tried.frame.objects.list.size(), 2U);
+  const Step step = follower.next(sample.pair(), stamp);
+  const Step expected = same.next(sample.pair(), stamp);
+  for (int y = 0; y < step.ids.height(); ++y)
+    for (int x = 0; x < step.ids.width(); ++x) ASSERT_EQ(step.ids(x, y), expected.ids(x, y));
 }
 
 TEST(Controller, AnotherConfigurationBeginsTheSearchAnew) {

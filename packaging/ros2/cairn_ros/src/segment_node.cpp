@@ -67,7 +67,14 @@ class SegmentNode : public rclcpp::Node {
       const Picture seen = picture_from(*left);
       const Picture other = picture_from(*right);
       const auto pair = cairn::StereoPair::from(seen.gray, other.gray, seen.rgb);
-      publish(follower_->next(pair, stamp_from(left->header)), seen, left->header.frame_id);
+      config_ = follower_->config();  // of this frame; it may change options for the next one
+      const cairn::Step step = follower_->next(pair, stamp_from(left->header));
+      if (step.control) {
+        RCLCPP_INFO(get_logger(), "%s steadier with %s=%s (was %s)",
+                    step.control->is_set ? "set:" : "would be", step.control->arm.option.c_str(),
+                    step.control->arm.value.c_str(), step.control->before.c_str());
+      }
+      publish(step, seen, left->header.frame_id);
     } catch (const cairn::Error& error) {
       RCLCPP_ERROR_THROTTLE(get_logger(), *get_clock(), 1000, "%s", error.what());
     }
