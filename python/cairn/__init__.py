@@ -32,7 +32,7 @@ else:
 
 _names = {"Error": _cairn.Error, **_calls.CLASSES}
 for _module in (_options, _values, _stages, _frame, _scores, _follow, _calls):
-    # What is public in them: classes, checked functions, and constants.
+    # Public names: classes, checked functions and constants.
     _names.update({name: value for name, value in vars(_module).items()
                    if name in ("NO_MATCH", "HOLE_16") or (callable(value) and value.__module__ == "cairn")})
 globals().update(_names)

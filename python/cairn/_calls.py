@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""How functions and classes are made: arguments are checked and converted by their annotations, help lists options."""
+"""Builds functions and classes: checks and converts arguments by their annotations, and lists options in the help."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ from ._cairn import Error
 
 
 class ArgumentError(Error, TypeError):
-    """An Error that is a TypeError as well: an argument of a wrong type, an unknown one, or none where one is wanted."""
+    """An Error that is also a TypeError: an argument of a wrong type, an unknown one, or a missing one."""
 
     __module__ = "cairn"
 
 
 Error.__module__ = "cairn"
-Error.__doc__ = "Bad input: what was found, what was expected, which argument, option or file. The command says the same."
+Error.__doc__ = ("Invalid input: what was found, what was expected, and which argument, option or file. "
+                 "The command prints the same message.")
 
 
 # ---- messages ----
 
 
 def shown(value):
-    """A value in a message: 3, 'x', or its type if it is no plain number or text."""
+    """A value as shown in messages: 3, 'x', or its type if it is not a plain number or text."""
     text = repr(value) if value is None or isinstance(value, (str, int, float)) else ""
     return text if 0 < len(text) <= 60 else f"a value of type {type(value).__name__}"
 
@@ -54,7 +55,7 @@ def refuse(name, value, kind):
 
 
 def array_like(value, name, expected):
-    """An array, or what numpy makes of a value such as a PIL image."""
+    """The value as a numpy array: an array, or an object such as a PIL image."""
     if not (hasattr(value, "__array__") or hasattr(value, "__array_interface__") or isinstance(value, (memoryview, bytearray))):
         found = "None" if value is None else f"a value of type {type(value).__name__}"
         raise Error(f"{name}: found {found}, expected {expected}")
@@ -62,7 +63,7 @@ def array_like(value, name, expected):
 
 
 def dense(array, name, fits, expected):
-    """The array, or a copy if the pixels of its rows are not contiguous. Refuses arrays that do not fit."""
+    """The array, or a copy if the pixels of its rows are not contiguous. Raises Error for arrays that do not fit."""
     if fits and 0 in array.shape:
         fits, expected = False, expected + " with at least one pixel"
     elif fits and array.shape[0] * array.shape[1] > 1 << 28:
@@ -72,7 +73,7 @@ def dense(array, name, fits, expected):
     return array if _cairn.is_dense(array) else array.copy()
 
 
-CONVERTED = {"float32": "f", "int32": "iu", "uint8": "b"}  # the kinds of other types that are converted
+CONVERTED = {"float32": "f", "int32": "iu", "uint8": "b"}  # kinds of other dtypes that are converted
 
 
 def numbers(value, name, kind):
@@ -92,7 +93,7 @@ def image(value, name, exec, bgr):
 
 
 def disparities(value, name):
-    """Each a hole (NaN, ±inf) or at most ±MAX_DISPARITY."""
+    """An array of disparities, each a hole (NaN, ±inf) or at most ±MAX_DISPARITY."""
     px = numbers(value, name, "float32")
     with np.errstate(invalid="ignore"):
         wild = np.argwhere(np.isfinite(px) & (np.abs(px) > _cairn.MAX_DISPARITY))
@@ -121,7 +122,7 @@ def calibration(value, name="rig"):
 
 
 def whole(value):
-    """A whole number of any type, or None."""
+    """The value as an int, if it is a whole number of any type, else None."""
     try:
         number = None if isinstance(value, (str, bytes)) else float(value)
     except (TypeError, ValueError, OverflowError):
@@ -137,7 +138,7 @@ def real(value):
 
 
 def converted(value, name, kind, exec, bgr):
-    """An argument as C++ takes it. Throws ArgumentError for other types, Error for other values."""
+    """Converts an argument for C++. Raises ArgumentError for a wrong type, Error for a wrong value."""
     outer, _, inner = kind.rstrip("]").partition("[")
     again = functools.partial(converted, exec=exec, bgr=bgr)
     if outer == "Optional":
@@ -189,7 +190,7 @@ LIMITS = {"noise_sigma": (np.inf, "0 or more grey levels"), "smoothing_sigma": (
 
 
 def size_of(parameter, value):
-    """(height, width) of a value with one entry per pixel; () of others, and of what the library compares."""
+    """(height, width) of a value with one entry per pixel; () for others, and for those that the library compares."""
     arrays = [getattr(value, part, None) for part in ("labels", "disparity_px", "best")]
     value = next((array for array in arrays if isinstance(array, np.ndarray)), value)
     is_other = "MatrixLike" in parameter.annotation or parameter.annotation == "Optional[DisparityLike]"
@@ -198,7 +199,7 @@ def size_of(parameter, value):
 
 
 def check_sizes(parameters, values):
-    """All must have the size of the first. Two images are compared by the library."""
+    """Raises Error unless all have the size of the first. The library compares two images."""
     sized = [(p, size_of(p, values[p.name])) for p in parameters if size_of(p, values[p.name])]
     for other, size in sized[1:]:
         first, expected = sized[0]
@@ -234,10 +235,10 @@ def bound(title, parameters, takes_options, args, named):
 
 
 def checked(function, title="", more=(), groups=None, is_stage=False, run=lambda values, options, result: result):
-    """The function with its arguments checked and converted, and with its signature and options in its help.
+    """Wraps a function: checks and converts its arguments, and adds its signature and options to its help.
 
-    more: further parameters. groups: of its options, a dict for each; of a stage, keywords without a group. run: is called with
-    the converted values by name, the options, and what the function returned.
+    more: further parameters. groups: groups of its options, a dict for each; for a stage, keywords without a group.
+    run: called with the converted values by name, the options, and the result of the function.
     """
     title = title or function.__name__
     signature = inspect.signature(function)
@@ -280,7 +281,7 @@ def checked(function, title="", more=(), groups=None, is_stage=False, run=lambda
 
 
 def of_cpp(function):
-    """The C++ function of this name. A body checks further, and may return other values for it."""
+    """Wraps the C++ function of this name. A body adds checks, and may return other values for it."""
     call = getattr(_cairn, function.__name__)
 
     def run(values, _, given):
@@ -290,14 +291,14 @@ def of_cpp(function):
     return checked(function, run=run)
 
 
-NO_EXEC = _cairn.Exec(1, "best")  # for images alone
-# What every stage takes besides; the last, with images.
+NO_EXEC = _cairn.Exec(1, "best")  # only for images
+# Further parameters of every stage; the last one only with images.
 STAGE_NAMED = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default) for name, kind, default in
                (("config", "Optional[Config]", None), ("exec", "Optional[Exec]", None), ("bgr", "bool", False))]
 
 
 def described(parameters, takes_options):
-    """The text of a signature after its bracket."""
+    """The text of a signature after the opening bracket."""
     parts = []
     for p in parameters:
         if p.kind is p.KEYWORD_ONLY and "*" not in parts:
@@ -351,14 +352,14 @@ def own_repr(self):
 
 
 class Report:
-    """What the command writes as JSON, `_json`: as attributes, as items and as a dict."""
+    """The JSON output of the command, `_json`, as attributes, as items and as a dict."""
 
     def as_dict(self) -> Dict[str, Any]:
-        """All of it, as the command writes it."""
+        """All entries, as written by the command."""
         return json.loads(self._json() if callable(self._json) else self._json)
 
     def __getitem__(self, name: str) -> Any:
-        """One entry of it."""
+        """One entry by name."""
         return self.as_dict()[name]
 
     def __getattr__(self, name: str) -> Any:
@@ -369,10 +370,10 @@ class Report:
 
 
 def describes(cls=None, base=None):
-    """For a class whose annotations have a string, what the attribute is, or a string and a function of the object.
+    """Decorates a class whose annotated attributes are a description, or a description and a function of the object.
 
-    Puts them and the methods, those of `base` as well, into `cls`, a class of C++, whose arguments __init__ then returns.
-    Without `cls`, attributes are by default those of the object's `_data`.
+    Adds these attributes and the methods, including those of `base`, to `cls`, a C++ class; __init__ then returns the
+    arguments of its constructor. Without `cls`, attributes are by default those of the object's `_data`.
     """
 
     def onto(description):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Sequences: the camera's way and the objects over time."""
+"""Sequences: camera trajectory and object tracks."""
 
 from __future__ import annotations
 
@@ -60,53 +60,56 @@ def settings(config, preset, options):
 
 @describes(_cairn.Track)
 class Track:
-    """An object over time. Metres are those of the map's frame: z up, its origin on the floor below the first frame's camera, x
-    forward."""
+    """An object tracked over time. Metric values are in the map frame unless stated otherwise: x forward, y left, z up,
+    origin on the floor below the camera of the first frame."""
 
-    id: int = "from 1; never used twice in a run"
+    id: int = "track id, from 1; never reused in a run"
     state: str = "'tentative', 'confirmed', 'occluded', 'out_of_view', 'lost' or 'dead'"
-    is_moving: bool = "by itself, not by the camera's motion"
+    is_moving: bool = "True if the object itself moves, not only the camera"
     object: int = "id of its Object in this frame; 0 = not seen"
-    parts: List[int] = "ids of further objects of this frame that are pieces of it"
-    is_joined: bool = "this frame shows it as one object with another track"
-    position_m: Optional[Tuple[float, float, float]] = "(x, y, z), m; None without a rig"
-    covariance_m2: Optional[NDArray[numpy.float64]] = "3 x 3 of position_m, m²; None without a rig"
+    parts: List[int] = "ids of further objects in this frame that are parts of it"
+    is_joined: bool = "True if it forms one object with another track in this frame"
+    position_m: Optional[Tuple[float, float, float]] = "(x, y, z), m; None without a rig or until one is measured"
+    covariance_m2: Optional[NDArray[numpy.float64]] = "3 x 3 covariance of position_m, m²; None without a rig"
     velocity_m_s: Optional[Tuple[float, float, float]] = "(x, y, z), m/s; 0 if static; None without a rig"
     extent_m: Optional[Tuple[float, float, float]] = (
-        "(x, y, z) in the camera's frame, m: the box around its points; None without a rig")
+        "(x, y, z) size of the box around its points in the camera frame, m; None without a rig")
     confidence: float = "0 to 1, smoothed"
-    hits: int = "frames in which it was seen"
-    misses: int = "frames since then in which it should have been seen"
+    hits: int = "number of frames in which it was seen"
+    misses: int = "number of frames since it was last seen in which it should have been visible"
     first_ns: int = "stamp of its first frame, ns"
-    last_ns: int = "stamp when it was last seen, ns"
+    last_ns: int = "stamp of the frame in which it was last seen, ns"
 
 
 @describes(_cairn.Motion)
 class Motion:
-    """The camera's motion that one frame shows, or why it shows none."""
+    """The camera motion estimated from one frame, or the reason why it was refused."""
 
-    now_from_before: NDArray[numpy.float64] = "4 x 4: points of the frame before go to this one; where refused, its stand-in"
-    covariance: NDArray[numpy.float64] = "6 x 6 of the pose against the keyframe, translation (m) before rotation (rad)"
-    refusal: str = "'none' where it was estimated, else why not: 'few_points', 'no_rig', …"
-    is_new_keyframe: bool = "whether the next motions are against this frame"
-    is_new_segment: bool = "whether only a guess ties what is seen from here on to what was seen before"
-    followed: int = "corners that were followed"
-    inliers: int = "corners that agree"
-    inlier_share: float = "0 to 1: of the corners that were followed"
-    chi2_per_dof: float = "1 where errors are as large as assumed"
+    now_from_before: NDArray[numpy.float64] = (
+        "4 x 4 transform of points from the previous camera frame to this one; a substitute if refused")
+    covariance: NDArray[numpy.float64] = (
+        "6 x 6 covariance of the pose relative to the keyframe, translation (m) before rotation (rad)")
+    refusal: str = "'none' if the motion was estimated, else the reason: 'few_points', 'no_rig', …"
+    is_new_keyframe: bool = "True if this frame is the keyframe of the next motions"
+    is_new_segment: bool = "True if only a guess relates the poses from here on to the earlier ones"
+    followed: int = "number of tracked corners"
+    inliers: int = "number of corners consistent with the motion"
+    inlier_share: float = "0 to 1: share of inliers among the tracked corners"
+    chi2_per_dof: float = "chi-squared per degree of freedom; 1 if errors are as large as assumed"
 
 
 @describes(_cairn.MotionPrior)
 class MotionPrior:
-    """What another sensor says of the camera's motion since the frame before."""
+    """The camera motion since the previous frame, measured by another sensor."""
 
-    now_from_before: NDArray[numpy.float64] = "4 x 4 float64"
-    covariance: NDArray[numpy.float64] = "6 x 6 float64"
+    now_from_before: NDArray[numpy.float64] = (
+        "4 x 4 float64: transform of points from the previous camera frame to this one")
+    covariance: NDArray[numpy.float64] = "6 x 6 float64, translation (m) before rotation (rad)"
     kind: str = "'wheels' or 'gyroscope'", lambda self: "gyroscope" if self._is_gyroscope else "wheels"
 
     def __init__(self, now_from_before: MatrixLike, covariance: MatrixLike, kind: str = "wheels") -> None:
-        """now_from_before: 4 x 4, takes points of the camera's frame then to its frame now. covariance: 6 x 6, translation (m)
-        before rotation (rad). kind: 'wheels', or 'gyroscope', of which only the rotation counts."""
+        """now_from_before: 4 x 4 transform of points from the previous camera frame to this one. covariance: 6 x 6,
+        translation (m) before rotation (rad). kind: 'wheels', or 'gyroscope', of which only the rotation is used."""
         if kind not in ("wheels", "gyroscope"):
             raise Error(f"kind: found '{kind}', expected 'wheels' or 'gyroscope'")
         return pose_from(now_from_before, "now_from_before"), matrix(covariance, "covariance", 6), kind == "gyroscope"
@@ -114,27 +117,31 @@ class MotionPrior:
 
 @describes()
 class Step:
-    """All that is known after one frame of a sequence."""
+    """The results of one frame of a sequence."""
 
-    index: int = "the frame's number, from 0"
-    stamp_ns: int = "when it was taken, ns"
-    seconds: float = "when it was taken, s", lambda self: self.stamp_ns * 1e-9
-    is_lost: bool = "whether the camera's place is not known"
-    map_from_camera: NDArray[numpy.float64] = "4 x 4 float64: where the left camera is; takes points of its frame to the map's"
-    pose_covariance: NDArray[numpy.float64] = "6 x 6 of map_from_camera, translation (m) before rotation (rad)"
-    motion: Motion = "the camera's Motion"
-    tracks: List[Track] = "a list of Track by id, those out of view included"
-    ids: NDArray[numpy.int64] = "(H, W) int64, read-only: the track that each pixel belongs to; 0 = none"
-    odometry_suspect: bool = "whether most tracks began to move at once: rather the camera's motion is wrong"
+    index: int = "frame number, from 0"
+    stamp_ns: int = "time of capture, ns"
+    seconds: float = "time of capture, s", lambda self: self.stamp_ns * 1e-9
+    is_lost: bool = "True if the camera pose is unknown"
+    map_from_camera: NDArray[numpy.float64] = (
+        "4 x 4 float64: pose of the left camera, the transform of points from its frame to the map frame")
+    pose_covariance: NDArray[numpy.float64] = (
+        "6 x 6 covariance of map_from_camera, translation (m) before rotation (rad)")
+    motion: Motion = "camera motion, a Motion"
+    tracks: List[Track] = "list of Track by id, including those out of view"
+    ids: NDArray[numpy.int64] = "(H, W) int64, read-only: track id of each pixel; 0 = none"
+    odometry_suspect: bool = "True if most tracks began to move at once; the camera motion is probably wrong"
     reliability: Dict[str, Any] = (
-        "how far the frame is to be trusted: value (0 ... 1 or None), the witnesses it is the mean of, and the weakest one's name")
+        "reliability of the frame: value (0 ... 1 or None), the witnesses whose geometric mean it is, and the name of "
+        "the weakest one; steadiness, for comparing settings; is_unreliable, after ten weak frames")
     control: Optional[Dict[str, Any]] = (
-        "the option that the search for better ones found at this frame, or None: option, value, before, lead (share) and is_set "
+        "better option found at this frame, or None: option, value, before, lead (share) and is_set "
         "(control={'method': 'watch'} or 'tune')")
-    landmarks: Dict[int, int] = "of follow(): landmark by track, both by id", lambda self: self._landmarks
+    landmarks: Dict[int, int] = "landmark id by track id; only from follow()", lambda self: self._landmarks
     events: List[Tuple[str, int]] = (
-        "of follow(): (kind, landmark), kind 'new', 'moved', 'gone', 'back' or 'relocated'", lambda self: self._events)
-    frame: Frame = "the Frame", lambda self: Frame._of(self._left, self._data.frame, self._how)
+        "changes of landmarks: (kind, landmark id), kind 'new', 'moved', 'gone', 'back' or 'relocated'; "
+        "only from follow()", lambda self: self._events)
+    frame: Frame = "results of the pair, a Frame", lambda self: Frame._of(self._left, self._data.frame, self._how)
 
     @classmethod
     def _of(cls, left, data, how, json, landmarks, events):
@@ -143,19 +150,19 @@ class Step:
         return step
 
     def to_json(self) -> str:
-        """The frame's line of tracks.jsonl, as `cairn follow --json-lines` prints it (docs/formats.md)."""
+        """The line of tracks.jsonl for this frame, as printed by `cairn follow --json-lines` (docs/formats.md)."""
         return self._json
 
     def overlay(self) -> NDArray[numpy.uint8]:
-        """The left image with its tracks drawn in, each with its id: (h, w, 3) uint8, RGB."""
+        """The left image with the tracks and their ids drawn in: (h, w, 3) uint8, RGB."""
         return _cairn.draw_tracks(self._left, self._data)
 
     def _repr_png_(self) -> bytes:
         return _cairn.png_bytes(self.overlay())
 
 
-ABOUT = ("preset, config (a Config or a file's name) and options are those of segment(), with the groups of follow_options()\n"
-         "besides: tracking={'min_hits': 2}.")
+ABOUT = ("preset, config (a Config or a file name) and options are those of segment(), plus the groups of\n"
+         "follow_options(): tracking={'min_hits': 2}.")
 
 
 def start_follower(self, rig: RigLike = None, *, preset: str = "default", config: Union[Config, PathLike, None] = None,
@@ -165,23 +172,25 @@ def start_follower(self, rig: RigLike = None, *, preset: str = "default", config
 
 
 start_follower.__name__ = "__init__"
-start_follower.__doc__ = f"""rig: a Rig, a Calibration or None: then there are ids, but no metres and no motion. Raises cairn.Error for
-what cannot be used. {ABOUT}"""
+start_follower.__doc__ = f"""rig: a Rig, a Calibration or None; without one there are ids, but no metres and no motion.
+Raises cairn.Error for invalid input.
+{ABOUT}"""
 
 
 @describes()
 class Follower:
-    """Follows the camera and the objects through a sequence, pair by pair."""
+    """Tracks the camera and the objects through a sequence, pair by pair."""
 
-    rig: Optional[Rig] = "the Rig that it measures with, or None", lambda self: self._calibration.rig
+    rig: Optional[Rig] = "Rig used for measurements, or None", lambda self: self._calibration.rig
 
     __init__ = checked(start_follower, "Follower", groups=ALL_GROUPS)
 
     def next(self, left: ImageLike, right: ImageLike, stamp_ns: Optional[Any] = None, *, seconds: Optional[float] = None,
              prior: Optional[MotionPrior] = None, pose: Optional[MatrixLike] = None, bgr: bool = False) -> Step:
-        """The next frame: a Step. stamp_ns or seconds: when it was taken, later than the one before. prior: a MotionPrior since
-        the frame before. pose: 4 x 4 map_from_camera of a robot that knows where it is; then no motion is estimated. Raises
-        cairn.Error for another size than the first pair's and stamps that do not rise."""
+        """Processes the next frame and returns its Step. stamp_ns or seconds: time of capture, later than that of the
+        previous frame. prior: a MotionPrior since the previous frame. pose: 4 x 4 map_from_camera, if the robot knows
+        it; no motion is estimated then. Raises cairn.Error if the size differs from that of the first pair, or the
+        stamp is not later."""
         stamp = stamp_from(stamp_ns, seconds)
         known = None if pose is None else pose_from(pose, "pose")
         data, json, how = self._pairs.next(left, right, stamp, prior, known)
@@ -197,13 +206,13 @@ class Follower:
 
 @describes()
 class Following:
-    """What follow() returns: an iterator of Steps over a source."""
+    """Result of follow(): an iterator of Steps over a source."""
 
-    rig: Optional[Rig] = "the source's Rig, or None", lambda self: self._sequence.rig()
-    size: Optional[int] = "frames at most; None where it is not known", lambda self: self._sequence.size()
+    rig: Optional[Rig] = "Rig of the source, or None", lambda self: self._sequence.rig()
+    size: Optional[int] = "largest number of frames, for videos an estimate; None if unknown", lambda self: self._sequence.size()
     remarks: List[Tuple[str, int]] = (
-        "what was noticed of the source's frames up to now: (words, frames)", lambda self: self._sequence.remarks())
-    ended_early: str = "why the source ended before its end; '' where it did not", lambda self: self._sequence.ended_early()
+        "remarks on frames of the source so far: (text, number of frames)", lambda self: self._sequence.remarks())
+    ended_early: str = "why the source ended early; '' if it did not", lambda self: self._sequence.ended_early()
 
     def __iter__(self) -> Following:
         return self
@@ -222,7 +231,7 @@ class Following:
         self.close()
 
     def close(self) -> None:
-        """Ends the run, in the map, too; reading to the end does so by itself."""
+        """Ends the run, also in the map. Reading to the end does this automatically."""
         self._sequence.close()
 
 
@@ -242,14 +251,15 @@ def follow(source: PathLike, *, calib: Optional[PathLike] = None, layout: str = 
     return following
 
 
-follow.__doc__ = f"""Follows a whole sequence: an iterator of Steps.
-source: a folder of frames, of KITTI's or EuRoC's, 'LEFT,RIGHT', or a video with layout (docs/sequences.md). calib: instead of the
-source's own. frames: 'A:B:STEP'. rectify: the images are raw. odometry_file, imu_file, poses_file: what other sensors say of the
-motion. map_file: landmarks to recognise and to add to; read_only: it stays as it is. These are the options of `cairn follow`, and
-the steps are its own. {ABOUT}"""
+follow.__doc__ = f"""Tracks camera and objects through a whole sequence. Returns a Following, an iterator of Steps.
+source: a folder of frames, a folder of KITTI or EuRoC, 'LEFT,RIGHT', or a video with layout (docs/sequences.md). calib:
+replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. odometry_file, imu_file,
+poses_file: motion measured by other sensors. map_file: landmarks to recognise and to extend; read_only: leaves it
+unchanged. The arguments are the options of `cairn follow` and give the same steps.
+{ABOUT}"""
 follow = checked(follow, groups=ALL_GROUPS)
 
 
 @of_cpp
 def follow_options() -> List[Option]:
-    """Every option of sequences with its default, in the order of the stages; those of a frame are in options()."""
+    """The options of sequences with their defaults, in the order of the stages. options() lists those of a frame."""

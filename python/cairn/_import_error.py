@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Explains why the module cannot be imported by a Python other than the one that it was built for."""
+"""Explains a failed import in a Python version that the module was not built for."""
 
 import importlib.machinery
 import pathlib
@@ -9,7 +9,7 @@ import sys
 
 
 def explained(error):
-    """The error itself, or a clearer one that names the running and the expected Python."""
+    """The original error, or a clearer one that names the running and the expected Python."""
     built = sorted(pathlib.Path(__file__).parent.glob("_cairn.*.so"))
     if any(file.name == "_cairn" + suffix for file in built for suffix in importlib.machinery.EXTENSION_SUFFIXES):
         return error

@@ -7,7 +7,7 @@ from ._cairn import Error
 
 def missing(name):
     def function(*args, **named):
-        """Is not in this build: it has no sequences."""
+        """Not available: this build has no sequences."""
         raise Error(f"cairn.{name}: this cairn was built without sequences; they need OpenCV's video and calib3d, Eigen, dlib and "
                     "SQLiteCpp (docs/install.md)")
 

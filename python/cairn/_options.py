@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Options: listed, and set by keywords. Names, defaults, units, ranges and help are the library's."""
+"""Lists options and sets them by keyword. Names, defaults, units, ranges and help come from the library."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def option_value(option):
 
 
 def refuse_keyword(name):
-    """A keyword that is no group: an option without its group, or a misspelling."""
+    """Raises ArgumentError for a keyword that is not a group: an option without its group, or a misspelling."""
     text = f"there is no keyword argument '{name}'"
     for option in OPTIONS:
         if option.name.endswith("." + name):
@@ -40,7 +40,7 @@ def refuse_keyword(name):
 
 
 def settings_of(groups, known=GROUPS):
-    """A dict for each group, as (full name, text) of each option."""
+    """Converts a dict per group to a list of (full name, text), one per option."""
     settings = []
     for group, values in groups.items():
         if group not in known and not (isinstance(values, dict) and values):
@@ -52,7 +52,7 @@ def settings_of(groups, known=GROUPS):
 
 
 def base_of(config, preset):
-    """A Config to start from, or None, and the name of a file, or None."""
+    """The Config to start from or None, and the file name or None."""
     if isinstance(config, _cairn.Config):
         if preset not in ("default", config.preset):
             raise Error(f"preset: found '{preset}' together with a config of preset '{config.preset}', expected one of the two")
@@ -63,14 +63,15 @@ def base_of(config, preset):
 
 
 def config_of(config, preset, groups):
-    """Preset, then file, then keywords such as match={"num_disparities": 64}; later ones win, as in the command."""
+    """The Config from preset, file and keywords, e.g. match={"num_disparities": 64}; later ones win, as in the
+    command."""
     base, file = base_of(config, preset)
     settings = settings_of(groups)
     return base._with(settings, []) if base else _cairn.make_config(preset, file, settings)
 
 
 def flat_config(config, groups, options):
-    """With options of these groups as keywords without the group's name."""
+    """The Config with options of these groups, given as keywords without the group name."""
     settings = []
     for name, value in options.items():
         if not groups:
@@ -89,44 +90,44 @@ def values_by_group(options):
 
 @describes(_cairn.Option)
 class Option:
-    """One option of the method, as the command and the reference page name it."""
+    """One option of the method, named as in the command and on the reference page."""
 
-    name: str = "its group and name, 'match.window_size'"
-    group: str = "the stage that it belongs to, 'match'", lambda self: self.name.partition(".")[0]
+    name: str = "group and name, e.g. 'match.window_size'"
+    group: str = "stage that it belongs to, e.g. 'match'", lambda self: self.name.partition(".")[0]
     type: str = "'int', 'float', 'bool' or 'choice'"
-    default: Any = "value in the preset asked for", option_value
-    unit: str = "may be empty"
-    range: str = "'3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'"
-    help: str = "what it does"
-    needs: str = "'match.method=window', 'ground.source!=off': it is read only while that is so; '' = always"
-    active: bool = "whether the preset asked for reads it"
+    default: Any = "value in the given preset", option_value
+    unit: str = "unit; may be empty"
+    range: str = "accepted values, e.g. '3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'"
+    help: str = "short description"
+    needs: str = "condition under which it is read, e.g. 'match.method=window' or 'ground.source!=off'; '' = always"
+    active: bool = "True if the given preset reads it"
 
 
 @describes(_cairn.Config)
 class Config:
-    """What is computed: every option's value. Made from a preset, then a file (as `cairn config` prints it), then
-    keywords; later ones win:
+    """The values of all options. They come from a preset, then a file (in the format of `cairn config`), then keywords;
+    later ones win:
         cairn.Config('paper', match={'window_size': 11})
-    Raises cairn.Error for an unknown name, a value out of range, and an option without effect."""
+    Raises cairn.Error for an unknown name, a value out of range, or an option without effect."""
 
-    preset: str = "what it started from"
+    preset: str = "name of the preset it started from"
 
     def __init__(self, preset: str = "default", file: Optional[PathLike] = None, **options) -> None:
-        """preset: one of preset_names(). file: a configuration file's name, or None. Then a dict for each group of
+        """preset: one of preset_names(). file: name of a configuration file, or None. options: a dict for each group of
         options()."""
         return preset, file, settings_of(options)
 
     def __getitem__(self, name: str) -> Any:
-        """The value of an option by its full name, 'match.window_size'."""
+        """The value of an option by its full name, e.g. 'match.window_size'."""
         found = [option_value(option) for option in self._options() if option.name == name]
         return found[0] if found else self._with([(name, "")], [])  # raises, with the nearest name
 
     def as_dict(self) -> Dict[str, Dict[str, Any]]:
-        """The values of all options that it reads: a dict of the groups' dicts. Config(**config.as_dict()) is its equal."""
+        """The values of all options that are read, a dict per group. Config(**config.as_dict()) equals this Config."""
         return values_by_group(option for option in self._options() if option.active)
 
     def yaml(self) -> str:
-        """The text of a configuration file: the options that it reads, one comment for each."""
+        """The text of a configuration file: all options that are read, each with a comment."""
         return self._yaml()
 
     def __eq__(self, other: object) -> bool:
@@ -140,14 +141,14 @@ class Config:
 
 @describes(_cairn.Exec)
 class Exec:
-    """How the work is done: threads, instruction set, a pool of image buffers. Never changes a result."""
+    """Execution settings: threads, instruction set and a pool of image buffers. They never change a result."""
 
-    threads: int = "how many work, the caller's among them; 1 or more"
-    target: str = "the instruction set that the kernels run on"
-    heap_allocations: int = "how many image buffers its pool has asked the heap for"
+    threads: int = "number of threads, including the caller's; 1 or more"
+    target: str = "instruction set of the kernels"
+    heap_allocations: int = "number of image buffers that the pool has allocated on the heap"
 
     def __init__(self, threads: int = 0, target: str = "best") -> None:
-        """threads: 0 = one for each processor. target: 'best' or one of supported_targets()."""
+        """threads: 0 = one per processor. target: 'best' or one of supported_targets()."""
         return threads, target
 
     def __getstate__(self):
@@ -159,13 +160,13 @@ class Exec:
 
 @checked
 def options(preset: str = "default") -> List[Option]:
-    """Every option with its value in a preset, in the order of the stages."""
+    """All options with their values in a preset, in the order of the stages."""
     return _cairn.make_config(preset, None, [])._options()
 
 
 @of_cpp
 def preset_names() -> List[str]:
-    """The presets by name: 'default', 'paper'."""
+    """The names of the presets: 'default', 'paper'."""
 
 
 @of_cpp
@@ -175,4 +176,4 @@ def compiled_targets() -> List[str]:
 
 @of_cpp
 def supported_targets() -> List[str]:
-    """Those of them that this processor has, slowest first."""
+    """The instruction sets in this build that the processor supports, slowest first."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Evaluation, diagnosis and tuning, as the commands `evaluate`, `doctor` and `tune` do them."""
+"""Evaluation, diagnosis and tuning: the commands `evaluate`, `doctor` and `tune`."""
 
 from __future__ import annotations
 
@@ -16,71 +16,71 @@ from ._options import config_of, flat_config
 
 @describes(_cairn.DisparityErrors)
 class DisparityErrors:
-    """Counts over the pixels whose true disparity is known. Several frames' add up with +=."""
+    """Disparity errors over the pixels with known truth. += adds the errors of another frame."""
 
-    known: int = "pixels with truth"
-    matched: int = "of these, pixels with a disparity of ours"
+    known: int = "number of pixels with truth"
+    matched: int = "number of these with an estimated disparity"
     density: float = "0 to 1: matched / known"
-    bad_of_matched: Dict[float, float] = "by threshold in px: share of the matched pixels with a larger error"
-    bad_of_known: Dict[float, float] = "the same of the known; a hole counts as bad"
-    mean_absolute_px: float = "mean of |ours - truth| over the matched, px; NaN where no pixel is matched"
-    root_mean_square_px: float = "root of the mean square of the same, px; NaN where no pixel is matched"
-    sigma_px: float = "the same over errors of at most 1 px: sigma of a correct match"
+    bad_of_matched: Dict[float, float] = "share of the matched pixels with a larger error, by threshold in px"
+    bad_of_known: Dict[float, float] = "the same share of the known pixels; a hole counts as bad"
+    mean_absolute_px: float = "mean of |ours - truth| over the matched pixels, px; NaN if no pixel is matched"
+    root_mean_square_px: float = "root mean square of the same, px; NaN if no pixel is matched"
+    sigma_px: float = "root mean square over errors of at most 1 px: sigma of a correct match"
 
 
 @describes(_cairn.TrueObjectScore)
 class TrueObjectScore:
-    """How well one true object was found."""
+    """The score of one true object."""
 
-    id: int = "its number in the truth, from 1 on"
-    pixel_count: int = "its area, px"
-    found: int = "our object of greatest IoU; 0 = none"
-    iou: float = "0 to 1: intersection over union with `found`; 0 where they do not overlap"
-    boundary_f: float = "0 to 1: how much of both outlines lies within the tolerance of the other"
-    over_segmented: bool = "two or more of ours lie mostly on it and cover more than half of it"
-    under_segmented: bool = "more than half of it lies in one of ours that holds more than half of another, too"
-    error: float = "the paper's E, Eq. 5: 1 / IoU - 1; inf where they do not overlap"
+    id: int = "id in the truth, from 1"
+    pixel_count: int = "area, px"
+    found: int = "id of the found object of greatest IoU; 0 = none"
+    iou: float = "0 to 1: intersection over union with `found`; 0 without overlap"
+    boundary_f: float = "0 to 1: harmonic mean of the shares of each outline within the tolerance of the other"
+    over_segmented: bool = "True if two or more found objects, each mostly on it, cover more than half of it"
+    under_segmented: bool = "True if more than half of it is in a found object with more than half of another, too"
+    error: float = "the paper's E, Eq. 5: 1 / IoU - 1; inf without overlap"
 
 
 @describes(_cairn.FoundObjectScore)
 class FoundObjectScore:
-    """How well one object of ours lies on a true one."""
+    """The score of one found object."""
 
-    id: int = "its number among ours, from 1 on"
-    pixel_count: int = "its area outside don't-care, px"
-    best: int = "the true object of greatest IoU; 0 = none"
-    iou: float = "0 to 1: intersection over union with `best`; 0 where they do not overlap"
-    phantom: bool = "large enough, and hardly on any true object"
+    id: int = "id of the found object, from 1"
+    pixel_count: int = "area outside don't-care pixels, px"
+    best: int = "id of the true object of greatest IoU; 0 = none"
+    iou: float = "0 to 1: intersection over union with `best`; 0 without overlap"
+    phantom: bool = "True if large enough and hardly on any true object"
 
 
 @describes(_cairn.ObjectErrors)
 class ObjectErrors:
-    """One frame against its truth."""
+    """The scores of the objects of one frame."""
 
-    truth: List[TrueObjectScore] = "a list of TrueObjectScore"
-    ours: List[FoundObjectScore] = "a list of FoundObjectScore"
+    truth: List[TrueObjectScore] = "list of TrueObjectScore"
+    ours: List[FoundObjectScore] = "list of FoundObjectScore"
 
 
 @describes(_cairn.ObjectSummary)
 class ObjectSummary:
-    """Many frames as one: counts, and means over all their objects."""
+    """The scores of many frames: counts, and means over all their objects."""
 
     frames: int = "number of frames"
-    true_objects: int = "that were scored"
-    our_objects: int = "all of ours but those mostly on don't-care"
-    phantoms: int = "reported objects that hardly overlap a true one"
-    mean_error: float = "of the paper's E, each capped at 2; 0 is best"
-    median_error: float = "of the same, 0 to 2"
-    mean_iou: float = "over all scored objects, 0 to 1"
-    mean_boundary_f: float = "over all scored objects, 0 to 1"
+    true_objects: int = "number of scored true objects"
+    our_objects: int = "number of found objects, except those mostly on don't-care pixels"
+    phantoms: int = "number of found objects that hardly overlap a true one"
+    mean_error: float = "mean of the paper's E, each capped at 2; 0 is best"
+    median_error: float = "median of the same, 0 to 2"
+    mean_iou: float = "mean IoU over all scored objects, 0 to 1"
+    mean_boundary_f: float = "mean boundary_f over all scored objects, 0 to 1"
     recall_50: float = "share of the true objects found with IoU >= 0.5"
-    precision_50: float = "share of ours with IoU >= 0.5"
+    precision_50: float = "share of the found objects with IoU >= 0.5"
 
 
 @of_cpp
 def disparity_errors(ours_px: FloatsLike, truth_px: FloatsLike, excluded: MaskLike = None, skip_left: int = 0) -> DisparityErrors:
-    """Compares two disparity maps, (H, W) float32 in px, NaN = a hole, no truth. excluded: (H, W) uint8, pixels that are not 0
-    are left out; columns x < skip_left are left out, too."""
+    """Compares two disparity maps, (H, W) float32 in px; NaN = hole, no truth. excluded: (H, W) uint8, non-zero pixels
+    are skipped. skip_left: columns x < skip_left are skipped."""
     if skip_left < 0:
         raise Error(f"skip_left: found {skip_left}, expected 0 or more")
 
@@ -88,8 +88,8 @@ def disparity_errors(ours_px: FloatsLike, truth_px: FloatsLike, excluded: MaskLi
 @of_cpp
 def object_errors(ours: LabelsLike, truth: LabelsLike, min_area: int = DEFAULTS["min_area"],
                   boundary_tolerance: float = DEFAULTS["boundary_tolerance"]) -> ObjectErrors:
-    """Compares a map of objects with the truth of the same size: (H, W) integers, 0 = none; truth -1 = don't care. min_area:
-    px, smaller true objects are not scored; boundary_tolerance: % of the image's diagonal."""
+    """Compares an object map with the truth of the same size: (H, W) integers, 0 = none; truth -1 = don't care.
+    min_area: px, smaller true objects are not scored. boundary_tolerance: % of the image diagonal."""
     if min_area < 0 or not 0 <= boundary_tolerance <= 100:
         raise Error(f"object_errors: found min_area {min_area}, boundary_tolerance {boundary_tolerance}, expected at least 0, "
                     "and 0 … 100")
@@ -99,7 +99,7 @@ def object_errors(ours: LabelsLike, truth: LabelsLike, min_area: int = DEFAULTS[
 
 @of_cpp
 def summarise(frames: Sequence[ObjectErrors]) -> ObjectSummary:
-    """A summary of many frames' object_errors()."""
+    """Summarises the object_errors() of many frames."""
 
 
 # ---- diagnosis ----
@@ -108,15 +108,15 @@ def summarise(frames: Sequence[ObjectErrors]) -> ObjectSummary:
 @describes(_cairn.PairMeasures, Report)
 class PairMeasures:
     """Result of measure_pair(): the numbers of `cairn doctor --json` (docs/formats.md) as items and attributes, e.g.
-    measures.offset_rows; None where one was not measured."""
+    measures.offset_rows; None if not measured."""
 
     size: Tuple[int, int] = "(width, height), px"
-    identical: bool = "the right image is the left one, pixel for pixel"
+    identical: bool = "True if both images are equal, pixel for pixel"
     disparities_px: NDArray[numpy.float32] = (
-        "float32, px, ascending: of the points that agree and are not alone with theirs; a copy")
+        "float32, px, ascending: disparities of consistent points with similar neighbours; a copy")
 
     def disparity_px(self, share: float) -> float:
-        """The disparity, px, that `share` (0 to 1) of the points stay below; NaN without points."""
+        """The disparity, px, below which `share` (0 to 1) of the points lie; NaN without points."""
         if not 0 <= share <= 1:
             raise Error(f"share: found {share:g}, expected 0 … 1")
         return self._disparity(share)
@@ -124,18 +124,18 @@ class PairMeasures:
 
 @describes(_cairn.Synchrony, Report)
 class Synchrony:
-    """Whether the two cameras of a sequence took their images at the same moments: the numbers of `cairn doctor --json`
-    (docs/formats.md) as items and attributes: lag is how many frames the right camera is late."""
+    """Result of measure_synchrony(), the synchronisation of both cameras of a sequence: the numbers of
+    `cairn doctor --json` (docs/formats.md) as items and attributes; lag is the delay of the right camera in frames."""
 
-    tells: bool = "whether the numbers tell one lag from another: False where too little moves"
+    tells: bool = "True if the numbers distinguish the lags; False with too little or too even motion"
 
 
 @describes(None, Report)
 class Finding:
-    """One thing that is wrong with a rig, as `cairn doctor --json` has it (docs/formats.md): severity, value, number, unit,
-    says and remedy as items and attributes."""
+    """One fault of a rig, as in `cairn doctor --json` (docs/formats.md): severity, value, number, unit, says and remedy
+    as items and attributes."""
 
-    kind: str = "what it is, 'cameras swapped'; `cairn doctor` calls it the same", lambda self: self["finding"]
+    kind: str = "name of the fault as in `cairn doctor`, e.g. 'cameras swapped'", lambda self: self["finding"]
 
 
 def report_of(cls, text, **more):
@@ -147,15 +147,15 @@ def report_of(cls, text, **more):
 
 @of_cpp
 def measure_pair(left: ImageLike, right: ImageLike, *, exec: Optional[Exec] = None, bgr: bool = False) -> PairMeasures:
-    """Measures what diagnose() judges: rows, disparities, brightness, exposure and sharpness of a pair. left, right: (H, W) or
-    (H, W, 3) uint8 of one size; they need not be rectified."""
+    """Measures the input of diagnose(): rows, disparities, brightness, exposure and sharpness of a pair. left, right:
+    (H, W) or (H, W, 3) uint8 of one size; they need not be rectified."""
 
 
 @of_cpp
 def measure_synchrony(pairs: Iterable[Tuple[ImageLike, ImageLike]], *, bgr: bool = False,
                       exec: Optional[Exec] = None) -> Synchrony:
-    """Measures whether both cameras of consecutive pairs, (left, right) each and all of one size, took their images at the same
-    moments. All of them are held at once; of fewer than 8 only repeats are measured."""
+    """Measures whether both cameras took their images at the same time. pairs: consecutive (left, right), all of one
+    size. Holds all pairs in memory. With fewer than 8 pairs only repeated images are measured."""
     if not hasattr(pairs, "__iter__"):
         raise ArgumentError(f"pairs: found {shown(pairs)}, expected a sequence of (left, right)")
     pictures = []
@@ -190,12 +190,12 @@ def diagnose(measures: Union[PairMeasures, Synchrony], rig: RigLike = None, *, l
     return measures, rig, limits
 
 
-diagnose.__doc__ = """What is wrong with a pair, a list of Finding, a cause before what follows from it; [] for a good one. As in
-segment(), a Calibration brings its number of disparities as default and must be of the images' size; without rig no calibration
-is judged. Of the options only min_disparity and num_disparities count: the range that would be searched. Of a Synchrony: a
-Finding, or None where the cameras run together.
+diagnose.__doc__ = """Finds the faults of a pair. Returns a list of Finding, causes before consequences; [] for a good
+pair. As in segment(), a Calibration sets the default number of disparities and must match the image size; without rig
+no calibration is judged. Of the options only min_disparity and num_disparities are used, the search range. For a
+Synchrony, returns a Finding, or None if the cameras are synchronous.
 
-limits, a dict of what is to differ:
+limits: a dict of the limits to change:
 """ + "\n".join(f"    {name} = {value:g}{unit and ' ' + unit} ({lowest:g} … {highest:g}): {words}"
                 for name, value, unit, words, lowest, highest, _ in _cairn.diagnosis_limits())
 
@@ -219,20 +219,24 @@ diagnose = checked(diagnose, more=STAGE_NAMED[:2], groups=["match"], is_stage=Tr
 
 @describes()
 class TuningFrame:
-    """A pair to tune on, with what is known to be true of it. Borrows its arrays, as segment() does."""
+    """A pair to tune on, with its known ground truth. Borrows its arrays, as segment() does."""
 
-    name: str = "as errors call it; frames of one name show the same scene", lambda self: self._name
-    objects: Optional[NDArray[numpy.int32]] = "(H, W) int32, the true ids; None where not known", lambda self: self._objects
-    truth_px: Optional[NDArray[numpy.float32]] = "(H, W) float32, px; None where not known", lambda self: self._truth_px
-    hidden: Optional[NDArray[numpy.uint8]] = "(H, W) uint8; None where not known", lambda self: self._hidden
-    partial: bool = "whether objects may be missing in the truth", lambda self: self._partial
+    name: str = "name in error messages; frames with the same name show the same scene", lambda self: self._name
+    objects: Optional[NDArray[numpy.int32]] = (
+        "(H, W) int32, true object ids; None if unknown", lambda self: self._objects)
+    truth_px: Optional[NDArray[numpy.float32]] = (
+        "(H, W) float32, true disparities, px; None if unknown", lambda self: self._truth_px)
+    hidden: Optional[NDArray[numpy.uint8]] = (
+        "(H, W) uint8, non-zero = not seen by the right camera; None if unknown", lambda self: self._hidden)
+    partial: bool = "True if the truth may lack objects", lambda self: self._partial
 
     def __init__(self, left: ImageLike, right: ImageLike, rig: RigLike = None, *, objects: Optional[LabelsLike] = None,
                  truth_px: Optional[FloatsLike] = None, hidden: MaskLike = None, partial: bool = False, name: str = "",
                  bgr: bool = False) -> None:
-        """left, right, rig, bgr: as for segment(). objects: (H, W) integers, the true objects' ids, 0 = none, -1 = don't care;
-        truth_px: (H, W) float32, true disparities in px, NaN = not known; hidden: (H, W) uint8, not 0 = not seen by the right
-        camera; each may be None. partial: not every object is labelled. name: frames of one name show the same scene."""
+        """left, right, rig, bgr: as for segment(). objects: (H, W) integers, true object ids, 0 = none, -1 = don't
+        care. truth_px: (H, W) float32, true disparities in px, NaN = unknown. hidden: (H, W) uint8, non-zero = not seen
+        by the right camera. Each of these may be None. partial: not every object is labelled. name: frames with the
+        same name show the same scene."""
         if left.shape != right.shape:
             _cairn.measure_pair(left, right, NO_EXEC)  # refuses them
         if objects is not None and objects.min() < -1:
@@ -244,24 +248,24 @@ class TuningFrame:
 
 @checked
 def load_tuning_frames(folder: PathLike, truth: bool = False) -> List[TuningFrame]:
-    """Every frame of a folder, as `cairn tune` reads them: a folder with left.png and right.png is one, else each of its
-    sub-folders with those; a calib.txt belongs to it. truth: with objects.png, disp_left.png and occlusion.png, of which one of
-    the first two must be there."""
+    """Reads the frames of a folder as `cairn tune` does: a folder with left.png and right.png is one frame, else each
+    of its sub-folders with both. Their calib.txt is read as well. truth: also reads objects.png, disp_left.png and
+    occlusion.png; one of the first two is required."""
     return [TuningFrame(**frame) for frame in _cairn.tuning_frames(folder, truth)]
 
 
 @describes(None, Report)
 class Tuning:
-    """What tune() found: `config`, and what `cairn tune --json` writes (docs/formats.md) as items and attributes: goal, found,
-    tuned_on, held_out, gain, kept_because, …."""
+    """Result of tune(): `config`, and the contents of `cairn tune --json` (docs/formats.md) as items and attributes:
+    goal, found, tuned_on, held_out, gain, kept_because, …."""
 
-    config: Config = "the Config to use: the tuned one, or the start where that is kept", lambda self: self._config
+    config: Config = "Config to use: the tuned one, or the start if that is kept", lambda self: self._config
 
 
 @of_cpp
 def tunables(patterns: Sequence[str] = ("*",)) -> List[str]:
-    """The names of the options that tune() can search: those that the patterns ('match.window_size', 'match.*', '*') name, in
-    the order of options()."""
+    """The names of the options that tune() can search and that match the patterns ('match.window_size', 'match.*',
+    '*'), in the order of options()."""
 
 
 @checked
@@ -270,14 +274,15 @@ def tune(frames: Iterable[Union[TuningFrame, Tuple[ImageLike, ImageLike]]], *, o
          holdout: float = DEFAULTS["holdout"], seed: int = DEFAULTS["seed"],
          progress: Optional[Callable[[Dict[str, Any]], object]] = None, preset: str = "default",
          config: Union[Config, PathLike, None] = None, exec: Optional[Exec] = None, **groups) -> Tuning:
-    """Searches the options that do best on frames of yours, as `cairn tune` does (docs/tune.md). Returns a Tuning.
-    frames: a TuningFrame or (left, right) each; all are held at once. options: patterns as tunables() takes them, none = a
-    sensible choice. budget_s: seconds, more than 0; the start is measured all the same. evaluations: end after this number as
-    well, for a result that does not depend on the machine's speed; 0 = no limit. holdout: 0 to 0.9, the share of the frames
-    that only judge the result. seed: which frames these are, and in which order options are tried. progress: called before each
-    evaluation with a dict: goal, evaluations, seconds, share (0 to 1), before and best (mean losses; None until the start is
-    measured). Ctrl-C (KeyboardInterrupt) ends the search and keeps the best so far. The search starts from preset, config and
-    the options, as in segment(). Other Python threads run meanwhile. Raises cairn.Error for what cannot be used."""
+    """Searches for the options that do best on your frames, as `cairn tune` does (docs/tune.md). Returns a Tuning.
+    frames: a TuningFrame or (left, right) each; all are held in memory. options: patterns as for tunables(); none = a
+    sensible choice. budget_s: seconds, more than 0; the start is measured in any case. evaluations: also ends after
+    this number, for a result that does not depend on the speed of the machine; 0 = no limit. holdout: 0 to 0.9, share
+    of the frames used for validation only. seed: selects these frames and the order in which options are tried.
+    progress: called before each evaluation with a dict: goal, evaluations, seconds, share (0 to 1), before and best
+    (mean losses; None until the start is measured). Ctrl-C (KeyboardInterrupt) ends the search and keeps the best so
+    far. The search starts from preset, config and the options, as in segment(). Releases the GIL. Raises cairn.Error
+    for invalid input."""
     expected = "expected cairn.TuningFrame or (left, right)"
     if not hasattr(frames, "__iter__"):
         raise ArgumentError(f"frames: found {shown(frames)}, {expected} of each frame")
