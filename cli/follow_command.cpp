@@ -192,9 +192,10 @@ io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& 
                                       {!options.imu.empty(), "--imu"},
                                       {!options.scan.empty(), "--scan"},
                                       {!options.poses.empty(), "--poses"}}) {
-      if (given)
+      if (given) {
         throw Error(std::string(name) + ": needs metres, but " + source.name() +
                     " has no calibration with a baseline; give one with --calib");
+      }
     }
   }
   return {named(options.odometry),
@@ -217,9 +218,10 @@ void check_output(const FollowOptions& options) {
   if (options.output.empty() || !fs::is_directory(options.source.source, ignored)) return;
   const std::string from = fs::weakly_canonical(options.source.source, ignored).string() + "/";
   const std::string into = fs::weakly_canonical(options.output, ignored).string() + "/";
-  if (into.starts_with(from) || into + "/" == from)
+  if (into.starts_with(from) || into + "/" == from) {
     throw Error("-o " + options.output +
                 ": is inside the source and would be read as frames, expected another folder");
+  }
 }
 
 Json event_json(const LandmarkEvent& event, const Landmarked& marked, int frame) {
@@ -268,8 +270,8 @@ std::string event_line(const Json& event) {
   std::string line = "  " + kind;
   if (event.contains("landmark")) line += ": landmark " + event["landmark"].dump();
   if (kind == "moved") {
-    const auto from = event["from_m"];
-    const auto to = event["to_m"];
+    const auto& from = event["from_m"];
+    const auto& to = event["to_m"];
     double square = 0;
     for (std::size_t i = 0; i < 3; ++i) square += std::pow(double{to[i]} - double{from[i]}, 2);
     line += ", by " + text_of("%.2f m", std::sqrt(square));

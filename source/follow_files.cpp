@@ -220,9 +220,10 @@ FollowFiles::FollowFiles(fs::path folder) : folder_(std::move(folder)) {
                                    {&masks_, "tracks.mots.txt"},
                                    {&events_, "events.jsonl"}}) {
     file->open(folder_ / name, std::ios::binary | std::ios::trunc);
-    if (!*file)
+    if (!*file) {
       throw Error((folder_ / name).string() +
                   ": cannot be written: " + std::generic_category().message(errno));
+    }
   }
 }
 
