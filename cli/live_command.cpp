@@ -37,7 +37,8 @@ struct LiveCommandOptions {
   Ros2CommandOptions ros2;
 };
 
-/// Prints to stderr: findings of the search for better options and, if it is a terminal, a status line per second.
+/// Prints to stderr: findings of the search for better options and, if it is a terminal, a status line per
+/// second.
 class StatusLine : public live::Sink {
  public:
   void offer(const live::LiveFramePtr& frame) override {

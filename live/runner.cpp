@@ -196,8 +196,7 @@ void Runner::take_over(const std::optional<ControlEvent>& control) {
   if (!control || !control->is_set) return;
   const std::lock_guard lock(mutex_);
   FollowConfig changed = *config_;
-  const std::vector<OptionInfo> all = options(changed);
-  if (std::ranges::find(all, control->arm.option, &OptionInfo::name)->value != control->before) return;
+  if (value_of(changed.segmentation, control->arm.option) != control->before) return;
   cairn::set(changed, control->arm.option, control->arm.value);
   config_ = std::make_shared<const FollowConfig>(std::move(changed));
   ++revision_;

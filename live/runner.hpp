@@ -79,7 +79,6 @@ class Runner {
   LiveFramePtr work(PairPtr pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);
-  void adopt(FollowConfig config);
 
   io::Sequence& source_;
   Size image_size_;

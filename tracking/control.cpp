@@ -29,6 +29,11 @@ double least_lead(const Arm& arm, double lead_percent) {
 
 }  // namespace
 
+std::string value_of(const Config& config, const std::string& option) {
+  const std::vector<OptionInfo> all = options(config);
+  return std::ranges::find(all, option, &OptionInfo::name)->value;
+}
+
 std::vector<Arm> differences(const Config& config, const Config& known) {
   const std::vector<OptionInfo> there = active_options(known);
   std::vector<Arm> differ;

@@ -45,6 +45,9 @@ struct Arm {
   friend bool operator==(const Arm&, const Arm&) = default;
 };
 
+/// The value of an arm's option in `config`.
+std::string value_of(const Config& config, const std::string& option);
+
 /// The alternatives to `config`: `step` times and 1/`step` times the value of relevant options, or the other
 /// choice. Excludes values without effect or out of range. Always in the same order.
 std::vector<Arm> arms_of(const Config& config, Size image, float step = 2);
@@ -84,8 +87,8 @@ struct Lead {
 Lead lead_of(const ArmScore& score);
 
 /// The survivors of a round of successive halving (Jamieson and Talwalkar 2016): at most half of the arms,
-/// those with the highest lead, and none without a lead or, unless it restores, with less than half of `lead`. Ties: the
-/// earlier one.
+/// those with the highest lead, and none without a lead or, unless it restores, with less than half of
+/// `lead`. Ties: the earlier one.
 std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent);
 
 /// Whether to report or set the arm: compared on at least `window` frames, with a lead significantly above 0

@@ -15,11 +15,6 @@ constexpr float kLeastStep = 2;
 constexpr float kMostStep = 8;
 constexpr double kObvious = 0.5;  // a lead large enough to skip further rounds
 
-std::string value_of(const Config& config, const std::string& option) {
-  const std::vector<OptionInfo> all = options(config);
-  return std::ranges::find(all, option, &OptionInfo::name)->value;
-}
-
 }  // namespace
 
 Controller::Controller(const FollowConfig& start)

@@ -61,8 +61,7 @@ class Follower {
   /// For the next frame; ControlMethod::tune changes options of the segmentation.
   [[nodiscard]] const FollowConfig& config() const { return config_; }
   /// Sets the configuration from the next frame on; the state is kept, but another configuration begins the
-  /// search for better options anew. Throws Error if validate(config) does,
-  /// without any change.
+  /// search for better options anew. Throws Error if validate(config) does, without any change.
   void set_config(FollowConfig config);
 
  private:

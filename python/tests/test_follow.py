@@ -172,12 +172,12 @@ def test_a_better_option_is_reported_or_set(pairs, rig):
     for method in ("watch", "tune"):
         follower = cairn.Follower(rig, objects={"min_area": 60}, control={"method": method, **control})
         steps = [follower.next(left, right, seconds=0.1 * i) for i in range(20)]
-        found = next(step.control for step in steps if step.control)
+        step = next(step for step in steps if step.control)
+        found = step.control
         assert (found["option"], found["before"], found["value"]) == ("objects.min_area", "60", "0.25")
         assert found["lead"] > 1 and found["is_set"] == (method == "tune")
         assert follower["objects.min_area"] == ("0.25" if method == "tune" else "60")
-        with_it = next(step for step in steps if step.control)
-        assert pickle.loads(pickle.dumps(with_it)).control == found
+        assert pickle.loads(pickle.dumps(step)).control == found
     assert steps[0].control is None
 
 
