@@ -177,9 +177,10 @@ void each_planned(const Run& run, std::size_t begin, std::size_t end,
       throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": is not a frame of a manifest");
     std::string name = json["frame"].get<std::string>();
     const std::filesystem::path below(name);
-    if (name.empty() || below.is_absolute() || std::ranges::find(below, "..") != below.end())
+    if (name.empty() || below.is_absolute() || std::ranges::find(below, "..") != below.end()) {
       throw Error(run.manifest().string() + ":" + std::to_string(i + 1) + ": found the frame " + name +
                   ", expected a name inside the folder of the run");
+    }
     visit(i, {std::move(name), std::move(json)});
   }
 }

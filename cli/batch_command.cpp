@@ -158,10 +158,11 @@ int status(const BatchOptions& options) {
                std::to_string(status.worker ? status.worker->note.errors : 0), worker_text(status)});
   }
   std::cout << count_of(done, "shard") << " done";
-  if (const std::size_t begun = all.shards.size() - done; begun > 0)
+  if (const std::size_t begun = all.shards.size() - done; begun > 0) {
     std::cout << ", " << begun << " begun\n" << table.text();
-  else
+  } else {
     std::cout << "\n";
+  }
   return 0;
 }
 
@@ -249,9 +250,10 @@ Work declare_batch(CLI::App& app) {
   return [options, &app] {
     const auto of = [&](std::string_view action, const std::vector<const char*>& names) {
       for (const char* name : names) {
-        if (options->action != action && app.count(name) > 0)
+        if (options->action != action && app.count(name) > 0) {
           throw Error(std::string(name) + ": only for cairn batch " + std::string(action) + ", found " +
                       options->action);
+        }
       }
     };
     of("plan", {"--calib", "--rectify", "--layout", "--frames", "--tracks", "--preset", "--config", "--set"});

@@ -132,9 +132,9 @@ class Planner {
     if (!inputs_.calib.empty()) sequence.calib = whole(inputs_.calib);
     for (const std::size_t index : sequence_frames(sequence, range_, pool_)) {
       constexpr std::size_t kDigits = 6;
-      std::string number = std::to_string(index);
-      if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
-      Json how{{"frame", joined(name, number)}, {"source", sequence.source}, {"index", index}};
+      std::string digits = std::to_string(index);
+      if (digits.size() < kDigits) digits.insert(0, kDigits - digits.size(), '0');
+      Json how{{"frame", joined(name, digits)}, {"source", sequence.source}, {"index", index}};
       if (inputs_.tracks) how["first"] = range_.first;
       if (sequence.step != 1) how["step"] = sequence.step;
       if (!sequence.layout.empty()) how["layout"] = sequence.layout;
@@ -143,7 +143,7 @@ class Planner {
         how["calib"] = sequence.calib;
         how["calib_sha256"] = sum_of(sequence.calib);
       }
-      frames_.push_back({joined(name, number), std::move(how)});
+      frames_.push_back({joined(name, digits), std::move(how)});
     }
   }
 
@@ -232,9 +232,10 @@ void BatchReader::check(const PlannedFrame& frame) {
   if (calib.empty()) return;
   std::string& sum = calibrations_[calib];
   if (sum.empty()) sum = io::sha256(io::read_file(calib, io::kMostTextBytes));
-  if (sum != text_at(frame, "calib_sha256"))
+  if (sum != text_at(frame, "calib_sha256")) {
     throw Error(calib + ": changed since the run was planned, expected the calibration of frame " +
                 frame.name + " unchanged, or a new plan");
+  }
 }
 
 BatchFrame BatchReader::read(const PlannedFrame& frame) {

@@ -43,9 +43,10 @@ std::optional<std::size_t> count_in_folder(const std::string& source) {
 std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io::FrameRange& range,
                                          const Pool& pool) {
   const auto opened = open(sequence, range, pool);
-  if (opened->status().is_live)
+  if (opened->status().is_live) {
     throw Error(sequence.source +
                 ": is a camera, expected a source with an end; cairn record makes a folder of frames");
+  }
   std::vector<std::size_t> frames;
   const auto add_until = [&](std::size_t end) {
     const std::size_t next = frames.empty() ? range.first : frames.back() + range.step;

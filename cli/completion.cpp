@@ -138,7 +138,7 @@ std::string bash_completion(const CLI::App& cairn) {
       if (option->get_positional() && positional.empty()) positional = expected_by(*option);
       for (const std::string& name : names_of(*option)) {
         names.push_back(name);
-        expected += one_case(command + " " + name, expected_by(*option));
+        expected += one_case(std::string(command).append(" ").append(name), expected_by(*option));
       }
     }
     options_of += one_case(command, joined(names));

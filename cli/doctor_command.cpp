@@ -476,9 +476,10 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
     j["pairs"].push_back(std::move(one));
   }
   j["synchrony"] = nullptr;
-  if (diagnosis.sequence && !diagnosis.sequence->names.empty())
+  if (diagnosis.sequence && !diagnosis.sequence->names.empty()) {
     j["synchrony"] =
         Json::parse(io::synchrony_json(diagnosis.sequence->synchrony, diagnosis.sequence->names));
+  }
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

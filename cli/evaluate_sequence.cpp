@@ -19,7 +19,6 @@
 namespace cairn::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -240,10 +239,11 @@ std::string place_lines(const PlaceErrors& places) {
   all += std::string(all.empty() ? "positions           " : "                    ") +
          "from the camera: median " + metres(percentile(places.in_camera_m, 0.5)) + "   95 % below " +
          metres(percentile(places.in_camera_m, 0.95)) + "\n";
-  if (places.stated > 0)
+  if (places.stated > 0) {
     all += "                    within the stated 95 % ellipsoid: " +
            percent(share(places.inside, places.stated)) + "   NEES: median " +
            text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
+  }
   return all;
 }
 
@@ -314,12 +314,14 @@ std::string lines_of(const SequenceScores& s) {
   const auto frames = [](std::size_t count) {
     return std::to_string(count) + (count == 1 ? " frame" : " frames");
   };
-  if (!s.without_result.empty())
+  if (!s.without_result.empty()) {
     all += "no result           " + frames(s.without_result.size()) + " of the truth, first " +
            s.without_result.front() + "\n";
-  if (!s.without_truth.empty())
+  }
+  if (!s.without_truth.empty()) {
     all += "no truth            " + frames(s.without_truth.size()) + " of the result, first " +
            s.without_truth.front() + "\n";
+  }
   return all;
 }
 
@@ -341,9 +343,10 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
 }  // namespace
 
 int evaluate_sequence(const EvaluateSequenceOptions& options) {
-  if (options.json && options.results.size() > 1)
+  if (options.json && options.results.size() > 1) {
     throw Error("--json " + *options.json + ": needs one run, found " +
                 std::to_string(options.results.size()) + "; --csv accepts several");
+  }
   const io::TrueSequence truth = io::load_truth(options.truth);
   std::vector<SequenceScores> runs;
   for (const std::string& result : options.results)
@@ -351,6 +354,7 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
   if (options.json) io::write_file(*options.json, whole_json(runs.front(), options));
   if (options.csv) {
     std::vector<std::pair<std::string, Json>> summaries;
+    summaries.reserve(runs.size());
     for (const SequenceScores& run : runs) summaries.emplace_back(run.name, summary_json(run));
     io::write_file(*options.csv, csv(summaries));
   }
@@ -367,9 +371,10 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
 }
 
 int evaluate_trajectory(const EvaluateSequenceOptions& options) {
-  if (options.json && options.results.size() > 1)
+  if (options.json && options.results.size() > 1) {
     throw Error("--json " + *options.json + ": needs one run, found " +
                 std::to_string(options.results.size()) + "; --csv accepts several");
+  }
   const io::Trajectory truth = io::load_trajectory(options.truth);
   std::vector<std::pair<std::string, Json>> summaries;
   std::string text;
@@ -377,10 +382,11 @@ int evaluate_trajectory(const EvaluateSequenceOptions& options) {
     io::Trajectory ours = io::load_trajectory(result);
     if (ours.has_stamps != truth.has_stamps) {
       // KITTI poses have no stamps, so they are matched by index; both sides need the same number.
-      if (ours.poses.size() != truth.poses.size())
+      if (ours.poses.size() != truth.poses.size()) {
         throw Error((ours.has_stamps ? options.truth : result) + ": has no stamps, and " +
                     std::to_string((ours.has_stamps ? truth : ours).poses.size()) + " poses, expected " +
                     std::to_string((ours.has_stamps ? ours : truth).poses.size()));
+      }
       for (std::size_t k = 0; k < ours.poses.size(); ++k) ours.poses[k].stamp = truth.poses[k].stamp;
     }
     const TrajectoryError error = trajectory_error(ours.poses, truth.poses);

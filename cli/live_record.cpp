@@ -47,9 +47,10 @@ RecordedConfig::RecordedConfig(const std::string& source, ConfigOptions& options
   if (!text) return;
   // Unnamed, so that no other program can find or replace it.
   descriptor_ = ::memfd_create("config.yaml", MFD_CLOEXEC);
-  if (descriptor_ < 0)
+  if (descriptor_ < 0) {
     throw Error(source +
                 ": config.yaml: cannot be kept in memory: " + std::generic_category().message(errno));
+  }
   file_ = "/proc/self/fd/" + std::to_string(descriptor_);
   std::ofstream copy(file_, std::ios::binary);
   copy << *text;
