@@ -126,7 +126,8 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
   Objects objects =
       measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, exec);
-  objects = refine_objects(std::move(objects), disparity, pair.left(), pair.right(), exec);
+  objects =
+      refine_objects(std::move(objects), disparity, pair.left(), pair.right(), disparity_bias_trees(), exec);
   objects = locate(std::move(objects), disparity, ground, rig, exec);
   const Image<float> confidence =
       estimate_confidence(matches, disparity, confidence_model(config.match.method), exec);

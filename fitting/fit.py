@@ -1,19 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that score regions (cairn/grouping/fitted_*.inc) to the fit set.
+"""Fits the trees that score regions (cairn/grouping/fitted_*.inc), and those that correct the disparity of an object
+(cairn/objects/fitted_*.inc), to the fit set.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
 It needs the networks that fit_hints.py writes to the work folder. fit.py TOOL DATA --ablation FILE: refits without
-each kind of cue in turn, and reports the gain of each.
+each kind of cue in turn, and reports the gain of each. fit.py TOOL DATA --distances [--out FOLDER]: only the trees that
+correct disparities, for the objects that the library finds.
 
-Gradient boosting fits two scores: whether two neighbouring regions belong to the same object, on the pairs that occur
-while the merge tree grows; and whether a region is a whole object, on the regions of such trees. Which pairs and
-regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
+Gradient boosting fits two scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
+while the merge tree grows; whether a region is a whole object, on the regions of such trees; and how far
+the disparity of a found object is from the true one. Which pairs and regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
 not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. Frames under
 `validate` are only reported. Everything is seeded: the same frames give the same trees.
 """
 import argparse
+import functools
 import json
 import math
 import pathlib
@@ -28,6 +31,9 @@ WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # per frame, since these sets
 PAIRS_KEPT = 0.3  # share of all pairs, of which there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
+BIAS_TREES, BIAS_DEPTH = 60, 4
+DOUBT = 0.08  # px, kDoubt of refine_objects.cpp
+MOST_BIAS = 1.2  # px; larger errors are mistakes of the matching, which no feature predicts
 SEED = 7
 HALVES = 2  # of the scenes; each network is fitted without one (fit_hints.py)
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
@@ -59,6 +65,12 @@ def fit_sets(data, rooms):
     return sets
 
 
+def sequences(data):
+    """Every fourth frame: what follows each other is nearly the same."""
+    names = ("dev/sequences/dev_seqA", "dev/sequences/dev_seqB", "tour_train")
+    return {"sequences": [frame for name in names for frame in frames_in(data / "rendered" / name)[::4]]}
+
+
 def validation_sets(data):
     return {"validate 320x240": frames_in(data / "rendered/validate/320x240"),
             "validate 640x480": frames_in(data / "rendered/validate/640x480"),
@@ -67,7 +79,8 @@ def validation_sets(data):
 
 
 def fold_of(frame, folds):
-    return zlib.crc32(frame.name.encode()) % folds  # a scene has the same name at all sizes
+    scene = frame.parent.name if frame.name.isdigit() else frame.name  # a scene has the same name at all sizes
+    return zlib.crc32(scene.encode()) % folds
 
 
 def jobs_of(sets):
@@ -159,15 +172,19 @@ def by_edges():
     return trees
 
 
-def fitted(labels, weights, features, trees, depth, least_weight, eta):
+SCORE = {"objective": "binary:logistic", "base_score": 0.5, "lambda": 2.0}
+BIAS = {"objective": "reg:pseudohubererror", "huber_slope": 0.2, "base_score": 0.0, "lambda": 3.0}
+
+
+def fitted(labels, weights, features, trees, depth, least_weight, eta, goal=SCORE):
     import xgboost  # only this function needs it
 
     data = xgboost.DMatrix(features, label=labels, weight=weights)
     model = xgboost.train(
-        {"objective": "binary:logistic", "base_score": 0.5, "max_depth": depth, "eta": eta, "subsample": 0.7,
-         "colsample_bytree": 0.6, "min_child_weight": least_weight, "tree_method": "hist", "lambda": 2.0, "seed": SEED,
-         "nthread": 2}, data, trees)
+        {**goal, "max_depth": depth, "eta": eta, "subsample": 0.7, "colsample_bytree": 0.6,
+         "min_child_weight": least_weight, "tree_method": "hist", "seed": SEED, "nthread": 2}, data, trees)
     nodes = Nodes(0.0)
+    nodes.predict = lambda values: model.predict(xgboost.DMatrix(values))
     nodes.gains = model.get_score(importance_type="total_gain")
     for tree in model.get_dump(dump_format="json"):
         nodes.add(json.loads(tree))
@@ -178,10 +195,11 @@ class Fitting:
     def __init__(self, tool, work, hints, folds, sets):
         self.tool, self.work, self.hints, self.folds = tool, work, hints, folds
         names = subprocess.run([tool, "--names"], capture_output=True, text=True, check=True).stdout
-        self.pair_features, self.region_features = (part.splitlines() for part in names.split("\n\n"))
+        self.pair_features, self.region_features, self.bias_features = (part.splitlines() for part in names.split("\n\n"))
         self.gains = {}
         self.without = ()
         self.met_by_edges = False
+        self.of_library = False  # find objects by the library's network and trees
         self.jobs = jobs_of(sets)
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
         self.weight = np.array([WEIGHTS.get(name, 1.0) for _, _, name in self.jobs])
@@ -190,7 +208,7 @@ class Fitting:
         """trees(i): the two files of job i. Frames of the fit set get hints of a network that has not seen them."""
         def files(i):
             half = "all" if jobs else fold_of(self.jobs[i][0], HALVES)
-            return " ".join(map(str, (self.hints / f"hints_{half}", *trees(i))))
+            return " ".join(map(str, ("-" if self.of_library else self.hints / f"hints_{half}", *trees(i))))
 
         return run_tool(self.tool, self.work, jobs or self.jobs, files, *options)
 
@@ -205,7 +223,7 @@ class Fitting:
             heads.append(head)
             values.append(all_[:, 3:])
         values = np.concatenate(values)
-        names = self.region_features if name == "regions" else self.pair_features
+        names = {"regions": self.region_features, "bias": self.bias_features}.get(name, self.pair_features)
         for i, feature in enumerate(names):
             # Features from hints count as cues of the hints only.
             if any(word in feature for word in self.without) and ("hints:" in self.without or "hints:" not in feature):
@@ -257,6 +275,72 @@ class Fitting:
             say(f"regions, without fold {fold}: {take.sum()} of them")
 
 
+    def fit_bias(self, trees, sequences, validation):
+        """Fits the trees that correct the disparities of found objects. Returns a table of the errors before and after:
+        of the fit set and sequences in folds, of the validation frames by the trees fitted to all. trees(i, jobs): the
+        files of job i."""
+        def objects(jobs):
+            self.run(lambda i: trees(i, jobs), "--bias", self.work / "bias@", jobs=jobs)
+            return self.records("bias", len(self.bias_features))
+
+        (head, features), (more, more_features) = objects(None), objects(sequences)
+        more[:, 0] += len(self.jobs)
+        head, features = np.concatenate([head, more]), np.concatenate([features, more_features])
+        jobs = self.jobs + sequences
+        job, bias = head[:, 0].astype(int), head[:, 1]
+        object_fold = np.array([fold_of(frame, self.folds) for frame, _, _ in jobs])[job]
+        left = bias.copy()
+        for fold in [*range(self.folds), "all"]:
+            take = object_fold != fold if fold != "all" else job >= 0
+            model = fitted(np.clip(bias[take], -MOST_BIAS, MOST_BIAS), np.ones(take.sum()), features[take], BIAS_TREES,
+                           BIAS_DEPTH, 10, 0.1, BIAS)
+            say(f"disparities, without fold {fold}: {take.sum()} objects")
+            if fold != "all":
+                left[~take] -= beyond_doubt(model.predict(features[~take]))
+        model.write(self.model("disparity_bias", "all"))
+        self.gains["disparity_bias"] = shares_of(model.gains, self.bias_features)
+        checked, features = objects(validation)
+        return BIAS_HEAD + bias_rows(jobs, head, left) + bias_rows(
+            validation, checked, checked[:, 1] - beyond_doubt(model.predict(features)))
+
+
+def beyond_doubt(bias):
+    """As refine_objects() uses it."""
+    return np.sign(bias) * np.maximum(np.abs(bias) - DOUBT, 0)
+
+
+BIAS_HEAD = """| frames | input | objects | error, px | corrected | objects at 2–4 m | error, cm: median / 90 % | corrected |
+|---|---|---:|---:|---:|---:|---:|---:|
+"""
+
+
+def bias_rows(jobs, head, left):
+    job, bias, px_per_m = head[:, 0].astype(int), head[:, 1], head[:, 2]
+    focal_baseline = np.array([focal_times_baseline(jobs[i][0]) for i in job])
+    depth = np.sqrt(focal_baseline / px_per_m)
+
+    def in_metres(off):
+        """From disparities that are too small by `off`."""
+        return np.abs(focal_baseline / np.maximum(px_per_m * depth - off, 0.3) - depth)
+
+    rows = ""
+    for name, colour in dict.fromkeys((name, colour) for _, colour, name in jobs):
+        mine = np.array([jobs[i][1:] == (colour, name) for i in job], bool)
+        near = mine & (depth >= 2) & (depth <= 4)
+        if near.sum() == 0:
+            continue
+        pixels = [f"{np.mean(np.minimum(np.abs(off[mine]), MOST_BIAS)):.3f}" for off in (bias, left)]
+        metres = [f"{100 * np.median(e):.1f} / {100 * np.quantile(e, 0.9):.1f}" for e in (in_metres(bias)[near], in_metres(left)[near])]
+        rows += f"| {name} | {colour} | {mine.sum()} | {pixels[0]} | {pixels[1]} | {near.sum()} | {metres[0]} | {metres[1]} |\n"
+    return rows
+
+
+@functools.cache
+def focal_times_baseline(frame):
+    values = dict(line.split("=") for line in (frame / "calib.txt").read_text().splitlines() if "=" in line)
+    return float(values["fx"]) * float(values["baseline"])
+
+
 def shares_of(gains, names):
     """Share of each feature in the gain of all splits, largest first."""
     total = sum(gains.values())
@@ -275,24 +359,47 @@ def runs_of(numbers):
     return ", ".join(f"{a} to {b}" if a < b else str(a) for a, b in runs)
 
 
-def page(fitting, sets, reports, score):
-    def table(kind, header):
-        rows = [f"| {name} | {100 * share:.1f} |" for share, name in fitting.gains[kind] if share >= 0.005]
-        return f"| {header} | share of the gain, % |\n|---|---:|\n" + "\n".join(rows)
+def gains_table(fitting, kind, header):
+    rows = [f"| {name} | {100 * share:.1f} |" for share, name in fitting.gains[kind] if share >= 0.005]
+    return f"| {header} | share of the gain, % |\n|---|---:|\n" + "\n".join(rows)
 
+
+def frames_used(sets):
     counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
     more = ""
     for name, script in (("more rooms", "rooms.py"), ("clutter", "fitting/cluttered_rooms.py GENERATOR")):
         rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get(name, []))
         if rooms:
             more += f"*{name}*: the generator's numbers {runs_of(rooms)} (`{script} jobs.json FIRST LAST+1`).\n"
+    return f"Fitted to: {counts}; each frame once in colour and once in grey.\n{more}"
+
+
+def page_of_distances(fitting, sets, distances):
+    return f"""# Fitted distances
+
+<!-- Written by ./dev fit; do not edit. -->
+
+This page reports how well the fitted trees of [`refine_objects()`](stages/objects.md#its-disparity-refined) correct the disparity of an object.
+{frames_used(sets)}Also fitted to every fourth frame of the rendered sequences. The truth is needed: of these frames, only rendered ones count. An error is the difference between the object's disparity, with the shift by the images, and the median true disparity of the true object that it overlaps by an IoU of 0.5 or more.
+Frames of the fit set are corrected by trees fitted without their scene, in {fitting.folds} folds. Validation frames are corrected by the library's trees, and were not used for any choice.
+Errors in px: means, each error counted as {MOST_BIAS} px at most. A correction counts beyond {DOUBT} px only.
+
+{distances}
+## Features of an object
+
+{len(fitting.bias_features)} features, {BIAS_TREES} trees of depth {BIAS_DEPTH}.
+
+{gains_table(fitting, "disparity_bias", "feature")}
+"""
+
+
+def page(fitting, sets, reports, score):
     return f"""# Fitted models
 
 <!-- Written by ./dev fit; do not edit. -->
 
 This page reports how well the preset `default` finds objects with its fitted trees ([grouping](stages/grouping.md)) and the network of its [hints](stages/object_hints.md). `./dev fit` fits both and writes them and this page: the same frames give the same numbers on the same processor.
-Fitted to: {counts}; each frame once in colour and once in grey.
-{more}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds, with hints of a network fitted without their scene, in {HALVES} halves. Validation frames are scored by the library's trees and network, and were not used for any choice.
+{frames_used(sets)}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds, with hints of a network fitted without their scene, in {HALVES} halves. Validation frames are scored by the library's trees and network, and were not used for any choice.
 In brackets: Wilson's 95 % interval. ms: one core's time for the median frame, from the superpixels to the choice of objects, on a shared machine.
 `objects.min_confidence` = {score}.
 
@@ -302,13 +409,13 @@ In brackets: Wilson's 95 % interval. ms: one core's time for the median frame, f
 
 {len(fitting.pair_features)} features, {PAIR_TREES} trees of depth {PAIR_DEPTH}. The tables omit features that gain less than 0.5 %.
 
-{table("same_thing", "feature")}
+{gains_table(fitting, "same_thing", "feature")}
 
 ## Features of a region
 
 {len(fitting.region_features)} features, {REGION_TREES} trees of depth {REGION_DEPTH}.
 
-{table("whole_object", "feature")}
+{gains_table(fitting, "whole_object", "feature")}
 """
 
 
@@ -396,8 +503,10 @@ def main():
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     parser.add_argument("--hints", type=pathlib.Path, help="the folder with fitted networks, if not the work folder")
-    parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn/grouping)")
+    parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
+    parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")
+    parser.add_argument("--distances-page", type=pathlib.Path, help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
     parser.add_argument("--min-scores", default="0.3", help="thresholds for the report; the page shows the first")
     arguments = parser.parse_args()
@@ -406,26 +515,42 @@ def main():
     fitting = Fitting(arguments.tool, arguments.work, arguments.hints or arguments.work, arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
     validation = jobs_of(validation_sets(arguments.data))
+    tracked = jobs_of(sequences(arguments.data))
     if arguments.ablation:
         return ablation(fitting, validation, arguments.ablation)
-    fitting.fit_pairs()
-    fitting.fit_regions()
-    for score in arguments.min_scores.split(","):
-        rows = fitting.run(fitting.of_fold, "--min-score", score)
-        checked = fitting.run(lambda i: (fitting.model("same_thing", "all"), fitting.model("whole_object", "all")),
-                              "--min-score", score, jobs=validation)
-        print(f"\nobjects.min_confidence={score}; fit set in {arguments.folds} folds by scene\n")
-        reports = report(rows, fitting.jobs) + "\n\n" + report(checked, validation)
-        print(reports, flush=True)
-        if arguments.page and score == arguments.min_scores.split(",")[0]:
-            arguments.page.write_text(page(fitting, sets, reports, score))
-    if arguments.out:
-        for name, kind in (("SameThing", "same_thing"), ("WholeObject", "whole_object")):
-            lines = fitting.model(kind, "all").read_text().split("\n")
-            nodes = Nodes(float(lines[0].split()[0]))
-            nodes.roots = [int(v) for v in lines[1].split()]
-            nodes.nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
-            nodes.write_source(arguments.out / f"fitted_{kind}.inc", name)
+    def of_all(i):
+        return fitting.model("same_thing", "all"), fitting.model("whole_object", "all")
+
+    def write_source(kind, name, folder):
+        if not arguments.out:
+            return
+        lines = fitting.model(kind, "all").read_text().split("\n")
+        nodes = Nodes(float(lines[0].split()[0]))
+        nodes.roots = [int(v) for v in lines[1].split()]
+        nodes.nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
+        nodes.write_source(arguments.out / folder / f"fitted_{kind}.inc", name)
+
+    if arguments.distances:
+        fitting.of_library = True
+        distances = fitting.fit_bias(lambda i, jobs: ("-", "-"), tracked, validation)
+    else:
+        fitting.fit_pairs()
+        fitting.fit_regions()
+        distances = fitting.fit_bias(lambda i, jobs: of_all(i) if jobs else fitting.of_fold(i), tracked, validation)
+        for score in arguments.min_scores.split(","):
+            rows = fitting.run(fitting.of_fold, "--min-score", score)
+            checked = fitting.run(of_all, "--min-score", score, jobs=validation)
+            print(f"\nobjects.min_confidence={score}; fit set in {arguments.folds} folds by scene\n")
+            reports = report(rows, fitting.jobs) + "\n\n" + report(checked, validation)
+            print(reports, flush=True)
+            if arguments.page and score == arguments.min_scores.split(",")[0]:
+                arguments.page.write_text(page(fitting, sets, reports, score))
+        write_source("same_thing", "SameThing", "grouping")
+        write_source("whole_object", "WholeObject", "grouping")
+    print(distances)
+    write_source("disparity_bias", "DisparityBias", "objects")
+    if arguments.distances_page:
+        arguments.distances_page.write_text(page_of_distances(fitting, sets, distances))
     say("done")
 
 

@@ -301,7 +301,7 @@ def fit_one(arguments, jobs, half):
     layers = rounded(net, [frames[i] for i in takes[::5]])
     write(layers, arguments.work / f"hints_{half}")
     if half == "all" and arguments.out:
-        write_source(layers, arguments.out / "fitted_hints.inc")
+        write_source(layers, arguments.out / "grouping" / "fitted_hints.inc")
 
 
 def main():
@@ -310,7 +310,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-    parser.add_argument("--out", type=pathlib.Path, help="where the source is written (cairn/grouping)")
+    parser.add_argument("--out", type=pathlib.Path, help="where the source is written (cairn)")
     parser.add_argument("--steps", type=int, default=4800)
     parser.add_argument("--only", help="one half, or all: results in the work folder are reused")
     arguments = parser.parse_args()

@@ -2,15 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // fitting --names: prints the names of the features.
-// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--min-score S]: gathers the data for
-// fit_hints.py and fit.py, and measures how well the result performs.
+// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--bias FILE] [--min-score S]: gathers the data
+// for fit_hints.py and fit.py, and measures how well the result performs.
 //
 // Each line of JOBS is the folder of a frame, `colour` or `grey`, and three files: a fitted network and two
 // sets of fitted trees; `-` for the library's. For each line it prints what was found in the frame. The FILEs
 // receive records of floats: for each pair of regions that was judged, the job's number, whether they show
 // the same object, how pure they are, and the features; for each region that may be an object, the job's
-// number, its greatest IoU with a true object, whether the truth is partial, and the features; for the
-// inputs, see record_input().
+// number, its greatest IoU with a true object, whether the truth is partial, and the features; for each object
+// that was found, the job's number, the true disparity minus the measured one, the latter's px per metre of
+// depth, and the features of its bias; for the inputs, see record_input().
 #include <cairn/cairn.hpp>
 #include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/methods.hpp>
@@ -70,6 +71,7 @@ struct Files {
   std::ofstream pairs;
   std::ofstream regions;
   std::ofstream inputs;
+  std::ofstream bias;
 };
 
 template <std::size_t N>
@@ -218,6 +220,43 @@ void record_regions(std::ofstream& file, int job, const MergeTree& tree, const T
   }
 }
 
+/// The objects with an IoU of at least one half: the median of the true disparities of the true object, minus
+/// the measured disparity.
+void record_bias(std::ofstream& file, int job, const TrueFrame& frame, const Objects& objects,
+                 const DisparityMap& disparity, const Exec& exec) {
+  const View<const Gray> left = frame.images.left.gray;
+  const View<const Gray> right = frame.images.right.gray;
+  const std::vector<double> shifts = image_shifts(objects, disparity, left, right, exec);
+  const std::vector<BiasFeatures> features = bias_features(objects, shifts, disparity, left, right, exec);
+  std::map<TruthId, std::vector<float>> true_px;
+  std::map<TruthId, std::int64_t> areas;
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x) {
+      const TruthId id = frame.objects(x, y);
+      ++areas[id];
+      if (!std::isnan(frame.truth_px(x, y))) true_px[id].push_back(frame.truth_px(x, y));
+    }
+  }
+  for (std::size_t i = 0; i < objects.list.size(); ++i) {
+    const Object& object = objects.list[i];
+    std::map<TruthId, std::int64_t> common;
+    for (int y = 0; y < left.height(); ++y) {
+      for (int x = 0; x < left.width(); ++x)
+        if (objects.labels(x, y) == object.id) ++common[frame.objects(x, y)];
+    }
+    for (const auto& [id, shared] : common) {
+      if (id == TruthId::none || id == TruthId::dont_care || true_px[id].empty()) continue;
+      if (3 * shared < object.pixel_count + areas[id]) continue;  // IoU < 0.5
+      std::vector<float>& values = true_px[id];
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      const auto measured = static_cast<double>(object.disparity_px) + shifts[i];
+      const float px_per_m = *middle * *middle / (frame.rig->focal_px * frame.rig->baseline_m);
+      record(file, job, static_cast<float>(static_cast<double>(*middle) - measured), px_per_m, features[i]);
+    }
+  }
+}
+
 void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, const ChosenObjects& chosen,
                  double milliseconds) {
   int right = 0;
@@ -267,6 +306,12 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   const Truth truth(frame, superpixels, tree);
   if (files.pairs.is_open()) record_pairs(files.pairs, job, pairs, truth);
   if (files.regions.is_open()) record_regions(files.regions, job, tree, truth, left.size());
+  if (files.bias.is_open() && !frame.truth_px.empty() && !frame.partial && frame.rig) {
+    const Segmentation groups = groups_of(superpixels, chosen, cut.scene.found.disparity, exec);
+    const Objects objects = measure(groups.labels, chosen.scores, cut.scene.found.disparity, left, rgb,
+                                    cut.scene.noise_sigma, exec);
+    record_bias(files.bias, job, frame, objects, cut.scene.found.disparity, exec);
+  }
   Image<ObjectId> ours(left.size());
   for (int y = 0; y < left.height(); ++y) {
     for (int x = 0; x < left.width(); ++x)
@@ -275,11 +320,14 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   print_found(job, frame, object_errors(ours, frame.objects, {}), chosen, milliseconds);
 }
 
-/// The features, one per line: those of pairs, an empty line, those of regions.
+/// The features, one per line: those of pairs, an empty line, those of regions, an empty line, those of the
+/// bias.
 int print_names() {
   for (const std::string_view name : merge_feature_names()) std::cout << name << '\n';
   std::cout << '\n';
   for (const std::string_view name : object_feature_names()) std::cout << name << '\n';
+  std::cout << '\n';
+  for (const std::string_view name : bias_feature_names()) std::cout << name << '\n';
   return 0;
 }
 
@@ -293,6 +341,7 @@ int run(std::span<char*> arguments) {
     if (option == "--pairs") files.pairs.open(value, std::ios::binary);
     if (option == "--regions") files.regions.open(value, std::ios::binary);
     if (option == "--inputs") files.inputs.open(value, std::ios::binary);
+    if (option == "--bias") files.bias.open(value, std::ios::binary);
     if (option == "--min-score") min_score = std::stof(value);
   }
   std::ifstream jobs(arguments[1]);

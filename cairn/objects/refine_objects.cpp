@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/objects/object_match.hpp>
 #include <cairn/objects/refine_objects.hpp>
 #include <cmath>
 #include <cstdint>
@@ -10,22 +11,18 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 64;  // rows
-constexpr int kSteps = 2;
-constexpr double kLargestStep = 0.5;  // px; brightness is nearly linear within it
-constexpr int kInset = 4;             // px left out at either end of a row: outlines keep their disparity
-// Chosen on the fit set; results hardly change with half or twice these values.
-constexpr double kSigmaPx = 0.2;     // standard deviation of the prior of the shift
-constexpr double kPixelsAsOne = 16;  // pixels per independent measurement: neighbouring errors correlate
-constexpr double kRounding = 1;      // grey levels²; lower limit of the variance of the residuals
+constexpr int kGrain = 64;        // rows
+constexpr int kInset = 4;         // px left out at either end of a row: outlines keep their disparity
+constexpr double kSigmaPx = 0.2;  // standard deviation of the prior of the shift
+constexpr double kDoubt = 0.08;   // px; also DOUBT of fitting/fit.py
+constexpr double kMostBias = 1;   // px
+
+/// Corrections are uncertain, and most disparities are right: what is smaller than kDoubt does not count.
+double beyond_doubt(double bias) {
+  return std::copysign(std::clamp(std::abs(bias) - kDoubt, 0.0, kMostBias), bias);
+}
 
 /// Pixels of a row whose neighbours up to kInset on both sides belong to the same object and have a disparity.
-struct Stretch {
-  int y;
-  int first;
-  int last;
-};
-
 std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const float> disparity_px) {
   std::vector<std::vector<Stretch>> of(objects.list.size());
   const int width = disparity_px.width();
@@ -40,64 +37,6 @@ std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const f
     }
   }
   return of;
-}
-
-/// Sums over pixels of the horizontal gradient g of the left image and of the residual e, the shifted right
-/// image minus the left one.
-struct Sums {
-  double n = 0;
-  double g = 0;
-  double e = 0;
-  double gg = 0;
-  double ge = 0;
-  double ee = 0;
-  [[nodiscard]] double var_g() const { return gg - g * g / n; }
-  [[nodiscard]] double cov() const { return ge - g * e / n; }
-  [[nodiscard]] double var_e() const { return ee - e * e / n; }
-};
-
-Sums compare(const std::vector<Stretch>& interior, View<const float> disparity_px, View<const Gray> left,
-             View<const Gray> right, double shift_px) {
-  Sums sums;
-  const auto farthest = static_cast<double>(left.width() - 2);
-  for (const auto& [y, first, last] : interior) {
-    const Gray* const l = left.row(y);
-    const Gray* const r = right.row(y);
-    const float* const d = disparity_px.row(y);
-    for (int x = first; x < last; ++x) {
-      const double at = x - double{d[x]} - shift_px;
-      if (!(at >= 0 && at <= farthest)) continue;
-      const auto whole = static_cast<int>(at);
-      const double part = at - whole;
-      const double g = 0.5 * (int{l[x + 1]} - int{l[x - 1]});
-      const double e = int{r[whole]} + part * (int{r[whole + 1]} - int{r[whole]}) - int{l[x]};
-      sums.n += 1;
-      sums.g += g;
-      sums.e += e;
-      sums.gg += g * g;
-      sums.ge += g * e;
-      sums.ee += e * e;
-    }
-  }
-  return sums;
-}
-
-double shift_of(const std::vector<Stretch>& interior, View<const float> disparity_px, View<const Gray> left,
-                View<const Gray> right) {
-  constexpr double kPrior = 1 / (kSigmaPx * kSigmaPx);
-  double shift = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const Sums sums = compare(interior, disparity_px, left, right, shift);
-    double wanted = -kPrior * shift;
-    double known = kPrior;
-    if (sums.n > 0) {
-      const double variance = kPixelsAsOne * (sums.var_e() / sums.n + kRounding);
-      wanted += sums.cov() / variance;
-      known += sums.var_g() / variance;
-    }
-    shift += std::clamp(wanted / known, -kLargestStep, kLargestStep);
-  }
-  return shift;
 }
 
 /// Nearest first, ties as before.
@@ -122,16 +61,27 @@ void number_by_distance(Objects& objects, const Exec& exec) {
 
 }  // namespace
 
-Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const Gray> left,
-                       View<const Gray> right, const Exec& exec) {
-  if (right.empty() || objects.list.empty()) return objects;
+std::vector<double> image_shifts(const Objects& objects, const DisparityMap& disparity, View<const Gray> left,
+                                 View<const Gray> right, const Exec& exec) {
   const std::vector<std::vector<Stretch>> interior = interiors(objects, disparity.disparity_px);
+  std::vector<double> shifts(objects.list.size());
+  const auto measured = [&](int x, int y) { return double{disparity.disparity_px(x, y)}; };
   parallel_for(exec, static_cast<int>(interior.size()), 1, [&](int first, int last) {
-    for (auto i = slot(first); i < slot(last); ++i) {
-      float& d = objects.list[i].disparity_px;
-      d = static_cast<float>(double{d} + shift_of(interior[i], disparity.disparity_px, left, right));
-    }
+    for (auto i = slot(first); i < slot(last); ++i)
+      shifts[i] = match_shift(interior[i], measured, left, right, kSigmaPx).shift_px;
   });
+  return shifts;
+}
+
+Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const Gray> left,
+                       View<const Gray> right, const FittedTrees& bias, const Exec& exec) {
+  if (right.empty() || objects.list.empty()) return objects;
+  const std::vector<double> shifts = image_shifts(objects, disparity, left, right, exec);
+  const std::vector<BiasFeatures> features = bias_features(objects, shifts, disparity, left, right, exec);
+  for (std::size_t i = 0; i < objects.list.size(); ++i) {
+    float& d = objects.list[i].disparity_px;
+    d = static_cast<float>(double{d} + shifts[i] + beyond_doubt(bias(features[i])));
+  }
   number_by_distance(objects, exec);
   return objects;
 }

@@ -2,18 +2,21 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/objects/measure.hpp>
+#include <cairn/objects/disparity_bias.hpp>
 
 namespace cairn {
 
-/// Refines disparity_px of each object by the images, and renumbers the objects if their order changes.
-///
-/// Smoothed matching carries the disparity of an outline across a plain surface, whose middle is nearer. This
-/// estimates the common shift of an object's disparities for which its interior matches in both images: by
-/// least squares on the brightness with a common offset (Lucas and Kanade 1981, in one dimension) and a prior
-/// of no shift. The shift is at most 1 px. `right`: rectified, of the size of `left`; if empty, the objects
-/// are unchanged. (docs/stages/objects.md, beyond the paper)
+/// Refines disparity_px of each object, and renumbers the objects if their order changes: adds the shift of
+/// image_shifts(), and what `bias` expects to be missing still, at most 1 px each; disparity_bias_trees() for
+/// the latter, FittedTrees{} for nothing. `right`: rectified, of the size of `left`; if empty, the objects are
+/// unchanged. (docs/stages/objects.md, beyond the paper)
 Objects refine_objects(Objects objects, const DisparityMap& disparity, View<const Gray> left,
-                       View<const Gray> right, const Exec& exec);
+                       View<const Gray> right, const FittedTrees& bias, const Exec& exec);
+
+/// For each object the common shift of its disparities, px, for which its interior matches in both images: by
+/// least squares on the brightness with a common offset (Lucas and Kanade 1981, in one dimension) and a prior
+/// of no shift.
+std::vector<double> image_shifts(const Objects& objects, const DisparityMap& disparity, View<const Gray> left,
+                                 View<const Gray> right, const Exec& exec);
 
 }  // namespace cairn

@@ -75,8 +75,9 @@ Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given
   frame.groups = stage("groups", groups_of(superpixels, chosen, found.disparity, exec));
   frame.objects = stage("measure", measure(frame.groups.labels, chosen.scores, found.disparity, given.left,
                                            given.left_rgb, cut.scene.noise_sigma, exec));
-  frame.objects = stage("refine_objects", refine_objects(std::move(frame.objects), found.disparity,
-                                                         given.left, cut.scene.right_of(given), exec));
+  frame.objects =
+      stage("refine_objects", refine_objects(std::move(frame.objects), found.disparity, given.left,
+                                             cut.scene.right_of(given), disparity_bias_trees(), exec));
   frame.objects = stage("locate", locate(std::move(frame.objects), found.disparity, found.ground, rig, exec));
 
   // Other obstacles, and free floor.

@@ -272,7 +272,12 @@ void bind_stages(py::module_& m) {
   stage(m, "fuse", &fuse);
   stage<Objects, View<const RegionId>, const std::vector<bool>&>(m, "measure", &measure);
   stage<Objects, View<const RegionId>, const std::vector<float>&>(m, "measure_chosen", &measure);
-  stage(m, "refine_objects", &refine_objects);
+  stage(
+      m, "refine_objects",
+      +[](Objects objects, const DisparityMap& disparity, View<const Gray> left, View<const Gray> right,
+          const Exec& exec) {
+        return refine_objects(std::move(objects), disparity, left, right, disparity_bias_trees(), exec);
+      });
   stage(m, "locate", &locate);
   stage(
       m, "label_space",

@@ -116,7 +116,8 @@ def test_a_hint_counts_as_a_cue_of_the_hints_only(tmp_path):
     (tmp_path / "regions1").write_bytes(b"")
     names = ["hints: area over the voted size", "area, share of the image"]
     for without, kept in ((("area",), [4, 0]), (("hints:",), [0, 5]), ((), [4, 5])):
-        fake = types.SimpleNamespace(work=tmp_path, without=without, region_features=names)
+        fake = types.SimpleNamespace(work=tmp_path, without=without, region_features=names, bias_features=[],
+                                     pair_features=[])
         _, values = fit.Fitting.records(fake, "regions", 2)
         assert values.tolist() == [kept]
 
@@ -180,3 +181,24 @@ def test_dev_refuses_unknown_arguments(arguments, message):
     environment = {"CAIRN_DATA": "/nowhere", "CAIRN_INSTALL": "no", "PATH": "/usr/bin:/bin"}
     done = subprocess.run([SOURCE / "dev", "fit", *arguments], capture_output=True, text=True, env=environment)
     assert message in done.stderr and done.stderr.count("\n") == 1 and done.returncode == 1
+
+
+def test_frames_of_a_sequence_are_one_scene(tmp_path):
+    frames = [tmp_path / "dev_seqA" / f"{i:03}" for i in range(40)]
+    assert len({fit.fold_of(frame, 5) for frame in frames}) == 1
+    assert fit.fold_of(tmp_path / "320x240" / "dev_s01", 5) == fit.fold_of(tmp_path / "640x480" / "dev_s01", 5)
+
+
+def test_corrections_count_beyond_the_library_s_doubt(source):
+    assert fit.beyond_doubt(np.array([0.05, -0.05, 0.28, -0.28])) == pytest.approx([0, 0, 0.2, -0.2])
+    code = (source / "cairn/objects/refine_objects.cpp").read_text()
+    assert float(re.search(r"kDoubt = ([0-9.]+);", code)[1]) == fit.DOUBT
+
+
+def test_errors_in_metres_grow_with_the_square_of_the_distance(tmp_path):
+    (tmp_path / "calib.txt").write_text("fx=200\nbaseline=0.1\n")
+    jobs = [(tmp_path, "colour", "rooms")]
+    near = fit.bias_rows(jobs, np.array([[0, 0.1, 10**2 / 20]]), np.array([0.0]))  # 2 m
+    assert near == "| rooms | colour | 1 | 0.100 | 0.000 | 1 | 2.0 / 2.0 | 0.0 / 0.0 |\n"
+    far = fit.bias_rows(jobs, np.array([[0, 0.1, 5**2 / 20]]), np.array([0.05]))  # 4 m
+    assert far == "| rooms | colour | 1 | 0.100 | 0.050 | 1 | 8.2 / 8.2 | 4.0 / 4.0 |\n"

@@ -2,9 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cairn/objects/refine_objects.hpp>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace cairn {
@@ -55,9 +58,13 @@ struct Scene {
       }
     }
   }
-  [[nodiscard]] Objects refined(int threads = 1) const {
-    return refine_objects({objects.labels.clone(), objects.list}, disparity, left, right,
+  [[nodiscard]] Objects refined(int threads = 1, const FittedTrees& bias = {}) const {
+    return refine_objects({objects.labels.clone(), objects.list}, disparity, left, right, bias,
                           Exec::with_threads(threads));
+  }
+  [[nodiscard]] BiasFeatures features(double shift_px = 0) const {
+    const std::vector<double> shifts(objects.list.size(), shift_px);
+    return bias_features(objects, shifts, disparity, left, right, {}).front();
   }
 };
 
@@ -95,9 +102,99 @@ TEST(RefineObjects, UsesNoHolesNoOutlinesAndNothingOutsideTheRightImage) {
 
 TEST(RefineObjects, WithoutARightImageNothingChanges) {
   const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.1F}});
-  const Objects same =
-      refine_objects({scene.objects.labels.clone(), scene.objects.list}, scene.disparity, scene.left, {}, {});
+  const Objects same = refine_objects({scene.objects.labels.clone(), scene.objects.list}, scene.disparity,
+                                      scene.left, {}, disparity_bias_trees(), {});
   EXPECT_EQ(same.list[0].disparity_px, 12.1F);
+}
+
+TEST(RefineObjects, AddsTheExpectedBiasBeyondDoubt) {
+  const Scene scene({{{40, 10, 60, 40}, 12, 12}}, false);
+  for (const auto& [bias, added] : {std::pair{0.05F, 0.0F},
+                                    {-0.05F, 0.0F},
+                                    {0.3F, 0.22F},
+                                    {-0.3F, -0.22F},
+                                    {9.0F, 1.0F},
+                                    {-9.0F, -1.0F}}) {
+    const FittedTrees always(bias, {}, {});
+    EXPECT_NEAR(scene.refined(1, always).list[0].disparity_px - 12, added, 1e-5) << bias;
+  }
+}
+
+// ---- features of the bias ----
+
+float feature(const BiasFeatures& features, std::string_view name) {
+  const auto names = bias_feature_names();
+  const auto at = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(at, names.end()) << name;
+  return features[static_cast<std::size_t>(at - names.begin())];
+}
+
+TEST(BiasFeatures, OfALevelBoardInItsPlaceTellNoDifference) {
+  const Scene scene({{{40, 10, 60, 40}, 12, 12}});
+  const BiasFeatures features = scene.features(0.125);
+  for (const std::string_view name :
+       {"disparity at the ends of the rows, minus the median",
+        "disparity of the upper part, minus the median", "mean disparity minus the median"})
+    EXPECT_EQ(feature(features, name), 0) << name;
+  for (const std::string_view name :
+       {"shift by the images, middle of the rows", "shift by the images from a plane, middle of the rows",
+        "shift by the images from a plane, without the outline"})
+    EXPECT_NEAR(feature(features, name), 0, 0.01) << name;
+  EXPECT_EQ(feature(features, "shift by the images"), 0.125F);
+  EXPECT_EQ(feature(features, "disparity times mean width, share of the image"), 12.0F * 60 / 160);
+  EXPECT_EQ(feature(features, "disparity minus that beside the object"), 10) << "the background has 2 px";
+}
+
+TEST(BiasFeatures, OfARoundedObjectTellThatItsEndsAreFarther) {
+  Scene scene({{{40, 10, 60, 40}, 12, 12}});
+  for (int y = 10; y < 50; ++y) {
+    for (int x = 40; x < 100; ++x) {
+      const float across = (static_cast<float>(x) - 69.5F) / 30;
+      scene.disparity.disparity_px(x, y) = 12 - 2 * across * across - (y < 16 ? 3.0F : 0.0F);
+    }
+  }
+  scene.objects.list[0].disparity_px = 11.5F;
+  const BiasFeatures features = scene.features();
+  EXPECT_LT(feature(features, "disparity at the ends of the rows, minus the median"), -0.5F);
+  EXPECT_LT(feature(features, "disparity of the upper part, minus the median"), -0.1F);
+}
+
+TEST(BiasFeatures, SeeWhereTheImagesAgree) {
+  const Scene scene({{{40, 10, 60, 40}, 12.3F, 12}});
+  const BiasFeatures features = scene.features();
+  for (const std::string_view name :
+       {"shift by the images, middle of the rows", "shift by the images from a plane, middle of the rows",
+        "shift by the images from a plane, without the outline"})
+    EXPECT_NEAR(feature(features, name), 0.3, 0.03) << name;
+  EXPECT_GT(feature(features, "its certainty"), 10);
+  const Scene plain({{{40, 10, 60, 40}, 12.3F, 12}}, false);
+  EXPECT_EQ(feature(plain.features(), "its certainty"), 0);
+}
+
+TEST(BiasFeatures, ContinueAPlaneAcrossAHole) {
+  Scene scene({{{40, 10, 60, 40}, 12, 12}});
+  for (int y = 10; y < 50; ++y) {
+    for (int x = 40; x < 100; ++x)
+      scene.disparity.disparity_px(x, y) = x < 80 ? 12 + 0.02F * (static_cast<float>(x) - 69.5F) : kNan;
+  }
+  EXPECT_NEAR(feature(scene.features(), "mean disparity minus the median"), 0, 0.01)
+      << "of 12, in the middle";
+}
+
+TEST(BiasFeatures, AreFiniteForTheSmallestObjects) {
+  for (const Rect rect :
+       {Rect{0, 0, 1, 1}, Rect{159, 59, 1, 1}, Rect{0, 0, 160, 1}, Rect{0, 0, 1, 60}, Rect{0, 0, 160, 60}}) {
+    Scene scene({{rect, 3, 3}});
+    for (const float value : scene.features())
+      EXPECT_TRUE(std::isfinite(value)) << text(Size{rect.width, rect.height});
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        if (x != rect.x || y != rect.y) scene.disparity.disparity_px(x, y) = kNan;
+      }
+    }
+    for (const float value : scene.features())
+      EXPECT_TRUE(std::isfinite(value)) << text(Size{rect.width, rect.height});
+  }
 }
 
 TEST(RefineObjects, NumbersTheNearestFirst) {
@@ -118,9 +215,9 @@ TEST(RefineObjects, NumbersTheNearestFirst) {
 TEST(RefineObjects, IsTheSameOnAnyNumberOfThreads) {
   const Scene scene(
       {{{5, 10, 40, 40}, 3.0F, 3.2F}, {{50, 10, 40, 40}, 9, 9.4F}, {{95, 10, 40, 40}, 20, 19.7F}});
-  const Objects one = scene.refined();
+  const Objects one = scene.refined(1, disparity_bias_trees());
   for (const int threads : {2, 3, 8}) {
-    const Objects more = scene.refined(threads);
+    const Objects more = scene.refined(threads, disparity_bias_trees());
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(more.list[i].disparity_px, one.list[i].disparity_px);
   }
 }
