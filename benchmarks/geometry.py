@@ -6,7 +6,8 @@
 The rendered rooms have exact truth. Measures floor and obstacles per pixel, and for each object found (IoU of 0.5 or
 more) its depth, depth interval, extent and box. Prints a table with the fit and the validation sets in columns. --fit
 fits on the fit set the three coefficients of locate() that predict the error of a median disparity, and the seven of
-sight() that predict that of a mask's centre.
+sight() that predict that of a mask's centre. The trees of refine_objects() have seen the fit set, so these
+coefficients come out too small.
 """
 import math
 import pathlib

@@ -32,9 +32,10 @@ int show(const MapOptions& options) {
       std::count_if(map.list.begin(), map.list.end(), [](const Landmark& l) { return l.is_gone; }));
   std::cout << options.file << ": " << count_of(map.list.size(), "landmark")
             << (gone > 0 ? ", " + std::to_string(gone) + " of them gone" : "") << "\n";
-  if (const auto rig = file.rig())
+  if (const auto rig = file.rig()) {
     std::cout << "rig: baseline " << text_of("%g m", static_cast<double>(rig->baseline_m))
               << ", focal length " << text_of("%g px", static_cast<double>(rig->focal_px)) << "\n";
+  }
   Table landmarks(
       {"landmark", "x m", "y m", "z m", "± m", "width m", "height m", "present", "seen", "expected", "name"});
   for (const Landmark& l : map.list) {
@@ -48,17 +49,19 @@ int show(const MapOptions& options) {
   }
   if (!map.list.empty()) std::cout << "\n" << landmarks.text();
   Table runs({"run", "state", "frames", "start s", "end s", "located", "source"});
-  for (const MapRun& run : file.runs())
+  for (const MapRun& run : file.runs()) {
     runs.add({std::to_string(run.id), choice_name(run.state, kRunStates), std::to_string(run.frames),
               seconds(run.began), seconds(run.ended), run.map_from_odom ? "yes" : "no", run.source});
+  }
   if (!file.runs().empty()) std::cout << "\n" << runs.text();
   Table events({"event", "run", "time s", "landmark", "x m", "y m", "moved m", "probability"});
-  for (const MapEvent& e : file.events())
+  for (const MapEvent& e : file.events()) {
     events.add({choice_name(e.event.kind, kLandmarkEventKinds), std::to_string(e.run), seconds(e.event.stamp),
                 e.event.landmark == LandmarkId::none ? "" : std::to_string(number(e.event.landmark)),
                 text_of("%.2f", e.event.position_m.x), text_of("%.2f", e.event.position_m.y),
                 e.event.kind == LandmarkEventKind::moved ? text_of("%.2f", length(e.event.moved_by_m)) : "",
                 text_of("%.2f", e.event.probability)});
+  }
   if (!file.events().empty()) std::cout << "\n" << events.text();
   return 0;
 }
@@ -95,10 +98,11 @@ bool are_copies(const MapFile& file, const MapFile& other) {
 Merged merged_of(const MapFile& file, const MapFile& other, const MapOptions& options) {
   Merged merged = are_copies(file, other) ? merge_copies(file.load(), other.load(), LandmarksConfig{})
                                           : merge(file.load(), other.load(), std::nullopt, LandmarksConfig{});
-  if (!merged.map_from_other)
+  if (!merged.map_from_other) {
     throw Error(options.other + ": matches no place in " + options.file + " (" +
                 choice_name(merged.refusal, kRecognitionRefusals) + "), expected " +
                 std::to_string(LandmarksConfig{}.relocation_pairs) + " common landmarks");
+  }
   return merged;
 }
 

@@ -104,9 +104,10 @@ int estimate(const OdometryOptions& options) {
   const std::unique_ptr<io::Sequence> source = open_source(options.input, exec.pool);
   const EndsBySignal ends(*source);
   const FollowConfig config = resolve_odometry(options, *source);
-  if (!source->rig())
+  if (!source->rig()) {
     throw Error(io::without_password(options.input.source) +
                 ": has no calibration, expected --calib (poses are in metres)");
+  }
   const StereoRig rig = *source->rig();
   const std::unique_ptr<io::MotionPriors> priors = load_priors(options, *source);
 

@@ -28,9 +28,10 @@ void check_empty(const fs::path& folder) {
   if (!fs::exists(folder, unknown)) return;
   if (!fs::is_directory(folder, unknown))
     throw Error(folder.string() + ": is not a folder, expected a new or an empty one");
-  if (!fs::is_empty(folder, unknown))
+  if (!fs::is_empty(folder, unknown)) {
     throw Error(folder.string() +
                 ": is not empty, expected a new folder (frames of two recordings would mix)");
+  }
 }
 
 std::string number_text(std::size_t number) {

@@ -68,9 +68,10 @@ std::vector<Pair> pairs_of(const Result& result, const io::TrueSequence& truth, 
     used.insert(*at);
     pairs.push_back({&frame, &truth.frames[*at], static_cast<std::int64_t>(*at)});
   }
-  if (pairs.empty())
+  if (pairs.empty()) {
     throw Error(result.path.string() + ": its first frame is " + result.file.frames.front().name +
                 ", that of the truth " + truth.frames.front().name + "; expected the same names");
+  }
   for (std::size_t k = 0; k < truth.frames.size(); ++k) {
     if (!used.contains(k)) scores.without_result.push_back(truth.frames[k].name);
   }

@@ -55,9 +55,10 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
     if (!frame) break;
     frames.push_back(std::move(*frame));
   }
-  if (frames.size() < kFewestFrames)
+  if (frames.size() < kFewestFrames) {
     throw Error(options.source + ": has " + std::to_string(frames.size()) + " frames, expected " +
                 std::to_string(kFewestFrames) + " or more to judge steadiness");
+  }
   const double share = options.holdout.value_or(0.25);
   const std::size_t count = frames.size() - 1;  // the first frame has no predecessor
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
@@ -138,10 +139,11 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
     if (kept[i] == found.start[i]) continue;
     std::cout << "  " << kept[i].option << ": " << found.start[i].value << " -> " << kept[i].value << "\n";
   }
-  if (is_luck)
+  if (is_luck) {
     std::cout << "The options are unchanged: the best found is worse on the frames held out.\n";
-  else if (kept == found.start)
+  } else if (kept == found.start) {
     std::cout << "The options are unchanged: no other setting is clearly steadier.\n";
+  }
   io::write_file(options.output, "# Written by cairn tune --sequence: steadiness " + text(reference) +
                                      " before, " + text(is_luck ? reference : best.mean(0, tuned_on)) +
                                      " after.\n" +

@@ -31,7 +31,7 @@ endfunction()
 # All other headers are private: they may change or disappear in any version.
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
-  core/scratch grouping/segmentation_of grouping/surfaces_behind
+  core/scratch grouping/segmentation_of grouping/surfaces_behind objects/object_match objects/ranks
   diagnosis/robust_fit disparity/islands scene/floor_search scene/plane_fit scene/plane_through_pairs
   pipeline/matched_scene pipeline/methods pipeline/option_walk
   matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory

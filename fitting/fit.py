@@ -6,8 +6,8 @@
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
 It needs the networks that fit_hints.py writes to the work folder. fit.py TOOL DATA --ablation FILE: refits without
-each kind of cue in turn, and reports the gain of each. fit.py TOOL DATA --distances [--out FOLDER]: only the trees that
-correct disparities, for the objects that the library finds.
+each kind of cue in turn, and reports the gain of each. fit.py TOOL DATA --distances [--out FOLDER]: fits only the trees
+that correct disparities, to the objects that the library finds.
 
 Gradient boosting fits two scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
 while the merge tree grows; whether a region is a whole object, on the regions of such trees; and how far
@@ -32,8 +32,9 @@ PAIRS_KEPT = 0.3  # share of all pairs, of which there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 BIAS_TREES, BIAS_DEPTH = 60, 4
-DOUBT = 0.08  # px, kDoubt of refine_objects.cpp
-MOST_BIAS = 1.2  # px; larger errors are mistakes of the matching, which no feature predicts
+DOUBT = 0.08  # px, kDoubt of cairn/objects/refine_objects.cpp
+MOST_CORRECTION = 1  # px, kMostBias there
+LARGEST_ERROR = 1.2  # px; larger ones are mistakes of the matching, which no feature predicts
 SEED = 7
 HALVES = 2  # of the scenes; each network is fitted without one (fit_hints.py)
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
@@ -207,10 +208,10 @@ class Fitting:
     def run(self, trees, *options, jobs=None):
         """trees(i): the two files of job i. Frames of the fit set get hints of a network that has not seen them."""
         def files(i):
-            half = "all" if jobs else fold_of(self.jobs[i][0], HALVES)
+            half = "all" if jobs is not None else fold_of(self.jobs[i][0], HALVES)
             return " ".join(map(str, ("-" if self.of_library else self.hints / f"hints_{half}", *trees(i))))
 
-        return run_tool(self.tool, self.work, jobs or self.jobs, files, *options)
+        return run_tool(self.tool, self.work, self.jobs if jobs is None else jobs, files, *options)
 
     def records(self, name, features, share=1.0):
         heads, values = [], []
@@ -260,6 +261,9 @@ class Fitting:
     def of_fold(self, i):
         return self.model("same_thing", self.fold[i]), self.model("whole_object", self.fold[i])
 
+    def of_all(self, _):
+        return self.model("same_thing", "all"), self.model("whole_object", "all")
+
     def fit_regions(self):
         self.run(self.of_fold_pairs, "--regions", self.work / "regions@")
         head, features = self.records("regions", len(self.region_features))
@@ -277,8 +281,8 @@ class Fitting:
 
     def fit_bias(self, trees, sequences, validation):
         """Fits the trees that correct the disparities of found objects. Returns a table of the errors before and after:
-        of the fit set and sequences in folds, of the validation frames by the trees fitted to all. trees(i, jobs): the
-        files of job i."""
+        of the fit set and the sequences in folds, of the validation frames by the trees fitted to all. trees(i, jobs):
+        the files of job i."""
         def objects(jobs):
             self.run(lambda i: trees(i, jobs), "--bias", self.work / "bias@", jobs=jobs)
             return self.records("bias", len(self.bias_features))
@@ -292,8 +296,8 @@ class Fitting:
         left = bias.copy()
         for fold in [*range(self.folds), "all"]:
             take = object_fold != fold if fold != "all" else job >= 0
-            model = fitted(np.clip(bias[take], -MOST_BIAS, MOST_BIAS), np.ones(take.sum()), features[take], BIAS_TREES,
-                           BIAS_DEPTH, 10, 0.1, BIAS)
+            model = fitted(np.clip(bias[take], -LARGEST_ERROR, LARGEST_ERROR), np.ones(take.sum()), features[take],
+                           BIAS_TREES, BIAS_DEPTH, 10, 0.1, BIAS)
             say(f"disparities, without fold {fold}: {take.sum()} objects")
             if fold != "all":
                 left[~take] -= beyond_doubt(model.predict(features[~take]))
@@ -306,7 +310,7 @@ class Fitting:
 
 def beyond_doubt(bias):
     """As refine_objects() uses it."""
-    return np.sign(bias) * np.maximum(np.abs(bias) - DOUBT, 0)
+    return np.sign(bias) * np.clip(np.abs(bias) - DOUBT, 0, MOST_CORRECTION)
 
 
 BIAS_HEAD = """| frames | input | objects | error, px | corrected | objects at 2–4 m | error, cm: median / 90 % | corrected |
@@ -320,8 +324,9 @@ def bias_rows(jobs, head, left):
     depth = np.sqrt(focal_baseline / px_per_m)
 
     def in_metres(off):
-        """From disparities that are too small by `off`."""
-        return np.abs(focal_baseline / np.maximum(px_per_m * depth - off, 0.3) - depth)
+        """From disparities that are too small by `off`. Limited, since a depth needs a positive disparity."""
+        least = 0.3
+        return np.abs(focal_baseline / np.maximum(px_per_m * depth - off, least) - depth)
 
     rows = ""
     for name, colour in dict.fromkeys((name, colour) for _, colour, name in jobs):
@@ -329,8 +334,9 @@ def bias_rows(jobs, head, left):
         near = mine & (depth >= 2) & (depth <= 4)
         if near.sum() == 0:
             continue
-        pixels = [f"{np.mean(np.minimum(np.abs(off[mine]), MOST_BIAS)):.3f}" for off in (bias, left)]
-        metres = [f"{100 * np.median(e):.1f} / {100 * np.quantile(e, 0.9):.1f}" for e in (in_metres(bias)[near], in_metres(left)[near])]
+        pixels = [f"{np.mean(np.minimum(np.abs(off[mine]), LARGEST_ERROR)):.3f}" for off in (bias, left)]
+        metres = [f"{100 * np.median(e):.1f} / {100 * np.quantile(e, 0.9):.1f}"
+                  for e in (in_metres(bias)[near], in_metres(left)[near])]
         rows += f"| {name} | {colour} | {mine.sum()} | {pixels[0]} | {pixels[1]} | {near.sum()} | {metres[0]} | {metres[1]} |\n"
     return rows
 
@@ -375,14 +381,18 @@ def frames_used(sets):
 
 
 def page_of_distances(fitting, sets, distances):
+    rendered = {name: frames for name, frames in sets.items() if name not in WEIGHTS}  # the others have no exact truth
+    masks = ("the library's trees, which have seen most of these scenes" if fitting.of_library
+             else "trees fitted without their scene")
     return f"""# Fitted distances
 
 <!-- Written by ./dev fit; do not edit. -->
 
 This page reports how well the fitted trees of [`refine_objects()`](stages/objects.md#its-disparity-refined) correct the disparity of an object.
-{frames_used(sets)}Also fitted to every fourth frame of the rendered sequences. The truth is needed: of these frames, only rendered ones count. An error is the difference between the object's disparity, with the shift by the images, and the median true disparity of the true object that it overlaps by an IoU of 0.5 or more.
-Frames of the fit set are corrected by trees fitted without their scene, in {fitting.folds} folds. Validation frames are corrected by the library's trees, and were not used for any choice.
-Errors in px: means, each error counted as {MOST_BIAS} px at most. A correction counts beyond {DOUBT} px only.
+{frames_used(rendered)}Also fitted to every fourth frame of the rendered sequences.
+An error is the difference between the object's disparity, with the shift by the images, and the median true disparity of the true object that it overlaps by an IoU of 0.5 or more. The objects are found by {masks}.
+Frames of the fit set and of sequences are corrected by trees fitted without their scene, in {fitting.folds} folds. Validation frames are corrected by the library's trees, and were not used for any choice.
+Errors in px: means, each error counted as {LARGEST_ERROR} px at most. A correction is reduced by {DOUBT} px.
 
 {distances}
 ## Features of an object
@@ -464,8 +474,7 @@ def ablation(fitting, validation, path):
         fitting.without = words
         fitting.fit_pairs()
         fitting.fit_regions()
-        rows = fitting.run(lambda i: (fitting.model("same_thing", "all"), fitting.model("whole_object", "all")),
-                           "--min-score", "0.3", jobs=validation)
+        rows = fitting.run(fitting.of_all, "--min-score", "0.3", jobs=validation)
         cells = []
         for chosen in names.values():
             for colour in ("colour", "grey"):
@@ -506,7 +515,8 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
     parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")
-    parser.add_argument("--distances-page", type=pathlib.Path, help="where their report is written (docs/fitted_distances.md)")
+    parser.add_argument("--distances-page", type=pathlib.Path,
+                        help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
     parser.add_argument("--min-scores", default="0.3", help="thresholds for the report; the page shows the first")
     arguments = parser.parse_args()
@@ -518,9 +528,6 @@ def main():
     tracked = jobs_of(sequences(arguments.data))
     if arguments.ablation:
         return ablation(fitting, validation, arguments.ablation)
-    def of_all(i):
-        return fitting.model("same_thing", "all"), fitting.model("whole_object", "all")
-
     def write_source(kind, name, folder):
         if not arguments.out:
             return
@@ -536,10 +543,11 @@ def main():
     else:
         fitting.fit_pairs()
         fitting.fit_regions()
-        distances = fitting.fit_bias(lambda i, jobs: of_all(i) if jobs else fitting.of_fold(i), tracked, validation)
+        distances = fitting.fit_bias(
+            lambda i, jobs: fitting.of_fold(i) if jobs is None else fitting.of_all(i), tracked, validation)
         for score in arguments.min_scores.split(","):
             rows = fitting.run(fitting.of_fold, "--min-score", score)
-            checked = fitting.run(of_all, "--min-score", score, jobs=validation)
+            checked = fitting.run(fitting.of_all, "--min-score", score, jobs=validation)
             print(f"\nobjects.min_confidence={score}; fit set in {arguments.folds} folds by scene\n")
             reports = report(rows, fitting.jobs) + "\n\n" + report(checked, validation)
             print(reports, flush=True)

@@ -223,37 +223,34 @@ void record_regions(std::ofstream& file, int job, const MergeTree& tree, const T
 /// The objects with an IoU of at least one half: the median of the true disparities of the true object, minus
 /// the measured disparity.
 void record_bias(std::ofstream& file, int job, const TrueFrame& frame, const Objects& objects,
-                 const DisparityMap& disparity, const Exec& exec) {
+                 const DisparityMap& disparity, View<const Gray> right, const Exec& exec) {
   const View<const Gray> left = frame.images.left.gray;
-  const View<const Gray> right = frame.images.right.gray;
   const std::vector<double> shifts = image_shifts(objects, disparity, left, right, exec);
   const std::vector<BiasFeatures> features = bias_features(objects, shifts, disparity, left, right, exec);
   std::map<TruthId, std::vector<float>> true_px;
   std::map<TruthId, std::int64_t> areas;
+  std::map<std::pair<ObjectId, TruthId>, std::int64_t> common;
   for (int y = 0; y < left.height(); ++y) {
     for (int x = 0; x < left.width(); ++x) {
       const TruthId id = frame.objects(x, y);
+      if (id == TruthId::none || id == TruthId::dont_care) continue;
       ++areas[id];
+      ++common[{objects.labels(x, y), id}];
       if (!std::isnan(frame.truth_px(x, y))) true_px[id].push_back(frame.truth_px(x, y));
     }
   }
-  for (std::size_t i = 0; i < objects.list.size(); ++i) {
+  for (const auto& [ids, shared] : common) {
+    const auto& [ours, id] = ids;
+    std::vector<float>& values = true_px[id];
+    if (ours == ObjectId::none || values.empty()) continue;
+    const std::size_t i = slot(number(ours) - 1);
     const Object& object = objects.list[i];
-    std::map<TruthId, std::int64_t> common;
-    for (int y = 0; y < left.height(); ++y) {
-      for (int x = 0; x < left.width(); ++x)
-        if (objects.labels(x, y) == object.id) ++common[frame.objects(x, y)];
-    }
-    for (const auto& [id, shared] : common) {
-      if (id == TruthId::none || id == TruthId::dont_care || true_px[id].empty()) continue;
-      if (3 * shared < object.pixel_count + areas[id]) continue;  // IoU < 0.5
-      std::vector<float>& values = true_px[id];
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      const auto measured = static_cast<double>(object.disparity_px) + shifts[i];
-      const float px_per_m = *middle * *middle / (frame.rig->focal_px * frame.rig->baseline_m);
-      record(file, job, static_cast<float>(static_cast<double>(*middle) - measured), px_per_m, features[i]);
-    }
+    if (3 * shared < object.pixel_count + areas[id]) continue;  // IoU < 0.5
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    const double off = static_cast<double>(*middle) - static_cast<double>(object.disparity_px) - shifts[i];
+    const float px_per_m = *middle * *middle / (frame.rig->focal_px * frame.rig->baseline_m);
+    record(file, job, static_cast<float>(off), px_per_m, features[i]);
   }
 }
 
@@ -310,7 +307,7 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
     const Segmentation groups = groups_of(superpixels, chosen, cut.scene.found.disparity, exec);
     const Objects objects = measure(groups.labels, chosen.scores, cut.scene.found.disparity, left, rgb,
                                     cut.scene.noise_sigma, exec);
-    record_bias(files.bias, job, frame, objects, cut.scene.found.disparity, exec);
+    record_bias(files.bias, job, frame, objects, cut.scene.found.disparity, cut.scene.right_of(given), exec);
   }
   Image<ObjectId> ours(left.size());
   for (int y = 0; y < left.height(); ++y) {

@@ -151,9 +151,10 @@ void run_search(const SearchProgram& program, const std::vector<std::string>& ar
       throw Error("unknown argument '" + word + "'");
     }
   }
-  if (data.empty())
+  if (data.empty()) {
     throw Error(
         "no data collection given: DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...");
+  }
   const std::vector<FrameSet> fit = fit_sets(data);
   if (!report) values = search(program, fit, values, effort, threads);
   print(fit, measure(program, fit, values, threads));

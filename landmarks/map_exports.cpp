@@ -153,10 +153,11 @@ std::string as_g2o(const MapFile& file) {
     text += line("VERTEX_SE3:QUAT %zu ", i) + numbers_of(poses[i].map_from_camera) + "\n";
   }
   if (!poses.empty()) text += "FIX 0\n";
-  for (const Landmark& l : file.load().list)
+  for (const Landmark& l : file.load().list) {
     text +=
         line("VERTEX_TRACKXYZ %lld %.6f %.6f %.6f\n", static_cast<long long>(kFirstLandmark + number(l.id)),
              l.position_m.x, l.position_m.y, l.position_m.z);
+  }
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (poses[i].run != poses[i - 1].run) continue;
     text += line("EDGE_SE3:QUAT %zu %zu ", i - 1, i) +

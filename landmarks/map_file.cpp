@@ -54,9 +54,10 @@ CREATE TABLE floor(x INTEGER NOT NULL, y INTEGER NOT NULL, frames INTEGER NOT NU
 template <class T, std::size_t N>
 std::array<T, N> numbers_in(const SQLite::Column& column, const char* what) {
   std::array<T, N> values{};
-  if (column.getBytes() != static_cast<int>(sizeof values))
+  if (column.getBytes() != static_cast<int>(sizeof values)) {
     throw Error(std::string(what) + " of " + std::to_string(column.getBytes()) + " bytes, expected " +
                 std::to_string(sizeof values));
+  }
   std::memcpy(values.data(), column.getBlob(), sizeof values);
   for (const T value : values) {
     if (!std::isfinite(value)) throw Error(std::string(what) + " contains numbers that are not finite");
@@ -465,9 +466,10 @@ MapFile MapFile::open(const fs::path& path, MapMode mode, const std::optional<St
       const int application = database.execAndGet("PRAGMA application_id").getInt();
       const int schema = database.execAndGet("PRAGMA user_version").getInt();
       if (application != kApplication) throw Error("is the database of another program, expected a map");
-      if (schema > kSchema)
+      if (schema > kSchema) {
         throw Error("was written by a newer cairn: schema " + std::to_string(schema) + ", known up to " +
                     std::to_string(kSchema));
+      }
       if (schema < 1) throw Error("has schema " + std::to_string(schema) + ", expected 1");
     }
     database.exec("PRAGMA foreign_keys=ON");
@@ -542,9 +544,10 @@ LandmarkMap MapFile::load() const {
       if (look.octant > 7) throw Error("look.octant is " + std::to_string(look.octant) + ", expected 0 … 7");
       look.colours = numbers_in<float, std::tuple_size_v<ColourHistogram>>(looks.getColumn(2), "look.hist");
       const SQLite::Column crop = looks.getColumn(3);
-      if (!crop.isNull())
+      if (!crop.isNull()) {
         look.crop_png.assign(static_cast<const char*>(crop.getBlob()),
                              static_cast<std::size_t>(crop.getBytes()));
+      }
       look.pixels = whole(looks.getColumn(4), "look.pixels");
       at->looks.push_back(std::move(look));
     }
@@ -675,9 +678,10 @@ std::vector<std::string> MapFile::check() const {
       if (line != "ok") wrong.push_back(line);
     }
     SQLite::Statement keys(*store_->database, "PRAGMA foreign_key_check");
-    while (keys.executeStep())
+    while (keys.executeStep()) {
       wrong.push_back("a row of " + keys.getColumn(0).getString() + " belongs to a row of " +
                       keys.getColumn(2).getString() + " that does not exist");
+    }
   });
   const auto attempt = [&](auto&& read) {
     try {

@@ -365,9 +365,10 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
     return result;
   }
   result.map_from_odom = places[0].map_from_odom;
-  for (const std::size_t i : places[0].pairs)
+  for (const std::size_t i : places[0].pairs) {
     result.pairs.push_back(
         {candidates[pairs[i].candidate].track, map.list[pairs[i].landmark].id, pairs[i].score});
+  }
   return result;
 }
 

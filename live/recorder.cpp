@@ -57,9 +57,10 @@ class Recording {
                              {"preset", run.preset},
                              {"tracks", run.tracks ? "yes" : "no"},
                              {"started_utc", utc_text("%Y-%m-%dT%H:%M:%SZ")}});
-    if (run.rig)
+    if (run.rig) {
       file_.attachment("calib.txt", "text/plain",
                        io::calibration_text(*run.rig, run.size, run.disparities, run.ground));
+    }
     if (what_.input) {
       left_ = add<ros::Image>("/stereo/left/image_rect");
       right_ = add<ros::Image>("/stereo/right/image_rect");
@@ -167,10 +168,11 @@ void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) 
 void Recording::add_config(const LiveFrame& frame) {
   if (revision_ == frame.revision) return;
   const std::string text = config_text(run_.preset, *frame.config);
-  if (!revision_)
+  if (!revision_) {
     file_.attachment("config.yaml", "application/yaml", text);
-  else
+  } else {
     write_text(config_, "/cairn/config", frame.step.stamp, text);
+  }
   revision_ = frame.revision;
 }
 
@@ -333,10 +335,11 @@ void Recorder::State::write_all() {
         }
       }
       changed.notify_all();
-      if (next.frame)
+      if (next.frame) {
         recording->add_frame(*next.frame, next.skipped_before);
-      else
+      } else {
         recording->flush();
+      }
       const std::lock_guard lock(mutex);
       // The messages written by now include all earlier frames.
       if (recording->bytes() != status.bytes) in_file = status.frames;

@@ -117,10 +117,11 @@ class CdrReader {
     for (std::size_t i = 0; i < sizeof(T); ++i)
       bytes[std::endian::native == std::endian::little ? i : sizeof(T) - 1 - i] = bytes_[at_ + i];
     at_ += sizeof(T);
-    if constexpr (std::is_same_v<T, bool>)
+    if constexpr (std::is_same_v<T, bool>) {
       value = bytes[0] != 0;
-    else
+    } else {
       std::memcpy(&value, bytes.data(), sizeof(T));
+    }
   }
   void get(std::string& text) {
     const std::size_t length = count();

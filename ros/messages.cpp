@@ -18,16 +18,17 @@ std::string short_name(std::string_view type) {
 
 template <class T>
 std::string type_name() {
-  if constexpr (Message<T>)
+  if constexpr (Message<T>) {
     return short_name(T::kType);
-  else if constexpr (std::is_same_v<T, std::string>)
+  } else if constexpr (std::is_same_v<T, std::string>) {
     return "string";
-  else if constexpr (std::is_same_v<T, bool>)
+  } else if constexpr (std::is_same_v<T, bool>) {
     return "bool";
-  else if constexpr (std::is_floating_point_v<T>)
+  } else if constexpr (std::is_floating_point_v<T>) {
     return "float" + std::to_string(8 * sizeof(T));
-  else
+  } else {
     return std::string(std::is_signed_v<T> ? "" : "u") + "int" + std::to_string(8 * sizeof(T));
+  }
 }
 
 /// A message definition's lines, followed by those of the types that it uses, each once.

@@ -28,9 +28,10 @@ Point3 mounting_in(const fs::path& path, std::string_view text) {
   std::vector<double> found;
   for (const std::string_view field : fields_of(rest.substr(0, rest.find_first_of("\r\n"))))
     if (!field.empty()) found.push_back(number_in(field, path, number));
-  if (found.size() != 3 || std::ranges::any_of(found, [](double x) { return !std::isfinite(x); }))
+  if (found.size() != 3 || std::ranges::any_of(found, [](double x) { return !std::isfinite(x); })) {
     throw Error(place(path, number) + ": has " + std::to_string(found.size()) +
                 " numbers, expected 3: the position of the laser, x y z in m");
+  }
   return {found[0], found[1], found[2]};
 }
 
@@ -44,9 +45,10 @@ std::vector<LaserScan> load_scans(const fs::path& path) {
       lines.empty() ? std::vector<std::string_view>{} : fields_of(lines.front().text);
   const bool in_seconds = !header.empty() && header[0] == "t_s";
   if (header.size() <= kBeforeRanges || !(in_seconds || header[0] == "stamp") || header[1] != "angle_min" ||
-      header[2] != "angle_increment")
+      header[2] != "angle_increment") {
     throw Error(path.string() + ": expected a first line stamp,angle_min,angle_increment,r0,... found " +
                 (lines.empty() ? "none" : quoted(lines.front().text)));
+  }
   const Point3 mounting = mounting_in(path, text);
   std::vector<LaserScan> scans;
   std::vector<Stamp> stamps;

@@ -132,10 +132,11 @@ class McapSequence : public SourceSequence {
     }
     calibration_.path = file_ / "camera_info";
     try {
-      if (options_.rectify)
+      if (options_.rectify) {
         rectify(*left, *right);
-      else
+      } else {
         calibration_.says.rig = ros::rig_of(*left, *right);
+      }
     } catch (const Error& error) {
       throw Error(file_.string() + ": " + error.what());
     }
@@ -167,12 +168,13 @@ class McapSequence : public SourceSequence {
     while (pairing_.waiting(side).size() < count) {
       const auto message = reader_.next();
       if (!message) return false;
-      if (message->channel == sides_[0].channel.id)
+      if (message->channel == sides_[0].channel.id) {
         take(0, *message);
-      else if (message->channel == sides_[1].channel.id)
+      } else if (message->channel == sides_[1].channel.id) {
         take(1, *message);
-      else
+      } else {
         take_grey(*message);
+      }
       for (const std::size_t full : {std::size_t{0}, std::size_t{1}}) {
         while (pairing_.waiting(full).size() > kMostWaiting ||
                (pairing_.waiting(full).size() > 1 && bytes_of(full) > kMostWaitingBytes))

@@ -72,9 +72,10 @@ std::string rows_text(const std::vector<Stamp>& stamps) {
 
 void check_stamps(const fs::path& path, const std::vector<Stamp>& stamps,
                   const std::vector<std::string>& names) {
-  if (stamps.size() < 2)
+  if (stamps.size() < 2) {
     throw Error(path.string() + ": has " + std::to_string(stamps.size()) +
                 (stamps.size() == 1 ? " row" : " rows") + " of numbers, expected more");
+  }
   check_rising(stamps, names, path.string());
 }
 

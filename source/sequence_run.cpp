@@ -19,9 +19,10 @@ namespace fs = std::filesystem;
 
 std::vector<TimedPose> known_poses(const fs::path& path) {
   Trajectory known = load_trajectory(path);
-  if (!known.has_stamps)
+  if (!known.has_stamps) {
     throw Error(path.string() +
                 ": its poses have no stamps, expected the form of TUM or EuRoC, or a times.txt next to it");
+  }
   return std::move(known.poses);
 }
 
@@ -61,9 +62,10 @@ SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const 
     poses_ = known_poses(*files.poses);
   }
   if (files.scan) scans_ = load_scans(*files.scan);
-  if (files.map)
+  if (files.map) {
     map_.emplace(
         MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));
+  }
 }
 
 Step SequenceRun::next(const SequenceFrame& frame) {

@@ -185,12 +185,14 @@ TrackFile load_tracks(const fs::path& path) {
     frame.line = line;
     if (!file.frames.empty()) {
       const TrackFrame& before = file.frames.back();
-      if (frame.index <= before.index)
+      if (frame.index <= before.index) {
         throw Error("`frame` is " + std::to_string(frame.index) + ", expected more than " +
                     std::to_string(before.index) + " of the line before");
-      if (frame.stamp <= before.stamp)
+      }
+      if (frame.stamp <= before.stamp) {
         throw Error("`stamp_ns` is " + std::to_string(frame.stamp.ns) + ", expected more than " +
                     std::to_string(before.stamp.ns) + " of the line before");
+      }
     }
     if (!names.emplace(frame.name, frame.index).second)
       throw Error("`name` is \"" + frame.name + "\", already used by an earlier line");

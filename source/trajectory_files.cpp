@@ -99,9 +99,10 @@ TrajectoryForm form_of(std::string_view line, const fs::path& path, std::size_t 
 
 void check_order(const std::vector<TimedPose>& poses, const fs::path& path) {
   for (std::size_t k = 1; k < poses.size(); ++k) {
-    if (poses[k].stamp <= poses[k - 1].stamp)
+    if (poses[k].stamp <= poses[k - 1].stamp) {
       throw Error(path.string() + ": stamp " + stamp_text(poses[k].stamp) + " of pose " +
                   std::to_string(k + 1) + " is not later than " + stamp_text(poses[k - 1].stamp));
+    }
   }
 }
 
@@ -161,9 +162,10 @@ Pose load_pose(const fs::path& path) {
   }
   constexpr std::size_t kRows = 12;
   constexpr std::size_t kSquare = 16;
-  if (values.size() != kRows && values.size() != kSquare)
+  if (values.size() != kRows && values.size() != kSquare) {
     throw Error(path.string() + ": found " + std::to_string(values.size()) +
                 " numbers, expected the 16 or 12 of a camera-to-world matrix");
+  }
   std::array<double, kRows> rows{};
   std::copy_n(values.begin(), kRows, rows.begin());
   return pose_of_rows(rows, path.string());

@@ -69,9 +69,10 @@ class Square {
   [[nodiscard]] std::vector<std::size_t> any_best() const {
     const auto side = static_cast<long>(side_);
     dlib::matrix<std::int64_t> gain(side, side);
-    for (long i = 0; i < side; ++i)
+    for (long i = 0; i < side; ++i) {
       for (long j = 0; j < side; ++j)
         gain(i, j) = -costs_[static_cast<std::size_t>(i) * side_ + static_cast<std::size_t>(j)];
+    }
     const std::vector<long> found = dlib::max_cost_assignment(gain);
     return {found.begin(), found.end()};
   }
@@ -93,9 +94,10 @@ class Square {
       }
     }
     std::vector<bool> is_tight(side_ * side_);
-    for (std::size_t i = 0; i < side_; ++i)
+    for (std::size_t i = 0; i < side_; ++i) {
       for (std::size_t j = 0; j < side_; ++j)
         is_tight[i * side_ + j] = costs_[i * side_ + j] == of_row[i] + of_column[j];
+    }
     return is_tight;
   }
 

@@ -41,16 +41,19 @@ void validate(const FollowConfig& config) {
   validate(config.segmentation);
   option_walk::check_ranges(config);
   const TrackingConfig& t = config.tracking;
-  if (t.low_confidence > t.high_confidence)
+  if (t.low_confidence > t.high_confidence) {
     throw Error("option tracking.low_confidence: " + option_walk::write(t.low_confidence) +
                 " is more than tracking.high_confidence, " + option_walk::write(t.high_confidence));
+  }
   const LandmarksConfig& l = config.landmarks;
-  if (l.min_frames < t.min_hits)
+  if (l.min_frames < t.min_hits) {
     throw Error("option landmarks.min_frames: " + option_walk::write(l.min_frames) +
                 " is less than tracking.min_hits, " + option_walk::write(t.min_hits));
-  if (l.relocation_pairs < l.min_pairs)
+  }
+  if (l.relocation_pairs < l.min_pairs) {
     throw Error("option landmarks.relocation_pairs: " + option_walk::write(l.relocation_pairs) +
                 " is less than landmarks.min_pairs, " + option_walk::write(l.min_pairs));
+  }
 }
 
 }  // namespace cairn

@@ -74,9 +74,10 @@ const std::vector<Bins>& table() {
     std::vector<Bins> made;
     made.reserve(32768);
     const auto middle = [](int five_bits) { return (five_bits * 8 + 3.5) / 255; };
-    for (int r = 0; r < 32; ++r)
+    for (int r = 0; r < 32; ++r) {
       for (int g = 0; g < 32; ++g)
         for (int b = 0; b < 32; ++b) made.push_back(bins_of_colour(middle(r), middle(g), middle(b)));
+    }
     return made;
   }();
   return bins;

@@ -143,9 +143,10 @@ void score_hota(const Sequence& sequence, TrackErrors& errors) {
   for (const ScoredFrame& frame : sequence.frames) {
     Grid scores(frame.truth.size(), frame.ours.size());
     for (std::size_t i = 0; i < scores.rows; ++i) {
-      for (std::size_t j = 0; j < scores.columns; ++j)
+      for (std::size_t j = 0; j < scores.columns; ++j) {
         scores(i, j) = frame.at(i, j) * aligned(static_cast<std::size_t>(frame.truth[i]),
                                                 static_cast<std::size_t>(frame.ours[j]));
+      }
     }
     const std::vector<int> chosen = best_assignment(scores);
     for (std::size_t i = 0; i < chosen.size(); ++i) {

@@ -26,7 +26,7 @@ class FittedTrees {
   /// indices into `nodes`, and no node is below itself.
   FittedTrees(float base, std::span<const std::int16_t> roots, std::span<const Node> nodes);
 
-  /// The log-odds. Precondition: `features` contains every feature used by a node.
+  /// The sum, e.g. log-odds. Precondition: `features` contains every feature used by a node.
   [[nodiscard]] float operator()(std::span<const float> features) const;
   /// The same for many samples of one size, several times as fast.
   [[nodiscard]] std::vector<float> operator()(std::span<const std::span<const float>> samples,

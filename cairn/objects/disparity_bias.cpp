@@ -5,6 +5,7 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/objects/disparity_bias.hpp>
 #include <cairn/objects/object_match.hpp>
+#include <cairn/objects/ranks.hpp>
 #include <cmath>
 #include <cstdint>
 
@@ -18,21 +19,19 @@ constexpr std::array<std::string_view, kBiasFeatures> kNames{
     "disparity times mean width, share of the image",
     "disparity at the ends of the rows, minus the median",
     "disparity of the upper part, minus the median",
-    "mean disparity minus the median",
+    "plane of the disparities at the centroid, minus the median",
     "shift by the images",
     "shift by the images, middle of the rows",
-    "its certainty",
+    "certainty of that shift",
     "shift by the images from a plane, middle of the rows",
     "shift by the images from a plane, without the outline",
     "slope of the brightness along the rows",
     "disparity minus that beside the object"};
 
-constexpr int kOutline = 4;      // px at either end of a row
 constexpr double kMiddle = 0.5;  // of a row
 constexpr double kEnds = 0.75;
 constexpr double kUpper = 0.3;  // of half of the height, above the centroid
 constexpr std::size_t kFewest = 4;
-constexpr double kSigmaPx = 0.2;         // as in refine_objects()
 constexpr double kSigmaFromPlane = 0.5;  // px: a plane is a coarse model
 
 /// The pixels of an object in a row, from the first to the last.
@@ -44,11 +43,9 @@ struct Row {
   [[nodiscard]] double across(int x) const { return (2.0 * x - first - last) / (last - first + 1); }
 };
 
-float median(std::vector<float>& values, float otherwise) {
+float median(std::vector<float>& values, float otherwise, const Exec& exec) {
   if (values.size() < kFewest) return otherwise;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values_at_ranks(values, values.size() / 2, values.size() / 2, exec).first;
 }
 
 /// The plane of the disparities near their median, with its offset from the median at the centroid.
@@ -89,6 +86,13 @@ class PlaneSums {
   double n_ = 0, x_ = 0, y_ = 0, d_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, xd_ = 0, yd_ = 0;
 };
 
+/// Of a mask: its centroid, and its brightness along the rows.
+struct Brightness {
+  double x = 0;
+  double y = 0;
+  double slope = 0;  // from the middle of a row to its end, share of the mean
+};
+
 /// One object and the images that show it.
 struct Seen {
   const Object& object;
@@ -96,8 +100,18 @@ struct Seen {
   View<const float> disparity_px;
   View<const Gray> left;
   View<const Gray> right;
+  const Exec& exec;
 
   [[nodiscard]] bool has(int x, int y) const { return labels(x, y) == object.id; }
+
+  template <class Visit>
+  void for_each_pixel(const std::vector<Row>& rows, const Visit& visit) const {
+    for (const Row& row : rows) {
+      for (int x = row.first; x <= row.last; ++x) {
+        if (has(x, row.y)) visit(row, x);
+      }
+    }
+  }
 
   [[nodiscard]] std::vector<Row> rows() const {
     std::vector<Row> rows;
@@ -130,9 +144,9 @@ struct Seen {
 
   /// The median disparity of what is beside it, a few pixels off; its own if that is unknown.
   [[nodiscard]] float beside(const std::vector<Row>& rows) const {
-    constexpr std::size_t kMostRows = 40;
+    constexpr std::size_t kAboutRows = 40;
     std::vector<float> values;
-    const std::size_t step = std::max<std::size_t>(1, rows.size() / kMostRows);
+    const std::size_t step = std::max<std::size_t>(1, rows.size() / kAboutRows);
     for (std::size_t i = 0; i < rows.size(); i += step) {
       const Row& row = rows[i];
       for (const int x : {row.first - 5, row.first - 4, row.last + 4, row.last + 5}) {
@@ -141,76 +155,68 @@ struct Seen {
         if (!std::isnan(d)) values.push_back(d);
       }
     }
-    return median(values, object.disparity_px);
+    return median(values, object.disparity_px, exec);
   }
 
+  [[nodiscard]] Brightness brightness(const std::vector<Row>& rows) const;
   [[nodiscard]] BiasFeatures features(double shift_px) const;
 };
+
+Brightness Seen::brightness(const std::vector<Row>& rows) const {
+  constexpr double kDark = 8;  // grey levels
+  const double n = object.pixel_count;
+  double x_sum = 0;
+  double y_sum = 0;
+  double grey_sum = 0;
+  double across = 0;
+  double across_squared = 0;
+  double across_grey = 0;
+  for_each_pixel(rows, [&](const Row& row, int x) {
+    const double t = row.across(x);
+    const int grey = left(x, row.y);
+    x_sum += x;
+    y_sum += row.y;
+    grey_sum += grey;
+    across += t;
+    across_squared += t * t;
+    across_grey += t * grey;
+  });
+  const double mean = grey_sum / n;
+  const double slope = (across_grey - across * mean) / (across_squared + 1e-6) / std::max(mean, kDark);
+  return {x_sum / n, y_sum / n, slope};
+}
 
 BiasFeatures Seen::features(double shift_px) const {
   const std::vector<Row> all = rows();
   const float d0 = object.disparity_px;
-  const double n = object.pixel_count;
+  const auto [x0, y0, slope] = brightness(all);
 
-  // Centroid and brightness.
-  double x0 = 0;
-  double y0 = 0;
-  double brightness = 0;
-  double across = 0;
-  double across_squared = 0;
-  double across_brightness = 0;
-  for (const Row& row : all) {
-    for (int x = row.first; x <= row.last; ++x) {
-      if (!has(x, row.y)) continue;
-      const double t = row.across(x);
-      const int grey = left(x, row.y);
-      x0 += x;
-      y0 += row.y;
-      brightness += grey;
-      across += t;
-      across_squared += t * t;
-      across_brightness += t * grey;
-    }
-  }
-  x0 /= n;
-  y0 /= n;
-  constexpr double kDark = 8;
-  const double mean = brightness / n;
-  const double slope = (across_brightness - across * mean) / (across_squared + 1e-6) / std::max(mean, kDark);
-
-  // Disparities by their place in the mask.
   std::vector<float> ends;
   std::vector<float> upper;
   std::vector<float> values;
-  for (const Row& row : all) {
-    for (int x = row.first; x <= row.last; ++x) {
-      const float d = disparity_px(x, row.y);
-      if (!has(x, row.y) || std::isnan(d)) continue;
-      values.push_back(d);
-      if (std::abs(row.across(x)) > kEnds) ends.push_back(d);
-      if (row.y - y0 < -kUpper * object.box_px.height / 2) upper.push_back(d);
-    }
-  }
-  const auto quartile = [&](std::size_t i) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(i * values.size() / 4);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
+  for_each_pixel(all, [&](const Row& row, int x) {
+    const float d = disparity_px(x, row.y);
+    if (std::isnan(d)) return;
+    values.push_back(d);
+    if (std::abs(row.across(x)) > kEnds) ends.push_back(d);
+    if (row.y - y0 < -kUpper * object.box_px.height / 2) upper.push_back(d);
+  });
   constexpr double kNear = 0.5;  // px
-  const double reach =
-      values.empty() ? kNear : std::max(kNear, 2 * (double{quartile(3)} - double{quartile(1)}));
-  PlaneSums near;
-  for (const Row& row : all) {
-    for (int x = row.first; x <= row.last; ++x) {
-      const double off = double{disparity_px(x, row.y)} - double{d0};
-      if (has(x, row.y) && std::abs(off) <= reach) near.add(x - x0, row.y - y0, off);
-    }
+  double reach = kNear;
+  if (!values.empty()) {
+    const auto [low, high] = values_at_ranks(values, values.size() / 4, 3 * values.size() / 4, exec);
+    reach = std::max(kNear, 2 * (double{high} - double{low}));
   }
+  PlaneSums near;
+  for_each_pixel(all, [&](const Row& row, int x) {
+    const double off = double{disparity_px(x, row.y)} - double{d0};
+    if (std::abs(off) <= reach) near.add(x - x0, row.y - y0, off);
+  });
   const Plane plane = near.plane();
 
-  // What both images add to them, and to a plane.
   const auto in_middle = [](const Row& row, int x) { return std::abs(row.across(x)) < kMiddle; };
   const auto measured = [&](int x, int y) { return double{disparity_px(x, y)}; };
+  // Through the median: its offset is a feature of its own.
   const auto on_plane = [&](int x, int y) {
     return double{d0} + plane.per_x * (x - x0) + plane.per_y * (y - y0);
   };
@@ -219,15 +225,15 @@ BiasFeatures Seen::features(double shift_px) const {
       all, [&](const Row& row, int x) { return in_middle(row, x) && !std::isnan(disparity_px(x, row.y)); });
   const auto inside = stretches(
       all, [](const Row& row, int x) { return x - row.first >= kOutline && row.last - x >= kOutline; });
-  const Match of_middle = match_shift(middle_measured, measured, left, right, kSigmaPx);
-  const Match middle_of_plane = match_shift(middle, on_plane, left, right, kSigmaFromPlane);
-  const Match inside_of_plane = match_shift(inside, on_plane, left, right, kSigmaFromPlane);
+  const ShiftEstimate of_middle = match_shift(middle_measured, measured, left, right, kShiftSigma);
+  const ShiftEstimate middle_of_plane = match_shift(middle, on_plane, left, right, kSigmaFromPlane);
+  const ShiftEstimate inside_of_plane = match_shift(inside, on_plane, left, right, kSigmaFromPlane);
 
-  const double width = n / std::max<double>(1, static_cast<double>(all.size()));
+  const double width = double{1} * object.pixel_count / std::max<double>(1, static_cast<double>(all.size()));
   const std::array<double, kBiasFeatures> found{double{object.valid_share},
                                                 double{d0} * width / left.width(),
-                                                double{median(ends, d0)} - double{d0},
-                                                double{median(upper, d0)} - double{d0},
+                                                double{median(ends, d0, exec)} - double{d0},
+                                                double{median(upper, d0, exec)} - double{d0},
                                                 plane.offset,
                                                 shift_px,
                                                 of_middle.shift_px,
@@ -253,7 +259,7 @@ std::vector<BiasFeatures> bias_features(const Objects& objects, const std::vecto
   std::vector<BiasFeatures> features(objects.list.size());
   parallel_for(exec, static_cast<int>(features.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i) {
-      const Seen seen{objects.list[i], objects.labels, disparity.disparity_px, left, right};
+      const Seen seen{objects.list[i], objects.labels, disparity.disparity_px, left, right, exec};
       features[i] = seen.features(shift_px[i]);
     }
   });

@@ -16,8 +16,8 @@ inline constexpr std::size_t kBiasFeatures = 12;
 using BiasFeatures = std::array<float, kBiasFeatures>;
 std::array<std::string_view, kBiasFeatures> bias_feature_names();
 
-/// Of each object, in the order of the list; disparity_px is the median of its mask. `shift_px`: what the
-/// images add to it, see refine_objects(). `right`: rectified, of the size of `left`.
+/// Of each object, in the order of the list; disparity_px is the median of its mask. `shift_px`: of each object,
+/// from image_shifts(). `right`: rectified, of the size of `left`.
 std::vector<BiasFeatures> bias_features(const Objects& objects, const std::vector<double>& shift_px,
                                         const DisparityMap& disparity, View<const Gray> left,
                                         View<const Gray> right, const Exec& exec);

@@ -18,7 +18,10 @@ struct Stretch {
   int last;
 };
 
-struct Match {
+inline constexpr int kOutline = 4;  // px at either end of a row, which keep the disparity of the outline
+inline constexpr double kShiftSigma = 0.2;  // px, standard deviation of the prior of the shift
+
+struct ShiftEstimate {
   double shift_px = 0;
   double certainty = 0;  // 1 / variance of the shift by the images alone
 };
@@ -75,24 +78,24 @@ Sums compare(const std::vector<Stretch>& stretches, const Disparity& disparity_a
 /// Two steps of least squares on the brightness, with a common offset of both images, and a prior of no shift
 /// with a standard deviation of `sigma_px` (docs/stages/objects.md). disparity_at(x, y): px.
 template <class Disparity>
-Match match_shift(const std::vector<Stretch>& stretches, const Disparity& disparity_at, View<const Gray> left,
-                  View<const Gray> right, double sigma_px) {
+ShiftEstimate match_shift(const std::vector<Stretch>& stretches, const Disparity& disparity_at,
+                          View<const Gray> left, View<const Gray> right, double sigma_px) {
   using namespace object_match;
   constexpr int kSteps = 2;
   const double prior = 1 / (sigma_px * sigma_px);
-  Match match;
+  ShiftEstimate estimate;
   for (int i = 0; i < kSteps; ++i) {
-    const Sums sums = compare(stretches, disparity_at, left, right, match.shift_px);
-    double wanted = -prior * match.shift_px;
-    match.certainty = 0;
+    const Sums sums = compare(stretches, disparity_at, left, right, estimate.shift_px);
+    double wanted = -prior * estimate.shift_px;
+    estimate.certainty = 0;
     if (sums.n > 0) {
       const double variance = kPixelsAsOne * (sums.var_e() / sums.n + kRounding);
       wanted += sums.cov() / variance;
-      match.certainty = sums.var_g() / variance;
+      estimate.certainty = sums.var_g() / variance;
     }
-    match.shift_px += std::clamp(wanted / (prior + match.certainty), -kLargestStep, kLargestStep);
+    estimate.shift_px += std::clamp(wanted / (prior + estimate.certainty), -kLargestStep, kLargestStep);
   }
-  return match;
+  return estimate;
 }
 
 }  // namespace cairn

@@ -11,18 +11,17 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 64;        // rows
-constexpr int kInset = 4;         // px left out at either end of a row: outlines keep their disparity
-constexpr double kSigmaPx = 0.2;  // standard deviation of the prior of the shift
-constexpr double kDoubt = 0.08;   // px; also DOUBT of fitting/fit.py
-constexpr double kMostBias = 1;   // px
+constexpr int kGrain = 64;          // rows
+constexpr double kDoubt = 0.08;     // px; also DOUBT of fitting/fit.py
+constexpr double kMostBias = 1;     // px; also MOST_CORRECTION there
+constexpr double kMostShare = 0.5;  // of the disparity: a distant object stays in front of the camera
 
-/// Corrections are uncertain, and most disparities are right: what is smaller than kDoubt does not count.
+/// Predictions are uncertain, and most disparities are right, so each is reduced by kDoubt.
 double beyond_doubt(double bias) {
   return std::copysign(std::clamp(std::abs(bias) - kDoubt, 0.0, kMostBias), bias);
 }
 
-/// Pixels of a row whose neighbours up to kInset on both sides belong to the same object and have a disparity.
+/// Pixels of a row whose neighbours up to kOutline on both sides belong to the same object and have a disparity.
 std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const float> disparity_px) {
   std::vector<std::vector<Stretch>> of(objects.list.size());
   const int width = disparity_px.width();
@@ -33,7 +32,8 @@ std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const f
       const int begin = x++;
       if (id[begin] == ObjectId::none || std::isnan(d[begin])) continue;
       while (x < width && id[x] == id[begin] && !std::isnan(d[x])) ++x;
-      if (x - begin > 2 * kInset) of[slot(number(id[begin]) - 1)].push_back({y, begin + kInset, x - kInset});
+      if (x - begin > 2 * kOutline)
+        of[slot(number(id[begin]) - 1)].push_back({y, begin + kOutline, x - kOutline});
     }
   }
   return of;
@@ -68,7 +68,7 @@ std::vector<double> image_shifts(const Objects& objects, const DisparityMap& dis
   const auto measured = [&](int x, int y) { return double{disparity.disparity_px(x, y)}; };
   parallel_for(exec, static_cast<int>(interior.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i)
-      shifts[i] = match_shift(interior[i], measured, left, right, kSigmaPx).shift_px;
+      shifts[i] = match_shift(interior[i], measured, left, right, kShiftSigma).shift_px;
   });
   return shifts;
 }
@@ -80,7 +80,8 @@ Objects refine_objects(Objects objects, const DisparityMap& disparity, View<cons
   const std::vector<BiasFeatures> features = bias_features(objects, shifts, disparity, left, right, exec);
   for (std::size_t i = 0; i < objects.list.size(); ++i) {
     float& d = objects.list[i].disparity_px;
-    d = static_cast<float>(double{d} + shifts[i] + beyond_doubt(bias(features[i])));
+    const double most = kMostShare * std::abs(double{d});
+    d = static_cast<float>(double{d} + std::clamp(shifts[i] + beyond_doubt(bias(features[i])), -most, most));
   }
   number_by_distance(objects, exec);
   return objects;

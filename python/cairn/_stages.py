@@ -271,8 +271,8 @@ def measure_chosen(chosen: LabelsLike, scores: Sequence[float], disparity: Dispa
 
 
 def refine_objects(objects: Objects, disparity: DisparityLike, left: ImageLike, right: ImageLike) -> Objects:
-    """Refines the disparity of each object by both images, and renumbers the objects if their order changes. Returns
-    Objects."""
+    """Refines the disparity of each object by both images and by fitted trees, and renumbers the objects if their order
+    changes. Returns Objects."""
 
 
 def locate(objects: Objects, disparity: DisparityLike, ground: Ground, rig: RigLike = None) -> Objects:

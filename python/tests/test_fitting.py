@@ -101,7 +101,7 @@ def test_a_report_counts_partial_frames_in_recall_only():
 def test_the_ablation_fits_without_each_kind_of_cues(tmp_path, capsys):
     fitted = []
     fake = types.SimpleNamespace(
-        jobs=[None] * 6, folds=2, fit_regions=lambda: None, model=lambda kind, fold: f"{kind}_{fold}",
+        jobs=[None] * 6, folds=2, fit_regions=lambda: None, of_all=lambda i: ("same_thing_all", "whole_object_all"),
         fit_pairs=lambda: fitted.append(fake.without), run=lambda trees, *options, jobs: ROWS)
     jobs = [(pathlib.Path("a"), "colour", "validate 320x240"), (pathlib.Path("b"), "grey", "validate rc_tabletop")]
     fit.ablation(fake, jobs, tmp_path / "ablation.md")
@@ -174,6 +174,9 @@ def test_the_fate_of_a_lost_object():
     (["--worse"], "fit: unknown argument '--worse'"),
     (["--worst", "12"], "fit: unknown argument '12'"),
     (["nowhere"], "fit: there is no folder 'nowhere'"),
+    (["--distances", "--ablation"], "fit: unknown argument '--ablation' after --distances"),
+    (["--distances", "nowhere"], "fit: there is no folder 'nowhere'"),
+    (["--distances"], "fit: no data collection in '/nowhere'"),
     (["--ablation"], "fit: no data collection in '/nowhere'"),
     (["--worst"], "fit: no data collection in '/nowhere'"),
 ])
@@ -189,10 +192,11 @@ def test_frames_of_a_sequence_are_one_scene(tmp_path):
     assert fit.fold_of(tmp_path / "320x240" / "dev_s01", 5) == fit.fold_of(tmp_path / "640x480" / "dev_s01", 5)
 
 
-def test_corrections_count_beyond_the_library_s_doubt(source):
-    assert fit.beyond_doubt(np.array([0.05, -0.05, 0.28, -0.28])) == pytest.approx([0, 0, 0.2, -0.2])
-    code = (source / "cairn/objects/refine_objects.cpp").read_text()
-    assert float(re.search(r"kDoubt = ([0-9.]+);", code)[1]) == fit.DOUBT
+def test_corrections_are_reduced_and_limited_as_in_the_library():
+    assert fit.beyond_doubt(np.array([0.05, -0.05, 0.28, -0.28, 9])) == pytest.approx([0, 0, 0.2, -0.2, 1])
+    code = (SOURCE / "cairn/objects/refine_objects.cpp").read_text()
+    for name, number in (("kDoubt", fit.DOUBT), ("kMostBias", fit.MOST_CORRECTION)):
+        assert float(re.search(rf"{name} = ([0-9.]+);", code)[1]) == number
 
 
 def test_errors_in_metres_grow_with_the_square_of_the_distance(tmp_path):

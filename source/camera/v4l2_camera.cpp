@@ -161,10 +161,11 @@ class V4l2Camera : public Camera {
     const auto arrived = Clock::now();
     count_gap(buffer.sequence);
     std::optional<CameraImage> image;
-    if (buffer.index < device_.buffers() && (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0)
+    if (buffer.index < device_.buffers() && (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0) {
       image =
           image_of(device_.bytes(buffer.index)
                        .first(std::min<std::size_t>(buffer.bytesused, device_.bytes(buffer.index).size())));
+    }
     if (!device_.give_back(buffer.index)) throw Error("does not take a buffer back: " + reason());
     if (!image) {
       ++dropped_;

@@ -114,9 +114,10 @@ TEST_F(BadInput, RefusesOptionsWithoutEffect) {
 }
 
 TEST_F(BadInput, RefusesRemovedOptions) {
-  for (const std::string name : {"points", "height", "pitch", "roll"})
+  for (const std::string name : {"points", "height", "pitch", "roll"}) {
     refuses({"config", "--set", "ground." + name + "=1"},
             {"ground." + name + " was removed", "calibration file"});
+  }
   refuses({"config", "--set", "match.evidence=full"}, {"match.evidence was removed"});
   refuses({"config", "--set", "confidence.enabled=true"}, {"confidence.enabled was removed"});
   refuses({"config", "--set", "background.tolerance=3"}, {"background.tolerance was removed", "constant"});

@@ -118,9 +118,10 @@ TEST_F(LiveRecord, TheCamerasFrameOfARecordingIsInTheResults) {
   const std::string options = "match.num_disparities=32";
   says({"follow", path("robot.mcap"), "--json-lines", "--set", options});
   ASSERT_EQ(record({"--no-tracks", "--set", options}, path("robot.mcap")).code, 0);
-  for (const std::string& recording : {path("robot.mcap"), path("run.mcap")})
+  for (const std::string& recording : {path("robot.mcap"), path("run.mcap")}) {
     says(
         {"live", recording, "--no-tracks", "--every-frame", "--pace", "0", "--json-lines", "--set", options});
+  }
   const std::vector<std::string> unnamed = lines_of(run({"follow", sequence(), "--json-lines"}).out);
   EXPECT_FALSE(Json::parse(unnamed.at(0)).contains("frame_id"));
 }

@@ -280,9 +280,10 @@ TEST(GatherCues, IsTheSameForEveryTarget) {
             << text(size) << ' ' << seed << ' ' << name(target);
       }
       // The slow twin, over whole superpixels.
-      for (std::int32_t i = 0; i < superpixels.count; ++i)
+      for (std::int32_t i = 0; i < superpixels.count; ++i) {
         EXPECT_TRUE(expected.regions[slot(i)] == reference::cues_of({i}, superpixels, cues))
             << text(size) << ' ' << seed << ' ' << i;
+      }
     }
   }
 }

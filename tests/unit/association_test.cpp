@@ -52,9 +52,10 @@ class AllWays {
 CostTable random_table(Random& random, int rows, int columns, std::size_t costs,
                        std::size_t allowed_percent) {
   CostTable table{rows, columns, {}, 20};
-  for (int i = 0; i < rows * columns; ++i)
+  for (int i = 0; i < rows * columns; ++i) {
     table.costs.push_back(random.below(100) < allowed_percent ? static_cast<std::int64_t>(random.below(costs))
                                                               : kForbidden);
+  }
   return table;
 }
 

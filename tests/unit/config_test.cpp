@@ -171,9 +171,10 @@ TEST(GoneOptions, NameTheirReplacement) {
   EXPECT_NE(refusal("ground.points", "1,2,3,4").find("ground_points in the calibration"), std::string::npos);
   EXPECT_NE(refusal("match.evidence", "full").find("was removed"), std::string::npos);
   EXPECT_NE(refusal("background.tolerance", "1").find("a constant of its stage"), std::string::npos);
-  for (const char* option : {"facets.edge_min", "figure.margin", "figure.skirting", "group.step"})
+  for (const char* option : {"facets.edge_min", "figure.margin", "figure.skirting", "group.step"}) {
     EXPECT_EQ(refusal(option, "1"),
               "option " + std::string(option) + " was removed: fitted scores replaced its stage");
+  }
 }
 
 TEST(Validate, AcceptsThePresets) {

@@ -255,9 +255,10 @@ TEST(Controller, TuningSetsTheOptionFromTheNextFrameOn) {
   usual.segmentation.objects.min_area = Config{}.objects.min_area;
   usual.control.method = ControlMethod::off;
   const Image<TrackId> expected = play(sample, usual, 30).ids;
-  for (int y = 0; y < expected.height(); ++y)
+  for (int y = 0; y < expected.height(); ++y) {
     for (int x = 0; x < expected.width(); ++x)
       ASSERT_EQ(seen.ids(x, y) == TrackId::none, expected(x, y) == TrackId::none);
+  }
 }
 
 TEST(Controller, TuningLeavesThePresetWithoutAClearLead) {

@@ -67,9 +67,10 @@ TEST_P(GoodSequences, AreSynchronousAndAShiftIsDetected) {
   for (const auto& frame : frames) images.push_back(io::load_pair(frame.left, *frame.right));
   for (const int late : {0, 1}) {
     std::vector<StereoPair> pairs;
-    for (std::size_t i = 0; i + 1 < images.size(); ++i)
+    for (std::size_t i = 0; i + 1 < images.size(); ++i) {
       pairs.push_back(
           StereoPair::from(images[i + static_cast<std::size_t>(late)].left.gray, images[i].right.gray));
+    }
     const Synchrony measured = measure_synchrony(pairs, Exec::with_threads(2));
     EXPECT_EQ(measured.lag(), late);
     EXPECT_FALSE(measured.change);

@@ -137,9 +137,10 @@ TEST(Follower, APersonBeforeTheLensForFiveSecondsCostsNoIds) {
   ASSERT_GE(before.tracks.list.size(), 2U);
   for (int k = 0; k < 50; ++k) {
     const Step dark = follower.next(covered, frame_stamp(frame++));
-    for (const Track& track : before.tracks.list)
+    for (const Track& track : before.tracks.list) {
       EXPECT_TRUE(std::ranges::any_of(dark.tracks.list, [&](const Track& t) { return t.id == track.id; }))
           << number(track.id) << " ended after " << k << " frames";
+    }
   }
   Step after;
   for (int k = 0; k < 5; ++k) after = follower.next(sample.pair(), frame_stamp(frame++));

@@ -62,9 +62,10 @@ TEST_F(McapSequence, PairsImagesByTheirStamps) {
     for (int i = 0; i < 10; ++i) {
       const Stamp stamp{1'000'000'000LL + i * 100'000'000LL};
       // The right camera is half a millisecond late, and misses one image; its messages come first.
-      if (i != 4)
+      if (i != 4) {
         camera.add(right, {stamp.ns + 500'000},
                    message_of_dots({stamp.ns + 500'000}, 100U + static_cast<unsigned>(i)));
+      }
       camera.add(left, stamp, message_of_dots(stamp, static_cast<unsigned>(i)));
       camera.add(left_info, stamp, info(ros::Side::left));
       camera.add(right_info, stamp, info(ros::Side::right));
@@ -163,9 +164,10 @@ TEST_F(McapSequence, ReadsCompressedImages) {
     const auto left = camera.topic<ros::CompressedImage>("/left/image_rect/compressed");
     const auto right = camera.topic<ros::CompressedImage>("/right/image_rect/compressed");
     const std::string png = png_bytes(colours.view());
-    for (const auto channel : {left, right})
+    for (const auto channel : {left, right}) {
       camera.add(channel, {5},
                  ros::CompressedImage{ros::header_of({5}, "c"), "png", {png.begin(), png.end()}});
+    }
     for (const auto channel : {left, right})
       camera.add(channel, {6}, ros::CompressedImage{ros::header_of({6}, "c"), "jpeg", {0xff, 0xd8, 0xff, 0}});
   }

@@ -161,19 +161,21 @@ TEST(Odometry, ReportsWhyAFrameHasNoMotion) {
 TEST(Odometry, RefusesNoiseATornImageAndABadStamp) {
   const OdometryState state = step(begin_odometry({}), look({})).state;
   Seen noise = look({});
-  for (int y = 0; y < room::kSize.height; ++y)
+  for (int y = 0; y < room::kSize.height; ++y) {
     for (int x = 0; x < room::kSize.width; ++x)
       noise.left(x, y) = static_cast<Gray>(255 * room::hashed(x + 1000, y));
+  }
   const MotionRefusal refusal = step(state, noise).motion.refusal;
   EXPECT_TRUE(refusal == MotionRefusal::few_points || refusal == MotionRefusal::few_inliers);
 
   Seen torn = look({});
   const Seen other = look(at(0.8, 0.5, 40));
-  for (int y = 60; y < room::kSize.height; ++y)
+  for (int y = 60; y < room::kSize.height; ++y) {
     for (int x = 0; x < room::kSize.width; ++x) {
       torn.left(x, y) = other.left(x, y);
       torn.disparity.disparity_px(x, y) = other.disparity.disparity_px(x, y);
     }
+  }
   const OdometryStep after = step(state, torn);
   if (after.motion.refusal == MotionRefusal::none) {
     EXPECT_LT(metres_apart(after.state.map_from_camera, {}), 0.05);

@@ -61,9 +61,10 @@ TEST(PriorOfWheels, TurningLeftMovesPointsAheadToTheRight) {
 TEST(PriorOfWheels, ACircleDoesNotDependOnTheNumberOfRows) {
   const TemporaryFolder folder;
   std::string rows = kHeader;
-  for (int i = 0; i <= 20; ++i)
+  for (int i = 0; i <= 20; ++i) {
     rows += std::to_string(i) + "," + std::to_string(0.1 * i) + ",1.5," +
             std::to_string(std::numbers::pi / 4) + "\n";
+  }
   const auto priors = load_odometry(folder.with("o.csv", rows));
   // A quarter of a circle to the left, whose radius is v / omega.
   const double radius = 1.5 / (std::numbers::pi / 4);
@@ -75,12 +76,13 @@ TEST(PriorOfWheels, ACircleDoesNotDependOnTheNumberOfRows) {
   EXPECT_NEAR(angle_of(prior->now_from_before), 90 * kDegree, 1e-4);
   // In parts that do not end at rows.
   Pose whole;
-  for (const double from : {0.0, 0.73, 1.21})
+  for (const double from : {0.0, 0.73, 1.21}) {
     whole = priors->between(at_s(from), at_s(from == 0      ? 0.73
                                              : from == 0.73 ? 1.21
                                                             : 2))
                 ->now_from_before *
             whole;
+  }
   EXPECT_NEAR(length(whole.translation_m - prior->now_from_before.translation_m), 0, 1e-9);
 }
 

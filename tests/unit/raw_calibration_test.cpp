@@ -180,9 +180,10 @@ TEST(Pairs, AreFoundByNamesInFoldersAndAsFrames) {
   // Calibration uses all that pair up, other commands only the pair named left.
   EXPECT_EQ(io::find_pairs(folder.path() / "e").size(), 2U);
   EXPECT_EQ(io::find_frames(folder.path() / "e").size(), 1U);
-  for (const char* same : {"a", "b", "c"})
+  for (const char* same : {"a", "b", "c"}) {
     EXPECT_EQ(io::find_frames(folder.path() / same).size(), io::find_pairs(folder.path() / same).size())
         << same;
+  }
 }
 
 }  // namespace

@@ -74,10 +74,11 @@ TEST(Relocation, FindsThePoseOfAConstellation) {
   Pose map_from_odom = rotation_about({0, 0, 1.2});
   map_from_odom.translation_m = {3, -2, 0.1};
   std::vector<Candidate> candidates;
-  for (std::int64_t i = 0; i < 3; ++i)
+  for (std::int64_t i = 0; i < 3; ++i) {
     candidates.push_back(seen(10 + i,
                               inverse(map_from_odom)(map.list[static_cast<std::size_t>(i)].position_m),
                               static_cast<std::size_t>(i) + 1));
+  }
   const Recognition found = relocate(map, candidates, {});
   ASSERT_TRUE(found.map_from_odom.has_value());
   EXPECT_EQ(found.pairs.size(), 3U);

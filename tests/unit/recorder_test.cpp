@@ -108,20 +108,21 @@ TEST(Recorder, UsesTheFrameIdOfTheSource) {
       const ros::McapChannel& channel = reader.channels().at(message->channel);
       const std::string& type = channel.type;
       std::string found;
-      if (type == ros::Image::kType)
+      if (type == ros::Image::kType) {
         found = ros::decode<ros::Image>(message->bytes).header.frame_id;
-      else if (type == ros::CameraInfo::kType)
+      } else if (type == ros::CameraInfo::kType) {
         found = ros::decode<ros::CameraInfo>(message->bytes).header.frame_id;
-      else if (type == ros::Detection3DArray::kType)
+      } else if (type == ros::Detection3DArray::kType) {
         found = ros::decode<ros::Detection3DArray>(message->bytes).header.frame_id;
-      else if (type == ros::DisparityImage::kType)
+      } else if (type == ros::DisparityImage::kType) {
         found = ros::decode<ros::DisparityImage>(message->bytes).header.frame_id;
-      else if (type == ros::PointCloud2::kType)
+      } else if (type == ros::PointCloud2::kType) {
         found = ros::decode<ros::PointCloud2>(message->bytes).header.frame_id;
-      else if (type == ros::TFMessage::kType)
+      } else if (type == ros::TFMessage::kType) {
         found = ros::decode<ros::TFMessage>(message->bytes).transforms.at(0).child_frame_id;
-      else
+      } else {
         continue;
+      }
       EXPECT_EQ(found, expected) << channel.topic;
       ++headers;
     }

@@ -120,6 +120,11 @@ TEST(RefineObjects, AddsTheExpectedBiasBeyondDoubt) {
   }
 }
 
+TEST(RefineObjects, ChangesADisparityByHalfAtMost) {
+  const Scene scene({{{40, 10, 60, 40}, 1.5F, 1.5F}}, false);
+  EXPECT_FLOAT_EQ(scene.refined(1, FittedTrees(-9, {}, {})).list[0].disparity_px, 0.75F);
+}
+
 // ---- features of the bias ----
 
 float feature(const BiasFeatures& features, std::string_view name) {
@@ -129,12 +134,12 @@ float feature(const BiasFeatures& features, std::string_view name) {
   return features[static_cast<std::size_t>(at - names.begin())];
 }
 
-TEST(BiasFeatures, OfALevelBoardInItsPlaceTellNoDifference) {
+TEST(BiasFeatures, AreZeroForALevelBoardInItsPlace) {
   const Scene scene({{{40, 10, 60, 40}, 12, 12}});
   const BiasFeatures features = scene.features(0.125);
-  for (const std::string_view name :
-       {"disparity at the ends of the rows, minus the median",
-        "disparity of the upper part, minus the median", "mean disparity minus the median"})
+  for (const std::string_view name : {"disparity at the ends of the rows, minus the median",
+                                      "disparity of the upper part, minus the median",
+                                      "plane of the disparities at the centroid, minus the median"})
     EXPECT_EQ(feature(features, name), 0) << name;
   for (const std::string_view name :
        {"shift by the images, middle of the rows", "shift by the images from a plane, middle of the rows",
@@ -145,7 +150,7 @@ TEST(BiasFeatures, OfALevelBoardInItsPlaceTellNoDifference) {
   EXPECT_EQ(feature(features, "disparity minus that beside the object"), 10) << "the background has 2 px";
 }
 
-TEST(BiasFeatures, OfARoundedObjectTellThatItsEndsAreFarther) {
+TEST(BiasFeatures, ShowThatTheEndsOfARoundObjectAreFarther) {
   Scene scene({{{40, 10, 60, 40}, 12, 12}});
   for (int y = 10; y < 50; ++y) {
     for (int x = 40; x < 100; ++x) {
@@ -166,9 +171,9 @@ TEST(BiasFeatures, SeeWhereTheImagesAgree) {
        {"shift by the images, middle of the rows", "shift by the images from a plane, middle of the rows",
         "shift by the images from a plane, without the outline"})
     EXPECT_NEAR(feature(features, name), 0.3, 0.03) << name;
-  EXPECT_GT(feature(features, "its certainty"), 10);
+  EXPECT_GT(feature(features, "certainty of that shift"), 10);
   const Scene plain({{{40, 10, 60, 40}, 12.3F, 12}}, false);
-  EXPECT_EQ(feature(plain.features(), "its certainty"), 0);
+  EXPECT_EQ(feature(plain.features(), "certainty of that shift"), 0);
 }
 
 TEST(BiasFeatures, ContinueAPlaneAcrossAHole) {
@@ -177,7 +182,8 @@ TEST(BiasFeatures, ContinueAPlaneAcrossAHole) {
     for (int x = 40; x < 100; ++x)
       scene.disparity.disparity_px(x, y) = x < 80 ? 12 + 0.02F * (static_cast<float>(x) - 69.5F) : kNan;
   }
-  EXPECT_NEAR(feature(scene.features(), "mean disparity minus the median"), 0, 0.01)
+  EXPECT_NEAR(feature(scene.features(), "plane of the disparities at the centroid, minus the median"), 0,
+              0.01)
       << "of 12, in the middle";
 }
 

@@ -60,10 +60,12 @@ TEST(Reliability, ABlackRightImageIsDetectedAndReportedAfterTenFrames) {
 TEST(Reliability, ARightImageOfAnotherMomentLowersThePhotometricWitness) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Image<Gray> moved(sample.pair().size(), Gray{0}, {});
-  for (int y = 0; y < moved.height(); ++y)
-    for (int x = 0; x < moved.width(); ++x)
+  for (int y = 0; y < moved.height(); ++y) {
+    for (int x = 0; x < moved.width(); ++x) {
       moved(x, y) =
           sample.images.right.gray(std::min(x + 3, moved.width() - 1), std::min(y + 12, moved.height() - 1));
+    }
+  }
   const Reliability good = last_of(sample, sample.pair());
   const Reliability bad = last_of(sample, StereoPair::from(sample.images.left.gray, moved));
   EXPECT_LT(bad.witnesses.stereo.value(), good.witnesses.stereo.value() - 0.2F);
@@ -195,9 +197,10 @@ TEST(SteadinessOfObjects, ALargePlaneDoesNotCountButABulgeDoes) {
   OneObject one;  // a plane, 100 of 800 px
   one.step.tracks.list[0].state = TrackState::confirmed;
   EXPECT_EQ(steadiness(one.step, 1), 0);
-  for (int y = 5; y < 15; ++y)
+  for (int y = 5; y < 15; ++y) {
     for (int x = 5; x < 15; ++x)
       one.step.frame.disparity.disparity_px(x, y) = 10 - 0.2F * static_cast<float>((x - 10) * (x - 10));
+  }
   EXPECT_FLOAT_EQ(steadiness(one.step, 0.5F), 0.4F);
   one.step.tracks.list[0].state = TrackState::tentative;
   EXPECT_EQ(steadiness(one.step, 0.5F), 0);

@@ -339,9 +339,10 @@ TEST(SequenceOfFolders, SkipsAndCountsIncompleteAndDamagedFrames) {
 TEST(SequenceOfFolders, ReportsAFrozenCamera) {
   const TemporaryFolder folder;
   save_frames(folder, 4);
-  for (const char* name : {"002", "003"})
+  for (const char* name : {"002", "003"}) {
     fs::copy_file(folder.path() / "001/right.png", folder.path() / name / "right.png",
                   fs::copy_options::overwrite_existing);
+  }
   const auto sequence = open(folder);
   EXPECT_EQ(all_of(*sequence).size(), 4U);
   ASSERT_EQ(sequence->remarks().size(), 1U);

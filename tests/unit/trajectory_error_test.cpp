@@ -70,9 +70,10 @@ TEST(TrajectoryError, OfAPathThatIsTooLongByAHundredth) {
 
 TEST(TrajectoryError, OfAHeadingThatDrifts) {
   std::vector<TimedPose> ours = straight(41, 0.1);
-  for (std::size_t k = 0; k < ours.size(); ++k)
+  for (std::size_t k = 0; k < ours.size(); ++k) {
     ours[k].map_from_camera.rotation =
         rotation_about({0, 0, 0.1 * kDegrees * static_cast<double>(k)}).rotation;
+  }
   const TrajectoryError e = trajectory_error(ours, straight(41, 0.1));
   EXPECT_NEAR(e.rpe_frame_rad / kDegrees, 0.1, 1e-6);
   EXPECT_NEAR(e.end_error_rad / kDegrees, 4, 1e-6);

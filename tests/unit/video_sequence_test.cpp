@@ -10,7 +10,9 @@
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
 #include <source/sequence.hpp>
+#include <string>
 #include <support/temporary_folder.hpp>
+#include <vector>
 
 namespace cairn::io {
 namespace {
@@ -112,6 +114,42 @@ TEST_F(Video, TruncatedEndsEarlyWithAMessage) {
   EXPECT_GT(count, 2U);
   EXPECT_LT(count, 10U);
   EXPECT_TRUE(has(sequence->ended_early(), {"cut.mkv", "is truncated", "1.20 s"}));
+}
+
+/// Sets the times, in ms, of the frames of a Matroska file with one cluster and 10 frames per second.
+std::string timed(std::string bytes, const std::vector<int>& ms) {
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < ms.size(); ++i) {
+    // A SimpleBlock: 0xA3, its size in two bytes, track 1, its time in the cluster.
+    const auto track_and_time = [](int time) {
+      return std::string{'\x81', static_cast<char>(time / 256), static_cast<char>(time % 256)};
+    };
+    const std::string written = track_and_time(static_cast<int>(i) * 100);
+    do {
+      at = bytes.find('\xA3', at + 1);
+      if (at == std::string::npos) return {};
+    } while (bytes.compare(at + 3, written.size(), written) != 0);
+    bytes.replace(at + 3, written.size(), track_and_time(ms[i]));
+  }
+  return bytes;
+}
+
+TEST_F(Video, OfVariableRateKeepsItsStamps) {
+  const auto written = noise(5, {48, 16}, true);
+  const std::string path = write("v.mkv", written);
+  if (path.empty()) GTEST_SKIP() << "no encoder for FFV1";
+  const std::vector<int> ms{0, 30, 310, 330, 900};
+  const std::string bytes = timed(support::bytes_of(path), ms);
+  ASSERT_FALSE(bytes.empty()) << "another layout of the file";
+  const auto sequence = open_sequence(folder_.with("variable.mkv", bytes).string(), laid_out("side_by_side"));
+  std::size_t count = 0;
+  while (const auto frame = sequence->next()) {
+    ASSERT_LT(count, ms.size());
+    EXPECT_EQ(frame->stamp.ns, ms[count] * std::int64_t{1'000'000});
+    const auto& left = written[count++].at<cv::Vec3b>(5, 3);
+    EXPECT_EQ(frame->left.rgb(3, 5), (Rgb{left[2], left[1], left[0]}));
+  }
+  EXPECT_EQ(count, ms.size());
 }
 
 TEST_F(Video, OfEachCameraArePairedByStamps) {
