@@ -189,7 +189,9 @@ Brightness Seen::brightness(const std::vector<Row>& rows) const {
 BiasFeatures Seen::features(double shift_px) const {
   const std::vector<Row> all = rows();
   const float d0 = object.disparity_px;
-  const auto [x0, y0, slope] = brightness(all);
+  const Brightness grey = brightness(all);
+  const double x0 = grey.x;
+  const double y0 = grey.y;
 
   std::vector<float> ends;
   std::vector<float> upper;
@@ -240,7 +242,7 @@ BiasFeatures Seen::features(double shift_px) const {
                                                 of_middle.certainty,
                                                 middle_of_plane.shift_px,
                                                 inside_of_plane.shift_px,
-                                                std::abs(slope),
+                                                std::abs(grey.slope),
                                                 double{d0} - double{beside(all)}};
   BiasFeatures features;
   for (std::size_t i = 0; i < features.size(); ++i) features[i] = static_cast<float>(found[i]);
