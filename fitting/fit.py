@@ -278,7 +278,6 @@ class Fitting:
             self.gains["whole_object"] = shares_of(model.gains, self.region_features)
             say(f"regions, without fold {fold}: {take.sum()} of them")
 
-
     def fit_bias(self, trees, sequences, validation):
         """Fits the trees that correct the disparities of found objects. Returns a table of the errors before and after:
         of the fit set and the sequences in folds, of the validation frames by the trees fitted to all. trees(i, jobs):
@@ -528,6 +527,7 @@ def main():
     tracked = jobs_of(sequences(arguments.data))
     if arguments.ablation:
         return ablation(fitting, validation, arguments.ablation)
+
     def write_source(kind, name, folder):
         if not arguments.out:
             return

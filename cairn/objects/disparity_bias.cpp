@@ -6,6 +6,7 @@
 #include <cairn/objects/disparity_bias.hpp>
 #include <cairn/objects/object_match.hpp>
 #include <cairn/objects/ranks.hpp>
+#include <cairn/scene/plane_fit.hpp>
 #include <cmath>
 #include <cstdint>
 
@@ -55,36 +56,17 @@ struct Plane {
   double per_y = 0;
 };
 
-class PlaneSums {
- public:
-  void add(double x, double y, double d) {
-    n_ += 1;
-    x_ += x;
-    y_ += y;
-    d_ += d;
-    xx_ += x * x;
-    xy_ += x * y;
-    yy_ += y * y;
-    xd_ += x * d;
-    yd_ += y * d;
-  }
-  [[nodiscard]] Plane plane() const {
-    constexpr double kFewestPixels = 20;
-    if (n_ < kFewestPixels) return {};
-    const double xx = xx_ - x_ * x_ / n_;
-    const double xy = xy_ - x_ * y_ / n_;
-    const double yy = yy_ - y_ * y_ / n_;
-    const double xd = xd_ - x_ * d_ / n_;
-    const double yd = yd_ - y_ * d_ / n_;
-    const double det = xx * yy - xy * xy;
-    if (!(det > 1e-6 * n_ * n_)) return {d_ / n_, 0, 0};
-    const Plane slopes{0, (xd * yy - yd * xy) / det, (yd * xx - xd * xy) / det};
-    return {(d_ - slopes.per_x * x_ - slopes.per_y * y_) / n_, slopes.per_x, slopes.per_y};
-  }
-
- private:
-  double n_ = 0, x_ = 0, y_ = 0, d_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, xd_ = 0, yd_ = 0;
-};
+/// `points` relative to the centroid. Unlike PlaneFit::solve(), this also fits masks of two columns.
+Plane plane_of(const PlaneFit& points) {
+  constexpr double kFewestPixels = 20;
+  constexpr double kLeastDeterminant = 1e-6;
+  if (points.count() < kFewestPixels) return {};
+  const PlaneFit::Moments m = points.moments();
+  if (!(m.determinant() > kLeastDeterminant)) return {m.mean_d, 0, 0};
+  const double per_x = m.slope_x();
+  const double per_y = m.slope_y();
+  return {m.mean_d - per_x * m.mean_x - per_y * m.mean_y, per_x, per_y};
+}
 
 /// Of a mask: its centroid, and its brightness along the rows.
 struct Brightness {
@@ -209,12 +191,12 @@ BiasFeatures Seen::features(double shift_px) const {
     const auto [low, high] = values_at_ranks(values, values.size() / 4, 3 * values.size() / 4, exec);
     reach = std::max(kNear, 2 * (double{high} - double{low}));
   }
-  PlaneSums near;
+  PlaneFit near(x0, y0);
   for_each_pixel(all, [&](const Row& row, int x) {
     const double off = double{disparity_px(x, row.y)} - double{d0};
-    if (std::abs(off) <= reach) near.add(x - x0, row.y - y0, off);
+    if (std::abs(off) <= reach) near.add(x, row.y, off);
   });
-  const Plane plane = near.plane();
+  const Plane plane = plane_of(near);
 
   const auto in_middle = [](const Row& row, int x) { return std::abs(row.across(x)) < kMiddle; };
   const auto measured = [&](int x, int y) { return double{disparity_px(x, y)}; };

@@ -28,24 +28,41 @@ class PlaneFit {
     yd_ += y * d;
   }
 
+  /// Of the points added, one at least; means of x and y are relative to the origin.
+  struct Moments {
+    double mean_x, mean_y, mean_d;
+    double var_x, var_y, cov_xy, cov_xd, cov_yd;
+    [[nodiscard]] double determinant() const { return var_x * var_y - cov_xy * cov_xy; }
+    /// a and b. Precondition: determinant() > 0.
+    [[nodiscard]] double slope_x() const { return (var_y * cov_xd - cov_xy * cov_yd) / determinant(); }
+    [[nodiscard]] double slope_y() const { return (var_x * cov_yd - cov_xy * cov_xd) / determinant(); }
+  };
+  [[nodiscard]] Moments moments() const {
+    const double mean_x = x_ / n_;
+    const double mean_y = y_ / n_;
+    return {mean_x,
+            mean_y,
+            d_ / n_,
+            xx_ / n_ - mean_x * mean_x,
+            yy_ / n_ - mean_y * mean_y,
+            xy_ / n_ - mean_x * mean_y,
+            xd_ / n_ - mean_x * d_ / n_,
+            yd_ / n_ - mean_y * d_ / n_};
+  }
+  [[nodiscard]] double count() const { return n_; }
+
   /// nullopt if the points are (nearly) collinear: narrower than a pixel.
   [[nodiscard]] std::optional<GroundPlane> solve() const {
     if (n_ < 3) return std::nullopt;
-    const double mean_x = x_ / n_;
-    const double mean_y = y_ / n_;
-    const double var_x = xx_ / n_ - mean_x * mean_x;
-    const double var_y = yy_ / n_ - mean_y * mean_y;
-    const double cov_xy = xy_ / n_ - mean_x * mean_y;
-    const double determinant = var_x * var_y - cov_xy * cov_xy;
+    const Moments m = moments();
+    const double determinant = m.determinant();
     // The determinant is the product of the variances along and across the cloud; their sum bounds the
     // former.
     constexpr double kLeastVariance = 0.25;
-    if (!(determinant >= kLeastVariance * (var_x + var_y)) || !(determinant > 0)) return std::nullopt;
-    const double cov_xd = xd_ / n_ - mean_x * d_ / n_;
-    const double cov_yd = yd_ / n_ - mean_y * d_ / n_;
-    const double a = (var_y * cov_xd - cov_xy * cov_yd) / determinant;
-    const double b = (var_x * cov_yd - cov_xy * cov_xd) / determinant;
-    const double c = d_ / n_ - a * (mean_x + origin_x_) - b * (mean_y + origin_y_);
+    if (!(determinant >= kLeastVariance * (m.var_x + m.var_y)) || !(determinant > 0)) return std::nullopt;
+    const double a = m.slope_x();
+    const double b = m.slope_y();
+    const double c = m.mean_d - a * (m.mean_x + origin_x_) - b * (m.mean_y + origin_y_);
     return GroundPlane{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
   }
 
