@@ -117,6 +117,7 @@ Json summary_json(const SequenceScores& s) {
   const ObjectSummary& o = s.objects;
   return {{"frames", s.frames},
           {"tracks", json(s.tracks)},
+          {"by_landmark", s.by_landmark ? json(*s.by_landmark) : Json(nullptr)},
           {"oracle_ids", json(s.oracle)},
           {"objects",
            {{"scored", o.true_objects},
@@ -206,9 +207,15 @@ std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
 // ---- text ----
 
 std::string track_table(const SequenceScores& s) {
-  Table table({"objects over time", "tracks", "oracle ids"});
+  std::vector<std::string> header{"objects over time", "tracks"};
+  if (s.by_landmark) header.emplace_back("by landmark");
+  header.emplace_back("oracle ids");
+  Table table(header);
   const auto row = [&](const char* name, auto&& figure) {
-    table.add({name, figure(s.tracks), figure(s.oracle)});
+    std::vector<std::string> cells{name, figure(s.tracks)};
+    if (s.by_landmark) cells.push_back(figure(*s.by_landmark));
+    cells.push_back(figure(s.oracle));
+    table.add(cells);
   };
   row("HOTA", [](const TrackErrors& e) { return points(e.hota); });
   row("DetA", [](const TrackErrors& e) { return points(e.det_a); });

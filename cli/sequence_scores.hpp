@@ -65,6 +65,9 @@ struct SequenceScores {
   std::vector<std::string> without_result;
   std::vector<ScoredFrame> scored;
   TrackErrors tracks;
+  /// The tracks of a landmark share the id of its first. Known only at the end of the run: a moved object
+  /// is recognised once its old place has been seen empty. nullopt without landmarks.
+  std::optional<TrackErrors> by_landmark;
   TrackErrors oracle;
   Steadiness steadiness;
   ObjectSummary objects;
@@ -75,8 +78,8 @@ struct SequenceScores {
   std::optional<TrajectoryError> trajectory;
 };
 
-/// `result`: a folder from `cairn follow`, its tracks.jsonl, or a MOTS text. Throws Error.
-SequenceScores score_sequence(const std::filesystem::path& result, const io::TrueSequence& truth,
+/// `path`: a folder from `cairn follow`, its tracks.jsonl, or a MOTS text. Throws Error.
+SequenceScores score_sequence(const std::filesystem::path& path, const io::TrueSequence& truth,
                               const SequenceOptions& options);
 
 }  // namespace cairn::cli

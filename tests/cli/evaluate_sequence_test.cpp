@@ -63,6 +63,8 @@ class EvaluateSequence : public CommandTest {
     return {Json::parse(content(at("all.json")), nullptr, false), outcome.out};
   }
 
+  std::string lines_;
+
  private:
   void write_truth(int k, const std::string& folder, const std::vector<Seen>& all) const {
     Image<std::uint16_t> ids(kSize, 0, {});
@@ -116,8 +118,6 @@ class EvaluateSequence : public CommandTest {
             {"pose", {{"position_m", list(pose.translation_m)}, {"quaternion_xyzw", quaternion(pose)}}},
             {"tracks", tracks}};
   }
-
-  std::string lines_;
 };
 
 /// Twelve frames. Object 1 is static and changes its id in the sixth; object 2 moves from frame 3 on, is not
@@ -265,12 +265,36 @@ TEST_F(EvaluateSequence, LandmarksAndChangesAreScored) {
   EXPECT_EQ(landmarks.at("in_view_again"), 2);
   EXPECT_EQ(landmarks.at("re_identified"), 1);
   EXPECT_EQ(landmarks.at("wrong"), 1);
+  // By its landmark, 1 keeps its id, and 2 has that of 3.
+  EXPECT_EQ(json.at("summary").at("tracks").at("IDSW"), 2);
+  const Json& known = json.at("summary").at("by_landmark");
+  EXPECT_EQ(known.at("IDSW"), 1);
+  EXPECT_EQ(known.at("IDTP"), 23 + 11 + 11);
+  EXPECT_NE(text.find("by landmark"), std::string::npos) << text;
   const Json& changes = json.at("summary").at("changes");
   EXPECT_EQ(changes.at("expected"), 1);
   EXPECT_EQ(changes.at("found"), 1);
   EXPECT_EQ(changes.at("reported"), 2);
   EXPECT_EQ(changes.at("wrong"), 1);
   EXPECT_NEAR(changes.at("median_error_m"), 0.1, 1e-6);
+}
+
+TEST_F(EvaluateSequence, ATrackGetsTheIdOfItsLastLandmarkUnlessBothAreInView) {
+  for (int k = 0; k < 12; ++k) {
+    const bool late = k >= 6;
+    add(k, {{1, late ? 4 : 1, {2, 2, 20, 15}, {1, 2, 0.3}, {}, false, k < 8 ? 6 : 5, "confirmed"},
+            {2, 2, {30, 10, 16, 16}, {2, 2, 0.3}, {}, false, 7, "confirmed"},
+            {3, 3, {30, 28, 16, 16}, {3, 2, 0.3}, {}, false, 7, "confirmed"}});
+  }
+  write_result();
+  EXPECT_EQ(evaluated().first.at("summary").at("by_landmark").at("IDSW"), 1);
+  lines_.clear();
+  for (int k = 0; k < 12; ++k)
+    add(k,
+        {{1, k < 6 ? 1 : 4, {2, 2, 20, 15}, {1, 2, 0.3}, {}, false, k < 6 || k >= 8 ? 5 : 6, "confirmed"}});
+  write_result();
+  EXPECT_EQ(evaluated().first.at("summary").at("tracks").at("IDSW"), 1);
+  EXPECT_EQ(evaluated().first.at("summary").at("by_landmark").at("IDSW"), 0);
 }
 
 TEST_F(EvaluateSequence, TwoFilesOfPosesAreCompared) {
