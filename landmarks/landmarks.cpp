@@ -40,12 +40,7 @@ constexpr int kFloorFrames = 10;
 constexpr double kSettled_s = 3;  // until then a new landmark may turn out to be a moved one
 constexpr double kUnique = 0.05;  // of the score
 
-// An object's centre is behind its visible surface. As shares of its width, measured on 335 objects of the
-// rendered rooms of the fit set: median 0.26, 16th and 84th percentile 0.11 and 0.39; sideways 0.06 at the
-// 84th.
-constexpr double kBehind = 0.26;
-constexpr double kCentreSigma = 0.14;
-constexpr double kCentreSigmaUp = 0.1;  // of the height
+constexpr double kSigmaUp = 0.1;  // of an object's centre, as a share of its height
 
 struct VisibleArea {
   int pixels = 0;
@@ -96,8 +91,8 @@ const Track* track_of(const Tracks& tracks, TrackId id) {
 
 Candidate candidate_of(const TrackEvidence& evidence, const Track& track) {
   Matrix3 covariance = matrix(track.covariance_m2);
-  const double across = std::pow(kCentreSigma * evidence.size.widest_m, 2);
-  const double up = std::pow(kCentreSigmaUp * evidence.size.height_m, 2);
+  const double across = std::pow(nearer_surface::kSigma * evidence.size.widest_m, 2);
+  const double up = std::pow(kSigmaUp * evidence.size.height_m, 2);
   covariance.diagonal() += Eigen::Vector3d(across, across, up);
   return {track.id,
           evidence.centre_m,
@@ -166,7 +161,7 @@ void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& fr
   Point3 away = track.position_m - camera;
   away.z = 0;
   const double distance = std::max(1e-6, length(away));
-  const Point3 centre = track.position_m + (kBehind * across / distance) * away;
+  const Point3 centre = track.position_m + (nearer_surface::kShare * across / distance) * away;
   // The track's filter averages noise; this averages over viewing directions.
   constexpr int kMost = 20;
   evidence.centres = std::min(evidence.centres + 1, kMost);
@@ -537,6 +532,263 @@ bool is_contradicted(const LandmarksState& state, const Recognition& found, cons
   return against >= found.pairs.size();
 }
 
+/// The tracks of a frame that does not change the map.
+std::vector<LandmarkOfTrack> unchanged_tracks(LandmarksState& state, const LandmarkFrame& frame) {
+  std::vector<LandmarkOfTrack> all;
+  for (const Track& track : frame.tracks->list) {
+    const TrackEvidence* evidence = evidence_of(state, track.id);
+    if (evidence == nullptr) {
+      all.push_back({track.id, LandmarkId::none,
+                     frame.is_lost ? LandmarkRefusal::not_located : LandmarkRefusal::tentative});
+    } else if (frame.is_lost) {
+      all.push_back({track.id, evidence->landmark, LandmarkRefusal::not_located});
+    } else {
+      all.push_back(of_track(*evidence));
+    }
+  }
+  return all;
+}
+
+/// Updates the evidence of each track.
+void gather_all(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config) {
+  const Tracks& tracks = *frame.tracks;
+  std::erase_if(state.tracks, [&](const TrackEvidence& e) { return track_of(tracks, e.track) == nullptr; });
+  for (const Track& track : tracks.list) {
+    const auto at = std::lower_bound(state.tracks.begin(), state.tracks.end(), track.id,
+                                     [](const TrackEvidence& e, TrackId wanted) { return e.track < wanted; });
+    if (at == state.tracks.end() || at->track != track.id) {
+      TrackEvidence fresh;
+      fresh.track = track.id;
+      fresh.first = std::max(track.first, state.segment_began);
+      if (state.is_located)
+        fresh.floor_before = floor_frames_at(state.map, state.located.map_from_odom(track.position_m));
+      state.tracks.insert(at, fresh);
+    }
+    if (track.object == ObjectId::none) continue;
+    const bool is_cut = std::find(frame.cut.begin(), frame.cut.end(), track.id) != frame.cut.end();
+    gather(*evidence_of(state, track.id), track, frame, is_cut, config);
+  }
+}
+
+/// Searches for the camera's place in the map.
+void find_place(LandmarksState& state, const std::vector<Candidate>& candidates, const LandmarkFrame& frame,
+                const LandmarksConfig& config, std::vector<LandmarkEvent>& events) {
+  ++state.frames_not_located;
+  const std::optional<Located> guess = state.has_guess ? std::optional(state.located) : std::nullopt;
+  const Recognition found = relocate(state.map, candidates, config, guess);
+  if (!found.map_from_odom || is_contradicted(state, found, frame)) return;
+  const Point3 guessed = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
+  state.is_located = true;
+  state.has_guess = false;
+  state.located.map_from_odom = *found.map_from_odom;
+  // The pose was unknown and now comes from the landmarks alone.
+  state.located.covariance = {};
+  for (const std::size_t i : {0U, 5U, 10U}) state.located.covariance[i] = 1;
+  state.located.covariance[15] = 0.1;
+  anchor_here(state, frame);
+  LandmarkEvent event;
+  event.kind = LandmarkEventKind::relocated;
+  event.stamp = frame.stamp;
+  event.frames = {frame.index};
+  double product = 1;
+  for (const LandmarkPair& pair : found.pairs) product *= 1 - pair.score;
+  event.probability = 1 - product;
+  const std::size_t first = events.size();
+  for (const LandmarkPair& pair : found.pairs) bind(state, pair, frame, events);
+  correct(state, frame, config);
+  event.position_m = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
+  event.moved_by_m = event.position_m - guessed;
+  events.insert(events.begin() + static_cast<std::ptrdiff_t>(first), event);
+}
+
+/// Matches tracks with the map. Returns whether a landmark was recognised in a known place.
+bool match(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config,
+           std::vector<LandmarkEvent>& events) {
+  std::vector<Candidate> candidates;
+  std::vector<LandmarkId> taken;
+  for (const TrackEvidence& evidence : state.tracks) {
+    const Track& track = *track_of(*frame.tracks, evidence.track);
+    if (evidence.landmark != LandmarkId::none) {
+      if (track.object != ObjectId::none) taken.push_back(evidence.landmark);
+    } else if (state.is_located ? may_be_recognised(evidence, track, config)
+                                : may_tell_place(evidence, track, config)) {
+      candidates.push_back(candidate_of(evidence, track));
+    }
+  }
+  if (!state.is_located) {
+    find_place(state, candidates, frame, config, events);
+    return false;
+  }
+  const Recognition found = recognise(state.map, candidates, state.located, taken, config);
+  for (const LandmarkPair& pair : found.pairs) bind(state, pair, frame, events);
+  correct(state, frame, config);
+  return !found.pairs.empty();
+}
+
+/// The visible area of each track, in their order.
+std::vector<VisibleArea> visible_areas(const LandmarkFrame& frame) {
+  const Tracks& tracks = *frame.tracks;
+  std::vector<VisibleArea> shown(tracks.list.size());
+  for (int y = 0; y < frame.ids.height(); ++y) {
+    const TrackId* row = frame.ids.row(y);
+    std::size_t at = 0;
+    for (int x = 0; x < frame.ids.width(); ++x) {
+      if (row[x] == TrackId::none) continue;
+      if (tracks.list[at].id != row[x]) {
+        const Track* track = track_of(tracks, row[x]);
+        if (track == nullptr) continue;
+        at = static_cast<std::size_t>(track - tracks.list.data());
+      }
+      ++shown[at].pixels;
+      shown[at].box = united(shown[at].box, {x, y, 1, 1});
+    }
+  }
+  return shown;
+}
+
+/// Makes a landmark of a track that may be one, unless its place is taken or the map is full. Returns whether
+/// it did.
+bool add_landmark(LandmarksState& state, TrackEvidence& evidence, const Track& track,
+                  const LandmarksConfig& config) {
+  const Point3 here = point(landmarks::place(candidate_of(evidence, track), state.located).position_m);
+  const bool is_beside =
+      std::any_of(state.map.list.begin(), state.map.list.end(), [&](const Landmark& other) {
+        return !other.is_gone &&
+               horizontal(other.position_m, here) < std::max(other.size.widest_m, evidence.size.widest_m) / 2;
+      });
+  if (is_beside) {
+    evidence.refusal = LandmarkRefusal::beside_known;
+    return false;
+  }
+  if (state.map.list.size() >= static_cast<std::size_t>(config.max_known)) {
+    evidence.refusal = LandmarkRefusal::map_full;
+    return false;
+  }
+  Landmark fresh;
+  fresh.id = LandmarkId{state.map.next++};
+  fresh.first = evidence.first;
+  state.map.list.push_back(fresh);
+  state.found.push_back(fresh.id);
+  if (evidence.floor_before >= kFloorFrames) state.unreported.push_back(fresh.id);
+  evidence.landmark = fresh.id;
+  evidence.stood_m = track.position_m;
+  return true;
+}
+
+/// Ends the carrying of a landmark in view, by which its track shows that it is the same object.
+void set_down(const LandmarksState& state, TrackEvidence& evidence, const Landmark& landmark,
+              const Track& track, const LandmarkFrame& frame, const LandmarksConfig& config,
+              std::vector<LandmarkEvent>& events) {
+  evidence.was_moving = false;
+  const Candidate candidate = candidate_of(evidence, track);
+  const Placed here = landmarks::place(candidate, state.located);
+  const Eigen::Vector3d way = here.position_m - vector(landmark.position_m);
+  const Matrix3 covariance = here.covariance_m2 + matrix(landmark.covariance_m2);
+  const bool is_same = score_of(candidate, landmark) >= static_cast<double>(config.min_score);
+  if (!is_same || way.norm() <= static_cast<double>(config.moved) ||
+      way.dot(covariance.ldlt().solve(way)) <= 9)
+    return;
+  events.push_back({LandmarkEventKind::moved,
+                    frame.stamp,
+                    landmark.id,
+                    point(here.position_m),
+                    point(way),
+                    probability_of(landmark.log_odds),
+                    {frame.index}});
+  evidence.before.reset();
+}
+
+struct Updated {
+  std::vector<LandmarkId> seen;
+  bool has_added = false;
+};
+
+/// Creates landmarks, and updates those in view.
+Updated update_seen(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config,
+                    std::vector<LandmarkEvent>& events) {
+  Updated result;
+  const std::vector<VisibleArea> shown = visible_areas(frame);
+  for (TrackEvidence& evidence : state.tracks) {
+    const Track& track = *track_of(*frame.tracks, evidence.track);
+    const bool is_seen = track.object != ObjectId::none;
+    evidence.refusal = refusal_of(evidence, track, config);
+    if (evidence.refusal == LandmarkRefusal::none && !state.is_located)
+      evidence.refusal = LandmarkRefusal::not_located;
+    if (evidence.landmark == LandmarkId::none && evidence.refusal == LandmarkRefusal::none && is_seen)
+      result.has_added |= add_landmark(state, evidence, track, config);
+    if (evidence.landmark == LandmarkId::none || !is_seen || !state.is_located) continue;
+    Landmark* landmark = find_in(state.map, evidence.landmark);
+    if (landmark == nullptr) continue;
+    result.seen.push_back(landmark->id);
+    landmark->last = frame.stamp;
+    landmark->run = state.run;
+    if (track.is_moving || evidence.centres == 0) continue;
+    if (evidence.was_moving) {
+      if (evidence.refusal != LandmarkRefusal::none) continue;
+      set_down(state, evidence, *landmark, track, frame, config, events);
+    }
+    update(*landmark, evidence, track, state, frame);
+    if (evidence.cut_ago > 0) {
+      const Point3 camera = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
+      const auto at = static_cast<std::size_t>(&track - frame.tracks->list.data());
+      show(*landmark, track, shown[at], octant_of(landmark->position_m, camera), frame);
+    }
+  }
+  return result;
+}
+
+/// Weighs what a frame shows of a landmark that is not seen in it. Returns whether it is gone since now.
+bool look_for(LandmarksState& state, Landmark& landmark, const Expectation& there, const LandmarkFrame& frame,
+              std::vector<LandmarkEvent>& events) {
+  const int samples = std::max(1, there.samples());
+  if (landmark.is_gone || there.in_view < kLeastPixels || 2 * there.nearer > samples) return false;
+  ++landmark.expected;
+  const double farther = static_cast<double>(there.farther) / samples;
+  if (farther < std::max(kThroughShare, landmark.open_share + kThroughMargin)) {
+    // Another object, or holes: weak evidence against it.
+    if (2 * there.agree < samples) landmark.log_odds = std::max(landmark.log_odds + kMissed, -kLargestOdds);
+    return false;
+  }
+  landmark.log_odds = std::max(landmark.log_odds + kSeenThrough, -kLargestOdds);
+  ++landmark.seen_through;
+  auto vanished = std::find_if(state.vanished.begin(), state.vanished.end(),
+                               [&](const auto& v) { return v.landmark == landmark.id; });
+  if (vanished == state.vanished.end()) vanished = state.vanished.insert(vanished, {landmark.id, {}});
+  vanished->frames.push_back(frame.index);
+  if (landmark.log_odds >= kGone || landmark.seen_through < kGoneFrames) return false;
+  landmark.is_gone = true;
+  events.push_back({LandmarkEventKind::gone,
+                    frame.stamp,
+                    landmark.id,
+                    landmark.position_m,
+                    {},
+                    probability_of(-landmark.log_odds),
+                    vanished->frames});
+  return true;
+}
+
+/// Updates which landmarks are present. Returns whether one is gone since now.
+bool update_presence(LandmarksState& state, const std::vector<LandmarkId>& seen, const LandmarkFrame& frame,
+                     std::vector<LandmarkEvent>& events) {
+  bool has_gone = false;
+  for (Landmark& landmark : state.map.list) {
+    const Expectation there = expect(landmark, frame, state.located.map_from_odom);
+    if (std::find(seen.begin(), seen.end(), landmark.id) == seen.end()) {
+      has_gone |= look_for(state, landmark, there, frame, events);
+      continue;
+    }
+    ++landmark.seen;
+    ++landmark.expected;
+    landmark.log_odds = std::min(landmark.log_odds + kSeen, kLargestOdds);
+    landmark.seen_through = 0;
+    std::erase_if(state.vanished, [&](const auto& v) { return v.landmark == landmark.id; });
+    constexpr double kNew = 0.2;
+    const double farther = static_cast<double>(there.farther) / std::max(1, there.samples());
+    if (there.in_view > 0) landmark.open_share += kNew * (farther - landmark.open_share);
+  }
+  return has_gone;
+}
+
 }  // namespace
 
 Covariance6 camera_covariance(const Located& located, const Covariance6& pose_covariance) {
@@ -679,232 +931,29 @@ LandmarksState begin_landmarks(LandmarkMap map, std::int64_t run, const std::opt
 Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
                              const LandmarksConfig& config) {
   Landmarked result;
-  const Tracks& tracks = *frame.tracks;
-  if (frame.is_lost) {
-    for (const Track& track : tracks.list) {
-      const TrackEvidence* evidence = evidence_of(state, track.id);
-      result.tracks.push_back({track.id, evidence != nullptr ? evidence->landmark : LandmarkId::none,
-                               LandmarkRefusal::not_located, false, 0});
-    }
-    result.state = std::move(state);
-    return result;
+  if (!frame.is_lost) {
+    place_camera(state, frame);
+    if (frame.is_new_segment) begin_segment(state, frame, config);
   }
-  place_camera(state, frame);
-  if (frame.is_new_segment) begin_segment(state, frame, config);
-  if (is_guessed(frame)) {
-    // A dark image shows neither an object nor the background, and from a guessed pose everything seems
-    // moved.
-    for (const Track& track : tracks.list) {
-      const TrackEvidence* evidence = evidence_of(state, track.id);
-      const LandmarkOfTrack known =
-          evidence != nullptr ? of_track(*evidence)
-                              : LandmarkOfTrack{track.id, LandmarkId::none, LandmarkRefusal::tentative};
-      result.tracks.push_back(known);
-    }
+  // A dark image shows neither an object nor the background, and from a guessed pose everything seems moved.
+  if (frame.is_lost || is_guessed(frame)) {
+    result.tracks = unchanged_tracks(state, frame);
     result.state = std::move(state);
     return result;
   }
 
-  // Update the evidence of each track.
-  std::erase_if(state.tracks, [&](const TrackEvidence& e) { return track_of(tracks, e.track) == nullptr; });
-  for (const Track& track : tracks.list) {
-    const auto at = std::lower_bound(state.tracks.begin(), state.tracks.end(), track.id,
-                                     [](const TrackEvidence& e, TrackId wanted) { return e.track < wanted; });
-    if (at == state.tracks.end() || at->track != track.id) {
-      TrackEvidence fresh;
-      fresh.track = track.id;
-      fresh.first = std::max(track.first, state.segment_began);
-      if (state.is_located)
-        fresh.floor_before = floor_frames_at(state.map, state.located.map_from_odom(track.position_m));
-      state.tracks.insert(at, fresh);
-    }
-    if (track.object == ObjectId::none) continue;
-    const bool is_cut = std::find(frame.cut.begin(), frame.cut.end(), track.id) != frame.cut.end();
-    gather(*evidence_of(state, track.id), track, frame, is_cut, config);
-  }
-
-  // Match candidates with the map.
-  std::vector<Candidate> candidates;
-  std::vector<LandmarkId> taken;
-  for (const TrackEvidence& evidence : state.tracks) {
-    const Track& track = *track_of(tracks, evidence.track);
-    if (evidence.landmark != LandmarkId::none) {
-      if (track.object != ObjectId::none) taken.push_back(evidence.landmark);
-    } else if (state.is_located ? may_be_recognised(evidence, track, config)
-                                : may_tell_place(evidence, track, config)) {
-      candidates.push_back(candidate_of(evidence, track));
-    }
-  }
-  bool has_change = false;
-  if (!state.is_located) {
-    ++state.frames_not_located;
-    const std::optional<Located> guess = state.has_guess ? std::optional(state.located) : std::nullopt;
-    Recognition found = relocate(state.map, candidates, config, guess);
-    if (found.map_from_odom && !is_contradicted(state, found, frame)) {
-      const Point3 guessed = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
-      state.is_located = true;
-      state.has_guess = false;
-      state.located.map_from_odom = *found.map_from_odom;
-      // The pose was unknown and now comes from the landmarks alone.
-      state.located.covariance = {};
-      for (const std::size_t i : {0U, 5U, 10U}) state.located.covariance[i] = 1;
-      state.located.covariance[15] = 0.1;
-      anchor_here(state, frame);
-      for (const LandmarkPair& pair : found.pairs) bind(state, pair, frame, result.events);
-      correct(state, frame, config);
-      LandmarkEvent event;
-      event.kind = LandmarkEventKind::relocated;
-      event.stamp = frame.stamp;
-      event.position_m = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
-      event.moved_by_m = event.position_m - guessed;
-      double product = 1;
-      for (const LandmarkPair& pair : found.pairs) product *= 1 - pair.score;
-      event.probability = 1 - product;
-      event.frames = {frame.index};
-      result.events.insert(result.events.begin(), event);
-    }
-  } else {
-    const Recognition found = recognise(state.map, candidates, state.located, taken, config);
-    for (const LandmarkPair& pair : found.pairs) {
-      bind(state, pair, frame, result.events);
-      taken.push_back(pair.landmark);
-      has_change = true;
-    }
-    correct(state, frame, config);
-  }
-
-  // Create landmarks and update known ones.
-  std::vector<VisibleArea> shown(tracks.list.size());
-  for (int y = 0; y < frame.ids.height(); ++y) {
-    const TrackId* row = frame.ids.row(y);
-    std::size_t at = 0;
-    for (int x = 0; x < frame.ids.width(); ++x) {
-      if (row[x] == TrackId::none) continue;
-      if (tracks.list[at].id != row[x]) {
-        const Track* track = track_of(tracks, row[x]);
-        if (track == nullptr) continue;
-        at = static_cast<std::size_t>(track - tracks.list.data());
-      }
-      ++shown[at].pixels;
-      shown[at].box = united(shown[at].box, {x, y, 1, 1});
-    }
-  }
-  std::vector<LandmarkId> seen;
-  for (TrackEvidence& evidence : state.tracks) {
-    const Track& track = *track_of(tracks, evidence.track);
-    const bool is_seen = track.object != ObjectId::none;
-    evidence.refusal = refusal_of(evidence, track, config);
-    if (evidence.refusal == LandmarkRefusal::none && !state.is_located)
-      evidence.refusal = LandmarkRefusal::not_located;
-    if (evidence.landmark == LandmarkId::none && evidence.refusal == LandmarkRefusal::none && is_seen) {
-      const Placed here = landmarks::place(candidate_of(evidence, track), state.located);
-      const bool is_beside =
-          std::any_of(state.map.list.begin(), state.map.list.end(), [&](const Landmark& other) {
-            return !other.is_gone && horizontal(other.position_m, point(here.position_m)) <
-                                         std::max(other.size.widest_m, evidence.size.widest_m) / 2;
-          });
-      if (is_beside) {
-        evidence.refusal = LandmarkRefusal::beside_known;
-      } else if (state.map.list.size() >= static_cast<std::size_t>(config.max_known)) {
-        evidence.refusal = LandmarkRefusal::map_full;
-      } else {
-        Landmark fresh;
-        fresh.id = LandmarkId{state.map.next++};
-        fresh.first = evidence.first;
-        state.map.list.push_back(fresh);
-        state.found.push_back(fresh.id);
-        if (evidence.floor_before >= kFloorFrames) state.unreported.push_back(fresh.id);
-        evidence.landmark = fresh.id;
-        evidence.stood_m = track.position_m;
-        has_change = true;
-      }
-    }
-    if (evidence.landmark == LandmarkId::none || !is_seen || !state.is_located) continue;
-    Landmark* landmark = find_in(state.map, evidence.landmark);
-    if (landmark == nullptr) continue;
-    seen.push_back(landmark->id);
-    landmark->last = frame.stamp;
-    landmark->run = state.run;
-    if (track.is_moving || evidence.centres == 0) continue;
-    if (evidence.was_moving) {
-      // Carried in view: the track shows that it is the same object.
-      if (evidence.refusal != LandmarkRefusal::none) continue;
-      const Placed here = landmarks::place(candidate_of(evidence, track), state.located);
-      const Eigen::Vector3d way = here.position_m - vector(landmark->position_m);
-      evidence.was_moving = false;
-      const Matrix3 covariance = here.covariance_m2 + matrix(landmark->covariance_m2);
-      const bool is_same =
-          score_of(candidate_of(evidence, track), *landmark) >= static_cast<double>(config.min_score);
-      if (is_same && way.norm() > static_cast<double>(config.moved) &&
-          way.dot(covariance.ldlt().solve(way)) > 9) {
-        result.events.push_back({LandmarkEventKind::moved,
-                                 frame.stamp,
-                                 landmark->id,
-                                 point(here.position_m),
-                                 point(way),
-                                 probability_of(landmark->log_odds),
-                                 {frame.index}});
-        evidence.before.reset();
-      }
-    }
-    update(*landmark, evidence, track, state, frame);
-    const auto at = static_cast<std::size_t>(&track - tracks.list.data());
-    if (evidence.cut_ago > 0) {
-      const Point3 camera = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
-      show(*landmark, track, shown[at], octant_of(landmark->position_m, camera), frame);
-    }
-  }
-
-  // Update which landmarks are present.
+  gather_all(state, frame, config);
+  const bool has_recognised = match(state, frame, config, result.events);
+  const Updated updated = update_seen(state, frame, config, result.events);
   if (state.is_located) {
-    for (Landmark& landmark : state.map.list) {
-      const bool is_seen = std::find(seen.begin(), seen.end(), landmark.id) != seen.end();
-      const Expectation there = expect(landmark, frame, state.located.map_from_odom);
-      const int samples = std::max(1, there.samples());
-      const double farther = static_cast<double>(there.farther) / samples;
-      if (is_seen) {
-        ++landmark.seen;
-        ++landmark.expected;
-        landmark.log_odds = std::min(landmark.log_odds + kSeen, kLargestOdds);
-        landmark.seen_through = 0;
-        std::erase_if(state.vanished, [&](const auto& v) { return v.landmark == landmark.id; });
-        constexpr double kNew = 0.2;
-        if (there.in_view > 0) landmark.open_share += kNew * (farther - landmark.open_share);
-        continue;
-      }
-      if (landmark.is_gone || there.in_view < kLeastPixels || 2 * there.nearer > samples) continue;
-      ++landmark.expected;
-      if (farther >= std::max(kThroughShare, landmark.open_share + kThroughMargin)) {
-        landmark.log_odds = std::max(landmark.log_odds + kSeenThrough, -kLargestOdds);
-        ++landmark.seen_through;
-        auto vanished = std::find_if(state.vanished.begin(), state.vanished.end(),
-                                     [&](const auto& v) { return v.landmark == landmark.id; });
-        if (vanished == state.vanished.end()) vanished = state.vanished.insert(vanished, {landmark.id, {}});
-        vanished->frames.push_back(frame.index);
-        if (landmark.log_odds < kGone && landmark.seen_through >= kGoneFrames) {
-          landmark.is_gone = true;
-          has_change = true;
-          result.events.push_back({LandmarkEventKind::gone,
-                                   frame.stamp,
-                                   landmark.id,
-                                   landmark.position_m,
-                                   {},
-                                   probability_of(-landmark.log_odds),
-                                   vanished->frames});
-        }
-      } else if (2 * there.agree < samples) {
-        // Another object, or holes: weak evidence against it.
-        landmark.log_odds = std::max(landmark.log_odds + kMissed, -kLargestOdds);
-      }
-    }
+    const bool has_gone = update_presence(state, updated.seen, frame, result.events);
     learn_floor(state.map, frame, state.located.map_from_odom * frame.odom_from_camera);
     constexpr int kSometimes = 10;
-    if (has_change || frame.index % kSometimes == 0) {
+    if (has_recognised || updated.has_added || has_gone || frame.index % kSometimes == 0) {
       for (LandmarkEvent& event : find_moved(state, frame, config)) result.events.push_back(std::move(event));
       for (LandmarkEvent& event : report_new(state, frame, config)) result.events.push_back(std::move(event));
     }
   }
-
   for (const TrackEvidence& evidence : state.tracks) result.tracks.push_back(of_track(evidence));
   result.state = std::move(state);
   return result;

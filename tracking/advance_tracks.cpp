@@ -96,8 +96,7 @@ void update_place(Track& track, const Observation& seen, bool was_cut, Stamp now
     track.has_place = true;
     return;
   }
-  track.as_static.covariance_m2 = seen_anew(track.as_static.covariance_m2, track.extent_m, seen.position_m,
-                                            track.seen_from_m, seen.camera_m);
+  track.as_static = seen_anew(track.as_static, track.extent_m, track.seen_from_m, seen.camera_m);
   const Innovation stands = innovation(track.as_static.position_m, track.as_static.covariance_m2,
                                        seen.position_m, seen.covariance_m2);
   const Innovation moves = innovation(track.as_moving.position_m, of_position(track.as_moving),

@@ -85,10 +85,10 @@ class Costs {
   [[nodiscard]] bool is_joined(ObjectId object) const { return std::ranges::binary_search(joined_, object); }
   /// The innovation of the likelier of the two filters, as the object may start or stop moving.
   [[nodiscard]] Innovation nearest(const Track& track, std::size_t s) const {
-    const Filter3 stands = predicted(track.as_static, dt_s_, double{config_.static_noise});
-    const Covariance3 expected_m2 =
-        seen_anew(stands.covariance_m2, track.extent_m, positions_m_[s], track.seen_from_m, camera_m_);
-    const Innovation a = innovation(stands.position_m, expected_m2, positions_m_[s], covariances_m2_[s]);
+    const Filter3 stands = seen_anew(predicted(track.as_static, dt_s_, double{config_.static_noise}),
+                                     track.extent_m, track.seen_from_m, camera_m_);
+    const Innovation a =
+        innovation(stands.position_m, stands.covariance_m2, positions_m_[s], covariances_m2_[s]);
     const Filter6 moves = predicted(track.as_moving, dt_s_, double{config_.acceleration_noise});
     const Innovation b =
         innovation(moves.position_m, of_position(moves), positions_m_[s], covariances_m2_[s]);

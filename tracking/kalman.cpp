@@ -111,15 +111,16 @@ Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, co
                             jacobian * matrix(pose_covariance) * jacobian.transpose()));
 }
 
-Covariance3 seen_anew(Covariance3 covariance_m2, Vec3 extent_m, Point3 thing_m, Point3 seen_from_m,
-                      Point3 camera_m) {
-  const Vector3 before = vector(seen_from_m - thing_m);
-  const Vector3 now = vector(camera_m - thing_m);
-  if (!(before.norm() > 0 && now.norm() > 0)) return covariance_m2;
-  const double near_side_m = (double{extent_m.x} + double{extent_m.y}) / 8;
-  const double shift_m = near_side_m * (now.normalized() - before.normalized()).norm();
-  for (const std::size_t i : {0U, 4U, 8U}) covariance_m2.at(i) += shift_m * shift_m;
-  return covariance_m2;
+Filter3 seen_anew(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m) {
+  const Eigen::Vector2d before = vector(seen_from_m - filter.position_m).head<2>();
+  const Eigen::Vector2d now = vector(camera_m - filter.position_m).head<2>();
+  if (!(before.norm() > 0 && now.norm() > 0)) return filter;
+  const Eigen::Vector2d turn = now.normalized() - before.normalized();
+  const double width_m = extent_m.x;
+  filter.position_m = filter.position_m + nearer_surface::kShare * width_m * Point3{turn.x(), turn.y(), 0};
+  const double sigma_m = nearer_surface::kSigma * (width_m + double{extent_m.y}) / 2 * turn.norm();
+  for (const std::size_t i : {0U, 4U, 8U}) filter.covariance_m2.at(i) += sigma_m * sigma_m;
+  return filter;
 }
 
 Drift drift_of(const std::vector<Place>& places) {

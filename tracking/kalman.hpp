@@ -32,10 +32,9 @@ Filter6 updated(const Filter6& filter, Point3 measured_m, const Covariance3& mea
 Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, const Pose& map_from_camera,
                    const Covariance6& pose_covariance);
 
-/// The covariance of an object seen from a new side: only its near side is measured, whose centre is assumed
-/// to be a quarter of its extent in front of its own. `covariance` plus the effect of this shift.
-Covariance3 seen_anew(Covariance3 covariance_m2, Vec3 extent_m, Point3 thing_m, Point3 seen_from_m,
-                      Point3 camera_m);
+/// A static object seen from a new side: the centre of its visible surface is on the other side of its own, by
+/// the shares of nearer_surface.
+Filter3 seen_anew(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m);
 
 /// A linear motion through positions (least squares, constant weights).
 struct Drift {

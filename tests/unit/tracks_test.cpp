@@ -125,15 +125,24 @@ TEST(InMap, RotatesTheCovarianceAndAddsThePoses) {
   EXPECT_NEAR(found[8], 0, 1e-12);
 }
 
-TEST(SeenAnew, AnotherSideMayBeOffsetByAQuarterOfTheExtent) {
-  const Vec3 extent{0.6F, 0.2F, 0};  // a quarter of the mean: 0.1 m
-  const Covariance3 before = variances(0.01);
-  EXPECT_EQ(seen_anew(before, extent, {0, 0, 0}, {2, 0, 0}, {3, 0, 0}),
-            before);  // nearer, from the same side
-  const Covariance3 quarter = seen_anew(before, extent, {0, 0, 0}, {2, 0, 0}, {0, 3, 0});
-  EXPECT_NEAR(quarter[0], 0.01 + 2 * 0.01, 1e-8);  // a chord of √2
-  const Covariance3 behind = seen_anew(before, extent, {0, 0, 0}, {2, 0, 0}, {-1, 0, 0});
-  EXPECT_NEAR(behind[8], 0.01 + 4 * 0.01, 1e-8);
+TEST(SeenAnew, TheVisibleSurfaceMovesAroundTheCentre) {
+  const Vec3 extent{0.6F, 0.2F, 0};
+  const double shift = nearer_surface::kShare * 0.6;
+  const double sigma = nearer_surface::kSigma * 0.4;
+  const Filter3 before{{1, 0, 0.5}, variances(0.01)};
+  const Filter3 nearer = seen_anew(before, extent, {3, 0, 1}, {2, 0, 1});
+  EXPECT_EQ(nearer.position_m, before.position_m);  // from the same side
+  EXPECT_EQ(nearer.covariance_m2, before.covariance_m2);
+  const Filter3 quarter = seen_anew(before, extent, {3, 0, 1}, {1, 3, 1});
+  EXPECT_NEAR(quarter.position_m.x, 1 - shift, 1e-7);
+  EXPECT_NEAR(quarter.position_m.y, shift, 1e-7);
+  EXPECT_EQ(quarter.position_m.z, 0.5);
+  EXPECT_NEAR(quarter.covariance_m2[0], 0.01 + 2 * sigma * sigma, 1e-7);  // a chord of √2
+  const Filter3 behind = seen_anew(before, extent, {3, 0, 1}, {-1, 0, 1});
+  EXPECT_NEAR(behind.position_m.x, 1 - 2 * shift, 1e-7);
+  EXPECT_NEAR(behind.covariance_m2[8], 0.01 + 4 * sigma * sigma, 1e-7);
+  const Filter3 above = seen_anew(before, extent, {3, 0, 1}, {1, 0, 3});
+  EXPECT_EQ(above.position_m, before.position_m);
 }
 
 TEST(DriftOf, IsTheSlopeOfTheStraightLine) {
