@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "tune_sequence.hpp"
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/tuning/search.hpp>
 #include <chrono>
@@ -35,6 +36,68 @@ std::string text(double steadiness) {
   return text_of("%.3f", steadiness);
 }
 
+std::vector<io::SequenceFrame> held_frames(io::Sequence& source, const std::string& name) {
+  std::vector<io::SequenceFrame> frames;
+  while (frames.size() < kMostFrames) {
+    std::optional<io::SequenceFrame> frame = source.next();
+    if (!frame) break;
+    frames.push_back(std::move(*frame));
+  }
+  if (frames.size() < kFewestFrames) {
+    throw Error(name + ": has " + std::to_string(frames.size()) + " frames, expected " +
+                std::to_string(kFewestFrames) + " or more to judge steadiness");
+  }
+  return frames;
+}
+
+/// The steadiness of the frames tuned on and of those held out.
+struct Compared {
+  SteadinessRun before;
+  SteadinessRun best;
+  std::size_t tuned_on = 0;
+  [[nodiscard]] std::size_t count() const { return before.frames.size(); }
+  [[nodiscard]] bool is_luck() const {
+    return tuned_on < count() && best.mean(tuned_on, count()) < before.mean(tuned_on, count());
+  }
+  [[nodiscard]] const std::vector<Setting>& kept(const SearchResult& found) const {
+    return is_luck() ? found.start : found.best;
+  }
+};
+
+void print(const Compared& runs, const SearchResult& found) {
+  std::cout << "steadiness: " << text(runs.before.mean(0, runs.tuned_on)) << " before, "
+            << text(runs.best.mean(0, runs.tuned_on)) << " after";
+  if (runs.tuned_on < runs.count()) {
+    std::cout << "; of the frames held out " << text(runs.before.mean(runs.tuned_on, runs.count())) << ", "
+              << text(runs.best.mean(runs.tuned_on, runs.count()));
+  }
+  std::cout << "\n";
+  const std::vector<Setting>& kept = runs.kept(found);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] == found.start[i]) continue;
+    std::cout << "  " << kept[i].option << ": " << found.start[i].value << " -> " << kept[i].value << "\n";
+  }
+  if (runs.is_luck()) {
+    std::cout << "The options are unchanged: the best found is worse on the frames held out.\n";
+  } else if (kept == found.start) {
+    std::cout << "The options are unchanged: no other setting is clearly steadier.\n";
+  }
+}
+
+SearchConfig search_config(const TuneSequenceOptions& options, const std::vector<Tunable>& tried,
+                           const Config& start) {
+  SearchConfig config;
+  config.seed = options.seed;
+  config.margin = kLeastGain;
+  if (options.evaluations > 0) config.evaluations = options.evaluations;
+  config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
+    const std::vector<OptionInfo> active = active_options(with_settings(start, settings));
+    return std::any_of(active.begin(), active.end(),
+                       [&](const OptionInfo& option) { return option.name == tried[i].name; });
+  };
+  return config;
+}
+
 }  // namespace
 
 int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()>& stop) {
@@ -49,16 +112,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   start.segmentation.ground.known = source->ground();
   validate(start);
 
-  std::vector<io::SequenceFrame> frames;
-  while (frames.size() < kMostFrames) {
-    std::optional<io::SequenceFrame> frame = source->next();
-    if (!frame) break;
-    frames.push_back(std::move(*frame));
-  }
-  if (frames.size() < kFewestFrames) {
-    throw Error(options.source + ": has " + std::to_string(frames.size()) + " frames, expected " +
-                std::to_string(kFewestFrames) + " or more to judge steadiness");
-  }
+  const std::vector<io::SequenceFrame> frames = held_frames(*source, options.source);
   const double share = options.holdout.value_or(0.25);
   const std::size_t count = frames.size() - 1;  // the first frame has no predecessor
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
@@ -102,15 +156,6 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
       all.push_back({1 + 2 * reference - double{steady.frames[i]}, 1, 0});
     return all;
   };
-  SearchConfig config;
-  config.seed = options.seed;
-  config.margin = kLeastGain;
-  if (options.evaluations > 0) config.evaluations = options.evaluations;
-  config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
-    for (const OptionInfo& option : active_options(with_settings(start.segmentation, settings)))
-      if (option.name == options_tried[i].name) return true;
-    return false;
-  };
   const SearchResult found = search(
       options_tried, from,
       [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
@@ -122,32 +167,19 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
         latest = std::move(*steady);
         return losses(latest);
       },
-      config, [&](const std::vector<Setting>&) { best = latest; });
+      search_config(options, options_tried, start.segmentation),
+      [&](const std::vector<Setting>&) { best = latest; });
   progress.clear();
 
-  const double held_before = before->mean(tuned_on, count);
-  const double held_after = best.mean(tuned_on, count);
-  const bool is_luck = tuned_on < count && held_after < held_before;
-  const std::vector<Setting>& kept = is_luck ? found.start : found.best;
+  const Compared runs{*before, best, tuned_on};
   std::cout << frames.size() << " frames, " << options_tried.size() << " options, " << tried << " runs in "
             << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
-  std::cout << "steadiness: " << text(reference) << " before, " << text(best.mean(0, tuned_on)) << " after";
-  if (tuned_on < count)
-    std::cout << "; of the frames held out " << text(held_before) << ", " << text(held_after);
-  std::cout << "\n";
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (kept[i] == found.start[i]) continue;
-    std::cout << "  " << kept[i].option << ": " << found.start[i].value << " -> " << kept[i].value << "\n";
-  }
-  if (is_luck) {
-    std::cout << "The options are unchanged: the best found is worse on the frames held out.\n";
-  } else if (kept == found.start) {
-    std::cout << "The options are unchanged: no other setting is clearly steadier.\n";
-  }
-  io::write_file(options.output, "# Written by cairn tune --sequence: steadiness " + text(reference) +
-                                     " before, " + text(is_luck ? reference : best.mean(0, tuned_on)) +
-                                     " after.\n" +
-                                     io::changed_config_yaml(base.preset, with_settings(base.config, kept)));
+  print(runs, found);
+  const double after = runs.is_luck() ? reference : best.mean(0, tuned_on);
+  io::write_file(options.output,
+                 "# Written by cairn tune --sequence: steadiness " + text(reference) + " before, " +
+                     text(after) + " after.\n" +
+                     io::changed_config_yaml(base.preset, with_settings(base.config, runs.kept(found))));
   std::cout << "wrote " << options.output << ", for --config\n";
   return 0;
 }

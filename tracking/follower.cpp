@@ -111,19 +111,59 @@ Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<Mot
   return step;
 }
 
-Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
-                      const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+void Follower::check(const StereoPair& pair, Stamp stamp) const {
   const auto refuse = [&](const std::string& why) {
     throw Error("frame " + std::to_string(state_.frames) + ": " + why);
   };
-  if (state_.size && *state_.size != pair.size()) {
+  if (state_.size && *state_.size != pair.size())
     refuse("is " + text(pair.size()) + ", the first one is " + text(*state_.size));
-  }
   if (state_.frames > 0 && stamp <= state_.before) {
     refuse("its stamp " + std::to_string(stamp.ns) + " ns is not later than the one before, " +
            std::to_string(state_.before.ns) + " ns");
   }
+}
 
+Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const SeenDisparity& seen,
+                             const std::optional<MotionPrior>& prior,
+                             const std::optional<Pose>& map_from_camera) {
+  OdometryState& odometry = state_.odometry;
+  if (state_.frames == 0) {
+    odometry = begin_odometry(map_from_camera.value_or(first_pose(seen.ground, rig_)));
+    state_.is_over_floor = !map_from_camera && seen.ground.plane.has_value();
+  }
+  Motion motion;
+  if (map_from_camera) {
+    motion.refusal = MotionRefusal::off;
+    motion.now_from_before = inverse(*map_from_camera) * odometry.map_from_camera;
+    odometry = begin_odometry(*map_from_camera);  // the start if a later frame has no pose
+    return motion;
+  }
+  if (!rig_) {
+    motion.refusal = MotionRefusal::no_rig;
+    return motion;
+  }
+  const bool has_wheels = prior && prior->kind == PriorKind::wheels;
+  const Pose expected_step = has_wheels ? prior->now_from_before : odometry.last_step;
+  const Image<std::uint8_t> moving =
+      expected_movers(state_.remembered, state_.tracks, odometry.map_from_camera * inverse(expected_step),
+                      stamp, *rig_, pair.size(), exec_);
+  OdometryStep moved = advance_odometry(odometry, pair.left(), seen.disparity, seen.confidence, moving, *rig_,
+                                        prior, config_.odometry);
+  const Pose before = odometry.map_from_camera;
+  odometry = std::move(moved.state);
+  motion = moved.motion;
+  if (motion.is_new_segment && state_.is_over_floor) {
+    if (const auto level = levelled(odometry.map_from_camera, seen.ground, rig_)) {
+      odometry = stood_on_floor(std::move(odometry), *level);
+      motion.now_from_before = inverse(*level) * before;
+    }
+  }
+  return motion;
+}
+
+Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+                      const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+  check(pair, stamp);
   Step step;
   step.index = state_.frames;
   step.stamp = stamp;
@@ -140,39 +180,13 @@ Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<M
   } else {
     step.frame = segment(pair, rig_, config, exec_);
   }
-  const DisparityMap& disparity = has_tree ? grown.cut.scene.found.disparity : step.frame.disparity;
-  const Ground& ground = has_tree ? grown.cut.scene.found.ground : step.frame.ground;
-  const Image<float>& confidence = has_tree ? grown.confidence : step.frame.confidence;
+  const SceneDisparity& found = grown.cut.scene.found;
+  const SeenDisparity seen =
+      has_tree ? SeenDisparity{found.disparity, found.ground, grown.confidence}
+               : SeenDisparity{step.frame.disparity, step.frame.ground, step.frame.confidence};
 
   // … estimate the camera motion …
-  if (state_.frames == 0) {
-    state_.odometry = begin_odometry(map_from_camera.value_or(first_pose(ground, rig_)));
-    state_.is_over_floor = !map_from_camera && ground.plane.has_value();
-  }
-  if (map_from_camera) {
-    step.motion.refusal = MotionRefusal::off;
-    step.motion.now_from_before = inverse(*map_from_camera) * state_.odometry.map_from_camera;
-    state_.odometry = begin_odometry(*map_from_camera);  // the start if a later frame has no pose
-  } else if (rig_) {
-    const bool has_wheels = prior && prior->kind == PriorKind::wheels;
-    const Pose expected_step = has_wheels ? prior->now_from_before : state_.odometry.last_step;
-    const Image<std::uint8_t> moving = expected_movers(
-        state_.remembered, state_.tracks, state_.odometry.map_from_camera * inverse(expected_step), stamp,
-        *rig_, pair.size(), exec_);
-    OdometryStep moved = advance_odometry(state_.odometry, pair.left(), disparity, confidence, moving, *rig_,
-                                          prior, config_.odometry);
-    const Pose before = state_.odometry.map_from_camera;
-    state_.odometry = std::move(moved.state);
-    step.motion = moved.motion;
-    if (step.motion.is_new_segment && state_.is_over_floor) {
-      if (const auto level = levelled(state_.odometry.map_from_camera, ground, rig_)) {
-        state_.odometry = stood_on_floor(std::move(state_.odometry), *level);
-        step.motion.now_from_before = inverse(*level) * before;
-      }
-    }
-  } else {
-    step.motion.refusal = MotionRefusal::no_rig;
-  }
+  step.motion = move_camera(pair, stamp, seen, prior, map_from_camera);
   const Pose& pose = step.map_from_camera = state_.odometry.map_from_camera;
   step.pose_covariance = state_.odometry.covariance;
   step.is_lost = state_.odometry.lost;
