@@ -5,7 +5,7 @@
 
 The rendered rooms have exact truth. Measures floor and obstacles per pixel, and for each object found (IoU of 0.5 or
 more) its depth, depth interval, extent and box. Prints a table with the fit and the validation sets in columns. --fit
-fits on the fit set the three coefficients of locate() that predict the error of a median disparity, and the seven of
+fits on the fit set the three coefficients of locate() that predict the error of a median disparity, and the six of
 sight() that predict that of a mask's centre. The trees of refine_objects() have seen the fit set, so these
 coefficients come out too small.
 """
@@ -133,7 +133,7 @@ def measure(folders):
             low, high = found.depth_interval_m
             points = truth.points[mask]
             row = dict(depth=depth, off=abs(found.distance_m - depth), inside=low <= depth <= high,
-                       extent=[e / span(p) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
+                       across=across_ray(truth, found, mask), extent=[e / span(p) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
             if found.box_on_floor and truth.floor_frame:
                 row["box"] = [ours / true for ours, true in zip(found.box_on_floor.size_m, box_size(points, truth.floor_frame))]
             rows.append(row)
@@ -153,6 +153,7 @@ def measure(folders):
         "objects found": f"{len(rows)}",
         "depth at 2–4 m, objects": f"{len(near)}",
         "… error, median / 90th percentile": f"{100 * np.median(near):.1f} / {100 * np.quantile(near, 0.9):.1f} cm",
+        "position across the ray, error, median / 90th percentile": across_text([row["across"] for row in rows if row["across"] is not None]),
         "true depth in the 95 % interval": f"{100 * np.mean([row['inside'] for row in rows]):.1f} %",
         "extent more than twice too large, width / height / depth": " / ".join(f"{100 * s:.0f}" for s in (extents > 2).mean(0)) + " %",
         "size of the box on the floor, median error": f"{100 * np.median(np.abs(boxes - 1)):.1f} %",
@@ -178,11 +179,21 @@ def middle_of(truth, found, mask):
         return None
     px, py, pz = found.position_in_camera_m
     off = np.subtract((px, py, pz), truth.points[mask].mean(0))
-    x, y, w, h = found.box_px
     c = min(max(found.confidence, 0.02), 0.99)
     return [off[0] - off[2] * px / pz, off[1] - off[2] * py / pz, off[2], pz / truth.rig.focal_px, *found.extent_in_camera_m,
-            math.log((1 - c) / c), x == 0 or x + w == mask.shape[1], y == 0 or y + h == mask.shape[0],
-            pz * pz * found.disparity_sigma_px / (truth.rig.focal_px * truth.rig.baseline_m)]
+            math.log((1 - c) / c), pz * pz * found.disparity_sigma_px / (truth.rig.focal_px * truth.rig.baseline_m)]
+
+
+def across_ray(truth, found, mask):
+    """Distance of an object's position from the ray through the middle of its visible part, at the depth of that, in m."""
+    if found.position_in_camera_m is None:
+        return None
+    middle = truth.points[mask].mean(0)
+    return np.hypot(*(np.array(found.position_in_camera_m[:2]) / found.position_in_camera_m[2] * middle[2] - middle[:2]))
+
+
+def across_text(errors):
+    return f"{100 * np.median(errors):.1f} / {100 * np.quantile(errors, 0.9):.1f} cm"
 
 
 def fit_sigma(signs, errors):
@@ -200,17 +211,16 @@ def fit_middle(rows):
     """The numbers of sight() in tracking/sight.cpp before they are widened: standard deviations of an object's position
     against the mean point of its visible part, across the ray by width and height and along it. The likeliest scales of
     Student's t with 3 degrees of freedom, since a few masks miss half of an object."""
-    off_x, off_y, off_z, pixel, width, height, depth, odds, cut_x, cut_y, sigma_z = np.array(rows, float).T
+    off_x, off_y, off_z, pixel, width, height, depth, odds, sigma_z = np.array(rows, float).T
 
     def loss(logs):
-        edge, wide, high, cut, disparity, deep = np.exp(logs[:6])
-        doubt = np.exp(logs[6] * odds)
-        scales = [np.sqrt((edge * pixel) ** 2 + ((doubt * share) ** 2 + (is_cut * cut) ** 2) * extent**2)
-                  for share, is_cut, extent in ((wide, cut_x, width), (high, cut_y, height))]
+        edge, wide, high, disparity, deep = np.exp(logs[:5])
+        doubt = np.exp(logs[5] * odds)
+        scales = [np.hypot(edge * pixel, doubt * share * extent) for share, extent in ((wide, width), (high, height))]
         scales.append(np.hypot(disparity * sigma_z, deep * depth))
         return sum(np.mean(np.log(s) + 2 * np.log1p((e / s) ** 2 / 3)) for e, s in zip((off_x, off_y, off_z), scales))
 
-    best = np.array([-0.3, -2.8, -2.0, -2.4, -0.6, -3.0, 0.45])
+    best = np.array([-0.3, -2.8, -2.0, -0.6, -3.0, 0.45])
     step = 0.5
     while step > 1e-3:  # along each number in turn
         moves = [best + sign * step * direction for direction in np.eye(len(best)) for sign in (1, -1)]
@@ -219,7 +229,7 @@ def fit_middle(rows):
             best = least
         else:
             step /= 2
-    return len(rows), [*np.exp(best[:6]), best[6]]
+    return len(rows), [*np.exp(best[:5]), best[5]]
 
 
 def main():
@@ -235,7 +245,7 @@ def main():
         count, (bias, spread, seen) = fit_sigma(signs, errors)
         print(f"{count} objects: bias {bias:.3f}, spread {spread:.3f}, seen {seen:.3f}")
         count, numbers = fit_middle([row for row in middles if row])
-        names = ["edge px", "width share", "height share", "cut share", "disparity share", "depth share", "doubt power"]
+        names = ["edge px", "width share", "height share", "disparity share", "depth share", "doubt power"]
         print(f"{count} objects, middle: " + ", ".join(f"{name} {number:.3f}" for name, number in zip(names, numbers)))
         return
     found = {name: measure(of) for name, of in folders.items()}

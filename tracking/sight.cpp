@@ -26,13 +26,12 @@ constexpr double kCutShare = 0.289;
 /// Standard deviations of the error that persists, fitted to objects of single frames
 /// (./dev bench geometry --fit).
 namespace steady {
-constexpr double kEdgeSigma = 0.76;       // px, of an edge
-constexpr double kWidthShare = 0.062;     // of the extent, at a confidence of 0.5
-constexpr double kHeightShare = 0.129;    // legs and leaves are lost below and above
-constexpr double kCutShare = 0.09;        // of the extent that the image border cuts
+constexpr double kEdgeSigma = 0.36;       // px, of an edge
+constexpr double kWidthShare = 0.049;     // of the extent, at a confidence of 0.5
+constexpr double kHeightShare = 0.117;    // legs and leaves are lost below and above
 constexpr double kDisparityShare = 0.56;  // of the disparity's standard deviation
 constexpr double kDepthShare = 0.052;     // of the depth extent
-constexpr double kDoubtPower = 0.458;     // of the odds against the mask
+constexpr double kDoubtPower = 0.536;     // of the odds against the mask
 // A few masks miss half of an object. Chosen for the tracks of the fit set: docs/stages/tracking.md
 constexpr double kWidened = 1.5;
 }  // namespace steady
@@ -172,20 +171,17 @@ Covariance3 covariance_of(Point3 p, Vec3 extent_m, const Object& object, Cut cut
   return around_ray(p, across(extent_m.x, cut.x), across(extent_m.y, cut.y), z);
 }
 
-Covariance3 steady_covariance_of(Point3 p, Vec3 extent_m, const Object& object, Cut cut,
-                                 const StereoRig& rig) {
-  const double focal = rig.focal_px;
+/// The centre is that of the visible part, so the image border makes it no less certain.
+Covariance3 steady_covariance_of(Point3 p, Vec3 extent_m, const Object& object, const StereoRig& rig) {
   const double c = std::clamp(double{object.confidence}, 0.02, 0.99);
   const double doubt = std::pow((1 - c) / c, steady::kDoubtPower);
-  const auto across = [&](double share, float extent, bool is_cut) {
-    const double edge = p.z * steady::kEdgeSigma / focal;
-    return steady::kWidened * std::hypot(edge, doubt * share * double{extent},
-                                         is_cut ? steady::kCutShare * double{extent} : 0.0);
+  const double edge = p.z * steady::kEdgeSigma / double{rig.focal_px};
+  const auto across = [&](double share, float extent) {
+    return steady::kWidened * std::hypot(edge, doubt * share * double{extent});
   };
   const double z = steady::kWidened * std::hypot(steady::kDisparityShare * depth_sigma_m(p, object, rig),
                                                  steady::kDepthShare * double{extent_m.z});
-  return around_ray(p, across(steady::kWidthShare, extent_m.x, cut.x),
-                    across(steady::kHeightShare, extent_m.y, cut.y), z);
+  return around_ray(p, across(steady::kWidthShare, extent_m.x), across(steady::kHeightShare, extent_m.y), z);
 }
 
 }  // namespace
@@ -220,8 +216,7 @@ std::vector<Sighting> sight(const Frame& frame, View<const Gray> left, View<cons
       seen.extent_m = object.extent_in_camera_m.value_or(Vec3{});
       seen.covariance_in_camera_m2 =
           covariance_of(seen.position_in_camera_m, seen.extent_m, object, cut, *rig);
-      seen.steady_in_camera_m2 =
-          steady_covariance_of(seen.position_in_camera_m, seen.extent_m, object, cut, *rig);
+      seen.steady_in_camera_m2 = steady_covariance_of(seen.position_in_camera_m, seen.extent_m, object, *rig);
       if (floor) seen.height_over_floor_m = floor->to_floor(p).z;
     }
     sightings.push_back(seen);

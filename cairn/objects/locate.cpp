@@ -363,21 +363,45 @@ FloorBox box_on(const FloorFrame& floor, Points in_camera, const Exec& exec) {
 
 // ---- objects ----
 
-void place(Object& object, const Part& part, const Image<float>& disparity_px,
-           const std::optional<FloorFrame>& floor, const StereoRig& rig, const Exec& exec) {
-  std::int64_t sum_x = 0;
-  std::int64_t sum_y = 0;
-  std::int64_t count = 0;
-  for (const auto& [y, first, last] : part.main) {
-    const std::int64_t run = last - first;
-    count += run;
-    sum_x += run * (first + last - 1);
-    sum_y += run * y;
+struct Centroid {
+  double x = 0;
+  double y = 0;
+};
+
+/// The centroid of each object's mask, px.
+std::vector<Centroid> centroids_of(const Objects& objects) {
+  struct Sums {
+    std::int64_t count = 0;
+    std::int64_t twice_x = 0;
+    std::int64_t y = 0;
+  };
+  std::vector<Sums> sums(objects.list.size() + 1);
+  for (int y = 0; y < objects.labels.height(); ++y) {
+    const ObjectId* const row = objects.labels.row(y);
+    for (int x = 0; x < objects.labels.width();) {
+      const int first = x++;
+      while (x < objects.labels.width() && row[x] == row[first]) ++x;
+      if (row[first] == ObjectId::none) continue;
+      Sums& of = sums[slot(number(row[first]))];
+      const std::int64_t run = x - first;
+      of.count += run;
+      of.twice_x += run * (first + x - 1);
+      of.y += run * y;
+    }
   }
-  const double x = static_cast<double>(sum_x) / (2.0 * static_cast<double>(count));
-  const double y = static_cast<double>(sum_y) / static_cast<double>(count);
-  object.position_in_camera_m =
-      rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), object.disparity_px);
+  std::vector<Centroid> centroids;
+  for (std::size_t i = 1; i < sums.size(); ++i) {
+    const double count = static_cast<double>(std::max<std::int64_t>(sums[i].count, 1));
+    centroids.push_back(
+        {static_cast<double>(sums[i].twice_x) / (2 * count), static_cast<double>(sums[i].y) / count});
+  }
+  return centroids;
+}
+
+void place(Object& object, Centroid centroid, const Part& part, const Image<float>& disparity_px,
+           const std::optional<FloorFrame>& floor, const StereoRig& rig, const Exec& exec) {
+  object.position_in_camera_m = rig.point_in_camera_m(static_cast<float>(centroid.x),
+                                                      static_cast<float>(centroid.y), object.disparity_px);
   if (!object.position_in_camera_m) return;
   if (!is_near(*object.position_in_camera_m)) {
     object.position_in_camera_m.reset();
@@ -426,6 +450,8 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
                const std::optional<StereoRig>& rig, const Exec& exec) {
   if (objects.list.empty()) return objects;
   std::vector<Part> parts = parts_of(objects, disparity.disparity_px, exec);
+  const std::vector<Centroid> centroids =
+      rig ? centroids_of(objects) : std::vector<Centroid>(objects.list.size());
   const auto floor = floor_frame(ground, rig);
   parallel_for(exec, static_cast<int>(parts.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i) {
@@ -437,7 +463,8 @@ Objects locate(Objects objects, const DisparityMap& disparity, const Ground& gro
       object.box_on_floor.reset();
       if (parts[i].main.empty()) continue;
       object.disparity_sigma_px = sigma_px(parts[i].disparities_px, object.valid_share, exec);
-      if (rig) place(object, parts[i], disparity.disparity_px, floor, *rig, exec);
+      if (!rig) continue;
+      place(object, centroids[i], parts[i], disparity.disparity_px, floor, *rig, exec);
     }
   });
   return objects;

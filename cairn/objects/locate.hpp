@@ -9,10 +9,11 @@ namespace cairn {
 
 /// Locates objects: adds the uncertainty of their disparity and, with a rig, position, depth interval and
 /// extent, and with a ground the box on the floor.
-/// All are measured on the main part of an object: the largest component of its mask whose 4-neighbours
-/// differ by at most 1 px of disparity, and the other pixels of the mask with a disparity within the
-/// component's range. So background or another object within the mask does not stretch it, and a hole that
-/// divides it does not shorten it. The depth is that of disparity_px, which also orders the objects.
+/// The position is the centroid of the whole mask, at the depth of disparity_px, which also orders the
+/// objects. Extent and box are measured on the main part of an object: the largest component of its mask whose
+/// 4-neighbours differ by at most 1 px of disparity, and the other pixels of the mask with a disparity within
+/// the component's range. So background or another object within the mask does not stretch them, and a hole
+/// that divides it does not shorten them.
 /// (docs/stages/objects.md, beyond the paper)
 Objects locate(Objects objects, const DisparityMap& disparity, const Ground& ground,
                const std::optional<StereoRig>& rig, const Exec& exec);

@@ -55,7 +55,7 @@ struct Object {
 
   // Set by locate(). Metres need a rig and a finite depth.
   float disparity_sigma_px = 0;              // standard deviation of disparity_px
-  std::optional<Vec3> position_in_camera_m;  // centre of the main part, at the depth of disparity_px
+  std::optional<Vec3> position_in_camera_m;  // centroid of the mask, at the depth of disparity_px
   std::optional<Interval> depth_interval_m;  // 95 % interval of the z of its position
   std::optional<Vec3> extent_in_camera_m;    // of the main part, without outliers
   std::optional<FloorBox> box_on_floor;      // also needs a ground

@@ -318,7 +318,7 @@ class Object:
     distance_m: Optional[float] = (
         "z of its position, m; None without a rig", lambda self: self.position_in_camera_m and self.position_in_camera_m[2])
     position_in_camera_m: Optional[Tuple[float, float, float]] = (
-        "(x right, y down, z forward), m: centre of its main part, at the depth of disparity_px; None without a rig")
+        "(x right, y down, z forward), m: centroid of its mask, at the depth of disparity_px; None without a rig")
     extent_in_camera_m: Optional[Tuple[float, float, float]] = (
         "(x, y, z), m: size of the box around the points of its main part, without outliers; None without a rig")
     depth_interval_m: Optional[Tuple[float, float]] = (

@@ -103,6 +103,17 @@ TEST(Locate, AFewOutliersOfOneSurfaceDoNotStretchTheExtent) {
   EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->z, (10 / 4.5 - 2) * 10 / 9, 1e-4);
 }
 
+TEST(Locate, ThePositionIsThatOfTheMaskEvenWhereItHasHoles) {
+  Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
+  for (int y = 8; y < 15; ++y) {
+    for (int x = 20; x < 30; ++x) scene.disparity.disparity_px(x, y) = kNan;
+  }
+  for (int y = 5; y < 10; ++y) scene.objects.labels(20, y) = ObjectId::none;
+  const Object object = scene.located(kRig).list[0];
+  EXPECT_NEAR(object.position_in_camera_m->x, (9.5 * 50 + 10 * 45) / 95 * 0.02 - 5 * 0.02, 1e-5);
+  EXPECT_NEAR(object.position_in_camera_m->y, ((9.5 * 100 - 7 * 5) / 95 - 10) * 0.02, 1e-5);
+}
+
 TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
   // Of the mask's 100 pixels, 40 are behind the rest by more than a pixel of disparity.
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
@@ -112,7 +123,7 @@ TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
   const Object object = scene.located(kRig).list[0];
   EXPECT_NEAR(object.extent_in_camera_m->x, 5 * 0.02 * 10 / 9, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
-  EXPECT_NEAR(object.position_in_camera_m->x, 2.5 * 0.02, 1e-5);
+  EXPECT_NEAR(object.position_in_camera_m->x, 4.5 * 0.02, 1e-5);  // of the whole mask
 }
 
 TEST(Locate, KeepsPartsSeparatedByAHoleAtTheSameDepth) {
@@ -226,11 +237,14 @@ TEST(Locate, TheMainPartIsThatOfTheDefinition) {
     }
     const Objects found = scene.located(kRig, {}, round % 3 + 1);
     for (const Object& object : found.list) {
-      double sum = 0;
-      const auto part = main_part(scene, object.id);
-      for (const auto& [x, y] : part) sum += x;
-      const double middle = sum / static_cast<double>(part.size());
-      EXPECT_NEAR(object.position_in_camera_m->x, (middle - 20) * object.position_in_camera_m->z / 100, 1e-5);
+      std::vector<float> across_m;
+      for (const auto& [x, y] : main_part(scene, object.id))
+        across_m.push_back(static_cast<float>(x - 20) * 10 / scene.disparity.disparity_px(x, y) / 100);
+      std::sort(across_m.begin(), across_m.end());
+      const auto at = [&](std::size_t percent) {
+        return across_m[(percent * (across_m.size() - 1) + 50) / 100];
+      };
+      EXPECT_NEAR(object.extent_in_camera_m->x, (at(95) - at(5)) * 10 / 9, 1e-5);
     }
   }
 }
