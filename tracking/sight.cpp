@@ -26,12 +26,12 @@ constexpr double kCutShare = 0.289;
 /// Standard deviations of the error that persists, fitted to objects of single frames
 /// (./dev bench geometry --fit).
 namespace steady {
-constexpr double kEdgeSigma = 0.36;       // px, of an edge
-constexpr double kWidthShare = 0.049;     // of the extent, at a confidence of 0.5
-constexpr double kHeightShare = 0.117;    // legs and leaves are lost below and above
+constexpr double kEdgeSigma = 0.32;       // px, of an edge
+constexpr double kWidthShare = 0.044;     // of the extent, at a confidence of 0.5
+constexpr double kHeightShare = 0.105;    // legs and leaves are lost below and above
 constexpr double kDisparityShare = 0.56;  // of the disparity's standard deviation
 constexpr double kDepthShare = 0.052;     // of the depth extent
-constexpr double kDoubtPower = 0.536;     // of the odds against the mask
+constexpr double kDoubtPower = 0.516;     // of the odds against the mask
 // A few masks miss half of an object. Chosen for the tracks of the fit set: docs/stages/tracking.md
 constexpr double kWidened = 1.5;
 }  // namespace steady

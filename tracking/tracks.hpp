@@ -52,11 +52,11 @@ void fields(TrackingConfig& c, V&& v) {
 }
 
 /// The centre of an object's visible surface is nearer to the camera than its own centre, by this share of its
-/// width. Measured on 335 objects of the rendered rooms of the fit set: median 0.26, 16th and 84th percentile
-/// 0.11 and 0.39; sideways 0.06 at the 84th.
+/// width. Measured on 301 objects of the rendered rooms of the fit set: median 0.25, 16th and 84th percentile
+/// 0.14 and 0.37; sideways 0.07 at the 84th.
 namespace nearer_surface {
-inline constexpr double kShare = 0.26;
-inline constexpr double kSigma = 0.14;
+inline constexpr double kShare = 0.25;
+inline constexpr double kSigma = 0.12;
 }  // namespace nearer_surface
 
 /// Colours in CIE L*a*b*: 8 bins of lightness, then 8×8 of a and b; each part sums to 1. For a grey image the

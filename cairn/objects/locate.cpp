@@ -119,8 +119,8 @@ Interval without_tails(std::span<float> values, std::size_t percent, const Exec&
   const auto [low, high] = values_at_ranks(values, rank_of(percent, n), rank_of(100 - percent, n), exec);
   return {low, high};
 }
-constexpr std::size_t kTailOfBox = 1;     // %; few points are visible at the far ends of the sides
-constexpr std::size_t kTailOfExtent = 5;  // %; depth has more outliers than width
+constexpr std::size_t kTail = 1;         // %; few points are visible at the far ends of an object's sides
+constexpr std::size_t kTailOfDepth = 5;  // %; depth has more outliers than width
 
 float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& exec) {
   const std::size_t n = disparities_px.size();
@@ -260,7 +260,7 @@ std::array<Interval, 2> sides_of(std::span<const float> xs, std::span<const floa
   for (auto& axis : room) axis.resize(xs.size());
   kernels::point_kernels(exec).turn(xs.data(), ys.data(), static_cast<int>(xs.size()), cosine, sine,
                                     room[0].data(), room[1].data());
-  return {without_tails(room[0], kTailOfBox, exec), without_tails(room[1], kTailOfBox, exec)};
+  return {without_tails(room[0], kTail, exec), without_tails(room[1], kTail, exec)};
 }
 
 float length(Interval i) {
@@ -279,7 +279,7 @@ float radians(int degrees) {
 int closest_yaw(const Points& points, const Exec& exec) {
   constexpr std::size_t kEnough = 512;  // points for finding the yaw
   constexpr int kCoarse = 6;            // degrees
-  static_assert(rank_of(kTailOfBox, kEnough) < kernels::TurnedRectangles::kMostTail);
+  static_assert(rank_of(kTail, kEnough) < kernels::TurnedRectangles::kMostTail);
   const Plan plan = plan_of(points, std::min(points.size(), kEnough));
   const kernels::PointKernels& run = kernels::point_kernels(exec);
   int best = 0;
@@ -293,8 +293,8 @@ int closest_yaw(const Points& points, const Exec& exec) {
     // The ranks of without_tails(), which are not symmetric for every number of points.
     const std::size_t n = plan[0].size();
     const auto count = static_cast<int>(n);
-    run.find_sides(plan[0].data(), plan[1].data(), count, rank_of(kTailOfBox, n),
-                   n - 1 - rank_of(100 - kTailOfBox, n), turned);
+    run.find_sides(plan[0].data(), plan[1].data(), count, rank_of(kTail, n), n - 1 - rank_of(100 - kTail, n),
+                   turned);
     kernels::TurnedRectangles::Each<double> sums;
     run.sum_distances(plan[0].data(), plan[1].data(), count, turned, sums);
     for (std::size_t k = 0; k < all_degrees.size(); ++k) {
@@ -352,7 +352,7 @@ FloorBox box_on(const FloorFrame& floor, Points in_camera, const Exec& exec) {
   const float s = std::sin(yaw);
   Plan room;
   const auto [u, v] = sides_of(points.axis(0), points.axis(1), c, s, room, exec);
-  const Interval up = without_tails(points.axis(2), kTailOfBox, exec);
+  const Interval up = without_tails(points.axis(2), kTail, exec);
   FloorBox box;
   box.centre_in_floor_m = {c * middle(u) - s * middle(v), s * middle(u) + c * middle(v), middle(up)};
   box.size_m = {std::max(length(u), length(v)), std::min(length(u), length(v)), length(up)};
@@ -437,11 +437,10 @@ void place(Object& object, Centroid centroid, const Part& part, const Image<floa
       object.box_on_floor.reset();
   }
   // Compensates for the removed tails, assuming uniformly spread points.
-  const auto span = [&](std::size_t axis) {
-    return length(without_tails(points.axis(axis), kTailOfExtent, exec)) * 100 /
-           float{100 - 2 * kTailOfExtent};
+  const auto span = [&](std::size_t axis, std::size_t tail) {
+    return length(without_tails(points.axis(axis), tail, exec)) * 100 / static_cast<float>(100 - 2 * tail);
   };
-  object.extent_in_camera_m = Vec3{span(0), span(1), span(2)};
+  object.extent_in_camera_m = Vec3{span(0, kTail), span(1, kTail), span(2, kTailOfDepth)};
 }
 
 }  // namespace

@@ -61,8 +61,9 @@ TEST(Locate, PositionsAnObjectInMetresIfARigIsKnown) {
   EXPECT_NEAR(object.position_in_camera_m->x, 4.5 * 0.02, 1e-5);
   EXPECT_NEAR(object.position_in_camera_m->y, -0.5 * 0.02, 1e-5);
   EXPECT_NEAR(object.position_in_camera_m->z, 2, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->x, 10 * 0.02, 1e-5);
-  EXPECT_NEAR(object.extent_in_camera_m->y, 10 * 0.02, 1e-5);
+  // Between the middles of the outermost pixels, enlarged by the removed tails.
+  EXPECT_NEAR(object.extent_in_camera_m->x, 9 * 0.02 * 100 / 98, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->y, 9 * 0.02 * 100 / 98, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
   EXPECT_FALSE(object.box_on_floor);  // no ground
 }
@@ -121,7 +122,7 @@ TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
     for (int x = 26; x < 30; ++x) scene.disparity.disparity_px(x, y) = 3.5F;
   }
   const Object object = scene.located(kRig).list[0];
-  EXPECT_NEAR(object.extent_in_camera_m->x, 5 * 0.02 * 10 / 9, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->x, 5 * 0.02 * 100 / 98, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
   EXPECT_NEAR(object.position_in_camera_m->x, 4.5 * 0.02, 1e-5);  // of the whole mask
 }
@@ -129,11 +130,11 @@ TEST(Locate, MeasuresTheLargestPartOfOneSurface) {
 TEST(Locate, KeepsPartsSeparatedByAHoleAtTheSameDepth) {
   Scene scene({60, 20}, {{{20, 5, 10, 10}, 5}});
   for (int y = 5; y < 15; ++y) scene.disparity.disparity_px(26, y) = kNan;
-  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->x, 9 * 0.02 * 10 / 9, 1e-5);
+  EXPECT_NEAR(scene.located(kRig).list[0].extent_in_camera_m->x, 9 * 0.02 * 100 / 98, 1e-5);
   // Not on the largest surface, and nearer than all of it.
   for (int y = 5; y < 15; ++y) scene.disparity.disparity_px(29, y) = 5.01F;
   const Object object = scene.located(kRig).list[0];
-  EXPECT_NEAR(object.extent_in_camera_m->x, 8 * 0.02 * 10 / 9, 1e-5);
+  EXPECT_NEAR(object.extent_in_camera_m->x, 8 * 0.02 * 100 / 98, 1e-5);
   EXPECT_NEAR(object.extent_in_camera_m->z, 0, 1e-5);
 }
 
@@ -244,7 +245,7 @@ TEST(Locate, TheMainPartIsThatOfTheDefinition) {
       const auto at = [&](std::size_t percent) {
         return across_m[(percent * (across_m.size() - 1) + 50) / 100];
       };
-      EXPECT_NEAR(object.extent_in_camera_m->x, (at(95) - at(5)) * 10 / 9, 1e-5);
+      EXPECT_NEAR(object.extent_in_camera_m->x, (at(99) - at(1)) * 100 / 98, 1e-5);
     }
   }
 }

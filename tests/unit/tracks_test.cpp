@@ -616,10 +616,10 @@ TEST(Sight, ReportsAPositionWithItsUncertainty) {
   EXPECT_NEAR(seen.covariance_in_camera_m2[0], 0.01 * 0.01 + 0.02 * 0.02, 1e-8);
   EXPECT_NEAR(seen.covariance_in_camera_m2[4], 0.01 * 0.01 + 0.01 * 0.01, 1e-8);
   EXPECT_NEAR(seen.covariance_in_camera_m2[8], 0.01, 1e-8);
-  // 1.5 times 0.36 px are 1.08 cm at 2 m. Odds of 1 to 99 against the mask, to the power of 0.536, are 0.0852: of
-  // 0.0735 of the width, 0.4 m, and of 0.1755 of the height, 0.2 m. 0.84 of 0.25 px of disparity are 8.4 cm of depth.
-  EXPECT_NEAR(seen.steady_in_camera_m2[0], 0.0108 * 0.0108 + 0.002505 * 0.002505, 1e-7);
-  EXPECT_NEAR(seen.steady_in_camera_m2[4], 0.0108 * 0.0108 + 0.002990 * 0.002990, 1e-7);
+  // 1.5 times 0.32 px are 0.96 cm at 2 m. Odds of 1 to 99 against the mask, to the power of 0.516, are 0.0934: of
+  // 0.066 of the width, 0.4 m, and of 0.1575 of the height, 0.2 m. 0.84 of 0.25 px of disparity are 8.4 cm of depth.
+  EXPECT_NEAR(seen.steady_in_camera_m2[0], 0.0096 * 0.0096 + 0.002465 * 0.002465, 1e-7);
+  EXPECT_NEAR(seen.steady_in_camera_m2[4], 0.0096 * 0.0096 + 0.002941 * 0.002941, 1e-7);
   EXPECT_NEAR(seen.steady_in_camera_m2[8], 0.084 * 0.084, 1e-6);
 }
 
