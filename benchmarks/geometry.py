@@ -155,6 +155,7 @@ def measure(folders):
         "… error, median / 90th percentile": f"{100 * np.median(near):.1f} / {100 * np.quantile(near, 0.9):.1f} cm",
         "position across the ray, error, median / 90th percentile": across_text([row["across"] for row in rows if row["across"] is not None]),
         "true depth in the 95 % interval": f"{100 * np.mean([row['inside'] for row in rows]):.1f} %",
+        "width / height, median error": " / ".join(f"{100 * e:.1f}" for e in np.median(np.abs(extents - 1), 0)[:2]) + " %",
         "extent more than twice too large, width / height / depth": " / ".join(f"{100 * s:.0f}" for s in (extents > 2).mean(0)) + " %",
         "size of the box on the floor, median error": f"{100 * np.median(np.abs(boxes - 1)):.1f} %",
         "… of its longer side / shorter side / height": " / ".join(f"{100 * e:.1f}" for e in np.median(np.abs(boxes - 1), 0)) + " %",
@@ -185,7 +186,7 @@ def middle_of(truth, found, mask):
 
 
 def across_ray(truth, found, mask):
-    """Distance of an object's position from the ray through the middle of its visible part, at the depth of that, in m."""
+    """Distance of the middle of an object's visible part from the ray through its position, at the depth of that middle, in m."""
     if found.position_in_camera_m is None:
         return None
     middle = truth.points[mask].mean(0)

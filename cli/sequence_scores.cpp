@@ -100,26 +100,27 @@ Image<ObjectId> object_labels(const Image<TrackId>& tracks) {
   return labels;
 }
 
-/// The first track of each track's landmark, as the map knows it at the end of the run. Tracks that were in
-/// view together remain distinct. Empty without landmarks.
-std::map<std::int64_t, std::int64_t> first_tracks(const std::vector<Pair>& pairs) {
+/// The first track of each track's last landmark. Tracks that were seen together in a frame remain distinct.
+/// Empty without landmarks.
+std::map<std::int64_t, std::int64_t> first_tracks(const io::TrackFile& file) {
   std::map<std::int64_t, std::int64_t> landmarks;  // by track; later frames correct earlier ones
   std::map<std::int64_t, std::set<std::int64_t>> frames;
-  for (const Pair& pair : pairs) {
-    for (const io::TrackRecord& track : pair.ours->tracks) {
+  for (const io::TrackFrame& frame : file.frames) {
+    for (const io::TrackRecord& track : frame.tracks) {
       if (track.landmark) landmarks[number(track.id)] = *track.landmark;
-      if (track.mask) frames[number(track.id)].insert(pair.index);
+      if (track.mask) frames[number(track.id)].insert(frame.index);
     }
   }
   std::map<std::int64_t, std::vector<std::int64_t>> objects;  // the tracks of each landmark; ids ascend
   for (const auto& [track, landmark] : landmarks) objects[landmark].push_back(track);
   std::map<std::int64_t, std::int64_t> first;
   for (const auto& [landmark, tracks] : objects) {
-    std::set<std::int64_t>& seen = frames[tracks.front()];
+    std::set<std::int64_t> seen;
     for (const std::int64_t track : tracks) {
       const std::set<std::int64_t>& own = frames[track];
-      const bool is_apart = std::none_of(own.begin(), own.end(), [&](auto k) { return seen.contains(k); });
-      if (track != tracks.front() && !is_apart) continue;
+      const bool is_apart =
+          std::none_of(own.begin(), own.end(), [&](std::int64_t frame) { return seen.contains(frame); });
+      if (!is_apart) continue;
       first[track] = tracks.front();
       seen.insert(own.begin(), own.end());
     }
@@ -156,7 +157,7 @@ void score_masks(const std::vector<Pair>& pairs, const Result& result, const Seq
   }
   scores.tracks = track_errors(scores.scored);
   scores.oracle = track_errors(oracle_ids(scores.scored));
-  if (const auto first = first_tracks(pairs); !first.empty())
+  if (const auto first = first_tracks(result.file); !first.empty())
     scores.by_landmark = track_errors(by_landmark(scores.scored, first));
   scores.steadiness = steadiness(scores.scored);
   scores.objects = summarise(objects);

@@ -65,8 +65,8 @@ struct SequenceScores {
   std::vector<std::string> without_result;
   std::vector<ScoredFrame> scored;
   TrackErrors tracks;
-  /// The tracks of a landmark share the id of its first. Known only at the end of the run: a moved object
-  /// is recognised once its old place has been seen empty. nullopt without landmarks.
+  /// Tracks with the same last landmark share an id, unless they are seen together: what is known at the end,
+  /// since a moved object is recognised once its old place has been seen empty. nullopt without landmarks.
   std::optional<TrackErrors> by_landmark;
   TrackErrors oracle;
   Steadiness steadiness;

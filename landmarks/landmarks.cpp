@@ -685,9 +685,9 @@ void set_down(const LandmarksState& state, TrackEvidence& evidence, const Landma
   const Eigen::Vector3d way = here.position_m - vector(landmark.position_m);
   const Matrix3 covariance = here.covariance_m2 + matrix(landmark.covariance_m2);
   const bool is_same = score_of(candidate, landmark) >= static_cast<double>(config.min_score);
-  if (!is_same || way.norm() <= static_cast<double>(config.moved) ||
-      way.dot(covariance.ldlt().solve(way)) <= 9)
-    return;
+  const bool has_moved =
+      way.norm() > static_cast<double>(config.moved) && way.dot(covariance.ldlt().solve(way)) > 9;
+  if (!is_same || !has_moved) return;
   events.push_back({LandmarkEventKind::moved,
                     frame.stamp,
                     landmark.id,
@@ -737,7 +737,7 @@ Updated update_seen(LandmarksState& state, const LandmarkFrame& frame, const Lan
   return result;
 }
 
-/// Weighs what a frame shows of a landmark that is not seen in it. Returns whether it is gone since now.
+/// Weighs what a frame shows of a landmark that is not seen in it. Returns whether it became gone.
 bool look_for(LandmarksState& state, Landmark& landmark, const Expectation& there, const LandmarkFrame& frame,
               std::vector<LandmarkEvent>& events) {
   const int samples = std::max(1, there.samples());
@@ -767,7 +767,7 @@ bool look_for(LandmarksState& state, Landmark& landmark, const Expectation& ther
   return true;
 }
 
-/// Updates which landmarks are present. Returns whether one is gone since now.
+/// Updates which landmarks are present. Returns whether one became gone.
 bool update_presence(LandmarksState& state, const std::vector<LandmarkId>& seen, const LandmarkFrame& frame,
                      std::vector<LandmarkEvent>& events) {
   bool has_gone = false;

@@ -112,10 +112,10 @@ Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, co
 }
 
 Filter3 seen_anew(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m) {
-  const Eigen::Vector2d before = vector(seen_from_m - filter.position_m).head<2>();
-  const Eigen::Vector2d now = vector(camera_m - filter.position_m).head<2>();
+  const Vector3 before = vector(seen_from_m - filter.position_m);
+  const Vector3 now = vector(camera_m - filter.position_m);
   if (!(before.norm() > 0 && now.norm() > 0)) return filter;
-  const Eigen::Vector2d turn = now.normalized() - before.normalized();
+  const Vector3 turn = now.normalized() - before.normalized();
   const double width_m = extent_m.x;
   filter.position_m = filter.position_m + nearer_surface::kShare * width_m * Point3{turn.x(), turn.y(), 0};
   const double sigma_m = nearer_surface::kSigma * (width_m + double{extent_m.y}) / 2 * turn.norm();

@@ -32,8 +32,8 @@ Filter6 updated(const Filter6& filter, Point3 measured_m, const Covariance3& mea
 Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, const Pose& map_from_camera,
                    const Covariance6& pose_covariance);
 
-/// A static object seen from a new side: the centre of its visible surface is on the other side of its own, by
-/// the shares of nearer_surface.
+/// A static object seen from a new side: the centre of its visible surface moves around it with the camera, on
+/// the floor, by a share of its width, and is less certain. (nearer_surface)
 Filter3 seen_anew(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m);
 
 /// A linear motion through positions (least squares, constant weights).

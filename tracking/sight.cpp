@@ -23,8 +23,8 @@ constexpr double kDepthShare = 0.1;    // of the depth extent
 constexpr double kDoubtShare = 0.144;
 constexpr double kCutShare = 0.289;
 
-/// Standard deviations of the error that persists, fitted to objects of single frames
-/// (./dev bench geometry --fit).
+/// Standard deviations of the error that persists, fitted to objects of single frames (./dev bench geometry
+/// --fit); the two of disparity and depth before there were the trees of refine_objects().
 namespace steady {
 constexpr double kEdgeSigma = 0.32;       // px, of an edge
 constexpr double kWidthShare = 0.044;     // of the extent, at a confidence of 0.5

@@ -391,7 +391,7 @@ std::vector<Centroid> centroids_of(const Objects& objects) {
   }
   std::vector<Centroid> centroids;
   for (std::size_t i = 1; i < sums.size(); ++i) {
-    const double count = static_cast<double>(std::max<std::int64_t>(sums[i].count, 1));
+    const auto count = static_cast<double>(std::max<std::int64_t>(sums[i].count, 1));
     centroids.push_back(
         {static_cast<double>(sums[i].twice_x) / (2 * count), static_cast<double>(sums[i].y) / count});
   }

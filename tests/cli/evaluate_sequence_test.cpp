@@ -287,7 +287,9 @@ TEST_F(EvaluateSequence, ATrackGetsTheIdOfItsLastLandmarkUnlessBothAreInView) {
             {3, 3, {30, 28, 16, 16}, {3, 2, 0.3}, {}, false, 7, "confirmed"}});
   }
   write_result();
-  EXPECT_EQ(evaluated().first.at("summary").at("by_landmark").at("IDSW"), 1);
+  const Json known = evaluated().first.at("summary").at("by_landmark");
+  EXPECT_EQ(known.at("IDSW"), 1);
+  EXPECT_EQ(known.at("IDTP"), 6 + 12 + 12);
   lines_.clear();
   for (int k = 0; k < 12; ++k)
     add(k,
