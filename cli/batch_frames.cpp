@@ -51,8 +51,8 @@ std::string name_of_input(const std::string& input) {
   return name.string();
 }
 
-std::string joined(const std::string& folder, const std::string& name) {
-  return folder.empty() ? name : folder + "/" + name;
+std::string joined(const std::string& parent, const std::string& child) {
+  return parent.empty() ? child : parent + "/" + child;
 }
 
 /// Collects the frames of the inputs, one after the other.
