@@ -133,7 +133,8 @@ def measure(folders):
             low, high = found.depth_interval_m
             points = truth.points[mask]
             row = dict(depth=depth, off=abs(found.distance_m - depth), inside=low <= depth <= high,
-                       across=across_ray(truth, found, mask), extent=[e / span(p) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
+                       across=np.hypot(*across_ray(truth, found, mask)),
+                       extent=[e / span(p) for e, p in zip(found.extent_in_camera_m, points.T)], box=None)
             if found.box_on_floor and truth.floor_frame:
                 row["box"] = [ours / true for ours, true in zip(found.box_on_floor.size_m, box_size(points, truth.floor_frame))]
             rows.append(row)
@@ -152,8 +153,8 @@ def measure(folders):
         "… of them obstacles by 95 % of their pixels": f"{100 * np.mean(np.array(near_by) >= 0.95):.0f} %",
         "objects found": f"{len(rows)}",
         "depth at 2–4 m, objects": f"{len(near)}",
-        "… error, median / 90th percentile": f"{100 * np.median(near):.1f} / {100 * np.quantile(near, 0.9):.1f} cm",
-        "position across the ray, error, median / 90th percentile": across_text([row["across"] for row in rows if row["across"] is not None]),
+        "… error, median / 90th percentile": centimetres(near),
+        "position across the ray, error, median / 90th percentile": centimetres([row["across"] for row in rows]),
         "true depth in the 95 % interval": f"{100 * np.mean([row['inside'] for row in rows]):.1f} %",
         "width / height, median error": " / ".join(f"{100 * e:.1f}" for e in np.median(np.abs(extents - 1), 0)[:2]) + " %",
         "extent more than twice too large, width / height / depth": " / ".join(f"{100 * s:.0f}" for s in (extents > 2).mean(0)) + " %",
@@ -178,22 +179,20 @@ def middle_of(truth, found, mask):
     """Errors of an object's position across and along the ray, and the values that predict them; None for small objects."""
     if found.position_in_camera_m is None or mask.sum() < 200 * (mask.shape[1] / 320) ** 2:
         return None
-    px, py, pz = found.position_in_camera_m
-    off = np.subtract((px, py, pz), truth.points[mask].mean(0))
+    pz = found.position_in_camera_m[2]
     c = min(max(found.confidence, 0.02), 0.99)
-    return [off[0] - off[2] * px / pz, off[1] - off[2] * py / pz, off[2], pz / truth.rig.focal_px, *found.extent_in_camera_m,
+    return [*across_ray(truth, found, mask), pz - truth.points[mask].mean(0)[2], pz / truth.rig.focal_px, *found.extent_in_camera_m,
             math.log((1 - c) / c), pz * pz * found.disparity_sigma_px / (truth.rig.focal_px * truth.rig.baseline_m)]
 
 
 def across_ray(truth, found, mask):
-    """Distance of the middle of an object's visible part from the ray through its position, at the depth of that middle, in m."""
-    if found.position_in_camera_m is None:
-        return None
-    middle = truth.points[mask].mean(0)
-    return np.hypot(*(np.array(found.position_in_camera_m[:2]) / found.position_in_camera_m[2] * middle[2] - middle[:2]))
+    """The way from the middle of an object's visible part to the ray through its position, right and down, at that depth, in m."""
+    px, py, pz = found.position_in_camera_m
+    x, y, z = truth.points[mask].mean(0)
+    return px * z / pz - x, py * z / pz - y
 
 
-def across_text(errors):
+def centimetres(errors):
     return f"{100 * np.median(errors):.1f} / {100 * np.quantile(errors, 0.9):.1f} cm"
 
 

@@ -41,6 +41,11 @@ inline std::array<double, 16> rows_of(const Matrix4& m) {
   return rows;
 }
 
+/// The squared Mahalanobis distance.
+inline double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covariance) {
+  return difference.dot(covariance.ldlt().solve(difference));
+}
+
 /// A rotation about z by `yaw_rad`, then a translation.
 Pose turned(double yaw_rad, Point3 translation_m);
 

@@ -22,6 +22,7 @@ using landmarks::Placed;
 using landmarks::point;
 using landmarks::position_and_yaw;
 using landmarks::Pull;
+using landmarks::squared_distance;
 using landmarks::vector;
 
 constexpr double kLargestOdds = 5;
@@ -315,6 +316,16 @@ bool may_be_same(const Landmark& a, const Landmark& b) {
   return may_be(landmarks::candidate_of(a, {}), b);
 }
 
+/// Whether two places of one landmark are apart beyond doubt.
+bool are_apart(const Eigen::Vector3d& way, const Matrix3& covariance, const LandmarksConfig& config) {
+  constexpr double kSquaredSigmas = 9;
+  return way.norm() > static_cast<double>(config.moved) && squared_distance(way, covariance) > kSquaredSigmas;
+}
+
+void forget_vanished(LandmarksState& state, LandmarkId id) {
+  std::erase_if(state.vanished, [&](const LandmarksState::Vanished& v) { return v.landmark == id; });
+}
+
 std::vector<int> frames_of(const LandmarksState& state, LandmarkId id) {
   for (const LandmarksState::Vanished& vanished : state.vanished) {
     if (vanished.landmark == id) return vanished.frames;
@@ -358,9 +369,7 @@ std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame
       });
       const Eigen::Vector3d way = vector(found->position_m - best->position_m);
       const Matrix3 covariance = matrix(found->covariance_m2) + matrix(best->covariance_m2);
-      if (!is_only || way.norm() <= static_cast<double>(config.moved) ||
-          way.dot(covariance.ldlt().solve(way)) <= 9)
-        continue;
+      if (!is_only || !are_apart(way, covariance, config)) continue;
 
       const Landmark place = *found;
       const double gone = probability_of(-best->log_odds);
@@ -385,7 +394,7 @@ std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame
       std::erase_if(state.map.list, [&](const Landmark& l) { return l.id == place.id; });
       std::erase(state.found, place.id);
       std::erase(state.unreported, place.id);
-      std::erase_if(state.vanished, [&](const LandmarksState::Vanished& v) { return v.landmark == same.id; });
+      forget_vanished(state, same.id);
       again = true;
       break;
     }
@@ -505,7 +514,7 @@ void bind(LandmarksState& state, const LandmarkPair& pair, const LandmarkFrame& 
   if (landmark.is_gone) {
     landmark.is_gone = false;
     landmark.log_odds = 0;
-    std::erase_if(state.vanished, [&](const auto& v) { return v.landmark == landmark.id; });
+    forget_vanished(state, landmark.id);
     events.push_back({LandmarkEventKind::back,
                       frame.stamp,
                       landmark.id,
@@ -554,19 +563,19 @@ void gather_all(LandmarksState& state, const LandmarkFrame& frame, const Landmar
   const Tracks& tracks = *frame.tracks;
   std::erase_if(state.tracks, [&](const TrackEvidence& e) { return track_of(tracks, e.track) == nullptr; });
   for (const Track& track : tracks.list) {
-    const auto at = std::lower_bound(state.tracks.begin(), state.tracks.end(), track.id,
-                                     [](const TrackEvidence& e, TrackId wanted) { return e.track < wanted; });
+    auto at = std::lower_bound(state.tracks.begin(), state.tracks.end(), track.id,
+                               [](const TrackEvidence& e, TrackId wanted) { return e.track < wanted; });
     if (at == state.tracks.end() || at->track != track.id) {
       TrackEvidence fresh;
       fresh.track = track.id;
       fresh.first = std::max(track.first, state.segment_began);
       if (state.is_located)
         fresh.floor_before = floor_frames_at(state.map, state.located.map_from_odom(track.position_m));
-      state.tracks.insert(at, fresh);
+      at = state.tracks.insert(at, fresh);
     }
     if (track.object == ObjectId::none) continue;
     const bool is_cut = std::find(frame.cut.begin(), frame.cut.end(), track.id) != frame.cut.end();
-    gather(*evidence_of(state, track.id), track, frame, is_cut, config);
+    gather(*at, track, frame, is_cut, config);
   }
 }
 
@@ -685,9 +694,7 @@ void set_down(const LandmarksState& state, TrackEvidence& evidence, const Landma
   const Eigen::Vector3d way = here.position_m - vector(landmark.position_m);
   const Matrix3 covariance = here.covariance_m2 + matrix(landmark.covariance_m2);
   const bool is_same = score_of(candidate, landmark) >= static_cast<double>(config.min_score);
-  const bool has_moved =
-      way.norm() > static_cast<double>(config.moved) && way.dot(covariance.ldlt().solve(way)) > 9;
-  if (!is_same || !has_moved) return;
+  if (!is_same || !are_apart(way, covariance, config)) return;
   events.push_back({LandmarkEventKind::moved,
                     frame.stamp,
                     landmark.id,
@@ -781,7 +788,7 @@ bool update_presence(LandmarksState& state, const std::vector<LandmarkId>& seen,
     ++landmark.expected;
     landmark.log_odds = std::min(landmark.log_odds + kSeen, kLargestOdds);
     landmark.seen_through = 0;
-    std::erase_if(state.vanished, [&](const auto& v) { return v.landmark == landmark.id; });
+    forget_vanished(state, landmark.id);
     constexpr double kNew = 0.2;
     const double farther = static_cast<double>(there.farther) / std::max(1, there.samples());
     if (there.in_view > 0) landmark.open_share += kNew * (farther - landmark.open_share);

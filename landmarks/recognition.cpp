@@ -16,6 +16,7 @@ using landmarks::Matrix4;
 using landmarks::Placed;
 using landmarks::point;
 using landmarks::Pull;
+using landmarks::squared_distance;
 using landmarks::vector;
 
 namespace landmarks {
@@ -83,10 +84,6 @@ namespace {
 
 constexpr double kSizeRatio = 1.6;
 constexpr double kHeightTolerance_m = 0.15;
-
-double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covariance) {
-  return difference.dot(covariance.ldlt().solve(difference));
-}
 
 /// A candidate and a landmark with compatible colours and sizes.
 struct CompatiblePair {
