@@ -22,6 +22,7 @@ struct KeyCorner {
 
 struct Keyframe {
   cv::Size size;
+  int win_size = 0;              // px: the pyramid's border
   std::vector<cv::Mat> pyramid;  // with derivatives
   cv::Mat small;                 // 32-bit float, see kSmall
   std::vector<KeyCorner> corners;
@@ -109,6 +110,7 @@ std::shared_ptr<Keyframe> look_at(View<const Gray> left, const OdometryConfig& c
   auto frame = std::make_shared<Keyframe>();
   const cv::Mat image = borrowed(left);
   frame->size = image.size();
+  frame->win_size = config.win_size;
   cv::buildOpticalFlowPyramid(image, frame->pyramid, {config.win_size, config.win_size}, config.max_level,
                               true, cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
   frame->small = small_image(image);
@@ -200,6 +202,8 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
   std::vector<cv::Point2f> before;
   std::vector<cv::Point2f> after;
   std::vector<std::size_t> index;
+  // The option may have changed since the keyframe, and a window must not exceed a pyramid's border.
+  const int win_size = std::min(key.win_size, now.win_size);
   const auto width = static_cast<float>(now.size.width);
   const auto height = static_cast<float>(now.size.height);
   for (std::size_t k = 0; k < key.corners.size(); ++k) {
@@ -209,7 +213,7 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
     const cv::Point2f at(static_cast<float>(double(rig.focal_px) * p.x / p.z + double(rig.cx_px)),
                          static_cast<float>(double(rig.focal_px) * p.y / p.z + double(rig.cy_px)));
     // Farther than half a window outside the image, tracking cannot succeed.
-    const auto margin = static_cast<float>(config.win_size) / 2;
+    const auto margin = static_cast<float>(win_size) / 2;
     if (!(at.x > -margin && at.y > -margin && at.x < width + margin && at.y < height + margin)) continue;
     before.push_back(key.corners[k].at_px);
     after.push_back(at);
@@ -219,7 +223,7 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
   if (before.empty()) return followed;
   std::vector<cv::Point2f> back(before.size());
   for (std::size_t k = 0; k < before.size(); ++k) back[k] = before[k];
-  const cv::Size window(config.win_size, config.win_size);
+  const cv::Size window(win_size, win_size);
   const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.02);
   std::vector<std::uint8_t> found;
   std::vector<float> error;
@@ -460,6 +464,124 @@ std::shared_ptr<const Keyframe> as_keyframe(std::shared_ptr<Keyframe> frame, con
   return frame;
 }
 
+/// The best attempt at the motion from the keyframe or, failing that, from the spare one, which then replaces
+/// it in `state`.
+struct Measured {
+  Attempt attempt;
+  bool by_spare = false;
+};
+Measured measure(const OdometryState& before, OdometryState& state, const Keyframe* now,
+                 const Pose& expected_step, const PresentFrame& present) {
+  const auto can_follow = [&](const PlacedKeyframe& key) {
+    return now != nullptr && key.frame && key.frame->size == now->size;
+  };
+  Measured best;
+  best.attempt.fit.refusal = MotionRefusal::few_points;
+  if (can_follow(before.key)) best.attempt = motion_from(before.key, before, *now, expected_step, present);
+  if (best.attempt.fit.refusal == MotionRefusal::none || !can_follow(before.spare)) return best;
+  Attempt again = motion_from(before.spare, before, *now, expected_step, present);
+  const bool is_coherent = again.fit.refusal == MotionRefusal::none;
+  state.coherent_in_a_row = before.lost && is_coherent ? before.coherent_in_a_row + 1 : 0;
+  // A single match may be chance or noise, so relocalisation requires consecutive ones.
+  if (!is_coherent || (before.lost && state.coherent_in_a_row < kCoherentSteps)) return best;
+  state.key = before.spare;
+  state.key_covariance = before.is_guessed ? covariance_of_new_place() : covariance_since_key(before);
+  if (before.is_guessed) state.key.covariance = as_of_new_place(state.key.covariance);
+  state.covariance_to_key = {};
+  return {std::move(again), true};
+}
+
+/// Refines the motion by a prior that agrees with it; refuses it if they disagree, unless the wheels slip.
+MotionRefusal combine(Attempt& measured, const MotionPrior& prior, const OdometryState& before,
+                      OdometryState& state, const PresentFrame& present) {
+  MotionFit& fit = measured.fit;
+  const Pose before_from_key = inverse(before.map_from_camera) * state.key.map_from_key;
+  const PriorTerm expected = expected_from(prior, before_from_key, state.covariance_to_key);
+  if (disagree(fit, expected, prior.kind)) {
+    const Pose seen_step = fit.now_from_key * inverse(before_from_key);
+    const bool slips = prior.kind == PriorKind::wheels && stands_still(seen_step, fit.covariance) &&
+                       !stands_still(prior.now_from_before, prior.covariance);
+    state.slipping = slips ? before.slipping + 1 : 0;
+    return state.slipping < kSlippingFrames ? MotionRefusal::disagrees_with_prior : MotionRefusal::none;
+  }
+  state.slipping = 0;
+  MotionFit again =
+      fit_motion(measured.corners, present.rig, fit.now_from_key, expected.term, present.config);
+  if (again.refusal == MotionRefusal::none) fit = std::move(again);
+  return MotionRefusal::none;
+}
+
+/// The pose by the measured motion.
+void move_by(const MotionFit& fit, bool by_spare, const OdometryState& before, OdometryState& state,
+             Motion& motion) {
+  state.map_from_camera = state.key.map_from_key * inverse(fit.now_from_key);
+  state.covariance =
+      carried_on(state.key.covariance, state.key.map_from_key, fit.covariance, state.map_from_camera);
+  state.covariance_to_key = fit.covariance;
+  motion.covariance = fit.covariance;
+  motion.now_from_before = inverse(state.map_from_camera) * before.map_from_camera;
+  state.last_step = before.lost ? Pose{} : motion.now_from_before;
+  motion.is_new_segment = by_spare && before.is_guessed;
+  state.refused_in_a_row = 0;
+  state.is_guessed = false;
+  state.lost = false;
+  state.coherent_in_a_row = 0;
+  state.spare = {};
+}
+
+/// The pose by the wheels or, without them, by the last step again, as long as the camera is not lost.
+void move_by_guess(const Pose& expected_step, const std::optional<MotionPrior>& prior,
+                   const OdometryState& before, OdometryState& state, Motion& motion) {
+  ++state.refused_in_a_row;
+  const bool by_wheels = prior && prior->kind == PriorKind::wheels;
+  if (by_wheels) state.refused_in_a_row = 0;
+  state.is_guessed = before.is_guessed || !prior || (before.is_after_gap && !by_wheels);
+  if (state.refused_in_a_row > kFramesUntilLost) state.lost = true;
+  motion.now_from_before = state.lost && !by_wheels ? Pose{} : expected_step;
+  if (by_wheels) {
+    motion.covariance = prior->covariance;
+  } else {
+    motion.covariance =
+        before.is_after_gap ? covariance_of_new_place() : covariance_of_guess(motion.now_from_before);
+  }
+  state.last_step = motion.now_from_before;
+  state.map_from_camera = before.map_from_camera * inverse(motion.now_from_before);
+  state.covariance =
+      carried_on(before.covariance, before.map_from_camera, motion.covariance, state.map_from_camera);
+  const Matrix6 a = adjoint(motion.now_from_before);
+  state.covariance_to_key =
+      rows_of(a * matrix(state.covariance_to_key) * a.transpose() + matrix(motion.covariance));
+  motion.covariance = state.covariance_to_key;
+}
+
+/// Makes the present frame the keyframe if the motion since the last one is large or poorly supported, or, after
+/// a refusal, the spare one.
+void choose_keyframe(const std::shared_ptr<Keyframe>& now, const Measured& measured,
+                     const PresentFrame& present, OdometryState& state, Motion& motion) {
+  const MotionFit& fit = measured.attempt.fit;
+  const OdometryConfig& config = present.config;
+  const bool seen = motion.refusal == MotionRefusal::none;
+  bool wants_key = !state.key.frame;
+  if (seen) {
+    if (state.key.inliers == 0) state.key.inliers = fit.inliers;
+    wants_key =
+        config.method == OdometryMethod::frame ||
+        fit.inliers < static_cast<int>(config.keyframe_inliers * static_cast<float>(state.key.inliers)) ||
+        angle_of(fit.now_from_key) > kKeyframeTurn_rad || measured.by_spare || measured.attempt.is_relit;
+  }
+  if (!now || (seen && !wants_key)) return;
+  PlacedKeyframe fresh{as_keyframe(now, present), state.map_from_camera, state.covariance, 0};
+  if (fresh.frame && (seen || motion.refusal == MotionRefusal::disagrees_with_prior || !state.key.frame)) {
+    state.key = std::move(fresh);
+    state.key_covariance = rows_of(matrix(state.key_covariance) + matrix(covariance_since_key(state)));
+    state.covariance_to_key = {};
+    state.spare = {};
+    motion.is_new_keyframe = true;
+  } else if (!seen) {
+    state.spare = std::move(fresh);
+  }
+}
+
 }  // namespace
 
 OdometryState begin_odometry(const Pose& map_from_camera) {
@@ -526,119 +648,28 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
     return step;
   }
 
-  // ---- measure the motion ----
   Pose expected_step = before.lost ? Pose{} : before.last_step;
   if (prior && prior->kind == PriorKind::wheels) expected_step = prior->now_from_before;
   if (prior && prior->kind == PriorKind::gyroscope) expected_step.rotation = prior->now_from_before.rotation;
 
   state.coherent_in_a_row = 0;
-  Attempt best;
-  best.fit.refusal = MotionRefusal::few_points;
-  bool by_spare = false;
-  const auto can_follow = [&](const PlacedKeyframe& key) {
-    return now && key.frame && key.frame->size == now->size;
-  };
-  if (can_follow(before.key)) best = motion_from(before.key, before, *now, expected_step, present);
-  if (best.fit.refusal != MotionRefusal::none && can_follow(before.spare)) {
-    Attempt again = motion_from(before.spare, before, *now, expected_step, present);
-    const bool is_coherent = again.fit.refusal == MotionRefusal::none;
-    state.coherent_in_a_row = before.lost && is_coherent ? before.coherent_in_a_row + 1 : 0;
-    // A single match may be chance or noise, so relocalisation requires consecutive ones.
-    if (is_coherent && (!before.lost || state.coherent_in_a_row >= kCoherentSteps)) {
-      best = std::move(again);
-      by_spare = true;
-      state.key = before.spare;
-      state.key_covariance = before.is_guessed ? covariance_of_new_place() : covariance_since_key(before);
-      if (before.is_guessed) state.key.covariance = as_of_new_place(state.key.covariance);
-      state.covariance_to_key = {};
-    }
-  }
-  MotionFit& fit = best.fit;
-  motion.followed = static_cast<int>(best.corners.size());
+  Measured measured = measure(before, state, now.get(), expected_step, present);
+  const MotionFit& fit = measured.attempt.fit;
+  motion.followed = static_cast<int>(measured.attempt.corners.size());
   motion.inliers = fit.inliers;
   motion.inlier_share =
       motion.followed > 0 ? static_cast<float>(fit.inliers) / static_cast<float>(motion.followed) : 0.0F;
   motion.chi2_per_dof = static_cast<float>(fit.chi2_per_dof);
   motion.refusal = fit.refusal;
+  if (prior && motion.refusal == MotionRefusal::none)
+    motion.refusal = combine(measured.attempt, *prior, before, state, present);
 
-  // ---- compare with the prior ----
-  const Pose before_from_key = inverse(before.map_from_camera) * state.key.map_from_key;
-  if (prior && motion.refusal == MotionRefusal::none) {
-    const PriorTerm expected = expected_from(*prior, before_from_key, state.covariance_to_key);
-    if (disagree(fit, expected, prior->kind)) {
-      const Pose seen_step = fit.now_from_key * inverse(before_from_key);
-      const bool slips = prior->kind == PriorKind::wheels && stands_still(seen_step, fit.covariance) &&
-                         !stands_still(prior->now_from_before, prior->covariance);
-      state.slipping = slips ? before.slipping + 1 : 0;
-      if (state.slipping < kSlippingFrames) motion.refusal = MotionRefusal::disagrees_with_prior;
-    } else {
-      state.slipping = 0;
-      MotionFit again = fit_motion(best.corners, rig, fit.now_from_key, expected.term, config);
-      if (again.refusal == MotionRefusal::none) fit = std::move(again);
-    }
-  }
-
-  // ---- update the pose ----
   if (motion.refusal == MotionRefusal::none) {
-    state.map_from_camera = state.key.map_from_key * inverse(fit.now_from_key);
-    state.covariance =
-        carried_on(state.key.covariance, state.key.map_from_key, fit.covariance, state.map_from_camera);
-    state.covariance_to_key = fit.covariance;
-    motion.covariance = fit.covariance;
-    motion.now_from_before = inverse(state.map_from_camera) * before.map_from_camera;
-    state.last_step = before.lost ? Pose{} : motion.now_from_before;
-    motion.is_new_segment = by_spare && before.is_guessed;
-    state.refused_in_a_row = 0;
-    state.is_guessed = false;
-    state.lost = false;
-    state.coherent_in_a_row = 0;
-    state.spare = {};
+    move_by(fit, measured.by_spare, before, state, motion);
   } else {
-    ++state.refused_in_a_row;
-    const bool by_wheels = prior && prior->kind == PriorKind::wheels;
-    if (by_wheels) state.refused_in_a_row = 0;
-    state.is_guessed = before.is_guessed || !prior || (before.is_after_gap && !by_wheels);
-    if (state.refused_in_a_row > kFramesUntilLost) state.lost = true;
-    motion.now_from_before = state.lost && !by_wheels ? Pose{} : expected_step;
-    if (by_wheels) {
-      motion.covariance = prior->covariance;
-    } else {
-      motion.covariance =
-          before.is_after_gap ? covariance_of_new_place() : covariance_of_guess(motion.now_from_before);
-    }
-    state.last_step = motion.now_from_before;
-    state.map_from_camera = before.map_from_camera * inverse(motion.now_from_before);
-    state.covariance =
-        carried_on(before.covariance, before.map_from_camera, motion.covariance, state.map_from_camera);
-    const Matrix6 a = adjoint(motion.now_from_before);
-    state.covariance_to_key =
-        rows_of(a * matrix(state.covariance_to_key) * a.transpose() + matrix(motion.covariance));
-    motion.covariance = state.covariance_to_key;
+    move_by_guess(expected_step, prior, before, state, motion);
   }
-
-  // ---- choose the next keyframe ----
-  const bool seen = motion.refusal == MotionRefusal::none;
-  bool wants_key = !state.key.frame;
-  if (seen) {
-    if (state.key.inliers == 0) state.key.inliers = fit.inliers;
-    wants_key =
-        config.method == OdometryMethod::frame ||
-        fit.inliers < static_cast<int>(config.keyframe_inliers * static_cast<float>(state.key.inliers)) ||
-        angle_of(fit.now_from_key) > kKeyframeTurn_rad || by_spare || best.is_relit;
-  }
-  const bool wants_spare = !seen;
-  if (now && (wants_key || wants_spare)) {
-    PlacedKeyframe fresh{as_keyframe(now, present), state.map_from_camera, state.covariance, 0};
-    if (fresh.frame && (seen || motion.refusal == MotionRefusal::disagrees_with_prior || !state.key.frame)) {
-      state.key = std::move(fresh);
-      state.key_covariance = rows_of(matrix(state.key_covariance) + matrix(covariance_since_key(state)));
-      state.covariance_to_key = {};
-      state.spare = {};
-      motion.is_new_keyframe = true;
-    } else if (wants_spare) {
-      state.spare = std::move(fresh);
-    }
-  }
+  choose_keyframe(now, measured, present, state, motion);
   return step;
 }
 

@@ -127,7 +127,7 @@ struct PlacedKeyframe {
 struct OdometryState {
   PlacedKeyframe key;                    // absent before the first frame with corners
   PlacedKeyframe spare;                  // the frame before, if that was refused: the next attempt
-  std::shared_ptr<const Keyframe> seen;  // the frame before, at a small size, even if dark
+  std::shared_ptr<const Keyframe> seen;  // the frame before, even if dark
   bool has_begun = false;
   Pose map_from_camera;             // of the frame before
   Covariance6 covariance{};         // of map_from_camera; grows

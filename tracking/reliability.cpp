@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cairn/evaluation/consistency.hpp>
 #include <cairn/scene/floor_frame.hpp>
+#include <cairn/scene/plane_fit.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -209,31 +210,18 @@ std::optional<float> scan_of(const Step& step, const LaserScan& scan, const Ster
 constexpr int kEveryPixel = 2;
 constexpr float kFlatPx = 1.05F;  // three standard deviations of a disparity
 
-/// The least-squares plane through an object's disparities; nullopt if they are degenerate.
+/// The plane through an object's disparities; nullopt if they are few or collinear.
 std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sd = 0, sxd = 0, syd = 0;
+  constexpr double kFewest = 16;
   const Rect box = object.box_px;
-  const double mx = box.x + box.width / 2.0;
-  const double my = box.y + box.height / 2.0;
+  PlaneFit fit(box.x + box.width / 2.0, box.y + box.height / 2.0);
   for (int y = box.y; y < box.y + box.height; y += kEveryPixel) {
     for (int x = box.x; x < box.x + box.width; x += kEveryPixel) {
       const float d = frame.disparity.disparity_px(x, y);
-      if (frame.objects.labels(x, y) != object.id || std::isnan(d)) continue;
-      const double u = x - mx;
-      const double v = y - my;
-      n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v, syy += v * v;
-      sd += double{d}, sxd += u * double{d}, syd += v * double{d};
+      if (frame.objects.labels(x, y) == object.id && !std::isnan(d)) fit.add(x, y, double{d});
     }
   }
-  if (n < 16) return std::nullopt;
-  const double cxx = sxx - sx * sx / n, cxy = sxy - sx * sy / n, cyy = syy - sy * sy / n;
-  const double cxd = sxd - sx * sd / n, cyd = syd - sy * sd / n;
-  const double determinant = cxx * cyy - cxy * cxy;
-  if (!(determinant > 1e-6 * cxx * cyy)) return std::nullopt;
-  const double a = (cxd * cyy - cyd * cxy) / determinant;
-  const double b = (cyd * cxx - cxd * cxy) / determinant;
-  const double c = (sd - a * sx - b * sy) / n - a * mx - b * my;
-  return GroundPlane{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
+  return fit.count() < kFewest ? std::nullopt : fit.solve();
 }
 
 bool is_wall(const Frame& frame, const Object& object) {

@@ -494,6 +494,19 @@ std::vector<Pose> run_with(int threads) {
   return poses;
 }
 
+TEST(Odometry, FollowsItsKeyframeWithAnotherWindowThanItWasMadeWith) {
+  for (const auto& [before_px, after_px] : {std::pair{11, 31}, {31, 11}}) {
+    OdometryConfig config;
+    config.win_size = before_px;
+    const OdometryState state = step(begin_odometry({}), look({}), std::nullopt, config).state;
+    config.win_size = after_px;
+    const Pose truth = at(0.01, 0.05, 1);
+    const OdometryStep moved = step(state, look(truth), std::nullopt, config);
+    ASSERT_EQ(moved.motion.refusal, MotionRefusal::none) << before_px;
+    EXPECT_LT(metres_apart(moved.state.map_from_camera, truth), 0.01) << before_px;
+  }
+}
+
 TEST(Odometry, IsReproducibleBitForBitForAnyNumberOfThreads) {
   const std::vector<Pose> once = run_with(1);
   for (const int threads : {1, 2, 4}) {
