@@ -17,10 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string count_of(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::string seconds(Stamp stamp) {
   return text_of("%.2f", static_cast<double>(stamp.ns) * 1e-9);
 }
@@ -94,7 +90,7 @@ bool are_copies(const MapFile& file, const MapFile& other) {
   return !file.map_id().empty() && file.map_id() == other.map_id();
 }
 
-/// Merges copies of one map by id, other maps by appearance.
+/// Merges copies of one map by id and appearance, other maps by appearance and place.
 Merged merged_of(const MapFile& file, const MapFile& other, const MapOptions& options) {
   Merged merged = are_copies(file, other) ? merge_copies(file.load(), other.load(), LandmarksConfig{})
                                           : merge(file.load(), other.load(), std::nullopt, LandmarksConfig{});
@@ -116,7 +112,6 @@ int diff(const MapOptions& options) {
   const MapFile other = MapFile::open(second_of(options), MapMode::read_only);
   const LandmarkMap map = file.load();
   const LandmarkMap second = other.load();
-  const bool is_copy = are_copies(file, other);
   const auto moved_by = [](const Landmark& a, Point3 b) {
     return std::hypot(b.x - a.position_m.x, b.y - a.position_m.y);
   };
@@ -128,17 +123,13 @@ int diff(const MapOptions& options) {
                by > 0 ? text_of("%.2f", by) : ""});
     ++changes;
   };
-  const Merged merged = is_copy ? Merged{} : merged_of(file, other, options);
-  const Pose pose = merged.map_from_other.value_or(Pose{});
+  const Merged merged = merged_of(file, other, options);
+  const Pose pose = *merged.map_from_other;
   std::vector<LandmarkId> met;
   for (const Landmark& theirs : second.list) {
     const Landmark* ours = nullptr;
-    if (is_copy) {
-      ours = find(map, theirs.id);
-    } else {
-      for (const LandmarkPair& pair : merged.pairs) {
-        if (number(pair.track) == number(theirs.id)) ours = find(map, pair.landmark);
-      }
+    for (const LandmarkPair& pair : merged.pairs) {
+      if (number(pair.track) == number(theirs.id)) ours = find(map, pair.landmark);
     }
     const Point3 at = pose(theirs.position_m);
     if (ours == nullptr) {

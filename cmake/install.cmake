@@ -40,11 +40,11 @@ set(private_headers
   regions/gradient_threshold regions/split_floor
   [a-z]+/[a-z_]+_kernels
   ros/mcap_format source/mcap_sequence source/mcap_topics source/ros_pictures source/stamp_pairing
-  tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/geometry
+  tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/changes landmarks/geometry
   source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video
   source/open_ros2 source/text_lines
-  io/calibration_forms io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts page/live_page
-  view/access view/channels view/client view/frame_json view/parameters)
+  io/calibration_forms io/natural_order io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts
+  page/live_page view/access view/channels view/client view/frame_json view/parameters)
 list(JOIN private_headers "|" private_headers)
 
 cairn_install_library(cairn cairnTargets library)

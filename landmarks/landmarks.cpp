@@ -8,11 +8,16 @@
 #include <limits>
 #include <numbers>
 
+#include "changes.hpp"
 #include "geometry.hpp"
 
 namespace cairn {
 namespace {
 
+using landmarks::are_apart;
+using landmarks::find_in;
+using landmarks::find_moved;
+using landmarks::forget_vanished;
 using landmarks::kPositionAndYaw;
 using landmarks::matrix;
 using landmarks::Matrix3;
@@ -22,7 +27,7 @@ using landmarks::Placed;
 using landmarks::point;
 using landmarks::position_and_yaw;
 using landmarks::Pull;
-using landmarks::squared_distance;
+using landmarks::report_new;
 using landmarks::vector;
 
 constexpr double kLargestOdds = 5;
@@ -38,8 +43,6 @@ constexpr double kLongUnseen_s = 5;
 constexpr double kClosure_s = 5;
 constexpr int kSteadyFrames = 5;
 constexpr int kFloorFrames = 10;
-constexpr double kSettled_s = 3;  // until then a new landmark may turn out to be a moved one
-constexpr double kUnique = 0.05;  // of the score
 
 constexpr double kSigmaUp = 0.1;  // of an object's centre, as a share of its height
 
@@ -71,10 +74,6 @@ void follow(double& bound, double value, bool down) {
   constexpr double kSlowly = 0.02;
   const bool is_beyond = down ? value < bound : value > bound;
   bound += (is_beyond ? kQuickly : kSlowly) * (value - bound);
-}
-
-Landmark* find_in(LandmarkMap& map, LandmarkId id) {
-  return const_cast<Landmark*>(find(map, id));  // NOLINT: the map is ours to change
 }
 
 TrackEvidence* evidence_of(LandmarksState& state, TrackId id) {
@@ -200,17 +199,17 @@ bool may_tell_place(const TrackEvidence& evidence, const Track& track, const Lan
          evidence.cut_ago > 0 && evidence.centres >= 2;
 }
 
-/// Stores the colours of an octant, and the crop if this is the largest view so far.
+/// Stores the colours of an octant, and the crop if the view is clearly larger than the stored one.
 void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int octant,
           const LandmarkFrame& frame) {
   auto at = std::lower_bound(landmark.looks.begin(), landmark.looks.end(), octant,
                              [](const LandmarkLook& l, int wanted) { return l.octant < wanted; });
   if (at == landmark.looks.end() || at->octant != octant)
-    at = landmark.looks.insert(at, {octant, track.look, 0, {}});
+    at = landmark.looks.insert(at, {octant, track.look, 0, {}, 0});
   if (shown.pixels > at->pixels) at->colours = track.look;
   int largest = 0;
   for (const LandmarkLook& look : landmark.looks) {
-    if (!look.crop_png.empty()) largest = look.pixels;
+    if (!look.crop_png.empty()) largest = look.crop_pixels;
   }
   at->pixels = std::max(at->pixels, shown.pixels);
   constexpr double kWorth = 1.5;  // least gain in area; encoding takes longer than the rest of this function
@@ -236,6 +235,7 @@ void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int 
   if (png.size() > kLargestCrop) return;
   for (LandmarkLook& look : landmark.looks) look.crop_png.clear();
   at->crop_png = std::move(png);
+  at->crop_pixels = shown.pixels;
 }
 
 /// Updates the landmark with the track's current estimates.
@@ -298,133 +298,6 @@ void learn_floor(LandmarkMap& map, const LandmarkFrame& frame, const Pose& map_f
   map.floor.insert(map.floor.end(), fresh.begin(), fresh.end());
   std::inplace_merge(map.floor.begin(), map.floor.begin() + middle, map.floor.end(),
                      [](FloorCell a, FloorCell b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
-}
-
-bool was_seen_before(const Landmark& landmark, Stamp stamp, const LandmarksState& state) {
-  return landmark.run != state.run || landmark.last < stamp;
-}
-
-/// Similarity of two landmarks over all their views.
-double score_between(const Landmark& a, const Landmark& b) {
-  double best = 0;
-  for (const LandmarkLook& look : a.looks)
-    best = std::max(best, score_of(landmarks::candidate_of(a, look.colours), b));
-  return best;
-}
-
-bool may_be_same(const Landmark& a, const Landmark& b) {
-  return may_be(landmarks::candidate_of(a, {}), b);
-}
-
-/// Whether two places of one landmark are apart beyond doubt.
-bool are_apart(const Eigen::Vector3d& way, const Matrix3& covariance, const LandmarksConfig& config) {
-  constexpr double kSquaredSigmas = 9;
-  return way.norm() > static_cast<double>(config.moved) && squared_distance(way, covariance) > kSquaredSigmas;
-}
-
-void forget_vanished(LandmarksState& state, LandmarkId id) {
-  std::erase_if(state.vanished, [&](const LandmarksState::Vanished& v) { return v.landmark == id; });
-}
-
-std::vector<int> frames_of(const LandmarksState& state, LandmarkId id) {
-  for (const LandmarksState::Vanished& vanished : state.vanished) {
-    if (vanished.landmark == id) return vanished.frames;
-  }
-  return {};
-}
-
-/// Pairs landmarks that disappeared with new ones that may be the same object, moved.
-std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame& frame,
-                                      const LandmarksConfig& config) {
-  std::vector<LandmarkEvent> events;
-  const auto least = static_cast<double>(config.min_score);
-  const auto can_be = [&](const Landmark& old, const Landmark& found) {
-    return old.id != found.id && was_seen_before(old, found.first, state) && may_be_same(found, old);
-  };
-  bool again = true;
-  while (again) {
-    again = false;
-    for (const LandmarkId id : state.found) {
-      const Landmark* found = find(state.map, id);
-      if (found == nullptr || found->is_gone) continue;
-      const Landmark* best = nullptr;
-      double score = 0;
-      double second = 0;
-      for (const Landmark& old : state.map.list) {
-        if (!can_be(old, *found)) continue;
-        const double s = score_between(*found, old);
-        if (s > score) {
-          second = score;
-          score = s;
-          best = &old;
-        } else {
-          second = std::max(second, s);
-        }
-      }
-      if (best == nullptr || !best->is_gone || score < least || score < second + kUnique) continue;
-      const bool is_only = std::none_of(state.found.begin(), state.found.end(), [&](LandmarkId rival) {
-        const Landmark* other = find(state.map, rival);
-        return other != nullptr && other != found && !other->is_gone && can_be(*best, *other) &&
-               score_between(*other, *best) > score - kUnique;
-      });
-      const Eigen::Vector3d way = vector(found->position_m - best->position_m);
-      const Matrix3 covariance = matrix(found->covariance_m2) + matrix(best->covariance_m2);
-      if (!is_only || !are_apart(way, covariance, config)) continue;
-
-      const Landmark place = *found;
-      const double gone = probability_of(-best->log_odds);
-      events.push_back({LandmarkEventKind::moved, frame.stamp, best->id, place.position_m, point(way),
-                        gone * score, frames_of(state, best->id)});
-      Landmark& same = *find_in(state.map, best->id);
-      same.position_m = place.position_m;
-      same.covariance_m2 = place.covariance_m2;
-      same.log_odds = place.log_odds;
-      same.is_gone = false;
-      same.seen += place.seen;
-      same.expected += place.expected;
-      same.seen_through = 0;
-      same.last = place.last;
-      same.run = state.run;
-      for (TrackEvidence& evidence : state.tracks) {
-        if (evidence.landmark != place.id) continue;
-        evidence.landmark = same.id;
-        evidence.is_recognised = true;
-        evidence.score = score;
-      }
-      std::erase_if(state.map.list, [&](const Landmark& l) { return l.id == place.id; });
-      std::erase(state.found, place.id);
-      std::erase(state.unreported, place.id);
-      forget_vanished(state, same.id);
-      again = true;
-      break;
-    }
-  }
-  return events;
-}
-
-/// Reports landmarks that are where the map had floor, and are not moved ones.
-std::vector<LandmarkEvent> report_new(LandmarksState& state, const LandmarkFrame& frame,
-                                      const LandmarksConfig& config) {
-  std::vector<LandmarkEvent> events;
-  std::erase_if(state.unreported, [&](LandmarkId id) {
-    const Landmark* found = find(state.map, id);
-    if (found == nullptr || found->is_gone) return true;
-    if (seconds_between(found->first, frame.stamp) < kSettled_s) return false;
-    for (const Landmark& old : state.map.list) {
-      if (old.id != id && was_seen_before(old, found->first, state) && may_be_same(*found, old) &&
-          score_between(*found, old) >= static_cast<double>(config.min_score))
-        return false;
-    }
-    events.push_back({LandmarkEventKind::found,
-                      frame.stamp,
-                      id,
-                      found->position_m,
-                      {},
-                      probability_of(found->log_odds),
-                      {}});
-    return true;
-  });
-  return events;
 }
 
 /// Adds the uncertainty that odometry gained since the anchor to that of the anchor. As a difference of
@@ -847,83 +720,6 @@ LandmarkFrame landmark_frame(const Step& step, const StereoRig& rig, View<const 
   return frame;
 }
 
-Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const Pose& map_from_odom) {
-  constexpr double kCore = 0.7;     // of the ellipse: its rim often shows background
-  constexpr double kInView = 0.85;  // of the samples
-  constexpr double kSigma_px = 0.35;
-  constexpr double kSigmas = 3;
-  constexpr int kSide = 13;  // samples across
-  constexpr double kNearest_m = 0.3;
-  Expectation result;
-  const Pose map_from_camera = map_from_odom * frame.odom_from_camera;
-  const Pose camera_from_map = inverse(map_from_camera);
-  const Point3 centre = camera_from_map(landmark.position_m);
-  if (centre.z < kNearest_m) return result;
-  const auto focal = static_cast<double>(frame.rig.focal_px);
-  const double u = static_cast<double>(frame.rig.cx_px) + focal * centre.x / centre.z;
-  const double v = static_cast<double>(frame.rig.cy_px) + focal * centre.y / centre.z;
-  const int width = frame.disparity_px.width();
-  const int height = frame.disparity_px.height();
-  if (u < 0 || v < 0 || u >= width || v >= height) return result;
-  const double across_m = (landmark.size.narrowest_m + landmark.size.widest_m) / 2;
-  const double sigma_m = std::sqrt(matrix(landmark.covariance_m2).topLeftCorner<2, 2>().trace() / 2);
-  const double a = focal * across_m / 2 / centre.z;
-  const double b = focal * landmark.size.height_m / 2 / centre.z;
-  // The core excludes the margin left by the landmark's position uncertainty.
-  const double core_a = std::max(kCore * a / 2, kCore * a - focal * sigma_m / centre.z / 2);
-  const double core_b = kCore * b;
-  const double depth_sigma_px =
-      focal * static_cast<double>(frame.rig.baseline_m) / (centre.z * centre.z) * sigma_m;
-  const double margin = kSigmas * std::hypot(kSigma_px, depth_sigma_px);
-  const auto disparity_at = [&](double z) {
-    return focal * static_cast<double>(frame.rig.baseline_m) / z - static_cast<double>(frame.rig.doffs_px);
-  };
-  const double behind = disparity_at(centre.z + landmark.size.widest_m / 2) - margin;
-  const double before = disparity_at(std::max(kNearest_m, centre.z - landmark.size.widest_m / 2)) + margin;
-  // The floor just behind an object's base has nearly the same disparity; it is recognised by being flat.
-  constexpr double kFlat_m = 0.06;
-  constexpr double kAbove_m = 0.12;
-  constexpr double kStands_m = 0.15;
-  const bool stands = landmark.position_m.z - landmark.size.height_m / 2 < kStands_m;
-  const double at_centre = disparity_at(centre.z) - kSigma_px;
-  const auto is_floor = [&](int px, int py, double d) {
-    if (!stands || d >= at_centre) return false;
-    const auto seen =
-        frame.rig.point_in_camera_m(static_cast<float>(px), static_cast<float>(py), static_cast<float>(d));
-    if (!seen) return false;
-    const Point3 p{static_cast<double>(seen->x), static_cast<double>(seen->y), static_cast<double>(seen->z)};
-    const double height_m = map_from_camera(p).z;
-    return std::abs(height_m) < kFlat_m && map_from_camera((centre.z / p.z) * p).z > height_m + kAbove_m;
-  };
-  int inside = 0;
-  int wanted = 0;
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const double x = 2.0 * (i + 0.5) / kSide - 1;
-      const double y = 2.0 * (j + 0.5) / kSide - 1;
-      if (x * x + y * y > 1) continue;
-      ++wanted;
-      const int px = static_cast<int>(std::floor(u + x * core_a + 0.5));
-      const int py = static_cast<int>(std::floor(v + y * core_b + 0.5));
-      if (px < 0 || py < 0 || px >= width || py >= height) continue;
-      ++inside;
-      const auto d = static_cast<double>(frame.disparity_px(px, py));
-      if (std::isnan(d)) {
-        ++result.unknown;
-      } else if (d < behind || is_floor(px, py, d)) {
-        ++result.farther;
-      } else if (d > before) {
-        ++result.nearer;
-      } else {
-        ++result.agree;
-      }
-    }
-  }
-  if (inside < kInView * wanted) return {};
-  result.in_view = static_cast<int>(std::numbers::pi * a * b);
-  return result;
-}
-
 LandmarksState begin_landmarks(LandmarkMap map, std::int64_t run, const std::optional<Pose>& map_from_odom) {
   LandmarksState state;
   const bool is_empty = std::none_of(map.list.begin(), map.list.end(),
@@ -964,31 +760,6 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
   for (const TrackEvidence& evidence : state.tracks) result.tracks.push_back(of_track(evidence));
   result.state = std::move(state);
   return result;
-}
-
-std::vector<LandmarkEvent> changes_of(const std::vector<LandmarkEvent>& events) {
-  std::vector<LandmarkEvent> last;
-  for (const LandmarkEvent& event : events) {
-    if (event.kind == LandmarkEventKind::relocated) continue;
-    const auto same = std::find_if(last.begin(), last.end(),
-                                   [&](const LandmarkEvent& e) { return e.landmark == event.landmark; });
-    if (same == last.end()) {
-      last.push_back(event);
-      continue;
-    }
-    const bool is_undone = event.kind == LandmarkEventKind::back && same->kind == LandmarkEventKind::gone;
-    const bool never_was = event.kind == LandmarkEventKind::gone && same->kind == LandmarkEventKind::found;
-    if (is_undone || never_was) {
-      last.erase(same);
-    } else if (same->kind == LandmarkEventKind::moved && event.kind == LandmarkEventKind::moved) {
-      const Point3 before = same->moved_by_m;
-      *same = event;
-      same->moved_by_m = same->moved_by_m + before;
-    } else {
-      *same = event;
-    }
-  }
-  return last;
 }
 
 }  // namespace cairn

@@ -57,7 +57,8 @@ struct LandmarkLook {
   int octant = 0;  // 0 … 7: direction from the landmark to the camera, 45° each, from x of the map on
   ColourHistogram colours{};
   int pixels = 0;        // of the largest view
-  std::string crop_png;  // of the largest view of all octants, ≤ 16 kB; "" in the others
+  std::string crop_png;  // of about the largest view of all octants, ≤ 16 kB; "" in the others
+  int crop_pixels = 0;   // of the view in crop_png; not in the file: `pixels` after loading
 };
 
 /// A static object that is kept between runs. Position and covariance are those of its centre, in the map

@@ -72,11 +72,35 @@ double finite(const SQLite::Column& column, const char* what) {
   return value;
 }
 
-int whole(const SQLite::Column& column, const char* what) {
-  const std::int64_t value = column.getInt64();
-  if (value < 0 || value > std::numeric_limits<int>::max())
-    throw Error(std::string(what) + " is " + std::to_string(value) + ", expected 0 … 2147483647");
+constexpr int kMostWhole = std::numeric_limits<int>::max();
+
+int whole(std::int64_t value, const char* what, int least = 0) {
+  if (value < least || value > kMostWhole) {
+    throw Error(std::string(what) + " is " + std::to_string(value) + ", expected " + std::to_string(least) +
+                " … " + std::to_string(kMostWhole));
+  }
   return static_cast<int>(value);
+}
+
+int whole(const SQLite::Column& column, const char* what, int least = 0) {
+  return whole(column.getInt64(), what, least);
+}
+
+/// A side of a landmark, m.
+double side(const SQLite::Column& column, const char* what) {
+  constexpr double kMost_m = 1000;
+  const double value = finite(column, what);
+  if (value < 0 || value > kMost_m)
+    throw Error(std::string(what) + " is " + std::to_string(value) + ", expected 0 … 1000 m");
+  return value;
+}
+
+/// Ids are counted up from 1, so the highest must leave room.
+LandmarkId landmark_id(std::int64_t value) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 53U;
+  if (value < 1 || value > kMost)
+    throw Error("landmark " + std::to_string(value) + ": expected an id of 1 … 2^53");
+  return LandmarkId{value};
 }
 
 template <class E, std::size_t N>
@@ -506,16 +530,15 @@ LandmarkMap MapFile::load() const {
         "seen, expected, seen_through, open_share, first_ns, last_ns, run FROM landmark ORDER BY id");
     while (rows.executeStep()) {
       Landmark l;
-      l.id = LandmarkId{rows.getColumn(0).getInt64()};
-      if (number(l.id) < 1) throw Error("landmark " + std::to_string(number(l.id)) + ": ids begin with 1");
+      l.id = landmark_id(rows.getColumn(0).getInt64());
       l.position_m = {finite(rows.getColumn(1), "landmark.x"), finite(rows.getColumn(2), "landmark.y"),
                       finite(rows.getColumn(3), "landmark.z")};
       l.covariance_m2 = numbers_in<double, 9>(rows.getColumn(4), "landmark.cov");
       for (const std::size_t i : {0U, 4U, 8U}) {
         if (l.covariance_m2[i] <= 0) throw Error("landmark.cov is not a covariance");
       }
-      l.size = {finite(rows.getColumn(5), "landmark.narrowest"), finite(rows.getColumn(6), "landmark.widest"),
-                finite(rows.getColumn(7), "landmark.height")};
+      l.size = {side(rows.getColumn(5), "landmark.narrowest"), side(rows.getColumn(6), "landmark.widest"),
+                side(rows.getColumn(7), "landmark.height")};
       l.height_over_floor_m = finite(rows.getColumn(8), "landmark.over_floor");
       l.log_odds = finite(rows.getColumn(9), "landmark.log_odds");
       const std::string state = rows.getColumn(10).getString();
@@ -548,18 +571,19 @@ LandmarkMap MapFile::load() const {
         look.crop_png.assign(static_cast<const char*>(crop.getBlob()),
                              static_cast<std::size_t>(crop.getBytes()));
       }
-      look.pixels = whole(looks.getColumn(4), "look.pixels");
+      look.pixels = look.crop_pixels = whole(looks.getColumn(4), "look.pixels");
       at->looks.push_back(std::move(look));
     }
     SQLite::Statement cells(*store_->database, "SELECT x, y, frames FROM floor ORDER BY x, y");
     while (cells.executeStep()) {
-      map.floor.push_back({cells.getColumn(0).getInt(), cells.getColumn(1).getInt(),
+      map.floor.push_back({whole(cells.getColumn(0), "floor.x", -kMostWhole),
+                           whole(cells.getColumn(1), "floor.y", -kMostWhole),
                            whole(cells.getColumn(2), "floor.frames")});
     }
     const std::string next = store_->get("next_landmark").value_or("1");
-    map.next = std::strtoll(next.c_str(), nullptr, 10);
+    map.next = std::max<std::int64_t>(std::strtoll(next.c_str(), nullptr, 10), 1);
+    (void)landmark_id(map.next);
     if (!map.list.empty()) map.next = std::max(map.next, number(map.list.back().id) + 1);
-    map.next = std::max<std::int64_t>(map.next, 1);
     return map;
   });
 }
@@ -653,7 +677,7 @@ std::vector<MapEvent> MapFile::events() const {
       if (!frames.is_array()) throw Error("event.frames is not a list");
       for (const auto& frame : frames) {
         if (!frame.is_number_integer()) throw Error("event.frames is not a list of numbers");
-        event.frames.push_back(frame.get<int>());
+        event.frames.push_back(whole(frame.get<std::int64_t>(), "event.frames"));
       }
       all.push_back(std::move(one));
     }

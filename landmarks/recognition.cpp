@@ -392,6 +392,35 @@ bool is_shared(const Landmark& a, const Landmark& b, const LandmarksConfig& conf
   });
 }
 
+/// The looks as seen from the axes of the map that `pose` leads to.
+std::vector<LandmarkLook> turned(std::vector<LandmarkLook> looks, const Pose& pose) {
+  const double yaw = std::atan2(pose.rotation[3], pose.rotation[0]);
+  const int turn = static_cast<int>(std::lround(yaw / (std::numbers::pi / 4)));
+  for (LandmarkLook& look : looks) look.octant = (look.octant + turn + 8) % 8;
+  std::sort(looks.begin(), looks.end(),
+            [](const LandmarkLook& a, const LandmarkLook& b) { return a.octant < b.octant; });
+  return looks;
+}
+
+/// For each octant the larger view; the crop remains that of `known`, if it has one.
+void add_looks(Landmark& known, const std::vector<LandmarkLook>& others) {
+  const bool has_crop = std::any_of(known.looks.begin(), known.looks.end(),
+                                    [](const LandmarkLook& look) { return !look.crop_png.empty(); });
+  for (const LandmarkLook& other : others) {
+    auto at = std::lower_bound(known.looks.begin(), known.looks.end(), other.octant,
+                               [](const LandmarkLook& look, int octant) { return look.octant < octant; });
+    if (at == known.looks.end() || at->octant != other.octant)
+      at = known.looks.insert(at, {other.octant, {}, -1, {}, 0});
+    if (other.pixels > at->pixels) {
+      at->colours = other.colours;
+      at->pixels = other.pixels;
+    }
+    if (has_crop || other.crop_png.empty()) continue;
+    at->crop_png = other.crop_png;
+    at->crop_pixels = other.crop_pixels;
+  }
+}
+
 Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
   Merged merged;
   merged.map_from_other = pose;
@@ -404,14 +433,10 @@ Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found
     Landmark here = landmark;
     here.position_m = pose(landmark.position_m);
     here.covariance_m2 = rotated(pose, landmark.covariance_m2);
+    here.looks = turned(landmark.looks, pose);
     if (pair == found.pairs.end()) {
       here.id = LandmarkId{merged.map.next++};
       here.run = 0;
-      const double yaw = std::atan2(pose.rotation[3], pose.rotation[0]);
-      const int turn = static_cast<int>(std::lround(yaw / (std::numbers::pi / 4)));
-      for (LandmarkLook& look : here.looks) look.octant = (look.octant + turn + 8) % 8;
-      std::sort(here.looks.begin(), here.looks.end(),
-                [](const LandmarkLook& a, const LandmarkLook& b) { return a.octant < b.octant; });
       merged.map.list.push_back(std::move(here));
       continue;
     }
@@ -424,11 +449,13 @@ Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found
     known.covariance_m2 = landmarks::rows_of(both);
     known.size.narrowest_m = std::min(known.size.narrowest_m, here.size.narrowest_m);
     known.size.widest_m = std::max(known.size.widest_m, here.size.widest_m);
+    known.size.height_m = std::max(known.size.height_m, here.size.height_m);
+    add_looks(known, here.looks);
     known.seen += here.seen;
     known.expected += here.expected;
     known.log_odds = std::clamp(known.log_odds + here.log_odds, -5.0, 5.0);
-    known.first = std::min(known.first, here.first);
-    known.last = std::max(known.last, here.last);
+    known.is_gone = known.is_gone && known.log_odds < 0;
+    // Stamps of different runs are not comparable: first, last and run remain those of this map.
     if (known.name.empty()) known.name = here.name;
   }
   return merged;

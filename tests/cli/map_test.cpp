@@ -147,12 +147,38 @@ TEST_F(MapCommand, ComparesAMapWithAnEarlierCopyOfIt) {
     LandmarkMap map = file.load();
     map.list[0].position_m.x += 1;
     map.list[1].is_gone = true;
-    map.list[4].id = LandmarkId{9};
+    map.list[4].id = LandmarkId{9};  // another object elsewhere
+    map.list[4].position_m.y += 2;
     file.replace(map);
   }
   const Outcome outcome = run({"map", "diff", "before.db", "room.db"});
   EXPECT_EQ(outcome.code, 0);
   for (const char* words : {"moved", "1.00", "gone", "new", "not in OTHER"})
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
+}
+
+TEST_F(MapCommand, ComparesCopiesThatGaveNewObjectsTheSameId) {
+  write_map("room.db");
+  fs::copy_file(at("room.db"), at("copy.db"));
+  const auto add = [&](const std::string& name, Point3 place, std::size_t colour) {
+    MapFile file = MapFile::open(at(name), MapMode::update);
+    LandmarkMap map = file.load();
+    Landmark l = map.list.front();
+    l.id = LandmarkId{map.next++};
+    l.position_m = place;
+    l.first = {1'000'000 * static_cast<std::int64_t>(colour)};
+    l.looks[0].colours = {};
+    l.looks[0].colours[colour % 8] = 1;
+    l.looks[0].colours[8 + 5 * colour] = 1;
+    map.list.push_back(l);
+    file.replace(map);
+  };
+  add("room.db", {6, -3, 0.25}, 6);
+  add("copy.db", {-6, -3, 0.25}, 7);
+  const Outcome outcome = run({"map", "diff", "room.db", "copy.db"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("moved "), outcome.out.find("moved m")) << outcome.out;  // in the head only
+  for (const char* words : {"new", "not in OTHER"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
 }
 

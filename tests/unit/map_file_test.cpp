@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <cairn/core/error.hpp>
 #include <csignal>
 #include <landmarks/map_exports.hpp>
@@ -421,6 +422,27 @@ TEST(MapFile, SurvivesDamage) {
         (void)file.events();
       },
       kStep);
+}
+
+TEST(MapFile, RefusesNumbersOutOfRange) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "room.db";
+  {
+    MapFile file = MapFile::open(path, MapMode::update, kRig);
+    Drive drive(file);
+    drive.frames(file, 8);
+    file.end_run(RunState::done, drive.step.state.map);
+  }
+  for (const auto& [change, word] :
+       {std::pair{"INSERT INTO floor VALUES(4294967297, 0, 1)", "floor.x is 4294967297"},
+        {"UPDATE landmark SET widest=1e6", "landmark.widest is 1000000"},
+        {"UPDATE meta SET value='9223372036854775807' WHERE key='next_landmark'", "expected an id of"}}) {
+    fs::copy_file(path, folder.path() / "wrong.db", fs::copy_options::overwrite_existing);
+    SQLite::Database((folder.path() / "wrong.db").string(), SQLite::OPEN_READWRITE).exec(change);
+    const MapFile wrong = MapFile::open(folder.path() / "wrong.db", MapMode::read_only);
+    EXPECT_TRUE(has(refusal([&] { (void)wrong.load(); }), {word})) << change;
+    EXPECT_FALSE(wrong.check().empty()) << change;
+  }
 }
 
 TEST(MapFile, DeletesALandmarkWithAllItsRecords) {

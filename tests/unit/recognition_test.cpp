@@ -169,6 +169,32 @@ TEST(Maps, CopiesAreMergedWithoutDoubleCounting) {
   EXPECT_EQ(same.map.list[3].seen, 20);
 }
 
+TEST(Maps, ALandmarkThatIsInTheOtherMapIsNotGone) {
+  LandmarkMap ours;
+  LandmarkMap theirs;
+  const std::array places{Point3{0, 0, 0.25}, Point3{2, 0, 0.25}, Point3{0, 3, 0.25}, Point3{3, 3, 0.25}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (LandmarkMap* map : {&ours, &theirs}) map->list.push_back(known(map->next++, places[i], 5 * i));
+    ours.list[i].log_odds = theirs.list[i].log_odds = 3;
+    ours.list[i].first = {7};
+    theirs.list[i].first = {3};
+  }
+  ours.list[1].is_gone = true;
+  ours.list[1].log_odds = -2.5;
+  theirs.list[1].size.height_m = ours.list[1].size.height_m + 0.1;
+  theirs.list[1].looks[0].octant = 3;
+  theirs.list[1].looks[0].pixels = 900;
+  const Merged merged = merge(ours, theirs, Pose{}, {});
+  ASSERT_EQ(merged.map.list.size(), 4U);
+  const Landmark& both = merged.map.list[1];
+  EXPECT_FALSE(both.is_gone);
+  EXPECT_EQ(both.size.height_m, theirs.list[1].size.height_m);
+  ASSERT_EQ(both.looks.size(), 2U);
+  EXPECT_EQ(both.looks[1].octant, 3);
+  EXPECT_EQ(both.looks[1].pixels, 900);
+  EXPECT_EQ(both.first.ns, 7) << "stamps of different runs are not comparable";
+}
+
 TEST(Changes, AreTheLastChangeOfEachLandmark) {
   const auto event = [](LandmarkEventKind kind, std::int64_t id, double by = 0) {
     LandmarkEvent e;
@@ -186,6 +212,14 @@ TEST(Changes, AreTheLastChangeOfEachLandmark) {
   EXPECT_EQ(changes[0].moved_by_m.x, 1.5);
   EXPECT_EQ(changes[1].kind, found);
   EXPECT_EQ(changes[2].landmark, LandmarkId{4});
+
+  const auto returned = changes_of({event(moved, 2, 1), event(gone, 2), event(back, 2), event(found, 3),
+                                    event(gone, 3), event(back, 3), event(found, 4), event(gone, 4)});
+  ASSERT_EQ(returned.size(), 2U);
+  EXPECT_EQ(returned[0].kind, moved) << "what moved before it left is still elsewhere";
+  EXPECT_EQ(returned[0].moved_by_m.x, 1);
+  EXPECT_EQ(returned[1].landmark, LandmarkId{3});
+  EXPECT_EQ(returned[1].kind, found);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <string>
+
+namespace cairn::io {
+
+/// The order of names with numbers: 9 before 10, zero-padded or not; ties by bytes.
+bool in_natural_order(const std::string& a, const std::string& b);
+
+}  // namespace cairn::io
