@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/core/nearest.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <cctype>
 #include <charconv>
@@ -10,6 +11,7 @@
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
 #include <io/calibration_forms.hpp>
+#include <io/dataset.hpp>
 #include <io/raster.hpp>
 #include <io/read_file.hpp>
 #include <map>
@@ -21,11 +23,6 @@ namespace fs = std::filesystem;
 
 /// A rectified calibration has fx = fy; smaller relative differences are rounding.
 constexpr double kSameFocal = 1e-3;
-
-std::string written(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
 
 void check_same_focal(double a, const char* name_a, double b, const char* name_b) {
   if (std::abs(a - b) <= kSameFocal * std::abs(a)) return;
@@ -214,14 +211,18 @@ fs::path file_in(const fs::path& folder) {
     }
   }
   if (pairs.size() == 1) return pairs.front();
-  for (const char* name : {"calib.txt", "calib.yaml", "calib.yml", "calib_cam_to_cam.txt"}) {
-    if (fs::is_regular_file(folder / name, reason)) return folder / name;
-  }
+  const std::optional<fs::path> one = calibration_in(folder);
+  if (one && (pairs.empty() || one->filename() != "left.yaml")) return *one;
   throw Error(folder.string() + ": is a folder with " + std::to_string(pairs.size()) +
               " pairs of left/right YAML files and no calib.txt, expected one calibration");
 }
 
 }  // namespace
+
+std::string written(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n\v\f";
@@ -289,8 +290,19 @@ StereoRig rig_of(const Projection& left, const Projection& right) {
   return *calibration.rig;
 }
 
+/// Unknown keys are ignored, but without a baseline there are no metres.
+void refuse_misspelt_baseline(const Pairs& pairs) {
+  constexpr const char* kKey = "baseline";
+  if (pairs.contains(kKey)) return;
+  for (const auto& [key, value] : pairs) {
+    if (!nearest(key, {kKey}).empty())
+      throw Error("has no key 'baseline', but " + excerpt(key) + ", did you mean 'baseline'?");
+  }
+}
+
 Statement read_key_value_lines(std::string_view text) {
   const Pairs pairs = pairs_of(text, '=');
+  refuse_misspelt_baseline(pairs);
   Statement says;
   says.fx = number_in(pairs, "fx");
   says.fy = number_in(pairs, "fy");
@@ -311,6 +323,7 @@ Statement read_key_value_lines(std::string_view text) {
 
 Statement read_middlebury(std::string_view text) {
   const Pairs pairs = pairs_of(text, '=');
+  refuse_misspelt_baseline(pairs);
   const std::array<double, 9> left = camera_matrix(pairs, "cam0");
   Statement says;
   says.fx = left[0];

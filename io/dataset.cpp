@@ -6,6 +6,7 @@
 #include <functional>
 #include <io/calibration_forms.hpp>
 #include <io/dataset.hpp>
+#include <io/natural_order.hpp>
 #include <system_error>
 
 namespace cairn::io {
@@ -141,7 +142,7 @@ void check_folder(const fs::path& folder) {
               (fs::exists(folder, reason) ? "is not a folder, expected one" : "no such folder"));
 }
 
-/// The results of `visit` for each entry, sorted by name. Throws Error if the folder cannot be listed.
+/// The results of `visit` for each entry, in natural order of their names. Throws Error if the folder cannot be listed.
 template <class Visit>
 std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
   std::vector<FrameFiles> frames;
@@ -151,7 +152,7 @@ std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
   }
   if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
   std::sort(frames.begin(), frames.end(),
-            [](const FrameFiles& a, const FrameFiles& b) { return a.name < b.name; });
+            [](const FrameFiles& a, const FrameFiles& b) { return in_natural_order(a.name, b.name); });
   return frames;
 }
 

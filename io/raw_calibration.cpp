@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
-#include <charconv>
 #include <io/atomic_file.hpp>
 #include <io/calibration_forms.hpp>
 #include <io/raw_calibration.hpp>
@@ -12,11 +11,6 @@ namespace cairn::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string written(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
 
 std::string matrix_text(const char* name, int rows, std::span<const double> numbers) {
   const int columns = static_cast<int>(numbers.size()) / rows;

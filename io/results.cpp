@@ -550,6 +550,17 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
   }
 }
 
+void remove_result(const fs::path& folder) {
+  std::error_code unimportant;
+  if (!fs::exists(folder / "objects.json", unimportant)) return;
+  try {
+    replace(folder / "nothing", folder);
+  } catch (const fs::filesystem_error& error) {
+    throw Error(folder.string() + ": cannot remove the older result (" + error.code().message() + ")");
+  }
+  fs::remove(folder, unimportant);  // unless it contains other files
+}
+
 namespace {
 
 /// JSON's integer conversions do not check the range.

@@ -62,6 +62,10 @@ struct Extras {
 void write_result(const std::filesystem::path& folder, View<const Gray> left, View<const Rgb> left_rgb,
                   const Frame& frame, const Provenance& provenance, Extras extras = {});
 
+/// Removes the files of a result in `folder`, and the folder if nothing else is in it. Nothing happens if it has no
+/// objects.json.
+void remove_result(const std::filesystem::path& folder);
+
 /// The data that `cairn evaluate` needs from an objects.json. Throws Error if the file is not one.
 struct ObjectConfidence {
   ObjectId id = ObjectId::none;

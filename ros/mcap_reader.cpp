@@ -456,6 +456,9 @@ std::optional<McapMessage> McapReader::next() {
       message.channel = content.number<std::uint16_t>();
       (void)content.number<std::uint32_t>();
       message.logged.ns = content.number<std::int64_t>();
+      constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;  // differences fit
+      if (message.logged.ns < 0 || message.logged.ns > kFarthestNs)
+        throw Error("a message has a time after the year 2116");
       (void)content.number<std::uint64_t>();
       message.bytes = content.rest();
       if (s.wanted.empty() || s.wanted.contains(message.channel)) return message;

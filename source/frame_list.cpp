@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <io/dataset.hpp>
+#include <io/natural_order.hpp>
 #include <map>
 #include <system_error>
 
@@ -53,42 +54,6 @@ std::optional<fs::path> first_file(std::initializer_list<fs::path> candidates) {
     if (is_file(candidate)) return candidate;
   }
   return std::nullopt;
-}
-
-[[noreturn]] void refuse_count(const fs::path& path, std::size_t stamps, std::size_t frames) {
-  throw Error(path.string() + ": has " + std::to_string(stamps) + " stamps, expected one for each of the " +
-              std::to_string(frames) + " frames");
-}
-
-/// A stamp for each name: one per line, or, for an excerpt, the line numbered by the name.
-std::vector<Stamp> stamps_by_line(const fs::path& path, const std::vector<std::string>& names) {
-  std::vector<Stamp> all = load_stamps(path);
-  if (all.size() == names.size()) return all;
-  std::vector<Stamp> some;
-  for (const std::string& name : names) {
-    const std::optional<std::size_t> number = whole<std::size_t>(name);
-    if (!number || *number >= all.size()) refuse_count(path, all.size(), names.size());
-    some.push_back(all[*number]);
-  }
-  return some;
-}
-
-std::vector<Stamp> stamps_by_frame(const fs::path& path, const std::vector<FrameStamp>& rows,
-                                   const std::vector<std::string>& names) {
-  std::map<std::size_t, Stamp> by_frame;
-  for (const FrameStamp& row : rows) {
-    if (row.frame) by_frame[*row.frame] = row.stamp;
-  }
-  std::vector<Stamp> stamps;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto found = by_frame.find(whole<std::size_t>(names[i]).value_or(i));
-    if (found != by_frame.end()) stamps.push_back(found->second);
-  }
-  if (stamps.size() == names.size()) return stamps;
-  if (rows.size() != names.size()) refuse_count(path, rows.size(), names.size());
-  stamps.clear();
-  for (const FrameStamp& row : rows) stamps.push_back(row.stamp);
-  return stamps;
 }
 
 std::vector<std::string> stems_of(const std::vector<fs::path>& files) {
@@ -438,7 +403,8 @@ FrameList list_two(const std::string& left, const std::string& right, const Sour
   FrameList list = are_folders ? list_two_folders(left, right, options) : list_patterns(left, right, options);
   const fs::path folder = list.frames.front().left.parent_path();
   list.calib = calibration_in(folder);
-  if (!list.calib) list.calib = calibration_in(fs::absolute(folder).lexically_normal().parent_path());
+  if (!list.calib && are_folders)
+    list.calib = calibration_in(fs::absolute(folder).lexically_normal().parent_path());
   return finished(std::move(list), options, left + "," + right);
 }
 

@@ -52,6 +52,8 @@ class McapSequence : public SourceSequence {
           remark(remarks_, {side == 0 ? "left image without a right one" : "right image without a left one",
                             1, number_text(alone.value.index), true, false});
         }) {
+    if (reader_.channels().empty() && !reader_.is_whole())
+      throw Error(file.string() + ": is truncated before the end of its first chunk: nothing can be read");
     const StereoTopics topics = find_stereo_topics(reader_.channels(), options.topics, file.string());
     sides_[0].channel = topics.left;
     sides_[1].channel = topics.right;

@@ -27,9 +27,6 @@ std::string number_text(std::size_t index);
 
 bool is_digit(char c);
 
-/// 9 before 10, zero-padded or not; ties by bytes.
-bool in_natural_order(const std::string& a, const std::string& b);
-
 /// Whether `path` is an accessible folder.
 bool is_folder(const std::filesystem::path& path);
 

@@ -137,6 +137,17 @@ void check(const SourceOptions& options) {
     throw Error("--layout: found " + options.layout + ", expected side_by_side or top_bottom");
 }
 
+/// The MCAP file that the source is, or that the folder contains.
+std::optional<fs::path> recording_of(const std::string& source) {
+  if (is_folder(source)) return recording_in(source);
+  return ros::is_mcap(source) ? std::optional<fs::path>(source) : std::nullopt;
+}
+
+void check_no_topics(const SourceOptions& options, const std::string& source) {
+  if (!options.topics.empty())
+    throw Error("--topics " + options.topics + ": is for a recording (MCAP), " + source + " is none");
+}
+
 void check_no_layout(const SourceOptions& options, const std::string& source) {
   if (!options.layout.empty())
     throw Error("--layout " + options.layout + ": is for one video with both images, " + source + " is none");
@@ -198,6 +209,13 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
                                         const Pool& pool) {
   check(options);
   if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
+  if (exists(source) && !is_camera(source)) {
+    if (const auto recording = recording_of(source)) {
+      check_no_layout(options, source);
+      return open_mcap(*recording, options, pool);
+    }
+  }
+  check_no_topics(options, source);
   if (source.starts_with("ros2:") && !exists(source)) {
     check_no_layout(options, source);
     return open_ros2(source, options, pool);
@@ -217,10 +235,6 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
     throw Error(source + ": not found, expected a folder of frames, a video, or LEFT,RIGHT");
   }
   if (!is_folder(source)) {
-    if (ros::is_mcap(source)) {
-      check_no_layout(options, source);
-      return open_mcap(source, options, pool);
-    }
     if (options.layout.empty()) {
       throw Error(source +
                   ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "
@@ -229,7 +243,6 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
     return open_video(source, options, pool);
   }
   check_no_layout(options, source);
-  if (const auto recording = recording_in(source)) return open_mcap(*recording, options, pool);
   const fs::path folder = (fs::path(source) / "").parent_path();  // without a trailing slash
   return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
 }

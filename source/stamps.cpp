@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <io/read_file.hpp>
 #include <limits>
+#include <map>
 
 #include "names_and_numbers.hpp"
 #include "stamp_pairing.hpp"
@@ -82,6 +83,11 @@ std::optional<Stamp> date(std::string_view text) {
 [[noreturn]] void refuse(const fs::path& path, const TextLine& line, std::string_view found) {
   throw Error(place(path, line.number) + ": found " + quoted(found) +
               ", expected a stamp: a whole number of ns, or s with a decimal point");
+}
+
+[[noreturn]] void refuse_count(const fs::path& path, std::size_t stamps, std::size_t frames) {
+  throw Error(path.string() + ": has " + std::to_string(stamps) + " stamps, expected one for each of the " +
+              std::to_string(frames) + " frames");
 }
 
 }  // namespace
@@ -166,6 +172,36 @@ std::optional<std::vector<FrameStamp>> load_frame_stamps(const fs::path& path) {
     stamps.push_back({{}, *stamp});
     if (frame < fields.size()) stamps.back().frame = whole<std::size_t>(fields[frame]);
   }
+  return stamps;
+}
+
+std::vector<Stamp> stamps_by_line(const fs::path& path, const std::vector<std::string>& names) {
+  std::vector<Stamp> all = load_stamps(path);
+  if (all.size() == names.size()) return all;
+  std::vector<Stamp> some;
+  for (const std::string& name : names) {
+    const std::optional<std::size_t> number = whole<std::size_t>(name);
+    if (!number || *number >= all.size()) refuse_count(path, all.size(), names.size());
+    some.push_back(all[*number]);
+  }
+  return some;
+}
+
+std::vector<Stamp> stamps_by_frame(const fs::path& path, const std::vector<FrameStamp>& rows,
+                                   const std::vector<std::string>& names) {
+  std::map<std::size_t, Stamp> by_frame;
+  for (const FrameStamp& row : rows) {
+    if (row.frame) by_frame[*row.frame] = row.stamp;
+  }
+  std::vector<Stamp> stamps;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = by_frame.find(whole<std::size_t>(names[i]).value_or(i));
+    if (found != by_frame.end()) stamps.push_back(found->second);
+  }
+  if (stamps.size() == names.size()) return stamps;
+  if (rows.size() != names.size()) refuse_count(path, rows.size(), names.size());
+  stamps.clear();
+  for (const FrameStamp& row : rows) stamps.push_back(row.stamp);
   return stamps;
 }
 

@@ -42,6 +42,13 @@ struct FrameStamp {
 /// nullopt if the table has no column t_s. Throws Error naming the line.
 std::optional<std::vector<FrameStamp>> load_frame_stamps(const std::filesystem::path& path);
 
+/// A stamp for each of the frames `names`: one per line, or, for an excerpt, the line numbered by the name. Throws
+/// Error if there is none.
+std::vector<Stamp> stamps_by_line(const std::filesystem::path& path, const std::vector<std::string>& names);
+/// The same from the rows of a table: those of the numbers in `names`, else one row each, in order.
+std::vector<Stamp> stamps_by_frame(const std::filesystem::path& path, const std::vector<FrameStamp>& rows,
+                                   const std::vector<std::string>& names);
+
 /// Throws Error unless the stamps ascend, naming the frame and both values; if all of them are within 1 us,
 /// the message says that they are not ns. `where`: origin of the stamps; `names`: of the frames.
 void check_rising(std::span<const Stamp> stamps, std::span<const std::string> names,

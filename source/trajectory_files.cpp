@@ -7,6 +7,7 @@
 #include <cairn/core/error.hpp>
 #include <cmath>
 #include <cstdio>
+#include <io/natural_order.hpp>
 #include <io/read_file.hpp>
 
 #include "names_and_numbers.hpp"
@@ -117,33 +118,31 @@ bool take_stamps(std::vector<TimedPose>& poses, const std::vector<Stamp>& stamps
 }
 
 Trajectory load_folder(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    std::error_code ignored;
-    fs::path file = entry.path() / "pose.txt";
-    if (fs::is_regular_file(file, ignored)) files.push_back(std::move(file));
+  std::vector<std::string> names;
+  std::error_code unknown;
+  std::error_code reason;
+  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    if (fs::is_regular_file(it->path() / "pose.txt", unknown))
+      names.push_back(it->path().filename().string());
   }
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return in_natural_order(a.parent_path().filename().string(), b.parent_path().filename().string());
-  });
-  if (files.empty()) throw Error(folder.string() + ": no frame in this folder contains a pose.txt");
+  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
+  std::sort(names.begin(), names.end(), in_natural_order);
+  if (names.empty()) throw Error(folder.string() + ": no frame in this folder contains a pose.txt");
   Trajectory all;
-  for (const fs::path& file : files) all.poses.push_back({{}, load_pose(file)});
-  std::error_code ignored;
+  for (const std::string& name : names) all.poses.push_back({{}, load_pose(folder / name / "pose.txt")});
+  fs::path from = folder / "stamps.txt";
   std::vector<Stamp> stamps;
-  if (fs::is_regular_file(folder / "stamps.txt", ignored)) {
-    stamps = load_stamps(folder / "stamps.txt");
-  } else if (fs::is_regular_file(folder / "trajectory.csv", ignored)) {
-    for (const FrameStamp& row :
-         load_frame_stamps(folder / "trajectory.csv").value_or(std::vector<FrameStamp>{}))
-      stamps.push_back(row.stamp);
+  if (fs::is_regular_file(from, unknown)) {
+    stamps = stamps_by_line(from, names);
+  } else if (from = folder / "trajectory.csv"; fs::is_regular_file(from, unknown)) {
+    if (const auto rows = load_frame_stamps(from)) stamps = stamps_by_frame(from, *rows, names);
   }
   all.has_stamps = !stamps.empty();
-  if (!all.has_stamps) {
+  if (all.has_stamps) {
+    for (std::size_t k = 0; k < stamps.size(); ++k) all.poses[k].stamp = stamps[k];
+    check_order(all.poses, from);
+  } else {
     number_stamps(all.poses);
-  } else if (!take_stamps(all.poses, stamps)) {
-    throw Error(folder.string() + ": has " + std::to_string(stamps.size()) + " stamps for " +
-                std::to_string(files.size()) + " poses");
   }
   return all;
 }

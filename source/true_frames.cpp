@@ -6,6 +6,7 @@
 #include <cairn/core/error.hpp>
 #include <io/dataset.hpp>
 #include <io/image_files.hpp>
+#include <io/natural_order.hpp>
 #include <io/read_file.hpp>
 
 #include "json_line.hpp"
@@ -90,8 +91,9 @@ TrueSequence load_truth(const fs::path& path) {
   if (!fs::exists(path, ignored)) throw Error(path.string() + ": no such file or folder");
   if (!fs::is_directory(path, ignored)) return from_mots(path);
   TrueSequence truth;
-  for (const auto& entry : fs::directory_iterator(path)) {
-    const fs::path& folder = entry.path();
+  std::error_code reason;
+  for (fs::directory_iterator it(path, reason), end; !reason && it != end; it.increment(reason)) {
+    const fs::path& folder = it->path();
     if (!fs::is_regular_file(folder / "objects.png", ignored)) continue;
     TrueFrame frame;
     frame.name = folder.filename().string();
@@ -99,10 +101,11 @@ TrueSequence load_truth(const fs::path& path) {
     frame.labels = folder / "objects.png";
     truth.frames.push_back(std::move(frame));
   }
+  if (reason) throw Error(path.string() + ": cannot be listed: " + reason.message());
   if (truth.frames.empty())
     throw Error(path.string() + ": has no sub-folder with objects.png, expected one per frame");
   std::sort(truth.frames.begin(), truth.frames.end(),
-            [](const TrueFrame& a, const TrueFrame& b) { return a.name < b.name; });
+            [](const TrueFrame& a, const TrueFrame& b) { return in_natural_order(a.name, b.name); });
   for (TrueFrame& frame : truth.frames) {
     const fs::path folder = frame.labels.parent_path();
     if (fs::exists(folder / "pose.txt", ignored)) frame.world_from_camera = load_pose(folder / "pose.txt");

@@ -191,7 +191,7 @@ class Following {
     if (closed_) return std::nullopt;
     std::optional<io::SequenceFrame> frame = source_->next();
     if (!frame) {
-      close_run();
+      close_run(RunState::done);
       return std::nullopt;
     }
     const Config used = run_->config().segmentation;
@@ -210,13 +210,13 @@ class Following {
 
   void close() {
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
-    close_run();
+    close_run(RunState::aborted);  // before the end of the source
   }
   [[nodiscard]] const io::Sequence& source() const { return *source_; }
 
  private:
-  void close_run() {
-    if (!closed_) run_->close(RunState::done);
+  void close_run(RunState state) {
+    if (!closed_) run_->close(state);
     closed_ = true;
   }
 

@@ -32,7 +32,7 @@ class Rig:
     cy_px: float = "y of the principal point of the left camera, px"
     doffs_px: float = "cx of the right camera minus cx of the left one, px"
 
-    def __init__(self, focal_px: float, baseline_m: float, cx_px: float = 0.0, cy_px: float = 0.0, doffs_px: float = 0.0) -> None:
+    def __init__(self, focal_px: float, baseline_m: float, cx_px: float, cy_px: float, doffs_px: float = 0.0) -> None:
         """Raises cairn.Error unless every number is finite and focal length and baseline are positive."""
         return focal_px, baseline_m, cx_px, cy_px, doffs_px
 

@@ -135,13 +135,15 @@ def test_a_rig_is_made_of_numbers_or_a_file(sample, tmp_path):
     assert rig.point_in_camera_m(320, 240, 42) == pytest.approx((0, 0, 2))
     assert rig.point_in_camera_m(0, 0, 0) is None
     assert repr(rig) == "Rig(focal_px=700, baseline_m=0.12, cx_px=320, cy_px=240, doffs_px=0)"
-    assert eval(repr(rig), {"Rig": cairn.Rig}) == rig and rig != cairn.Rig(701, 0.12)
+    assert eval(repr(rig), {"Rig": cairn.Rig}) == rig and rig != cairn.Rig(701, 0.12, 320, 240)
     assert cairn.Rig.from_file(sample.folder / "calib.txt") == sample.calibration.rig
     assert sample.calibration.image_size == (320, 240)
     with pytest.raises(cairn.Error, match="baseline is 0.0+, expected a positive number"):
-        cairn.Rig(700, 0)
+        cairn.Rig(700, 0, 320, 240)
     with pytest.raises(cairn.Error):
-        cairn.Rig(float("nan"), 0.1)
+        cairn.Rig(float("nan"), 0.1, 320, 240)
+    with pytest.raises(cairn.ArgumentError, match="found no argument 'cx_px', expected it"):
+        cairn.Rig(700, 0.12)
     with pytest.raises(cairn.Error, match="calib.txt"):
         cairn.load_calibration(tmp_path / "calib.txt")
 

@@ -29,7 +29,7 @@ BAD_CALLS = [
     (lambda: cairn.load_picture(3), "path: found 3, expected a path, str or os.PathLike"),
     (lambda: cairn.load_picture("x.png", gray=True), "load_picture: there is no argument 'gray', expected of these: path"),
     (lambda: cairn.Rig.from_file(None), "path: found None, expected a path, str or os.PathLike"),
-    (lambda: cairn.Rig("700", 0.1), "focal_px: found '700', expected a number"),
+    (lambda: cairn.Rig("700", 0.1, 0, 0), "focal_px: found '700', expected a number"),
     (lambda: cairn.Rig(700, baseline=0.1), "Rig: there is no argument 'baseline', did you mean 'baseline_m'?"),
     (lambda: cairn.Config(file=3), "file: found 3, expected the name of a file or None"),
     (lambda: cairn.Exec(2.5), "threads: found 2.5, expected a whole number"),

@@ -246,6 +246,9 @@ class V4l2Camera : public Camera {
       throw Error("gives " + std::to_string(pixels.width) + "x" + std::to_string(pixels.height) +
                   ", expected sides of 1 ... " + std::to_string(kMostPixelsPerSide));
     }
+    if (format_->code == V4L2_PIX_FMT_YUYV && pixels.width % 2 != 0) {
+      throw Error("gives YUYV " + std::to_string(pixels.width) + " px wide, expected an even width");
+    }
     size_ = {static_cast<int>(pixels.width), static_cast<int>(pixels.height)};
     if (has_size && size_ != request_.size) {
       throw Error("gives " + text(size_) + ", expected " + text(request_.size) +

@@ -287,6 +287,8 @@ TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndSkipped) {
   pair_in("many/a");
   const auto bad = pair_in("many/b");
   pair_in("many/c");
+  ASSERT_EQ(run({"segment", path("many"), "-o", path("out")}).code, 0);
+  ASSERT_TRUE(fs::exists(at("out/b/objects.json")));
   write(bad[1], "no image");
   const Outcome outcome = run({"segment", path("many"), "--html", "-o", path("out")});
   EXPECT_EQ(outcome.code, 2);
@@ -295,7 +297,7 @@ TEST_F(BadInput, ABadFrameOfAFolderIsNamedAndSkipped) {
   EXPECT_NE(outcome.err.find("\ncairn: note: no floor: "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("\ncairn: 1 of 3 frames skipped\n"), std::string::npos) << outcome.err;
   EXPECT_TRUE(fs::exists(at("out/a/objects.json")));
-  EXPECT_FALSE(fs::exists(at("out/b")));
+  EXPECT_FALSE(fs::exists(at("out/b"))) << "the result of the run before";
   EXPECT_TRUE(fs::exists(at("out/c/objects.json")));
   EXPECT_TRUE(fs::exists(at("out/segment.html")));
 }
@@ -311,6 +313,9 @@ TEST_F(BadInput, ABadResultOfAFolderIsNamedAndSkipped) {
   for (const char* name : {"a", "b", "c"}) pair_in(std::string("many/") + name);
   ASSERT_EQ(run({"segment", path("many"), "-o", path("results")}).code, 0);
   ASSERT_EQ(run({"segment", path("many"), "-o", path("truth")}).code, 0);
+  const Outcome swapped = run({"evaluate", path("results"), path("truth")});
+  EXPECT_NE(swapped.err.find("truth/a: has an objects.json"), std::string::npos) << swapped.err;
+  for (const char* name : {"a", "b", "c"}) fs::remove(at("truth") / name / "objects.json");
   write(at("results/b/objects.png"), "no image");
   const Outcome outcome = run({"evaluate", path("results"), path("truth"), "--json", path("e.json")});
   EXPECT_EQ(outcome.code, 2);

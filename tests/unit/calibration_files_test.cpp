@@ -119,6 +119,13 @@ TEST_F(CalibrationFiles, WithoutFocalLengthOrBaselineThereIsNoRig) {
   EXPECT_FALSE(read("baseline=0.1\ncx=1\ncy=2\n").rig);
 }
 
+TEST_F(CalibrationFiles, AMisspeltBaselineIsRefused) {
+  EXPECT_TRUE(has(refused("fx=100\ncx=1\ncy=2\nbasline=0.1\n"), {"basline", "did you mean 'baseline'"}));
+  EXPECT_TRUE(
+      has(refused("fx=100\ncx=1\ncy=2\nbaseline_m=0.1\n"), {"baseline_m", "did you mean 'baseline'"}));
+  EXPECT_TRUE(has(refused("cam0=[100 0 1; 0 100 2; 0 0 1]\nBaseline=160\n"), {"did you mean 'baseline'"}));
+}
+
 TEST_F(CalibrationFiles, ARigWithoutCentreIsRefused) {
   EXPECT_TRUE(has(refused("fx=100\nbaseline=0.1\ncy=2\n"), {"cx"}));
   EXPECT_TRUE(has(refused("fx=100\nbaseline=0.1\ncx=2\n"), {"cy"}));

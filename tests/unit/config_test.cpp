@@ -21,6 +21,8 @@ TEST(ReasonsInForce, AreThoseOfTheEnabledChecks) {
   set(config, "ground.source", "off");
   EXPECT_FALSE(has(reasons_in_force(config), Reject::no_texture));
   EXPECT_FALSE(has(reasons_in_force(config), Reject::below_ground));
+  config.speckle.size = 0;  // no part of an image is that small
+  EXPECT_FALSE(has(reasons_in_force(config), Reject::speckle));
 }
 
 std::string message_of(const auto& call) {

@@ -53,6 +53,15 @@ TEST(Dataset, OtherwiseEachSubFolderWithOneIsSortedByName) {
   EXPECT_FALSE(frames[1].right);
 }
 
+TEST(Dataset, FramesAreInTheOrderOfTheNumbersInTheirNames) {
+  const TemporaryFolder folder;
+  for (const char* name : {"f10/left.png", "f9/left.png", "f100/left.png", "f011/left.png"})
+    (void)folder.with(name, "");
+  std::vector<std::string> names;
+  for (const auto& frame : io::find_frames(folder.path())) names.push_back(frame.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"f9", "f10", "f011", "f100"}));
+}
+
 TEST(Dataset, OtherwisePairsOfNamesShareTheFoldersCalibration) {
   const TemporaryFolder folder;
   for (const char* name : {"left01.png", "right01.png", "left02.png", "right02.png", "left03.png",

@@ -319,5 +319,22 @@ TEST_F(McapSequence, ATruncatedRecordingReportsSoAtItsEnd) {
   EXPECT_NE(sequence->ended_early().find("is truncated"), std::string::npos);
 }
 
+TEST_F(McapSequence, OfARecordingWithoutOneCompleteChunkIsRefused) {
+  {
+    CameraFile camera(file(), {.sync = false});
+    const auto left = camera.topic<ros::Image>("/left/image");
+    camera.add(left, {1000}, message_of_dots({1000}, 1));
+  }
+  fs::resize_file(file(), 200);
+  try {
+    (void)open();
+    FAIL() << "nothing can be read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is truncated before the end of its first chunk"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace cairn::io

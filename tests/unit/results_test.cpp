@@ -272,6 +272,23 @@ TEST_F(ResultFolder, OfASecondRunHasNoFileOfTheFirst) {
   EXPECT_EQ(names(root_ / "out"), names(root_ / "alone"));
 }
 
+TEST_F(ResultFolder, CanBeRemovedWithoutOtherFiles) {
+  const Image<Gray> left(kSize, Gray{90}, {});
+  for (const char* name : {"out", "mixed"}) {
+    write_result(root_ / name, left, {}, frame_with_one_object(true), some_provenance(),
+                 {.point_cloud = true, .object_clouds = true, .depth = true});
+  }
+  std::ofstream(root_ / "mixed" / "notes.txt") << "mine";
+  remove_result(root_ / "out");
+  EXPECT_FALSE(fs::exists(root_ / "out"));
+  remove_result(root_ / "mixed");
+  EXPECT_EQ(names(root_ / "mixed"), std::set<std::string>{"notes.txt"});
+  fs::create_directories(root_ / "truth");
+  std::ofstream(root_ / "truth" / "objects.png") << "not ours";
+  remove_result(root_ / "truth");
+  EXPECT_TRUE(fs::exists(root_ / "truth" / "objects.png"));
+}
+
 TEST_F(ResultFolder, HasNoConfidenceIfThereIsNoneNotEvenAnOlderOne) {
   write(root_ / "out", frame_with_one_object(true), some_provenance());
   Frame frame = frame_with_one_object(true);

@@ -410,6 +410,9 @@ TEST(Sources, RefuseInvalidOnes) {
   options.layout = "top_bottom";
   EXPECT_TRUE(has(refused(at, options), {"--layout top_bottom", "is none"}));
   options = {};
+  options.topics = "/a,/b";
+  EXPECT_TRUE(has(refused(at, options), {"--topics /a,/b", "is none"}));
+  options = {};
   options.rate_hz = -3;
   EXPECT_TRUE(has(refused(at, options), {"--rate", "-3"}));
   save(folder, "000/right.png", 2);

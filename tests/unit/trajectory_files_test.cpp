@@ -88,6 +88,23 @@ TEST_F(TrajectoryFiles, OfEurocMayNameTheirColumns) {
   EXPECT_EQ(angle_of(read.poses[0].map_from_camera), 0);
 }
 
+TEST_F(TrajectoryFiles, FramesOfAFolderMayBeAnExcerptOfItsTable) {
+  for (const int frame : {3, 5})
+    with("seq/" + std::to_string(frame) + "/pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  with("seq/trajectory.csv", "frame,t_s\n1,0.1\n3,0.3\n4,0.4\n5,0.5\n");
+  const Trajectory read = load_trajectory(folder() / "seq");
+  ASSERT_EQ(read.poses.size(), 2U);
+  EXPECT_EQ(read.poses[0].stamp.ns, 300'000'000);
+  EXPECT_EQ(read.poses[1].stamp.ns, 500'000'000);
+  with("seq/stamps.txt", "2000000000\n1000000000\n");
+  try {
+    (void)load_trajectory(folder() / "seq");
+    FAIL() << "the stamps descend";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is not later than"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(TrajectoryFiles, FramesOfAFolderAreInTheOrderOfTheirNumbers) {
   for (const int frame : {1, 2, 9, 10, 11}) {
     with("seq/" + std::to_string(frame) + "/pose.txt",
