@@ -22,8 +22,8 @@ CommandLine declare_command_line() {
   line.app->require_subcommand(0, 1);
   line.app->footer(
       "cairn help COMMAND describes each command, with examples.\n"
-      "Exit codes: 0 success, 1 the work failed, 2 bad usage, file or option (one line on "
-      "stderr).");
+      "Exit codes: 0 success, 1 the work failed or cairn doctor found a fault, 2 bad usage, file or option (one\n"
+      "line on stderr), 3 the source ended early or results are missing, 130 interrupted (except cairn live: 0).");
   for (const Command& command : kCommands) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.help);
     sub->footer("");  // without the parent's footer

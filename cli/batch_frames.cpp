@@ -8,6 +8,7 @@
 #include <io/config_files.hpp>
 #include <io/read_file.hpp>
 #include <io/sha256.hpp>
+#include <source/names_and_numbers.hpp>
 #include <system_error>
 
 namespace cairn::cli {
@@ -131,10 +132,8 @@ class Planner {
     sequence.step = range_.step;
     if (!inputs_.calib.empty()) sequence.calib = whole(inputs_.calib);
     for (const std::size_t index : sequence_frames(sequence, range_, pool_)) {
-      constexpr std::size_t kDigits = 6;
-      std::string digits = std::to_string(index);
-      if (digits.size() < kDigits) digits.insert(0, kDigits - digits.size(), '0');
-      Json how{{"frame", joined(name, digits)}, {"source", sequence.source}, {"index", index}};
+      const std::string frame = joined(name, io::number_text(index));
+      Json how{{"frame", frame}, {"source", sequence.source}, {"index", index}};
       if (inputs_.tracks) how["first"] = range_.first;
       if (sequence.step != 1) how["step"] = sequence.step;
       if (!sequence.layout.empty()) how["layout"] = sequence.layout;
@@ -143,7 +142,7 @@ class Planner {
         how["calib"] = sequence.calib;
         how["calib_sha256"] = sum_of(sequence.calib);
       }
-      frames_.push_back({joined(name, digits), std::move(how)});
+      frames_.push_back({frame, std::move(how)});
     }
   }
 

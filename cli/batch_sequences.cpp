@@ -5,6 +5,7 @@
 #include <io/config_files.hpp>
 #include <nlohmann/json.hpp>
 #include <source/follow_files.hpp>
+#include <source/mcap_sequence.hpp>
 #include <source/sequence_run.hpp>
 #include <tracking/follow_config.hpp>
 
@@ -54,15 +55,17 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io
   };
   std::error_code unknown;
   const std::filesystem::path left = sequence.source.substr(0, sequence.source.find(','));
-  if (!std::filesystem::is_regular_file(left, unknown)) {  // image lists: no need to decode any
+  const bool is_video = std::filesystem::is_regular_file(left, unknown) || io::recording_in(left);
+  if (!is_video) {  // image lists: no need to decode any
     std::size_t end = range.first + opened->size().value_or(0) * range.step;
     if (const auto all = count_in_folder(sequence.source))
       end = std::min(*all, range.last_excluded.value_or(*all));
     add_until(end);
-    return frames;
+  } else {
+    // Undecodable frames are planned too; their rows report the error.
+    while (const auto frame = opened->next()) add_until(frame->index + 1);
   }
-  // Undecodable frames are planned too; their rows report the error.
-  while (const auto frame = opened->next()) add_until(frame->index + 1);
+  if (frames.empty()) throw Error(sequence.source + ": no frame of it can be read, or none is in --frames");
   return frames;
 }
 

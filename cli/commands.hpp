@@ -50,7 +50,7 @@ inline constexpr std::array kCommands{
             "cairn follow sequence/ --map room.db --set tracking.min_hits=2\n",
             declare_follow},
     Command{"live", "find and follow objects in live camera images, or in a recording at its own pace",
-            "cairn live sequence/ --pace 0 --json-lines\n"
+            "cairn live sequence/ --every-frame --json-lines\n"
             "cairn live sequence/ --every-frame --no-tracks --set objects.min_confidence=0.6\n",
             declare_live},
     Command{"batch", "process an archive in shards, on one machine or on many",
@@ -94,7 +94,7 @@ inline constexpr std::array kCommands{
             "cairn map export room.db --form geojson -o room.geojson\n"
             "cairn map merge room.db corridor.db -o both.db\n",
             declare_map},
-    Command{"config", "show every option with its value, unit, range and meaning",
+    Command{"config", "show the options in force, with value, unit, range and meaning",
             "cairn config --preset paper\n"
             "cairn config --changed --set objects.min_confidence=0.5 > mine.yaml\n",
             declare_config},

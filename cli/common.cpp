@@ -307,6 +307,10 @@ std::string text_of(const char* format, double value) {
   return buffer.data();
 }
 
+std::string count_of(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string percent(double share) {
   return std::isnan(share) ? "-" : text_of("%.1f %%", 100 * share);
 }

@@ -112,6 +112,8 @@ class Stopwatch {
 std::string text_of(const char* format, double value);
 /// "62.1 %" of 0.621; "-" for NaN.
 std::string percent(double share);
+/// "1 frame", "3 frames".
+std::string count_of(std::size_t count, const std::string& noun);
 
 /// The last part of a path, with or without a trailing slash: "frames" of "data/frames/".
 std::string name_of(const std::filesystem::path& path);

@@ -10,6 +10,7 @@
 #include <io/dataset.hpp>
 #include <io/disparity_files.hpp>
 #include <io/image_files.hpp>
+#include <io/natural_order.hpp>
 #include <io/read_file.hpp>
 #include <io/results.hpp>
 #include <iostream>
@@ -161,6 +162,7 @@ struct Scores {
   std::vector<std::string> without_truth;   // frames in the results only: KITTI has every other
   LeftOut left_out;                         // frames with unusable files
   std::size_t results = 0;
+  std::string remark;  // for stderr; usually empty
 };
 
 bool has_truth(const fs::path& folder) {
@@ -174,6 +176,14 @@ bool has_truth(const fs::path& folder) {
   }
 }
 
+/// The remark that the truth is a result, as when the folders are swapped; empty if it is none.
+std::string remark_on_truth(const io::TruthFiles& truth) {
+  std::error_code ignored;
+  if (!fs::exists(truth.folder / "objects.json", ignored)) return {};
+  return "cairn: " + truth.folder.string() +
+         ": has an objects.json, so it is a result of cairn, expected the truth as the last folder\n";
+}
+
 Scores score_all(const std::string& run, const EvaluateOptions& options) {
   std::error_code ignored;
   for (const std::string& folder : {run, options.truth}) {
@@ -183,7 +193,9 @@ Scores score_all(const std::string& run, const EvaluateOptions& options) {
   Scores scores;
   const fs::path whole = fs::absolute(run).lexically_normal();
   if (auto single = result_in(whole.has_filename() ? whole : whole.parent_path())) {
-    scores.frames.push_back(score_frame(*single, io::find_truth(options.truth), options));
+    const io::TruthFiles truth = io::find_truth(options.truth);
+    scores.frames.push_back(score_frame(*single, truth, options));
+    scores.remark = remark_on_truth(truth);
     scores.results = 1;
     return scores;
   }
@@ -198,7 +210,8 @@ Scores score_all(const std::string& run, const EvaluateOptions& options) {
                 ": no result in this folder or its sub-folders, expected objects.png, disparity.png or "
                 "disparity.pfm");
   }
-  std::sort(results.begin(), results.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  std::sort(results.begin(), results.end(),
+            [](const auto& a, const auto& b) { return io::in_natural_order(a.name, b.name); });
   std::erase_if(results, [&](const ResultFiles& result) {
     seen.insert(result.name);
     if (io::names_truth(options.truth, result.name)) return false;
@@ -212,7 +225,9 @@ Scores score_all(const std::string& run, const EvaluateOptions& options) {
   scores.results = results.size();
   for (const ResultFiles& result : results) {
     try {
-      scores.frames.push_back(score_frame(result, io::find_truth(options.truth, result.name), options));
+      const io::TruthFiles truth = io::find_truth(options.truth, result.name);
+      scores.frames.push_back(score_frame(result, truth, options));
+      if (scores.remark.empty()) scores.remark = remark_on_truth(truth);
     } catch (const Error& error) {
       if (results.size() == 1) throw;
       scores.left_out.add(result.name, error.what());
@@ -224,7 +239,7 @@ Scores score_all(const std::string& run, const EvaluateOptions& options) {
     if (!seen.contains(name) && name != "gt" && has_truth(entry.path()))
       scores.without_result.push_back(name);
   }
-  std::sort(scores.without_result.begin(), scores.without_result.end());
+  std::sort(scores.without_result.begin(), scores.without_result.end(), io::in_natural_order);
   return scores;
 }
 
@@ -729,6 +744,7 @@ int compare(const EvaluateOptions& options) {
     runs.push_back({folder, score_all(folder, options)});
     const Scores& scores = runs.back().scores;
     code = std::max(code, scores.left_out.exit_code(scores.results));
+    if (runs.size() == 1) std::cerr << scores.remark;  // the truth is that of all runs
   }
   if (options.csv) io::write_file(*options.csv, csv(runs));
   std::cout << run_table(runs) << frames_that_differ(runs);
@@ -764,6 +780,7 @@ int evaluate(EvaluateOptions& options) {
   std::vector<Run> runs;
   runs.push_back({options.results.front(), score_all(options.results.front(), options)});
   Scores& scores = runs.front().scores;
+  std::cerr << scores.remark;
   if (options.csv) io::write_file(*options.csv, csv(runs));
   if (options.json || options.html) {
     const std::string as_json = evaluation_json(scores, options);

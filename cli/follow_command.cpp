@@ -218,7 +218,7 @@ void check_output(const FollowOptions& options) {
   if (options.output.empty() || !fs::is_directory(options.source.source, ignored)) return;
   const std::string from = fs::weakly_canonical(options.source.source, ignored).string() + "/";
   const std::string into = fs::weakly_canonical(options.output, ignored).string() + "/";
-  if (into.starts_with(from) || into + "/" == from) {
+  if (into.starts_with(from)) {
     throw Error("-o " + options.output +
                 ": is inside the source and would be read as frames, expected another folder");
   }
@@ -356,6 +356,18 @@ void close(const std::string& state, const io::Sequence& source, io::SequenceRun
   }
 }
 
+/// Why a run with a map has stored no landmark; empty if it has any.
+std::string no_landmark_text(const Landmarked& marked) {
+  if (!marked.state.map.list.empty()) return {};
+  std::string text = "no landmark stored";
+  for (const auto& reason : kLandmarkRefusals) {
+    const auto count = std::ranges::count(marked.tracks, reason.value, &LandmarkOfTrack::refusal);
+    if (count > 0)
+      text += ", " + count_of(static_cast<std::size_t>(count), "track") + ": " + std::string(reason.name);
+  }
+  return text + " (landmarks.min_frames and the like: cairn config --sequence)\n";
+}
+
 int follow(const FollowOptions& options) {
   check_output(options);
   const Exec exec = make_exec(options.exec);
@@ -378,7 +390,7 @@ int follow(const FollowOptions& options) {
   run.config = config;
   try {
     go_through(*source, follower, options, outputs, run);
-  } catch (const Error&) {
+  } catch (...) {
     close("failed", *source, follower, options, outputs, run);
     throw;
   }
@@ -387,11 +399,13 @@ int follow(const FollowOptions& options) {
         : source->ended_early().empty() ? "done"
                                         : "ended early",
         *source, follower, options, outputs, run);
-  std::cerr << run.milliseconds.size() << " frames, " << run.confirmed.size() << " tracks, "
-            << text_of("%.2f m", run.path_m) << " of path, " << text_of("%.1f ms", run.percentile(0.5))
-            << " a frame (p99 " << text_of("%.1f", run.percentile(0.99)) << ")\n";
+  std::cerr << count_of(run.milliseconds.size(), "frame") << ", " << count_of(run.confirmed.size(), "track")
+            << ", " << text_of("%.2f m", run.path_m) << " of path, "
+            << text_of("%.1f ms", run.percentile(0.5)) << " a frame (p99 "
+            << text_of("%.1f", run.percentile(0.99)) << ")\n";
   for (const LandmarkEvent& change : changes_of(run.events))
     std::cerr << event_line(event_json(change, {}, 0)) << "\n";
+  if (!options.map.empty()) std::cerr << no_landmark_text(follower.marked());
   return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }
 

@@ -29,7 +29,9 @@ struct LiveCommandOptions {
   bool every_frame = false;
   bool no_tracks = false;
   double max_age_ms = 200;
+  bool has_max_age = false;  // --max-age was given
   double pace = 1;
+  bool has_pace = false;  // --pace was given
   double duration_s = 0;
   bool loop = false;
   bool json_lines = false;
@@ -68,6 +70,8 @@ void check(const LiveCommandOptions& options) {
   };
   if (!(options.max_age_ms >= 0 && options.max_age_ms <= 1e6))
     refuse("--max-age", options.max_age_ms, "ms, 0 ... 1e6 (0: pairs of any age)");
+  if (options.has_max_age && options.every_frame)
+    throw Error("--max-age: found --every-frame as well, with which no pair is dropped");
   if (!(options.pace >= 0 && options.pace <= 1000))
     refuse("--pace", options.pace, "0 ... 1000 times as fast (0: as fast as it goes)");
   if (!(options.duration_s >= 0 && options.duration_s <= 1e9))
@@ -100,6 +104,8 @@ int live_command(LiveCommandOptions options) {
   const Exec exec = make_exec(options.exec);
   const auto open = [&] { return open_source(options.source, exec.pool); };
   const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
+  if (options.has_pace && source->status().is_live)
+    throw Error("--pace: is for files, " + source->name() + " is a camera, which sets its own");
   const FollowConfig config = [&] {
     try {
       return resolve_follow(options.config, source->disparities(), source->ground());
@@ -185,6 +191,8 @@ Work declare_live(CLI::App& app) {
   add_view_options(app, options->view);
   add_ros2_options(app, options->ros2);
   return [options, &app] {
+    options->has_max_age = app.count("--max-age") > 0;
+    options->has_pace = app.count("--pace") > 0;
     options->has_config_option = app.count("--preset") + app.count("--config") > 0;
     return live_command(*options);
   };

@@ -10,7 +10,7 @@ namespace cairn::cli {
 void add_ros2_options(CLI::App& app, Ros2CommandOptions& options) {
   options.is_wanted =
       app.add_option("--ros2", options.name_space, "namespace of published ROS 2 topics (default: cairn)")
-          ->type_name("NAME")
+          ->type_name("[NAME]")
           ->expected(0, 1);
   app.add_option("--ros2-frame", options.frame,
                  "frame_id of the left camera (default: that of the source, else cairn_camera)")

@@ -7,6 +7,7 @@
 #include <io/calibration_files.hpp>
 #include <io/image_files.hpp>
 #include <iostream>
+#include <source/names_and_numbers.hpp>
 #include <system_error>
 
 #include "commands.hpp"
@@ -34,12 +35,6 @@ void check_empty(const fs::path& folder) {
   }
 }
 
-std::string number_text(std::size_t number) {
-  constexpr std::size_t kDigits = 6;
-  const std::string text = std::to_string(number);
-  return std::string(kDigits - std::min(kDigits, text.size()), '0') + text;
-}
-
 /// The output folder: complete frames and their stamps.
 class Recording {
  public:
@@ -50,7 +45,7 @@ class Recording {
   }
 
   void add(const io::SequenceFrame& frame) {
-    const fs::path folder = folder_ / number_text(count_);
+    const fs::path folder = folder_ / io::number_text(count_);
     io::make_folder(folder);
     // The left image last: a folder without one is no frame, so an interrupted run leaves complete frames
     // only.

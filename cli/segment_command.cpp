@@ -214,7 +214,8 @@ Report work_on(LoadedFrame loaded, const io::FrameFiles& files, std::optional<st
   }
   if (options.html) report.frame = encode(files.name, loaded, frame, provenance);
   if (options.json) {
-    report.out = io::objects_json(frame, provenance);
+    report.out = one_of_many ? io::frame_row(files.name, frame, provenance) + "\n"
+                             : io::objects_json(frame, provenance);
     return report;
   }
   report.out = on_one_line(files.name) + ": " + summary(report.totals) + "\n";
@@ -296,6 +297,7 @@ Outcome segment_all(const SegmentOptions& options) {
       if (frames.size() == 1) throw;
       progress.clear();
       left_out.add(frames[i].name, error.what());
+      if (!folder.empty()) io::remove_result(folder);  // of an earlier run: it would pass for one of this run
       continue;
     }
     try {

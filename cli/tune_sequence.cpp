@@ -172,8 +172,8 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   progress.clear();
 
   const Compared runs{*before, best, tuned_on};
-  std::cout << frames.size() << " frames, " << options_tried.size() << " options, " << tried << " runs in "
-            << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
+  std::cout << count_of(frames.size(), "frame") << ", " << count_of(options_tried.size(), "option") << ", "
+            << tried << " runs in " << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
   print(runs, found);
   const double after = runs.is_luck() ? reference : best.mean(0, tuned_on);
   io::write_file(options.output,

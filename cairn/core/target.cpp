@@ -99,9 +99,8 @@ Target wanted_target(std::string_view wanted, std::string_view source) {
   for (const Target target : supported) expected += ", " + std::string(name(target));
   const std::optional<Target> target = target_named(wanted);
   if (!target) {
-    std::vector<std::string> names;
-    names.reserve(kNames.size());
-    for (const auto& [unused, text] : kNames) names.emplace_back(text);
+    std::vector<std::string> names{"best"};
+    for (const Target known : supported) names.emplace_back(name(known));
     const std::string close = nearest(wanted, names);
     throw Error(std::string(source) + ": unknown instruction set '" + std::string(wanted) +
                 "', expected one of " + expected + (close.empty() ? "" : "; did you mean '" + close + "'?"));

@@ -73,7 +73,7 @@ Reject reasons_in_force(const Config& config, bool external_disparity) {
   add(!external_disparity && config.flatness.threshold >= 0, Reject::flat);
   add(!external_disparity && config.texture.threshold >= 0, Reject::no_texture);
   add(config.ground.source != GroundSource::off, Reject::below_ground);
-  add(config.speckle.size >= 0, Reject::speckle);
+  add(config.speckle.size > 0, Reject::speckle);
   return all;
 }
 
