@@ -9,6 +9,7 @@
 #include <io/atomic_file.hpp>
 #include <io/config_files.hpp>
 #include <iostream>
+#include <limits>
 #include <tracking/follower.hpp>
 
 #include "source_options.hpp"
@@ -132,9 +133,15 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
         is_up = true;
         return std::nullopt;
       }
-      const Step step =
-          follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
-      if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
+      try {
+        const Step step =
+            follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
+        if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
+      } catch (const Error&) {  // settings that contradict each other or the images
+        if (tried == 0) throw;
+        steady.frames.clear();
+        break;
+      }
     }
     ++tried;
     return steady;
@@ -149,11 +156,12 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const double reference = before->mean(0, tuned_on);
   SteadinessRun best = *before;
   SteadinessRun latest = *before;
-  // The loss falls as steadiness rises, and is at least twice the initial one if nothing is steady.
+  // The loss falls as steadiness rises, from 1 + reference at the start to 1 + 2 · reference if nothing is steady.
+  // It is infinite for settings that were refused.
   const auto losses = [&](const SteadinessRun& steady) {
-    std::vector<Loss> all;
-    for (std::size_t i = 0; i < tuned_on; ++i)
-      all.push_back({1 + 2 * reference - double{steady.frames[i]}, 1, 0});
+    std::vector<Loss> all(tuned_on, Loss{std::numeric_limits<double>::infinity(), 1, 0});
+    for (std::size_t i = 0; i < tuned_on && !steady.frames.empty(); ++i)
+      all[i].sum = 1 + 2 * reference - double{steady.frames[i]};
     return all;
   };
   const SearchResult found = search(

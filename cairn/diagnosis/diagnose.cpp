@@ -149,9 +149,11 @@ void check_rows(Case& c) {
   }
 }
 
-/// The smallest range, a multiple of 16, that includes `nearest` with a quarter to spare.
-int suggested_range(double nearest) {
-  return std::min(1024, 16 * static_cast<int>(std::ceil(std::max(1.0, 1.25 * nearest) / 16)));
+/// The smallest range, a multiple of 16, that includes `nearest` with a quarter to spare, as far as an image of this
+/// width allows.
+int suggested_range(double nearest, int width) {
+  const int most = std::max(1, std::min(1024, width) / 16);
+  return 16 * std::clamp(static_cast<int>(std::ceil(1.25 * nearest / 16)), 1, most);
 }
 
 void check_range(Case& c) {
@@ -171,7 +173,8 @@ void check_range(Case& c) {
           percent_text(beyond) + " of the points are outside " + text_of("%.0f", first) +
               text_of(" ... %.0f px", last) + "; nearly all are in " + text_of("%.0f", furthest) +
               text_of(" ... %.0f px", nearest) + ": match.min_disparity=" + std::to_string(from) +
-              ", match.num_disparities=" + std::to_string(suggested_range(nearest - from)));
+              ", match.num_disparities=" +
+              std::to_string(suggested_range(nearest - from, c.measures.size.width)));
     return;
   }
   const double use = (nearest - first) / (last - first + 1);
@@ -180,8 +183,8 @@ void check_range(Case& c) {
     return;
   c.add(FindingKind::range_too_large, Severity::note, 100 * use,
         "the nearest points have " + text_of("%.0f px", nearest) + " of a range up to " +
-            text_of("%.0f px", last) +
-            ": match.num_disparities=" + std::to_string(suggested_range(nearest - first)) + " would do");
+            text_of("%.0f px", last) + ": match.num_disparities=" +
+            std::to_string(suggested_range(nearest - first, c.measures.size.width)) + " would do");
 }
 
 /// For segmented frames: disparities pile up at the end of a range that is too small.
@@ -202,7 +205,7 @@ void check_end_of_range(Case& c, const DisparityMap& map) {
         percent_text(share) + " of the disparities are in the last 2 px of " +
             std::to_string(c.range.min_disparity) + text_of(" ... %.0f px", last) +
             ", so nearer objects are lost: match.num_disparities=" +
-            std::to_string(suggested_range(1.6 * c.range.num_disparities)));
+            std::to_string(suggested_range(1.6 * c.range.num_disparities, map.disparity_px.width())));
 }
 
 /// For segmented frames.

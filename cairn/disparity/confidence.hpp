@@ -19,7 +19,7 @@ struct ConfidenceModel {
 };
 
 /// The model for the costs of a method, fitted to the rendered development frames by
-/// benchmarks/confidence_study.cpp.
+/// `benchmarks/studies.py confidence`.
 constexpr ConfidenceModel confidence_model(MatchMethod method) {
   return method == MatchMethod::semi_global
              ? ConfidenceModel{.bias = 4.55F,

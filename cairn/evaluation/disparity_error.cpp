@@ -55,7 +55,7 @@ DisparityErrors disparity_errors(View<const float> ours_px, View<const float> tr
   for (int y = 0; y < truth_px.height(); ++y) {
     for (int x = std::max(0, skip_left); x < truth_px.width(); ++x) {
       const float truth = truth_px(x, y);
-      if (std::isnan(truth) || (!excluded.empty() && excluded(x, y) != 0)) continue;
+      if (!std::isfinite(truth) || (!excluded.empty() && excluded(x, y) != 0)) continue;
       ++errors.known;
       const float ours = ours_px(x, y);
       if (std::isnan(ours)) continue;

@@ -73,9 +73,9 @@ std::optional<Candidate> find(View<const Gray> left, Point p, View<const Gray> r
   if (best.cost == std::numeric_limits<int>::max()) return std::nullopt;
   for (const Candidate& other : best_of_row) {
     const bool near = std::abs(other.at.y - best.at.y) <= 1;
-    if (!near && static_cast<float>(other.cost) < kRivalRatio * static_cast<float>(best.cost)) {
-      return std::nullopt;
-    }
+    const bool rivals = other.cost == best.cost ||  // also where both are 0
+                        static_cast<float>(other.cost) < kRivalRatio * static_cast<float>(best.cost);
+    if (!near && rivals) return std::nullopt;
   }
   return best;
 }

@@ -154,8 +154,9 @@ Image<float> floor_under_reflections(const DisparityMap& disparity, const Ground
       const Reject* const reject = disparity.reject.row(y);
       float* const seen = seen_px.row(y);
       for (int x = 0; x < seen_px.width(); ++x) {
-        if (has(reject[x], Reject::below_ground))
-          seen[x] = ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
+        if (!has(reject[x], Reject::below_ground)) continue;
+        const float floor_px = ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
+        seen[x] = std::clamp(floor_px, -kMaxDisparity, kMaxDisparity);
       }
     }
   });

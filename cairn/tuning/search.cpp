@@ -157,6 +157,16 @@ double mean_loss(const std::vector<Loss>& frames) {
   return all.weight > 0 ? all.sum / all.weight : std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+/// Frames without weight, where nothing is scored, are no samples.
+std::size_t scored(const std::vector<Loss>& frames) {
+  return static_cast<std::size_t>(
+      std::count_if(frames.begin(), frames.end(), [](const Loss& frame) { return frame.weight > 0; }));
+}
+
+}  // namespace
+
 bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& after, const Margin& margin) {
   assert(before.size() == after.size());
   const double lost_before = mean_loss(before);
@@ -164,8 +174,8 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
   if (!std::isfinite(lost_after)) return false;
   if (!std::isfinite(lost_before)) return true;
   if (lost_before - lost_after < margin.least_share * lost_before || lost_after >= lost_before) return false;
-  const auto count = static_cast<double>(before.size());
-  if (before.size() < 2) return true;
+  if (scored(before) < 2) return true;
+  const auto count = static_cast<double>(scored(before));
   double sum = 0;
   double squares = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -198,7 +208,7 @@ Gain gain_of(const std::vector<Loss>& before, const std::vector<Loss>& after) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double mean = mean_loss(before) - mean_loss(after);
   if (!std::isfinite(mean)) return {nan, nan, nan};
-  if (before.size() < 2) return {mean, nan, nan};
+  if (scored(before) < 2) return {mean, nan, nan};
   double squares = 0;
   double weight = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -206,8 +216,8 @@ Gain gain_of(const std::vector<Loss>& before, const std::vector<Loss>& after) {
     squares += rest * rest;
     weight += before[i].weight;
   }
-  const auto count = static_cast<double>(before.size());
-  const double reach = t_quantile(before.size() - 1) * std::sqrt(squares * count / (count - 1)) / weight;
+  const auto count = static_cast<double>(scored(before));
+  const double reach = t_quantile(scored(before) - 1) * std::sqrt(squares * count / (count - 1)) / weight;
   return {mean, mean - reach, mean + reach};
 }
 

@@ -46,9 +46,9 @@ std::map<float, double> by_threshold(const DisparityErrors& self) {
   return shares;
 }
 
-ObjectSummary summary_of(const std::vector<ObjectErrors>& frames) {
+ObjectSummary summary_of(const std::vector<ObjectErrors>& frames, bool partial) {
   std::vector<FrameObjects> all;
-  for (const ObjectErrors& errors : frames) all.push_back({errors, false});
+  for (const ObjectErrors& errors : frames) all.push_back({errors, partial});
   return summarise(all);
 }
 

@@ -98,8 +98,9 @@ def object_errors(ours: LabelsLike, truth: LabelsLike, min_area: int = DEFAULTS[
 
 
 @of_cpp
-def summarise(frames: Sequence[ObjectErrors]) -> ObjectSummary:
-    """Summarises the object_errors() of many frames."""
+def summarise(frames: Sequence[ObjectErrors], partial: bool = False) -> ObjectSummary:
+    """Summarises the object_errors() of many frames. partial: their truth may lack objects, so there is no precision
+    and no phantom."""
 
 
 # ---- diagnosis ----

@@ -78,6 +78,8 @@ def test_scores_equal_those_of_the_command(command, folder, tmp_path):
     for name in ("recall_50", "precision_50", "mean_error", "median_error", "mean_iou", "mean_boundary_f"):
         assert getattr(summary, name) == said["objects"][name]
     assert [s.id for s in scores.ours] == [o.id for o in frame.objects]
+    partial = cairn.summarise([scores], partial=True)
+    assert (partial.phantoms, partial.our_objects) == (0, 0) and partial.recall_50 == summary.recall_50
 
     occluded = cairn.load_labels(folder / "occlusion.png").astype(np.uint8)
     stored, truth = (cairn.load_disparity(file) for file in (tmp_path / "result/disparity.png", folder / "disp_left.png"))

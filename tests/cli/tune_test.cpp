@@ -110,6 +110,12 @@ TEST_F(Tune, RepairsUnsteadyObjectsOfASequenceWithoutTruth) {
   EXPECT_NE(outcome.out.find("  objects.min_area: 4 -> "), std::string::npos) << outcome.out;
   EXPECT_LT(tuned().objects.min_area, 2.9F);  // the smaller object covers 2.9 %
 
+  // A range beyond the width of 320 px is refused.
+  const Outcome wide =
+      run({"tune", path("in"), "--sequence", "--budget", "10m", "--evaluations", "4", "--set",
+           "match.num_disparities=256", "--options", "match.num_disparities", "-o", path("wide.yaml")});
+  EXPECT_EQ(wide.code, 0) << wide.err;
+
   for (int i = 2; i < 10; ++i) fs::remove_all(at("in/" + std::to_string(i)));
   refuses({"tune", path("in"), "--sequence", "-o", path("new.yaml")}, {"has 2 frames"});
   refuses({"tune", path("in"), "--sequence", "--json", path("found.json"), "-o", path("new.yaml")},

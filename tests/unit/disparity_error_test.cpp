@@ -44,8 +44,8 @@ TEST(DisparityErrors, AHoleIsNoBadMatchButABadPixel) {
 }
 
 TEST(DisparityErrors, PixelsWithoutTruthDoNotCount) {
-  const Image<float> truth = row({kHole, 10, kHole});
-  const Image<float> ours = row({3, 10, kHole});
+  const Image<float> truth = row({kHole, 10, kHole, std::numeric_limits<float>::infinity()});
+  const Image<float> ours = row({3, 10, kHole, 5});
   const DisparityErrors e = disparity_errors(ours, truth, {}, 0);
   EXPECT_EQ(e.known, 1);
   EXPECT_DOUBLE_EQ(e.density(), 1.0);

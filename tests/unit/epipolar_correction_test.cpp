@@ -109,6 +109,16 @@ TEST(EpipolarOffset, NeedsTexture) {
             EpipolarOutcome::corrected);
 }
 
+TEST(EpipolarOffset, OfAPatternThatRepeatsDownwardsIsNotGuessed) {
+  // Without noise, a shift by the period of 4 rows fits exactly as well.
+  const Waves waves(5);
+  const auto at = [&](int shift) {
+    return support::picture(kSize, 0, 1, [&](int x, int y) { return waves(x + shift, y % 4); });
+  };
+  const Pair pair{at(0), at(8)};
+  EXPECT_NE(find_epipolar_offset(pair.get(), {}, {.max_rows = 8}, {}).outcome, EpipolarOutcome::corrected);
+}
+
 TEST(EpipolarOffset, OfImagesOfDifferentScenesIsRefused) {
   const Image<Gray> left = synthetic::random_dots(kSize, 1);
   for (std::uint32_t seed = 2; seed < 12; ++seed) {

@@ -24,6 +24,13 @@ TEST(GainOfAChange, IsTheMeanDifferenceWithItsConfidenceInterval) {
   EXPECT_NEAR(gain_of({{5, 10}}, {{4, 10}}).mean, 0.1, 1e-12);
   EXPECT_TRUE(std::isnan(gain_of({{5, 10}}, {{4, 10}}).low));
   EXPECT_TRUE(std::isnan(gain_of({{0, 0}}, {{0, 0}}).mean));
+  // A frame where nothing is scored is no sample.
+  std::vector<Loss> more_before = before;
+  std::vector<Loss> more_after = after;
+  more_before.insert(more_before.end(), 9, Loss{});
+  more_after.insert(more_after.end(), 9, Loss{});
+  EXPECT_EQ(gain_of(more_before, more_after).high, gain.high);
+  EXPECT_TRUE(std::isnan(gain_of({{5, 10}, {}}, {{4, 10}, {}}).low));
   // With many frames, t approaches the Gaussian quantile.
   std::vector<Loss> many_before(31, Loss{5, 10});
   std::vector<Loss> many_after(31, Loss{4, 10});
@@ -328,6 +335,7 @@ TEST(ClearlyBetter, RequiresMoreThanTheGainOfOneFrame) {
   EXPECT_FALSE(clearly_better(before, {{0, 1}, {1.9, 1}, {1, 1}, {1, 1}}, {}));
   EXPECT_FALSE(clearly_better(before, before, {.least_share = 0}));
   EXPECT_TRUE(clearly_better({{1, 1}}, {{0.5, 1}}, {}));
+  EXPECT_TRUE(clearly_better({{1, 1}, {}}, {{0.5, 1}, {}}, {.standard_errors = 2})) << "one scored frame";
   EXPECT_FALSE(clearly_better({{1, 1}}, {{0.95, 1}}, {.least_share = 0.1}));
 }
 
