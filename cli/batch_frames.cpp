@@ -6,9 +6,9 @@
 #include <cairn/core/error.hpp>
 #include <io/calibration_files.hpp>
 #include <io/config_files.hpp>
+#include <io/frame_names.hpp>
 #include <io/read_file.hpp>
 #include <io/sha256.hpp>
-#include <source/names_and_numbers.hpp>
 #include <system_error>
 
 namespace cairn::cli {

@@ -9,8 +9,8 @@
 #include <io/atomic_file.hpp>
 #include <io/dataset.hpp>
 #include <io/disparity_files.hpp>
+#include <io/frame_names.hpp>
 #include <io/image_files.hpp>
-#include <io/natural_order.hpp>
 #include <io/read_file.hpp>
 #include <io/results.hpp>
 #include <iostream>
@@ -23,12 +23,14 @@
 #include "common.hpp"
 #include "evaluate_files.hpp"
 #include "evaluate_sequence.hpp"
+#include "evaluation_text.hpp"
 
 namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using cli::json;  // next to the overloads below
 
 struct EvaluateOptions {
   std::vector<std::string> folders;  // as given: results, then truth
@@ -426,11 +428,6 @@ std::string disparity_lines(const std::vector<FrameScore>& frames, int skip_left
 
 // ---- JSON ----
 
-/// null for NaN and infinity, which JSON does not have.
-Json json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json json_if(bool known, int value) {
   return known ? Json(value) : Json(nullptr);
 }
@@ -637,57 +634,22 @@ std::string names_line(std::string head, const char* whose, const std::vector<st
 
 // ---- comparison of runs ----
 
-/// Quotes a CSV field that may contain commas.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string all = "\"";
-  for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return all + "\"";
-}
-
 struct Run {
   std::string name;
   Scores scores;
 };
 
-/// The numbers of a run by name: those of `summary` in --json, without the single stages.
-std::vector<std::pair<std::string, std::string>> cells_of(const Run& run) {
-  Json summary{{"objects", summary_objects_json(run.scores.frames)},
-               {"disparity", summary_disparity_json(run.scores.frames)},
-               {"timings_ms", summary_times_json(run.scores.frames)}};
-  if (summary["timings_ms"].is_object()) summary["timings_ms"].erase("stages");
-  std::vector<std::pair<std::string, std::string>> cells{{"run", quoted(run.name)}};
-  const Json flat = summary.flatten();
-  for (const auto& [pointer, value] : flat.items()) {
-    std::string name = pointer.substr(1);
-    std::replace(name.begin(), name.end(), '/', '.');
-    cells.emplace_back(name, value.is_null() ? "" : value.dump());
-  }
-  return cells;
-}
-
-/// A header line of names, then one line per run; missing values are empty.
-std::string csv(const std::vector<Run>& runs) {
-  std::vector<std::string> names;
-  std::vector<std::map<std::string, std::string>> rows;
+/// The numbers of the runs: those of `summary` in --json, without the single stages.
+std::string csv_of(const std::vector<Run>& runs) {
+  std::vector<std::pair<std::string, Json>> summaries;
   for (const Run& run : runs) {
-    const auto cells = cells_of(run);
-    rows.emplace_back(cells.begin(), cells.end());
-    for (const auto& [name, value] : cells) {
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    }
+    Json summary{{"objects", summary_objects_json(run.scores.frames)},
+                 {"disparity", summary_disparity_json(run.scores.frames)},
+                 {"timings_ms", summary_times_json(run.scores.frames)}};
+    if (summary["timings_ms"].is_object()) summary["timings_ms"].erase("stages");
+    summaries.emplace_back(run.name, std::move(summary));
   }
-  // A run without a section, such as `objects`, has no value for its name if other runs have its parts.
-  std::erase_if(names, [&](const std::string& name) {
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& other) { return other.starts_with(name + "."); });
-  });
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
-  for (auto& row : rows) {
-    for (const std::string& name : names) text += (name == "run" ? "\n" : ",") + row[name];
-  }
-  return text + "\n";
+  return csv(summaries);
 }
 
 std::string run_table(const std::vector<Run>& runs) {
@@ -716,7 +678,7 @@ std::string run_table(const std::vector<Run>& runs) {
   return table.text();
 }
 
-/// Runs are compared only on the same frames.
+/// A note if the runs are not of the same frames, so that their rows cannot be compared.
 std::string frames_that_differ(const std::vector<Run>& runs) {
   const auto names_of = [](const Run& run) {
     std::set<std::string> names;
@@ -746,7 +708,7 @@ int compare(const EvaluateOptions& options) {
     code = std::max(code, scores.left_out.exit_code(scores.results));
     if (runs.size() == 1) std::cerr << scores.remark;  // the truth is that of all runs
   }
-  if (options.csv) io::write_file(*options.csv, csv(runs));
+  if (options.csv) io::write_file(*options.csv, csv_of(runs));
   std::cout << run_table(runs) << frames_that_differ(runs);
   return code;
 }
@@ -781,7 +743,7 @@ int evaluate(EvaluateOptions& options) {
   runs.push_back({options.results.front(), score_all(options.results.front(), options)});
   Scores& scores = runs.front().scores;
   std::cerr << scores.remark;
-  if (options.csv) io::write_file(*options.csv, csv(runs));
+  if (options.csv) io::write_file(*options.csv, csv_of(runs));
   if (options.json || options.html) {
     const std::string as_json = evaluation_json(scores, options);
     if (options.json) io::write_file(*options.json, as_json);

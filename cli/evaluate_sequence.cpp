@@ -12,29 +12,19 @@
 #include <numbers>
 #include <set>
 #include <source/trajectory_files.hpp>
+#include <timing/statistics.hpp>
 
 #include "common.hpp"
+#include "evaluation_text.hpp"
 #include "sequence_scores.hpp"
 
 namespace cairn::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using cli::json;  // next to the overloads below
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-/// null for NaN and infinity, which JSON does not have.
-Json json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-/// The quantile at `share`; NaN without values.
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  const double at = std::ceil(share * static_cast<double>(values.size())) - 1;
-  return values[static_cast<std::size_t>(std::max(0.0, at))];
-}
 
 double share(int part, int whole) {
   return whole > 0 ? part / static_cast<double>(whole) : std::nan("");
@@ -61,8 +51,8 @@ Json json(const TrackErrors& e) {
 
 Json places_json(const std::vector<double>& errors_m) {
   return {{"compared", errors_m.size()},
-          {"median_m", json(percentile(errors_m, 0.5))},
-          {"p95_m", json(percentile(errors_m, 0.95))}};
+          {"median_m", json(report::percentile(errors_m, 0.5))},
+          {"p95_m", json(report::percentile(errors_m, 0.95))}};
 }
 
 Json json(const TrajectoryError& e) {
@@ -110,7 +100,7 @@ Json changes_json(const ChangeErrors& e) {
           {"wrong", e.wrong},
           {"precision", json(share(e.reported - e.wrong, e.reported))},
           {"recall", json(share(e.found, e.expected))},
-          {"median_error_m", json(percentile(e.errors_m, 0.5))}};
+          {"median_error_m", json(report::percentile(e.errors_m, 0.5))}};
 }
 
 Json summary_json(const SequenceScores& s) {
@@ -142,7 +132,7 @@ Json summary_json(const SequenceScores& s) {
             {"in_camera", places_json(s.places.in_camera_m)},
             {"with_covariance", s.places.stated},
             {"inside_95", json(share(s.places.inside, s.places.stated))},
-            {"median_nees", json(percentile(s.places.normalised, 0.5))}}},
+            {"median_nees", json(report::percentile(s.places.normalised, 0.5))}}},
           {"moving", moving_json(s.moving)},
           {"landmarks", landmarks_json(s.landmarks)},
           {"changes", changes_json(s.changes)},
@@ -163,45 +153,13 @@ std::string whole_json(const SequenceScores& s, const EvaluateSequenceOptions& o
                  {"without_truth", s.without_truth}});
 }
 
-// ---- CSV: one row per run ----
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string all = "\"";
-  for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return all + "\"";
-}
-
-/// A header line of names, then one line per run; missing values are empty. The frames to detection are left
-/// out, since their names, those of the objects, differ between truths.
-std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
-  std::vector<std::string> names;
-  std::vector<std::map<std::string, std::string>> rows;
-  for (const auto& [run, summary] : runs) {
-    Json known = summary;
-    if (known.contains("moving") && known["moving"].is_object()) known["moving"].erase("frames_to_detect");
-    std::map<std::string, std::string> row;
-    const Json flat = known.flatten();
-    for (const auto& [pointer, value] : flat.items()) {
-      std::string name = pointer.substr(1);
-      std::replace(name.begin(), name.end(), '/', '.');
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-      row[name] = value.is_null() ? "" : value.dump();
-    }
-    rows.push_back(std::move(row));
+/// The frames to detection are left out, since their names, those of the objects, differ between truths.
+std::string csv_of(std::vector<std::pair<std::string, Json>> runs) {
+  for (auto& [name, summary] : runs) {
+    if (summary.contains("moving") && summary["moving"].is_object())
+      summary["moving"].erase("frames_to_detect");
   }
-  // A run without a section, such as `moving`, has no value for its name if other runs have its parts.
-  std::erase_if(names, [&](const std::string& name) {
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& other) { return other.starts_with(name + "."); });
-  });
-  std::string text = "run";
-  for (const std::string& name : names) text += "," + name;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    text += "\n" + quoted(runs[i].first);
-    for (const std::string& name : names) text += "," + rows[i][name];
-  }
-  return text + "\n";
+  return csv(runs);
 }
 
 // ---- text ----
@@ -239,17 +197,17 @@ std::string place_lines(const PlaceErrors& places) {
     return "positions           not compared: no place in the truth, or no match\n";
   std::string all;
   if (!places.in_map_m.empty()) {
-    all += "positions           in the map: median " + metres(percentile(places.in_map_m, 0.5)) +
-           "   95 % below " + metres(percentile(places.in_map_m, 0.95)) + "   of " +
+    all += "positions           in the map: median " + metres(report::percentile(places.in_map_m, 0.5)) +
+           "   95 % below " + metres(report::percentile(places.in_map_m, 0.95)) + "   of " +
            std::to_string(places.in_map_m.size()) + "\n";
   }
   all += std::string(all.empty() ? "positions           " : "                    ") +
-         "from the camera: median " + metres(percentile(places.in_camera_m, 0.5)) + "   95 % below " +
-         metres(percentile(places.in_camera_m, 0.95)) + "\n";
+         "from the camera: median " + metres(report::percentile(places.in_camera_m, 0.5)) + "   95 % below " +
+         metres(report::percentile(places.in_camera_m, 0.95)) + "\n";
   if (places.stated > 0) {
     all += "                    within the stated 95 % ellipsoid: " +
            percent(share(places.inside, places.stated)) + "   NEES: median " +
-           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
+           text_of("%.2f", report::percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
   }
   return all;
 }
@@ -313,7 +271,7 @@ std::string lines_of(const SequenceScores& s) {
            std::to_string(s.changes.expected) + "   wrong: " + std::to_string(s.changes.wrong) + " of " +
            std::to_string(s.changes.reported) + " reported";
     if (!s.changes.errors_m.empty())
-      all += "   displacement error " + metres(percentile(s.changes.errors_m, 0.5));
+      all += "   displacement error " + metres(report::percentile(s.changes.errors_m, 0.5));
     all += "\n";
   }
   if (s.trajectory) all += trajectory_lines(*s.trajectory);
@@ -340,8 +298,8 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
                points(s.tracks.ass_a), points(s.tracks.id_f1), std::to_string(s.tracks.switches),
                points(s.objects.recall_50()), points(s.objects.recall_75()), points(s.objects.precision_50()),
                points(s.objects.mean_error), std::to_string(s.steadiness.found_again),
-               text_of("%.3f", percentile(s.places.in_map_m, 0.5)),
-               text_of("%.3f", percentile(s.places.in_map_m, 0.95)),
+               text_of("%.3f", report::percentile(s.places.in_map_m, 0.5)),
+               text_of("%.3f", report::percentile(s.places.in_map_m, 0.95)),
                s.trajectory ? text_of("%.2f", 100 * s.trajectory->end_drift) : ""});
   }
   return table.text();
@@ -363,7 +321,7 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
     std::vector<std::pair<std::string, Json>> summaries;
     summaries.reserve(runs.size());
     for (const SequenceScores& run : runs) summaries.emplace_back(run.name, summary_json(run));
-    io::write_file(*options.csv, csv(summaries));
+    io::write_file(*options.csv, csv_of(summaries));
   }
   if (runs.size() == 1) {
     std::cout << lines_of(runs.front());
@@ -411,7 +369,7 @@ int evaluate_trajectory(const EvaluateSequenceOptions& options) {
   }
   if (options.json)
     io::write_file(*options.json, dumped({{"cairn", CAIRN_VERSION}, {"summary", summaries.front().second}}));
-  if (options.csv) io::write_file(*options.csv, csv(summaries));
+  if (options.csv) io::write_file(*options.csv, csv_of(summaries));
   std::cout << text;
   return 0;
 }

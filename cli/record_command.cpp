@@ -5,9 +5,9 @@
 #include <fstream>
 #include <io/atomic_file.hpp>
 #include <io/calibration_files.hpp>
+#include <io/frame_names.hpp>
 #include <io/image_files.hpp>
 #include <iostream>
-#include <source/names_and_numbers.hpp>
 #include <system_error>
 
 #include "commands.hpp"

@@ -43,7 +43,7 @@ set(private_headers
   tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/changes landmarks/geometry
   source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video
   source/open_ros2 source/text_lines
-  io/calibration_forms io/natural_order io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts
+  io/calibration_forms io/frame_names io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts
   page/live_page view/access view/channels view/client view/frame_json view/parameters)
 list(JOIN private_headers "|" private_headers)
 

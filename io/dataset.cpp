@@ -6,7 +6,7 @@
 #include <functional>
 #include <io/calibration_forms.hpp>
 #include <io/dataset.hpp>
-#include <io/natural_order.hpp>
+#include <io/frame_names.hpp>
 #include <system_error>
 
 namespace cairn::io {

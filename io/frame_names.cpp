@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cstddef>
-#include <io/natural_order.hpp>
+#include <io/frame_names.hpp>
 #include <string_view>
 
 namespace cairn::io {
@@ -35,6 +35,13 @@ bool in_natural_order(const std::string& a, const std::string& b) {
     }
   }
   return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
+std::string number_text(std::size_t index) {
+  constexpr std::size_t kDigits = 6;
+  std::string text = std::to_string(index);
+  if (text.size() < kDigits) text.insert(0, kDigits - text.size(), '0');
+  return text;
 }
 
 }  // namespace cairn::io

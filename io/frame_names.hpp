@@ -2,11 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace cairn::io {
 
 /// The order of names with numbers: 9 before 10, zero-padded or not; ties by bytes.
 bool in_natural_order(const std::string& a, const std::string& b);
+
+/// "000012": the name of a numbered frame.
+std::string number_text(std::size_t index);
 
 }  // namespace cairn::io

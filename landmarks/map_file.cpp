@@ -302,7 +302,7 @@ struct MapFile::Store {
     }
   }
 
-  void store_landmark(const Landmark& l) {
+  void store_landmark(const Landmark& l) const {
     SQLite::Statement put(
         *database,
         "INSERT INTO landmark VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT(id) DO UPDATE SET "
@@ -390,7 +390,7 @@ struct MapFile::Store {
     stored_floor = map.floor;
   }
 
-  void set(const std::string& key, const std::string& value) {
+  void set(const std::string& key, const std::string& value) const {
     SQLite::Statement put(*database,
                           "INSERT INTO meta VALUES(?,?) ON CONFLICT(key) DO UPDATE SET value=excluded.value");
     put.bind(1, key);

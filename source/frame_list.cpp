@@ -8,7 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <io/dataset.hpp>
-#include <io/natural_order.hpp>
+#include <io/frame_names.hpp>
 #include <map>
 #include <system_error>
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <deque>
+#include <io/frame_names.hpp>
 #include <io/raster.hpp>
 
 #include "../ros/from_step.hpp"

@@ -4,13 +4,6 @@
 
 namespace cairn::io {
 
-std::string number_text(std::size_t index) {
-  constexpr std::size_t kDigits = 6;
-  std::string text = std::to_string(index);
-  if (text.size() < kDigits) text.insert(0, kDigits - text.size(), '0');
-  return text;
-}
-
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }

@@ -22,9 +22,6 @@ std::optional<Number> whole(std::string_view text) {
   return number;
 }
 
-/// "000012": the name of a numbered frame.
-std::string number_text(std::size_t index);
-
 bool is_digit(char c);
 
 /// Whether `path` is an accessible folder.

@@ -7,7 +7,7 @@
 #include <cairn/core/error.hpp>
 #include <cmath>
 #include <cstdio>
-#include <io/natural_order.hpp>
+#include <io/frame_names.hpp>
 #include <io/read_file.hpp>
 
 #include "names_and_numbers.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <io/dataset.hpp>
+#include <io/frame_names.hpp>
 #include <io/image_files.hpp>
-#include <io/natural_order.hpp>
 #include <io/read_file.hpp>
 
 #include "json_line.hpp"

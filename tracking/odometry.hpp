@@ -170,9 +170,9 @@ OdometryState after_gap(OdometryState state);
 /// (1994), tracked by pyramidal Lucas-Kanade (Bouguet 2000) from the keyframe; hypotheses by
 /// perspective-3-points in RANSAC with a fixed seed; refined by Gauss-Newton over (u, v, d).
 /// (docs/stages/odometry.md)
-OdometryStep advance_odometry(const OdometryState& state, View<const Gray> left,
+OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left,
                               const DisparityMap& disparity, View<const float> confidence,
                               View<const std::uint8_t> moving, const StereoRig& rig,
-                              const std::optional<MotionPrior>& prior, const OdometryConfig& config);
+                              const std::optional<MotionPrior>& given, const OdometryConfig& config);
 
 }  // namespace cairn

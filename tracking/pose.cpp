@@ -84,7 +84,8 @@ Point3 rotation_vector(const Pose& pose) {
   return {v.x(), v.y(), v.z()};
 }
 
-Pose rotation_about(Point3 v) {
+Pose rotation_about(Point3 rotation_vector_rad) {
+  const Point3 v = rotation_vector_rad;
   const double angle = length(v);
   if (angle == 0) return {};
   const Eigen::Vector3d axis(v.x / angle, v.y / angle, v.z / angle);

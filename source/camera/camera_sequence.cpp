@@ -8,6 +8,7 @@
 #include <cairn/core/error.hpp>
 #include <condition_variable>
 #include <cstdio>
+#include <io/frame_names.hpp>
 #include <mutex>
 #include <utility>
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cairn/core/error.hpp>
 #include <cstdio>
+#include <io/frame_names.hpp>
 #include <mutex>
 
 #include "../../ros/from_step.hpp"

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <io/dataset.hpp>
+#include <io/frame_names.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
 #include <source/frame_list.hpp>

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Numbers of `cairn evaluate` as JSON and CSV.
+namespace cairn::cli {
+
+/// null for NaN and infinity, which JSON does not have.
+nlohmann::ordered_json json(double value);
+
+/// A header line of names, then one line per run (name, summary): the names are the paths in the summaries, with
+/// points. Missing values are empty.
+std::string csv(const std::vector<std::pair<std::string, nlohmann::ordered_json>>& runs);
+
+}  // namespace cairn::cli
