@@ -350,8 +350,13 @@ def by_cairn(config, frame):
     return made.disparity, ms
 
 
+def searched_by_opencv(num_disparities):
+    """Rounded up: OpenCV searches multiples of 16."""
+    return (num_disparities + 15) // 16 * 16
+
+
 def by_opencv(prepare, frame):
-    matcher = prepare((frame.num_disparities + 15) // 16 * 16)
+    matcher = prepare(searched_by_opencv(frame.num_disparities))
     right = frame.right if frame.right.ndim == 2 else ((frame.right @ np.array([77, 150, 29], np.uint32) + 128) >> 8).astype(np.uint8)
     made, ms = on_one_core(lambda _: matcher.compute(frame.grey, right))
     return np.where(made < 0, np.nan, made / np.float32(16)).astype(np.float32), ms
@@ -359,7 +364,7 @@ def by_opencv(prepare, frame):
 
 def errors_of(match, frame):
     found_px, ms = match(frame)
-    return [cairn.disparity_errors(found_px, frame.truth_px, frame.hidden, skip) for skip in (0, frame.num_disparities)], ms
+    return [cairn.disparity_errors(found_px, frame.truth_px, frame.hidden, skip) for skip in (0, searched_by_opencv(frame.num_disparities))], ms
 
 
 def middlebury(data, threads):

@@ -37,8 +37,8 @@ build_key() {
     "SIMD $(cached CAIRN_SIMD), TBB $(cached CAIRN_TBB)"
 }
 
-# With --json, since the table of refusals judges texture once more. counts PRESET: lines `PRESET FUNCTION INSTRUCTIONS` for every function of the stages' own folders, those that it calls
-# included; segment is the whole.
+# counts PRESET: lines `PRESET FUNCTION INSTRUCTIONS` for every function of the stages' own folders, those that it calls
+# included; segment is the whole. With --json, since the table of refusals judges texture once more.
 counts() {
   local preset=$1
   valgrind --tool=callgrind --callgrind-out-file="$scratch/$preset" \
@@ -80,10 +80,11 @@ if [[ $mode == --update ]]; then
   exit
 fi
 
-grep -v '^#' "$kept" | awk -v most="$most_percent" '
-  NR == FNR { now[$1 " " $2] = $3; next }
+grep -v '^#' "$kept" | awk -v most="$most_percent" -v least="$least_percent" '
+  NR == FNR { now[$1 " " $2] = $3; if ($2 == "segment") whole[$1] = $3; next }
   {
     name = $1 " " $2
+    kept[name] = 1
     off = name in now ? 100 * (now[name] - $3) / $3 : 100
     if (off > most || off < -most) {
       bad = 1
@@ -93,6 +94,13 @@ grep -v '^#' "$kept" | awk -v most="$most_percent" '
     }
   }
   END {
+    for (name in now) {
+      split(name, of, " ")
+      # A count near the limit may be on either side of it.
+      if (name in kept || now[name] * 100 < whole[of[1]] * (least + 0.5)) continue
+      bad = 1
+      printf "%-36s %12s then, %12d now\n", name, "none", now[name]
+    }
     if (bad) print "more than " most " % off: find out why, or take the new counts over with ./dev test --update"
     exit bad
   }' "$scratch/now" -

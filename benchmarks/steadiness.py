@@ -88,9 +88,11 @@ def report_control(settings, names, found):
                 share = "%.2f" % repaired[-1]
             print(f"| {wrong} | {name} | {100 * preset:.1f} % | {100 * given:.1f} % | {100 * tuned:.1f} % | {share} | "
                   f"{', '.join(changes) or 'none'} |")
-    print(f"median repaired share of {len(repaired)} cases that cost more than {100 * LOSS:.0f} points: "
-          f"{statistics.median(repaired):.2f}, {sum(r >= 0.6 for r in repaired)} of them 0.6 or more; "
-          f"the other {len(harm)}: E changes by {100 * min(harm):+.1f} to {100 * max(harm):+.1f} points")
+    if repaired:
+        print(f"median repaired share of {len(repaired)} cases that cost more than {100 * LOSS:.0f} points: "
+              f"{statistics.median(repaired):.2f}, {sum(r >= 0.6 for r in repaired)} of them 0.6 or more")
+    if harm:
+        print(f"the other {len(harm)}: E changes by {100 * min(harm):+.1f} to {100 * max(harm):+.1f} points")
 
 
 def main():

@@ -325,6 +325,8 @@ def main():
         while waiting and len(running) < 2:
             running.append(subprocess.Popen([sys.executable, *sys.argv, "--only", waiting.pop(0)]))
         if running[0].wait():
+            for other in running[1:]:
+                other.terminate()
             sys.exit("fit_hints.py: a network could not be fitted")
         running.pop(0)
 

@@ -388,7 +388,7 @@
       if (state.overlay === 'none') pixels.fill(0);
       else paintLabels(pixels, values, width, idColour, chosen(), state.overlay === 'outlines');
       overlay.put();
-      if (!again || state.overlay === 'none') placeMarks(labels, again);
+      if (!again || state.overlay === 'none') placeMarks(labels);
       else dimMarks();
     }
     if (again) return;
@@ -531,7 +531,7 @@
     disparityImage.put();
     shown.disparity = frame;
     drawnAt.disparity = performance.now();
-    if (!again) followRange(values.length);
+    if (!again) followRange();
   }
   /** The colours span the values present, from 1 % to 99 %; they adapt slowly. */
   function followRange() {
@@ -1050,8 +1050,9 @@
       const scale = scaleOf(domain, on);
       control = el('input', {id, class: 'value', type: 'text', inputmode: 'decimal', spellcheck: 'false', autocomplete: 'off', onfocus: () => control.select(), onchange: () => {
         const text = control.value.trim().replace('−', '-');
-        if (text === '' || !Number.isFinite(Number(text))) row.write(row.option.value);
-        else change(text === 'off' ? '-1' : String(Number(text)));
+        if (text === 'off' && domain.hasOff) change('-1');
+        else if (text === '' || !Number.isFinite(Number(text))) row.write(row.option.value);
+        else change(String(Number(text)));
       }});
       const slider = el('input', {type: 'range', min: 0, max: 1, step: 'any', 'aria-label': name, oninput: () => change(String(scale.from(Number(slider.value))))});
       slider.addEventListener('keydown', (event) => {

@@ -60,15 +60,18 @@ class SegmentNode : public rclcpp::Node {
   void take(const Image::ConstSharedPtr& left, const Image::ConstSharedPtr& right,
             const CameraInfo::ConstSharedPtr& left_info, const CameraInfo::ConstSharedPtr& right_info) {
     try {
-      if (!follower_) {
+      const cairn::Stamp stamp = stamp_from(left->header);
+      // Also after a bag starts again or a simulator is reset: earlier frames are then of no use.
+      if (!follower_ || stamp < last_) {
         rig_ = cairn::ros::rig_of(camera_info_from(*left_info), camera_info_from(*right_info));
         follower_.emplace(config_, rig_, exec_);
       }
+      last_ = stamp;
       const Picture seen = picture_from(*left);
       const Picture other = picture_from(*right);
       const auto pair = cairn::StereoPair::from(seen.gray, other.gray, seen.rgb);
       config_ = follower_->config();  // of this frame; it may change options for the next one
-      const cairn::Step step = follower_->next(pair, stamp_from(left->header));
+      const cairn::Step step = follower_->next(pair, stamp);
       if (step.control) {
         RCLCPP_INFO(get_logger(), "%s steadier with %s=%s (was %s)",
                     step.control->is_set ? "set:" : "would be", step.control->arm.option.c_str(),
@@ -104,6 +107,7 @@ class SegmentNode : public rclcpp::Node {
   cairn::Exec exec_;
   std::optional<cairn::StereoRig> rig_;
   std::optional<cairn::Follower> follower_;
+  cairn::Stamp last_;  // of the pair before
   rclcpp::Publisher<Detections>::SharedPtr objects_;
   rclcpp::Publisher<Disparity>::SharedPtr disparity_;
   rclcpp::Publisher<PointCloud>::SharedPtr obstacles_;
