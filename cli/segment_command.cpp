@@ -396,7 +396,8 @@ Work declare_segment(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "output folder for objects.json, maps and images (docs/formats.md)")
       ->type_name("DIR");
-  app.add_flag("--json", options->json, "objects.json on standard output instead of a table");
+  app.add_flag("--json", options->json,
+               "objects.json on standard output instead of a table; for a folder one line per frame");
   app.add_flag("--ply", options->ply,
                "cloud.ply in DIR: coloured points in metres with their objects; needs a calibration");
   app.add_flag("--ply-objects", options->ply_objects,
