@@ -191,10 +191,9 @@ std::optional<Accuracies> accuracies_of(const Subject& subject, const FrameTimes
   if (!subject.truth) return std::nullopt;
   const MatchConfig& match = subject.config.match;
   Accuracies all;
-  constexpr int kStep = 16;  // OpenCV searches multiples of this
-  const int searched = (match.num_disparities + kStep - 1) / kStep * kStep;
-  all.from_column =
-      std::max(0, match.min_disparity + (times.peers.empty() ? match.num_disparities : searched));
+  const int searched =
+      times.peers.empty() ? match.num_disparities : report::searched_by_opencv(match.num_disparities);
+  all.from_column = std::max(0, match.min_disparity + searched);
   const auto add = [&](std::string name, View<const float> disparity_px) {
     all.rows.push_back({std::move(name), disparity_errors(disparity_px, subject.truth->disparity_px,
                                                           subject.truth->hidden, all.from_column)});

@@ -5,13 +5,10 @@
 #include <string_view>
 
 namespace cairn::io {
-namespace {
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
-
-}  // namespace
 
 bool in_natural_order(const std::string& a, const std::string& b) {
   std::size_t i = 0;

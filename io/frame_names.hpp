@@ -7,6 +7,8 @@
 
 namespace cairn::io {
 
+bool is_digit(char c);
+
 /// The order of names with numbers: 9 before 10, zero-padded or not; ties by bytes.
 bool in_natural_order(const std::string& a, const std::string& b);
 

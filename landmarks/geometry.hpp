@@ -88,6 +88,9 @@ struct Pull {
 /// as their covariances demand; a rotation about z and a translation. (Gauss-Newton, Huber weights)
 Located corrected(const Located& located, const std::vector<Pull>& pulls);
 
+/// The look from an octant; a new one, with -1 pixels, if there is none.
+LandmarkLook& look_from(Landmark& landmark, int octant);
+
 /// The landmark as a candidate for recognition.
 Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours);
 

@@ -202,16 +202,13 @@ bool may_tell_place(const TrackEvidence& evidence, const Track& track, const Lan
 /// Stores the colours of an octant, and the crop if the view is clearly larger than the stored one.
 void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int octant,
           const LandmarkFrame& frame) {
-  auto at = std::lower_bound(landmark.looks.begin(), landmark.looks.end(), octant,
-                             [](const LandmarkLook& l, int wanted) { return l.octant < wanted; });
-  if (at == landmark.looks.end() || at->octant != octant)
-    at = landmark.looks.insert(at, {octant, track.look, 0, {}, 0});
-  if (shown.pixels > at->pixels) at->colours = track.look;
+  LandmarkLook& at = landmarks::look_from(landmark, octant);
+  if (shown.pixels > at.pixels) at.colours = track.look;
   int largest = 0;
   for (const LandmarkLook& look : landmark.looks) {
     if (!look.crop_png.empty()) largest = look.crop_pixels;
   }
-  at->pixels = std::max(at->pixels, shown.pixels);
+  at.pixels = std::max(at.pixels, shown.pixels);
   constexpr double kWorth = 1.5;  // least gain in area; encoding takes longer than the rest of this function
   if (frame.left.empty() && frame.left_rgb.empty()) return;
   if (shown.pixels < kWorth * largest || shown.pixels == 0) return;
@@ -234,8 +231,8 @@ void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int 
   constexpr std::size_t kLargestCrop = 16384;
   if (png.size() > kLargestCrop) return;
   for (LandmarkLook& look : landmark.looks) look.crop_png.clear();
-  at->crop_png = std::move(png);
-  at->crop_pixels = shown.pixels;
+  at.crop_png = std::move(png);
+  at.crop_pixels = shown.pixels;
 }
 
 /// Updates the landmark with the track's current estimates.

@@ -78,6 +78,14 @@ Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours)
           landmark.height_over_floor_m, colours};
 }
 
+LandmarkLook& look_from(Landmark& landmark, int octant) {
+  auto at = std::lower_bound(landmark.looks.begin(), landmark.looks.end(), octant,
+                             [](const LandmarkLook& look, int wanted) { return look.octant < wanted; });
+  if (at == landmark.looks.end() || at->octant != octant)
+    at = landmark.looks.insert(at, {octant, {}, -1, {}, 0});
+  return *at;
+}
+
 }  // namespace landmarks
 
 namespace {
@@ -407,17 +415,14 @@ void add_looks(Landmark& known, const std::vector<LandmarkLook>& others) {
   const bool has_crop = std::any_of(known.looks.begin(), known.looks.end(),
                                     [](const LandmarkLook& look) { return !look.crop_png.empty(); });
   for (const LandmarkLook& other : others) {
-    auto at = std::lower_bound(known.looks.begin(), known.looks.end(), other.octant,
-                               [](const LandmarkLook& look, int octant) { return look.octant < octant; });
-    if (at == known.looks.end() || at->octant != other.octant)
-      at = known.looks.insert(at, {other.octant, {}, -1, {}, 0});
-    if (other.pixels > at->pixels) {
-      at->colours = other.colours;
-      at->pixels = other.pixels;
+    LandmarkLook& look = landmarks::look_from(known, other.octant);
+    if (other.pixels > look.pixels) {
+      look.colours = other.colours;
+      look.pixels = other.pixels;
     }
     if (has_crop || other.crop_png.empty()) continue;
-    at->crop_png = other.crop_png;
-    at->crop_pixels = other.crop_pixels;
+    look.crop_png = other.crop_png;
+    look.crop_pixels = other.crop_pixels;
   }
 }
 

@@ -4,10 +4,6 @@
 
 namespace cairn::io {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 bool is_folder(const std::filesystem::path& path) {
   std::error_code unknown;
   return std::filesystem::is_directory(path, unknown);

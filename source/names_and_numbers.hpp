@@ -22,8 +22,6 @@ std::optional<Number> whole(std::string_view text) {
   return number;
 }
 
-bool is_digit(char c);
-
 /// Whether `path` is an accessible folder.
 bool is_folder(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <io/frame_names.hpp>
 #include <io/read_file.hpp>
 #include <limits>
 #include <map>

@@ -20,18 +20,13 @@ struct ReadyMatcher::State {
 
 namespace {
 
-int rounded_up(int num_disparities) {
-  constexpr int kStep = 16;
-  return (num_disparities + kStep - 1) / kStep * kStep;
-}
-
 ReadyMatcher ready(cv::Ptr<cv::StereoMatcher> matcher) {
   return ReadyMatcher(std::make_shared<ReadyMatcher::State>(ReadyMatcher::State{std::move(matcher), {}}));
 }
 
 ReadyMatcher block_matching(const SearchRange& range) {
   constexpr int kWindow = 9;
-  auto matcher = cv::StereoBM::create(rounded_up(range.num_disparities), kWindow);
+  auto matcher = cv::StereoBM::create(searched_by_opencv(range.num_disparities), kWindow);
   matcher->setMinDisparity(range.min_disparity);
   matcher->setDisp12MaxDiff(1);
   return ready(std::move(matcher));
@@ -46,7 +41,7 @@ ReadyMatcher semi_global(const SearchRange& range, int mode) {
   constexpr int kUniqueness = 10;
   constexpr int kSpeckleSize = 100;
   constexpr int kSpeckleRange = 2;
-  return ready(cv::StereoSGBM::create(range.min_disparity, rounded_up(range.num_disparities), kBlock,
+  return ready(cv::StereoSGBM::create(range.min_disparity, searched_by_opencv(range.num_disparities), kBlock,
                                       kSmallPenalty, kLargePenalty, kMostDisagreement, kPrefilterCap,
                                       kUniqueness, kSpeckleSize, kSpeckleRange, mode));
 }

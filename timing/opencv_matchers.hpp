@@ -29,8 +29,14 @@ class ReadyMatcher {
 
 struct SearchRange {
   int min_disparity = 0;
-  int num_disparities = 64;  // rounded up to a multiple of 16 for OpenCV
+  int num_disparities = 64;
 };
+
+/// The number of disparities that OpenCV searches: a multiple of 16.
+constexpr int searched_by_opencv(int num_disparities) {
+  constexpr int kStep = 16;
+  return (num_disparities + kStep - 1) / kStep * kStep;
+}
 
 struct OpenCvMatcher {
   std::string_view name;

@@ -174,8 +174,8 @@ bool clearly_better(const std::vector<Loss>& before, const std::vector<Loss>& af
   if (!std::isfinite(lost_after)) return false;
   if (!std::isfinite(lost_before)) return true;
   if (lost_before - lost_after < margin.least_share * lost_before || lost_after >= lost_before) return false;
-  if (scored(before) < 2) return true;
   const auto count = static_cast<double>(scored(before));
+  if (count < 2) return true;
   double sum = 0;
   double squares = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -208,7 +208,8 @@ Gain gain_of(const std::vector<Loss>& before, const std::vector<Loss>& after) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double mean = mean_loss(before) - mean_loss(after);
   if (!std::isfinite(mean)) return {nan, nan, nan};
-  if (scored(before) < 2) return {mean, nan, nan};
+  const std::size_t samples = scored(before);
+  if (samples < 2) return {mean, nan, nan};
   double squares = 0;
   double weight = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -216,8 +217,8 @@ Gain gain_of(const std::vector<Loss>& before, const std::vector<Loss>& after) {
     squares += rest * rest;
     weight += before[i].weight;
   }
-  const auto count = static_cast<double>(scored(before));
-  const double reach = t_quantile(scored(before) - 1) * std::sqrt(squares * count / (count - 1)) / weight;
+  const auto count = static_cast<double>(samples);
+  const double reach = t_quantile(samples - 1) * std::sqrt(squares * count / (count - 1)) / weight;
   return {mean, mean - reach, mean + reach};
 }
 

@@ -400,15 +400,18 @@ TEST(MapFile, OfAnotherRigIsRefused) {
   (void)MapFile::open(path, MapMode::update, twice);
 }
 
+/// A map with a whole run of eight frames.
+void write_run(const fs::path& path) {
+  MapFile file = MapFile::open(path, MapMode::update, kRig);
+  Drive drive(file);
+  drive.frames(file, 8);
+  file.end_run(RunState::done, drive.step.state.map);
+}
+
 TEST(MapFile, SurvivesDamage) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
-  {
-    MapFile file = MapFile::open(path, MapMode::update, kRig);
-    Drive drive(file);
-    drive.frames(file, 8);
-    file.end_run(RunState::done, drive.step.state.map);
-  }
+  write_run(path);
   const std::string bytes = support::bytes_of(path);
   constexpr std::size_t kStep = 97;
   support::survives_damage(
@@ -427,12 +430,7 @@ TEST(MapFile, SurvivesDamage) {
 TEST(MapFile, RefusesNumbersOutOfRange) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "room.db";
-  {
-    MapFile file = MapFile::open(path, MapMode::update, kRig);
-    Drive drive(file);
-    drive.frames(file, 8);
-    file.end_run(RunState::done, drive.step.state.map);
-  }
+  write_run(path);
   for (const auto& [change, word] :
        {std::pair{"INSERT INTO floor VALUES(4294967297, 0, 1)", "floor.x is 4294967297"},
         {"UPDATE landmark SET widest=1e6", "landmark.widest is 1000000"},
