@@ -142,7 +142,8 @@ void check_folder(const fs::path& folder) {
               (fs::exists(folder, reason) ? "is not a folder, expected one" : "no such folder"));
 }
 
-/// The results of `visit` for each entry, in natural order of their names. Throws Error if the folder cannot be listed.
+/// The results of `visit` for each entry, in natural order of their names. Throws Error if the folder cannot
+/// be listed.
 template <class Visit>
 std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
   std::vector<FrameFiles> frames;

@@ -139,8 +139,9 @@ struct Finding {
 };
 
 /// The findings of many pairs by kind, in the order of kFindings, each with severity, number and sentence of
-/// the first pair with the highest severity, and all pairs with it. If the fault is with one camera there and with the other in other
-/// pairs, the sentence says so. A range is too large only if it is so for every pair that could tell.
+/// the first pair with the highest severity, and all pairs with it. If the fault is with one camera there and
+/// with the other in other pairs, the sentence says so. A range is too large only if it is so for every pair
+/// that could tell.
 std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs);
 
 }  // namespace cairn

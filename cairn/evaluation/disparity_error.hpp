@@ -32,9 +32,10 @@ struct DisparityErrors {
   [[nodiscard]] double sigma_px() const;
 };
 
-/// Compares two disparity maps of one size; NaN = a hole, or a pixel without truth (there also ±infinity). `excluded` (may be
-/// empty): pixels with a value other than 0 are skipped, e.g. those occluded in the right image. `skip_left`:
-/// columns x < skip_left are skipped (for matchers that cannot fill them). (docs/evaluation.md)
+/// Compares two disparity maps of one size; NaN = a hole, or a pixel without truth (there also ±infinity).
+/// `excluded` (may be empty): pixels with a value other than 0 are skipped, e.g. those occluded in the right
+/// image. `skip_left`: columns x < skip_left are skipped (for matchers that cannot fill them).
+/// (docs/evaluation.md)
 DisparityErrors disparity_errors(View<const float> ours_px, View<const float> truth_px,
                                  View<const std::uint8_t> excluded, int skip_left);
 
